@@ -18,6 +18,7 @@ struct Node {
     Mark mark;                                  ///< of the scalar's text, or of the first entry
     std::string text;                           ///< scalar; empty for an empty value (`key:`)
     bool quoted = false;                        ///< scalar in quotes: never a number or a wire
+    std::string parameter;                      ///< name, where the text was written as `$name`
     std::vector<std::pair<Node, Node>> entries; ///< map, in file order; keys are scalars, unique
     std::vector<Node> items;                    ///< sequence
 

@@ -1,0 +1,130 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <type_traits>
+
+#include "runtime/model/value.hpp"
+
+namespace lineshaft {
+
+enum class Direction : std::uint8_t {
+    parameter,  ///< constant while the program runs
+    input,      ///< constant, wired, or set by a stimulus; copied in before each scan
+    output,     ///< written by the block; may be wired, traced, expected
+};
+
+constexpr std::string_view name_of(Direction direction) {
+    constexpr std::string_view names[] = {"parameter", "input", "output"};
+    return names[static_cast<std::size_t>(direction)];
+}
+
+/// One named value of a block. The table of these is the only place where a block's names, units,
+/// limits and doc strings stand; keys, checks, help, schema and trace columns are made from it.
+struct Field {
+    std::string_view name = {};
+    std::string_view doc = {};
+    std::string_view unit = {};  ///< `mm/s`; `{p}` in it stands for the value of the enumeration parameter p
+    Direction direction = Direction::parameter;
+    Type type = Type::real;
+    std::size_t offset = 0;                   ///< of the member in the block's struct
+    std::span<const std::string_view> names = {};  ///< of an enumeration, in the order of its values
+    double minimum = -std::numeric_limits<double>::infinity();
+    double maximum = std::numeric_limits<double>::infinity();
+    bool minimum_excluded = false;
+    bool maximum_excluded = false;
+    bool required = false;
+
+    /// Limits of a constant in the program file; a wired value is the block's own business.
+    constexpr Field above(double limit) const {
+        Field f = *this;
+        f.minimum = limit;
+        f.minimum_excluded = true;
+        return f;
+    }
+    constexpr Field below(double limit) const {
+        Field f = *this;
+        f.maximum = limit;
+        f.maximum_excluded = true;
+        return f;
+    }
+    constexpr Field at_least(double limit) const {
+        Field f = *this;
+        f.minimum = limit;
+        return f;
+    }
+    constexpr Field at_most(double limit) const {
+        Field f = *this;
+        f.maximum = limit;
+        return f;
+    }
+    /// A program that neither sets nor wires it is in error.
+    constexpr Field must_be_set() const {
+        Field f = *this;
+        f.required = true;
+        return f;
+    }
+    /// Names of an enumeration's values.
+    constexpr Field one_of(std::span<const std::string_view> values) const {
+        Field f = *this;
+        f.names = values;
+        return f;
+    }
+
+    bool admits(double value) const {
+        return (minimum_excluded ? value > minimum : value >= minimum) &&
+               (maximum_excluded ? value < maximum : value <= maximum);
+    }
+};
+
+namespace detail {
+
+template <class T>
+constexpr Type type_of() {
+    if constexpr (std::is_same_v<T, bool>) return Type::boolean;
+    else if constexpr (std::is_same_v<T, std::int64_t>) return Type::integer;
+    else if constexpr (std::is_same_v<T, double>) return Type::real;
+    else {
+        static_assert(std::is_enum_v<T> && sizeof(T) == 8,
+                      "a field is bool, std::int64_t, double, or an enum class : std::int64_t");
+        return Type::enumeration;
+    }
+}
+
+template <class Block, class T>
+Field field(Direction direction, std::string_view name, T Block::*member, std::string_view unit,
+            std::string_view doc) {
+    static const Block probe{};
+    Field f;
+    f.name = name;
+    f.doc = doc;
+    f.unit = unit;
+    f.direction = direction;
+    f.type = type_of<T>();
+    f.offset = static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&(probe.*member)) -
+                                        reinterpret_cast<const std::byte*>(&probe));
+    return f;
+}
+
+}  // namespace detail
+
+template <class Block, class T>
+Field parameter(std::string_view name, T Block::*member, std::string_view unit,
+                std::string_view doc) {
+    return detail::field(Direction::parameter, name, member, unit, doc);
+}
+
+template <class Block, class T>
+Field input(std::string_view name, T Block::*member, std::string_view unit, std::string_view doc) {
+    return detail::field(Direction::input, name, member, unit, doc);
+}
+
+template <class Block, class T>
+Field output(std::string_view name, T Block::*member, std::string_view unit, std::string_view doc) {
+    return detail::field(Direction::output, name, member, unit, doc);
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+
+namespace lineshaft {
+
+/// The four kinds of data a signal carries. An enumeration is stored as its index, 64 bits wide.
+enum class Type : std::uint8_t { boolean, integer, real, enumeration };
+
+/// Enumerations count as integers here; their names stand in the field.
+using Value = std::variant<bool, std::int64_t, double>;
+
+constexpr std::size_t size_of(Type type) { return type == Type::boolean ? 1 : 8; }
+
+constexpr std::string_view name_of(Type type) {
+    constexpr std::string_view names[] = {"boolean", "integer", "real", "enumeration"};
+    return names[static_cast<std::size_t>(type)];
+}
+
+/// Reads the signal of `type` that is stored at `slot`.
+Value load(Type type, const std::byte* slot);
+
+/// Writes `value`, which must be of `type`, to `slot`.
+void store(Type type, std::byte* slot, const Value& value);
+
+/// As a trace has it: boolean 0 or 1, enumeration its number, shortest round-trip real.
+std::string format(const Value& value);
+
+/// As a person reads it: `true`, an enumeration's name, a number with its unit.
+std::string describe(const Value& value, Type type, std::span<const std::string_view> names,
+                     std::string_view unit);
+
+/// For comparisons and formulas: true is 1.
+double as_real(const Value& value);
+
+}  // namespace lineshaft

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "runtime/model/catalog.hpp"
+#include "runtime/program/program.hpp"
+#include "runtime/scan/judge.hpp"
+#include "runtime/scan/machine.hpp"
+#include "runtime/trace/recorder.hpp"
+
+namespace lineshaft {
+
+/// A program that can run.
+struct Linked {
+    Machine machine;
+    std::optional<TraceSetup> trace;
+    std::vector<Expectation> expectations;
+};
+
+/// Checks every name, type, unit, limit and wire of `program` and lays its blocks out in memory. What is wrong
+/// goes to `out`; the result is usable only when nothing went there.
+Linked link(const Program& program, const Catalog& catalog, Diagnostics& out);
+
+}  // namespace lineshaft

@@ -1,0 +1,370 @@
+#include "runtime/program/program.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "runtime/program/reader.hpp"
+
+namespace lineshaft {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path project_root(const fs::path& file) {
+    const fs::path own = fs::weakly_canonical(file).parent_path();
+    for (fs::path folder = own; folder != folder.root_path(); folder = folder.parent_path())
+        if (fs::is_directory(folder / "config")) return folder;
+    return own;
+}
+
+bool lies_below(const fs::path& file, const fs::path& folder) {
+    const auto relative = file.lexically_relative(folder);
+    return !relative.empty() && *relative.begin() != "..";
+}
+
+/// Replaces `$name` by the parameter's text throughout a tree.
+class Substitution {
+  public:
+    Substitution(const std::map<std::string, Node>& values, const Reader& read)
+        : values_(values), read_(read) {}
+
+    void apply(Node& node) const {
+        for (auto& [key, value] : node.entries) apply(value);
+        for (Node& item : node.items) apply(item);
+        if (!node.is_scalar() || node.quoted || !node.text.starts_with('$')) return;
+        const std::string name = node.text.substr(1);
+        const auto it = values_.find(name);
+        if (it == values_.end()) return unknown(node, name);
+        node.text = it->second.text;
+        node.quoted = it->second.quoted;
+        node.parameter = name;
+    }
+
+  private:
+    void unknown(const Node& node, const std::string& name) const {
+        std::vector<std::string> known;
+        for (const auto& [parameter, value] : values_) known.push_back(parameter);
+        read_.fail("L0207", node, fmt::format("unknown parameter '{}'", name),
+                   known.empty() ? "the program has no 'parameters:'" : suggest(name, known));
+    }
+
+    const std::map<std::string, Node>& values_;
+    const Reader& read_;
+};
+
+class ProgramReader {
+  public:
+    ProgramReader(const LoadOptions& options, Diagnostics& out) : options_(options), read_(out) {}
+
+    Program read(std::shared_ptr<const SourceFile> file);
+
+  private:
+    void version(const Node& root);
+    void parameters(const Node& root);
+    void settings(std::map<std::string, Node>& values);
+    void controller(const Node& node);
+    void tasks(const Node& node);
+    void task(const Node& name, const Node& body);
+    void blocks(const Node& node);
+    void inputs(const Node& node);
+    void run(const Node& node);
+    void stimuli(const Node& node);
+    void trace(const Node& node);
+    void expectations(const Node& node);
+    void expectation(const Node& item);
+    void bounds(const Node& map, ExpectPlan& plan);
+    void at(const Node& node, ExpectPlan& plan);
+
+    const LoadOptions& options_;
+    Reader read_;
+    Program program_;
+    std::map<std::string, Node> values_;
+};
+
+Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
+    program_.file = file;
+    auto root = parse_yaml(file, read_.diagnostics());
+    if (!root) return std::move(program_);
+    read_.only_keys(*root, "a program",
+                    {"lineshaft", "title", "parameters", "controller", "tasks", "blocks", "inputs",
+                     "run", "stimulus", "trace", "expect"});
+    version(*root);
+    parameters(*root);
+    Substitution(values_, read_).apply(*root);
+    program_.title = fs::path(file->path).stem().string();
+    if (const Node* n = root->find("title"); n && read_.expect_scalar(*n, "the title"))
+        program_.title = n->text;
+    if (const Node* n = root->find("controller")) controller(*n);
+    if (const Node* n = root->find("tasks")) tasks(*n);
+    if (!root->find("tasks") && !root->find("controller"))
+        read_.fail("L0202", *root, "a program has no 'tasks' and no 'controller'");
+    if (const Node* n = read_.require(*root, "blocks", "a program")) blocks(*n);
+    if (const Node* n = root->find("inputs")) inputs(*n);
+    if (const Node* n = read_.require(*root, "run", "a program")) run(*n);
+    if (const Node* n = root->find("stimulus")) stimuli(*n);
+    if (const Node* n = root->find("trace")) trace(*n);
+    if (const Node* n = root->find("expect")) expectations(*n);
+    return std::move(program_);
+}
+
+void ProgramReader::version(const Node& root) {
+    const Node* node = root.find("lineshaft");
+    if (!node)
+        read_.fail("L0211", root, "this is no lineshaft program",
+                   "a program begins with 'lineshaft: 1'");
+    else if (node->text != "1")
+        read_.fail("L0211", *node, fmt::format("version '{}' of the program form is not known", node->text),
+                   "this lineshaft reads version 1");
+}
+
+void ProgramReader::parameters(const Node& root) {
+    const Node* node = root.find("parameters");
+    if (node && read_.expect_map(*node, "'parameters'"))
+        for (const auto& [key, value] : node->entries)
+            if (read_.identifier(key, "a parameter") && read_.expect_scalar(value, "a parameter"))
+                values_.emplace(key.text, value);
+    settings(values_);
+    if (node)
+        for (const auto& [key, value] : node->entries)
+            if (const auto it = values_.find(key.text); it != values_.end())
+                program_.parameters.emplace_back(key.text, it->second.text);
+}
+
+void ProgramReader::settings(std::map<std::string, Node>& values) {
+    std::vector<std::string> known;
+    for (const auto& [name, value] : values) known.push_back(name);
+    for (const Setting& setting : options_.settings) {
+        const auto it = values.find(setting.name);
+        if (it == values.end()) {
+            read_.diagnostics().add(
+                "L0501", setting.mark,
+                fmt::format("the program has no parameter '{}' to set", setting.name),
+                known.empty() ? "it has no 'parameters:' at all" : suggest(setting.name, known));
+            continue;
+        }
+        it->second.text = setting.value;
+        it->second.quoted = false;
+    }
+}
+
+void ProgramReader::controller(const Node& node) {
+    if (!read_.expect_scalar(node, "'controller'")) return;
+    Diagnostics& out = read_.diagnostics();
+    const auto path =
+        resolve_path(node.text, program_.file->path, options_.include_dirs, node.mark, out);
+    if (!path) return;
+    const auto file = read_source(*path, out, node.mark);
+    if (!file) return;
+    auto root = parse_yaml(file, out);
+    if (!root) return;
+    read_.only_keys(*root, "a controller", {"lineshaft_controller", "title", "tasks"});
+    const Node* version = root->find("lineshaft_controller");
+    if (!version || version->text != "1")
+        read_.fail("L0211", version ? *version : *root, "this is no lineshaft controller",
+                   "a controller begins with 'lineshaft_controller: 1'");
+    if (const Node* n = read_.require(*root, "tasks", "a controller")) tasks(*n);
+}
+
+void ProgramReader::tasks(const Node& node) {
+    if (!read_.expect_map(node, "'tasks'")) return;
+    for (const auto& [name, body] : node.entries)
+        if (read_.identifier(name, "a task") && read_.expect_map(body, "a task")) task(name, body);
+}
+
+void ProgramReader::task(const Node& name, const Node& body) {
+    read_.only_keys(body, fmt::format("task '{}'", name.text),
+                    {"every", "offset", "priority", "jitter", "cost", "cost_jitter"});
+    auto plan = std::ranges::find(program_.tasks, name.text, &TaskPlan::name);
+    if (plan == program_.tasks.end())
+        plan = program_.tasks.insert(plan, {.name = name.text, .mark = name.mark});
+    const auto time = [&](const char* key, std::int64_t& target) {
+        if (const Node* n = body.find(key)) target = read_.time(*n).value_or(target);
+    };
+    const auto share = [&](const char* key, std::int64_t whole, std::int64_t& target) {
+        if (const Node* n = body.find(key)) target = read_.time_or_share(*n, whole).value_or(target);
+    };
+    const Node* every = body.find("every");
+    if (!every && plan->every == 0)
+        read_.fail("L0202", name, fmt::format("task '{}' has no 'every'", name.text),
+                   "write its interval, such as every: 2 ms");
+    time("every", plan->every);
+    if (every && plan->every == 0 && read_.time(*every))
+        read_.fail("L0308", *every, "a task's interval is above 0");
+    time("offset", plan->offset);
+    time("cost", plan->cost);
+    share("jitter", plan->every, plan->jitter);
+    share("cost_jitter", plan->cost, plan->cost_jitter);
+    if (plan->every > 0 && plan->jitter >= plan->every)
+        read_.fail("L0305", *body.find(body.find("jitter") ? "jitter" : "every"),
+                   fmt::format("the jitter of task '{}' is not below its interval", name.text));
+    if (plan->cost_jitter > plan->cost)
+        read_.fail("L0305", *body.find(body.find("cost_jitter") ? "cost_jitter" : "cost"),
+                   fmt::format("the cost_jitter of task '{}' is above its cost", name.text));
+    if (const Node* n = body.find("priority"))
+        plan->priority = read_.integer(*n).value_or(plan->priority);
+}
+
+void ProgramReader::blocks(const Node& node) {
+    if (!read_.expect_map(node, "'blocks'")) return;
+    for (const auto& [name, body] : node.entries) {
+        if (!read_.identifier(name, "a block")) continue;
+        if (name.text == "inputs") {
+            read_.fail("L0210", name, "a block cannot be called 'inputs'",
+                       "inputs.x names the program's own inputs");
+            continue;
+        }
+        if (!read_.expect_map(body, "a block")) continue;
+        BlockPlan plan{.name = name, .type = {}, .task = {}, .ports = {}};
+        const std::string what = fmt::format("block '{}'", name.text);
+        const Node* type = body.find("type");
+        const Node* task = body.find("task");
+        if (!type) read_.fail("L0202", name, what + " has no 'type'");
+        else if (read_.expect_scalar(*type, "a type")) plan.type = *type;
+        if (!task) read_.fail("L0202", name, what + " has no 'task'", "say which task scans it");
+        else if (read_.expect_scalar(*task, "a task's name")) plan.task = *task;
+        for (const auto& [key, value] : body.entries)
+            if (key.text != "type" && key.text != "task") plan.ports.emplace_back(key, value);
+        program_.blocks.push_back(std::move(plan));
+    }
+}
+
+void ProgramReader::inputs(const Node& node) {
+    if (!read_.expect_map(node, "'inputs'")) return;
+    for (const auto& [name, value] : node.entries)
+        if (read_.identifier(name, "an input") && read_.expect_scalar(value, "an input"))
+            program_.inputs.emplace_back(name, value);
+}
+
+void ProgramReader::run(const Node& node) {
+    RunPlan& run = program_.run;
+    run.mark = node.mark;
+    if (!read_.expect_map(node, "'run'")) return;
+    read_.only_keys(node, "'run'", {"for", "until", "seed", "on_error"});
+    if (const Node* n = node.find("for")) run.duration = read_.time(*n).value_or(0);
+    if (const Node* n = node.find("until"); n && read_.expect_scalar(*n, "'until'")) run.until = *n;
+    if (!node.find("for"))
+        read_.fail("L0202", node, "'run' has no 'for'",
+                   "say how long to run, such as for: 2 s; with 'until' it is the limit");
+    if (const Node* n = node.find("seed"))
+        run.seed = static_cast<std::uint64_t>(read_.integer(*n).value_or(1));
+    const Node* on_error = node.find("on_error");
+    if (!on_error || !read_.expect_scalar(*on_error, "'on_error'")) return;
+    run.continue_on_error = on_error->text == "continue";
+    if (!run.continue_on_error && on_error->text != "stop")
+        read_.fail("L0306", *on_error, fmt::format("'{}' is no way to go on", on_error->text),
+                   "known: stop, continue");
+}
+
+void ProgramReader::stimuli(const Node& node) {
+    if (!read_.expect_sequence(node, "'stimulus'")) return;
+    for (const Node& item : node.items) {
+        if (!read_.expect_map(item, "a stimulus")) continue;
+        read_.only_keys(item, "a stimulus", {"at", "set"});
+        StimulusPlan plan;
+        if (const Node* n = read_.require(item, "at", "a stimulus"))
+            plan.at = read_.time(*n).value_or(0);
+        if (const Node* n = read_.require(item, "set", "a stimulus"); n && read_.expect_map(*n, "'set'"))
+            plan.set = n->entries;
+        program_.stimuli.push_back(std::move(plan));
+    }
+    std::ranges::stable_sort(program_.stimuli, {}, &StimulusPlan::at);
+}
+
+void ProgramReader::trace(const Node& node) {
+    if (!read_.expect_map(node, "'trace'")) return;
+    read_.only_keys(node, "'trace'", {"task", "every", "signals"});
+    TracePlan plan;
+    if (const Node* n = read_.require(node, "task", "'trace'");
+        n && read_.expect_scalar(*n, "a task's name"))
+        plan.task = *n;
+    if (const Node* n = node.find("every")) {
+        plan.every = read_.integer(*n).value_or(1);
+        if (plan.every < 1) read_.fail("L0305", *n, "a trace records every 1st scan or fewer");
+    }
+    const Node* signals = read_.require(node, "signals", "'trace'");
+    if (signals && read_.expect_sequence(*signals, "'signals'"))
+        for (const Node& signal : signals->items)
+            if (read_.expect_scalar(signal, "a signal")) plan.signals.push_back(signal);
+    program_.trace = std::move(plan);
+}
+
+void ProgramReader::expectations(const Node& node) {
+    if (!read_.expect_sequence(node, "'expect'")) return;
+    for (const Node& item : node.items)
+        if (read_.expect_map(item, "an expectation")) expectation(item);
+}
+
+void ProgramReader::expectation(const Node& item) {
+    ExpectPlan plan;
+    plan.mark = item.mark;
+    const Node* always = item.find("always");
+    const Node* when = item.find("at");
+    if (!always == !when)
+        return read_.fail("L0202", item, "an expectation says either 'at' or 'always'",
+                          "{at: end, axis.position: 20 mm, within: 1e-9 mm}");
+    bounds(item, plan);
+    plan.always = always != nullptr;
+    if (always && read_.expect_scalar(*always, "a signal")) plan.signal = *always;
+    if (when) at(*when, plan);
+    for (const auto& [key, value] : item.entries) {
+        if (key.text == "at" || key.text == "always" || key.text == "within" ||
+            key.text == "at_least" || key.text == "at_most")
+            continue;
+        if (always || !plan.signal.text.empty()) {
+            read_.fail("L0201", key, fmt::format("an expectation has one signal, '{}' is a second", key.text));
+            continue;
+        }
+        plan.signal = key;
+        if (!value.is_map()) {
+            plan.equals = value;
+            continue;
+        }
+        read_.only_keys(value, "an expectation's bounds", {"at_least", "at_most"});
+        bounds(value, plan);
+    }
+    if (plan.signal.text.empty())
+        return read_.fail("L0202", item, "an expectation names no signal");
+    if (!plan.equals && !plan.at_least && !plan.at_most)
+        return read_.fail("L0202", item, "an expectation has no value and no bound",
+                          "write SIGNAL: VALUE, at_least or at_most");
+    program_.expectations.push_back(std::move(plan));
+}
+
+void ProgramReader::bounds(const Node& map, ExpectPlan& plan) {
+    if (const Node* n = map.find("within")) plan.within = *n;
+    if (const Node* n = map.find("at_least")) plan.at_least = *n;
+    if (const Node* n = map.find("at_most")) plan.at_most = *n;
+}
+
+void ProgramReader::at(const Node& node, ExpectPlan& plan) {
+    if (node.is_scalar() && node.text == "end") return;
+    plan.at = read_.time(node);
+}
+
+}  // namespace
+
+Program read_program(std::shared_ptr<const SourceFile> file, const LoadOptions& options,
+                     Diagnostics& out) {
+    return ProgramReader(options, out).read(std::move(file));
+}
+
+std::optional<std::string> resolve_path(const std::string& named, const std::string& from,
+                                        const std::vector<std::string>& include_dirs, Mark where,
+                                        Diagnostics& out) {
+    const fs::path path = fs::path(from).parent_path() / named;
+    const fs::path real = fs::weakly_canonical(path);
+    bool allowed = lies_below(real, project_root(from));
+    for (const std::string& folder : include_dirs)
+        allowed = allowed || lies_below(real, fs::weakly_canonical(folder));
+    if (allowed) return path.lexically_normal().string();
+    out.add("L0002", std::move(where),
+            fmt::format("'{}' lies outside of the program's project", named),
+            "a project is the nearest folder above that holds config/; allow others with "
+            "--include-dir");
+    return {};
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runtime/program/diagnostic.hpp"
+#include "runtime/program/yaml.hpp"
+
+namespace lineshaft {
+
+/// A parameter's new value, from `--set name=value` or a study's case.
+struct Setting {
+    std::string name;
+    std::string value;
+    Mark mark = {};  ///< in a study file; none for the command line
+};
+
+/// A cyclic activity, as written in `tasks:` of a program or of its controller file. Times in ns.
+struct TaskPlan {
+    std::string name;
+    Mark mark;
+    std::int64_t every = 0;
+    std::int64_t offset = 0;
+    std::int64_t priority = 1;     ///< a larger number wins, as Siemens counts
+    std::int64_t jitter = 0;       ///< each interval is drawn from every +- jitter
+    std::int64_t cost = 0;         ///< execution time: outputs are published this long after the start
+    std::int64_t cost_jitter = 0;  ///< each execution time is drawn from cost +- cost_jitter
+};
+
+struct BlockPlan {
+    Node name;
+    Node type;
+    Node task;
+    std::vector<std::pair<Node, Node>> ports;  ///< key and value, parameters replaced
+};
+
+struct RunPlan {
+    std::int64_t duration = 0;   ///< [ns] 0: not given
+    std::optional<Node> until;   ///< boolean signal that ends the run
+    std::uint64_t seed = 1;
+    bool continue_on_error = false;
+    Mark mark;
+};
+
+struct StimulusPlan {
+    std::int64_t at = 0;  ///< [ns]
+    std::vector<std::pair<Node, Node>> set;
+};
+
+struct TracePlan {
+    Node task;
+    std::int64_t every = 1;  ///< scans
+    std::vector<Node> signals;
+};
+
+/// One line of `expect:`, see `programs/README.md`.
+struct ExpectPlan {
+    Mark mark;
+    bool always = false;
+    std::optional<std::int64_t> at;  ///< [ns]; empty with always == false: at the end
+    Node signal;
+    std::optional<Node> equals, within, at_least, at_most;
+};
+
+/// A program file as plain data: its structure is checked, its names are not yet.
+struct Program {
+    std::shared_ptr<const SourceFile> file;
+    std::string title;
+    std::vector<std::pair<std::string, std::string>> parameters;  ///< name, value in force
+    std::vector<TaskPlan> tasks;
+    std::vector<BlockPlan> blocks;
+    std::vector<std::pair<Node, Node>> inputs;
+    std::vector<StimulusPlan> stimuli;
+    std::optional<TracePlan> trace;
+    std::vector<ExpectPlan> expectations;
+    RunPlan run;
+};
+
+/// What a program may read besides itself.
+struct LoadOptions {
+    std::vector<Setting> settings;
+    std::vector<std::string> include_dirs;  ///< allowed besides the project root
+};
+
+/// Checks the structure of `file` and replaces parameters. Files that it names (a controller) are read.
+/// Whatever is wrong goes to `out`; the result is then as much as could be understood.
+Program read_program(std::shared_ptr<const SourceFile> file, const LoadOptions& options,
+                     Diagnostics& out);
+
+/// `named` relative to the folder of `from`, if it lies below the project root of `from` (the nearest
+/// parent folder that holds `config/`, else its own folder) or below an include directory; else empty, and
+/// an L0002 diagnostic at `where`.
+std::optional<std::string> resolve_path(const std::string& named, const std::string& from,
+                                        const std::vector<std::string>& include_dirs, Mark where,
+                                        Diagnostics& out);
+
+}  // namespace lineshaft

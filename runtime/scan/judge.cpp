@@ -1,0 +1,63 @@
+#include "runtime/scan/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace lineshaft {
+
+Judge::Judge(std::vector<Expectation> expectations) : expectations_(std::move(expectations)) {
+    verdicts_.resize(expectations_.size());
+    for (std::size_t i = 0; i < expectations_.size(); ++i) {
+        if (expectations_[i].at) timed_.push_back(i);
+        if (!expectations_[i].always) continue;
+        always_.push_back(i);
+        verdicts_[i].ok = true;
+    }
+    std::ranges::stable_sort(timed_, {}, [this](std::size_t i) { return *expectations_[i].at; });
+}
+
+void Judge::scanned(int task, const Scan& scan) {
+    for (const std::size_t i : always_)
+        if (expectations_[i].signal.task == task && verdicts_[i].ok) judge(i, scan.time, scan.index);
+}
+
+void Judge::settled(std::int64_t time, std::int64_t next) {
+    for (const std::size_t i : always_)
+        if (expectations_[i].signal.task < 0 && verdicts_[i].ok) judge(i, time, {});
+    for (; next_timed_ < timed_.size(); ++next_timed_) {
+        const std::size_t i = timed_[next_timed_];
+        if (*expectations_[i].at >= next) return;
+        judge(i, *expectations_[i].at, {});
+    }
+}
+
+void Judge::judge(std::size_t index, std::int64_t time, std::optional<std::int64_t> scan) {
+    const Expectation& e = expectations_[index];
+    const Value value = e.signal.value();
+    const double number = as_real(value);
+    Verdict& verdict = verdicts_[index];
+    verdict.ok = number >= e.low && number <= e.high;
+    if (verdict.ok) return;
+    verdict.deviation = fmt::format("{} is {} at {}", e.signal.name, e.signal.describe(value),
+                                    format_time(time));
+    if (scan) verdict.deviation += fmt::format(", scan {}", *scan);
+    verdict.deviation += fmt::format("; expected {}", e.wanted);
+}
+
+void Judge::finish(const RunResult& result) {
+    for (; next_timed_ < timed_.size(); ++next_timed_)
+        verdicts_[timed_[next_timed_]].deviation =
+            fmt::format("the run ended at {}, before it", format_time(result.time));
+    for (std::size_t i = 0; i < expectations_.size(); ++i) {
+        const Expectation& e = expectations_[i];
+        if (e.always || e.at) continue;
+        judge(i, result.time,
+              e.signal.task < 0 ? std::optional<std::int64_t>{}
+                                : result.scans[static_cast<std::size_t>(e.signal.task)] - 1);
+    }
+}
+
+bool Judge::ok() const { return std::ranges::all_of(verdicts_, &Verdict::ok); }
+
+}  // namespace lineshaft

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/model/catalog.hpp"
+#include "runtime/model/value.hpp"
+
+namespace lineshaft {
+
+/// One value moved into an input before its block is called.
+struct Copy {
+    enum class Kind : std::uint8_t {
+        word,             ///< 8 bytes
+        boolean,          ///< 1 byte
+        negated,          ///< boolean, inverted (`NOT x.q`)
+        integer_to_real,  ///< widening
+        scaled,           ///< real from another unit of the dimension: times factor, over divisor
+    };
+
+    const std::byte* source = nullptr;
+    std::byte* target = nullptr;
+    double factor = 1;
+    double divisor = 1;
+    Kind kind = Kind::word;
+};
+
+/// One block in a task's list: its inputs are copies[first_copy .. first_copy + copies).
+struct Call {
+    void (*scan)(std::byte* block, const Scan& now) = nullptr;
+    std::byte* block = nullptr;
+    std::uint32_t first_copy = 0;
+    std::uint32_t copies = 0;
+};
+
+/// A block's `error` output, looked at after each scan of its task.
+struct ErrorFlag {
+    const bool* error = nullptr;
+    const std::int64_t* error_id = nullptr;   ///< may be null
+    std::span<const std::string_view> names;  ///< of error_id
+    std::string block;                        ///< `slave (gear_axis)`
+};
+
+/// A task ready to run: one flat list. Times in ns.
+struct Task {
+    std::string name;
+    std::int64_t every = 0, offset = 0, priority = 1, jitter = 0, cost = 0, cost_jitter = 0;
+    std::vector<Call> calls;
+    std::vector<Copy> copies;
+    std::vector<ErrorFlag> errors;
+    std::byte* live = nullptr;       ///< the task's blocks
+    std::byte* published = nullptr;  ///< what others see of them: the same place when cost is 0
+    std::size_t size = 0;            ///< bytes of either
+};
+
+/// A named value that can be traced, expected, compared: as the world outside its task sees it.
+struct Signal {
+    std::string name;  ///< `shaft.position`, `inputs.start`
+    Type type = Type::real;
+    std::string unit;
+    std::span<const std::string_view> names;  ///< of an enumeration
+    const std::byte* slot = nullptr;
+    int task = -1;  ///< index of the task that writes it; -1: from outside
+
+    Value value() const { return load(type, slot); }
+    std::string describe(const Value& v) const { return lineshaft::describe(v, type, names, unit); }
+};
+
+/// A value written from outside at a time, before the tasks due then run.
+struct Stimulus {
+    std::int64_t at = 0;
+    std::byte* target = nullptr;
+    Type type = Type::real;
+    Value value;
+};
+
+/// A checked and wired program in memory. Owns the blocks; movable, not copyable.
+struct Machine {
+    std::vector<std::byte> memory;  ///< all blocks and inputs; zeroed, then constructed
+    std::vector<Task> tasks;        ///< in scan order of equal instants: priority, then place in the file
+    std::vector<Signal> signals;
+    std::vector<Stimulus> stimuli;  ///< sorted by time
+    std::optional<Signal> until;
+    std::int64_t duration = 0;  ///< [ns]; with `until` the limit
+    std::uint64_t seed = 1;
+    bool continue_on_error = false;
+
+    const Signal* find(std::string_view name) const;
+};
+
+}  // namespace lineshaft
