@@ -10,32 +10,53 @@ struct MotionState {
     double velocity = 0;
     double acceleration = 0;
     double jerk = 0;
+
+    /// State dt seconds later if the jerk stays: x + v dt + a dt^2/2 + j dt^3/6.
+    MotionState after(double dt) const {
+        return {position + dt * (velocity + dt * (acceleration * 0.5 + dt * (jerk * (1.0 / 6)))),
+                velocity + dt * (acceleration + dt * (jerk * 0.5)), acceleration + dt * jerk, jerk};
+    }
 };
 
 enum class PlanResult {
     ok,
-    limit_not_positive,  ///< an acceleration, jerk or velocity limit is zero, negative or not finite
-    not_finite,          ///< a velocity, acceleration or length is NaN or infinite
+    limit_not_positive,  ///< an acceleration, jerk or velocity limit is zero, negative or not
+                         ///< finite
+    not_finite,          ///< a velocity, acceleration or length is NaN or infinite, or the plan is
     velocity_above_limit,  ///< start or end velocity outside 0..Vm (seven-segment move only)
     negative_length,       ///< length below zero (seven-segment move only)
 };
 
 /// Time-optimal change of velocity under an acceleration and a jerk limit, ending with zero
-/// acceleration. Starts from any velocity and any acceleration: a ratio may change in mid-transition.
-/// An acceleration above the limit is first brought down to it. At most four phases of constant jerk.
+/// acceleration. Starts from any velocity and any acceleration: a ratio may change in
+/// mid-transition. An acceleration above the limit is first brought down to it.
+///
+/// Bringing a0 to zero at once ends at v0 + a0 |a0| / (2 J). What is then missing,
+///
+///     e = v1 - v0 - a0 |a0| / (2 J),
+///
+/// has the sign s of the ramp's direction; with a0 and e counted along s the peak acceleration is
+///
+///     ap = sqrt(J e + max(a0, 0)^2),                 held at A for (ap^2 - A^2) / (J A) if ap > A
+///
+/// and the jerk is +J from a0 to the peak, 0, -J from the peak to zero. From a0 > A it is -J down
+/// to A, held for e / A, then -J down to zero. If a0 overshoots v1, s is the way back and the first
+/// phase runs through zero acceleration. If e is no more than the rounding of its own terms the
+/// ramp is the single phase that brings a0 to zero.
 struct VelocityRamp {
     struct Phase {
-        double duration = 0;  ///< [s], >= 0
-        MotionState start;    ///< state at the phase's start; position counted from the ramp's start
+        double duration = 0;  ///< [s], > 0
+        MotionState start;  ///< state at the phase's start; position counted from the ramp's start
     };
 
     std::array<Phase, 4> phases{};
-    int count = 0;               ///< phases used
-    double duration = 0;         ///< of the whole ramp [s]
-    MotionState end;             ///< end.velocity is exactly the wanted velocity, end.acceleration 0
-                                 ///< end.position the distance travelled
+    int count = 0;        ///< phases used, at most three
+    double duration = 0;  ///< of the whole ramp [s]
+    MotionState end;      ///< end.velocity is exactly the wanted velocity, end.acceleration 0,
+                          ///< end.position the distance travelled
 
-    /// v0 [u/s], a0 [u/s^2] -> v1 [u/s] with limits A [u/s^2], J [u/s^3]. On failure *this is unchanged.
+    /// v0 [u/s], a0 [u/s^2] -> v1 [u/s] with limits A [u/s^2], J [u/s^3]. On failure *this is
+    /// unchanged.
     PlanResult plan(double v0, double a0, double v1, double acceleration, double jerk);
 
     /// State t seconds after the start; t < 0 is taken as 0; after the end: constant velocity.
