@@ -4,15 +4,16 @@
 
 namespace lineshaft {
 
-const Field* BlockType::find(std::string_view field) const {
-    const auto it = std::ranges::find(fields, field, &Field::name);
-    return it == fields.end() ? nullptr : &*it;
+const Field* BlockType::find_settable(std::string_view field) const {
+    for (const Field& f : fields)
+        if (f.name == field && f.direction != Direction::output) return &f;
+    return nullptr;
 }
 
-std::vector<std::string> BlockType::field_names() const {
-    std::vector<std::string> names;
-    for (const Field& f : fields) names.emplace_back(f.name);
-    return names;
+const Field* BlockType::find_readable(std::string_view field) const {
+    for (const Field& f : fields)
+        if (f.name == field && f.direction == Direction::output) return &f;
+    return find_settable(field);
 }
 
 const BlockType* Catalog::find(std::string_view name) const {

@@ -24,15 +24,18 @@ struct BlockType {
     void (*construct)(std::byte* place) = nullptr;
     void (*scan)(std::byte* block, const Scan& now) = nullptr;
 
-    const Field* find(std::string_view field) const;
-    std::vector<std::string> field_names() const;
+    /// What a program may set (a parameter or input), or what it may read (an output, else an input
+    /// or parameter). An output may bear an input's name: `velocity` is set as the wanted one and
+    /// read as the axis' own. Null when there is none.
+    const Field* find_settable(std::string_view field) const;
+    const Field* find_readable(std::string_view field) const;
 };
 
 /// The kinds of block a program may use, by name.
 class Catalog {
   public:
-    /// A block is a struct with `type`, `doc`, `fields()` and `scan(const Scan&)`. It is plain data, so that
-    /// a machine's state can be kept and restored as bytes.
+    /// A block is a struct with `type`, `doc`, `fields()` and `scan(const Scan&)`. It is plain
+    /// data, so that a machine's state can be kept and restored as bytes.
     template <class Block>
     Catalog& add() {
         static_assert(std::is_trivially_copyable_v<Block>);

@@ -1,12 +1,12 @@
 #include "runtime/program/link.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
 #include <unordered_set>
+
+#include <fmt/format.h>
 
 #include "runtime/program/literal.hpp"
 
@@ -16,7 +16,9 @@ namespace {
 
 constexpr std::size_t alignment = alignof(std::max_align_t);
 
-std::size_t aligned(std::size_t size) { return (size + alignment - 1) / alignment * alignment; }
+std::size_t aligned(std::size_t size) {
+    return (size + alignment - 1) / alignment * alignment;
+}
 
 /// A block while it is being linked.
 struct Instance {
@@ -74,7 +76,7 @@ class Linker {
     void wire(int index, const Field& field, const Node& value, const WireText& wire);
     bool check_order(int index, const Node& value, const WireText& wire, int source);
     std::string loop(int from, int to) const;
-    bool check_required(const Instance& block);
+    void check_required(const Instance& block);
     void collect_signals();
     void collect_errors();
 
@@ -84,6 +86,7 @@ class Linker {
     void unknown_port(const Node& node, const Instance& block, std::string_view port);
     void connect_run();
     void connect_stimuli();
+    void connect_stimulus(std::int64_t at, const Node& key, const Node& value);
     void connect_trace();
     void connect_expectations();
     std::optional<double> bound(const Signal& signal, const Node& node);
@@ -99,7 +102,7 @@ class Linker {
     std::vector<Instance> blocks_;
     std::unordered_map<std::string, int> by_name_;
     std::unordered_map<std::string, Signal> inputs_;
-    std::vector<std::string> block_names_, input_names_;
+    std::vector<std::string> task_names_, block_names_, input_names_;
     std::unordered_map<std::string, Unit> units_;
     std::vector<std::vector<std::pair<int, Copy>>> copies_;  ///< per block
     std::unordered_set<std::string> wired_;                  ///< `block.port` of every wire
@@ -149,8 +152,7 @@ void Linker::place_tasks() {
 }
 
 void Linker::find_blocks() {
-    std::vector<std::string> task_names;
-    for (const Task& task : out_.machine.tasks) task_names.push_back(task.name);
+    for (const Task& task : out_.machine.tasks) task_names_.push_back(task.name);
     for (const BlockPlan& plan : program_.blocks) {
         Instance block{.plan = &plan, .position = static_cast<int>(blocks_.size())};
         if (!plan.type.text.empty()) {
@@ -161,11 +163,12 @@ void Linker::find_blocks() {
                            suggest(plan.type.text, catalog_.names()));
         }
         if (!plan.task.text.empty()) {
-            const auto it = std::ranges::find(task_names, plan.task.text);
-            if (it != task_names.end()) block.task = static_cast<int>(it - task_names.begin());
+            const auto it = std::ranges::find(task_names_, plan.task.text);
+            if (it != task_names_.end())
+                block.task = static_cast<int>(it - task_names_.begin());
             else
                 read_.fail("L0206", plan.task, fmt::format("unknown task '{}'", plan.task.text),
-                           suggest(plan.task.text, task_names));
+                           suggest(plan.task.text, task_names_));
         }
         by_name_.emplace(plan.name.text, block.position);
         block_names_.push_back(plan.name.text);
@@ -242,7 +245,7 @@ Unit Linker::unit_of(const Instance& block, const Field& field) {
     std::string text(field.unit);
     for (auto open = text.find('{'); open != std::string::npos; open = text.find('{')) {
         const auto close = text.find('}', open);
-        const Field& chosen = *block.type->find(text.substr(open + 1, close - open - 1));
+        const Field& chosen = *block.type->find_settable(text.substr(open + 1, close - open - 1));
         const Value value = load(chosen.type, block.live + chosen.offset);
         text.replace(open, close - open + 1,
                      describe(value, chosen.type, chosen.names, chosen.unit));
@@ -254,7 +257,7 @@ void Linker::set_block(int index) {
     Instance& block = blocks_[static_cast<std::size_t>(index)];
     if (!block.known()) return;
     for (const auto& [key, value] : block.plan->ports)
-        if (const Field* field = block.type->find(key.text);
+        if (const Field* field = block.type->find_settable(key.text);
             field && field->direction == Direction::parameter && field->type == Type::enumeration)
             set_constant(block, *field, value);
     for (const auto& [key, value] : block.plan->ports) set_port(block, key, value);
@@ -262,7 +265,11 @@ void Linker::set_block(int index) {
 }
 
 void Linker::set_port(Instance& block, const Node& key, const Node& value) {
-    const Field* field = block.type->find(key.text);
+    const Field* field = block.type->find_settable(key.text);
+    if (!field && block.type->find_readable(key.text))
+        return read_.fail("L0405", key,
+                          fmt::format("'{}' is an output of '{}' ({}) and cannot be set", key.text,
+                                      block.plan->name.text, block.type->name));
     if (!field) {
         std::vector<std::string> settable{"type", "task"};
         for (const Field& f : block.type->fields)
@@ -272,21 +279,18 @@ void Linker::set_port(Instance& block, const Node& key, const Node& value) {
                                       block.plan->name.text, block.type->name, key.text),
                           suggest(key.text, settable));
     }
-    if (field->direction == Direction::output)
-        return read_.fail("L0405", key,
-                          fmt::format("'{}' is an output of '{}' ({}) and cannot be set", key.text,
-                                      block.plan->name.text, block.type->name));
     if (!read_.expect_scalar(value, fmt::format("'{}'", key.text))) return;
     const auto wire_text = parse_wire(value);
     if (!wire_text) {
-        const bool done = field->direction == Direction::parameter && field->type == Type::enumeration;
+        const bool done =
+            field->direction == Direction::parameter && field->type == Type::enumeration;
         if (!done) set_constant(block, *field, value);
         return;
     }
     if (field->direction == Direction::parameter)
         return read_.fail("L0406", value,
-                          fmt::format("'{}' is a parameter of '{}' ({}) and takes no wire", key.text,
-                                      block.plan->name.text, block.type->name),
+                          fmt::format("'{}' is a parameter of '{}' ({}) and takes no wire",
+                                      key.text, block.plan->name.text, block.type->name),
                           "a parameter is constant while the program runs");
     wire(block.position, *field, value, *wire_text);
 }
@@ -307,8 +311,9 @@ std::optional<Value> Linker::interval_of(const Node& value, const Unit& unit) {
     const std::string name = value.text.substr(6, value.text.size() - 7);
     const auto& tasks = out_.machine.tasks;
     const auto it = std::ranges::find(tasks, name, &Task::name);
-    if (it == tasks.end()) return {};
-    return convert(seconds(it->every), second, unit);
+    if (it != tasks.end()) return convert(seconds(it->every), second, unit);
+    read_.fail("L0206", value, fmt::format("unknown task '{}'", name), suggest(name, task_names_));
+    return 0.0;
 }
 
 void Linker::wire(int index, const Field& field, const Node& value, const WireText& text) {
@@ -321,7 +326,7 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
         const auto dot = text.signal.find('.');
         source_index = by_name_.at(text.signal.substr(0, dot));
         const Instance& from = blocks_[static_cast<std::size_t>(source_index)];
-        const Field& port = *from.type->find(text.signal.substr(dot + 1));
+        const Field& port = *from.type->find_readable(text.signal.substr(dot + 1));
         if (port.direction != Direction::output)
             return read_.fail("L0203", value,
                               fmt::format("'{}' is {} {}, not an output", text.signal,
@@ -338,24 +343,27 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
         copy.source = from.live + (source->slot - from.published);
     }
     if (text.negated && (source->type != Type::boolean || field.type != Type::boolean))
-        return read_.fail("L0408", value, fmt::format("NOT is for booleans, '{}' is {}", text.signal,
-                                                      name_of(source->type)));
+        return read_.fail(
+            "L0408", value,
+            fmt::format("NOT is for booleans, '{}' is {}", text.signal, name_of(source->type)));
     const bool widens = source->type == Type::integer && field.type == Type::real;
     if ((source->type != field.type && !widens) || !std::ranges::equal(source->names, field.names))
         return read_.fail("L0401", value,
-                          fmt::format("'{}' is {}, '{}' takes {}", text.signal, name_of(source->type),
-                                      field.name, name_of(field.type)));
+                          fmt::format("'{}' is {}, '{}' takes {}", text.signal,
+                                      name_of(source->type), field.name, name_of(field.type)));
     const Unit wanted = unit_of(block, field);
     const Unit& given = parsed(source->unit);
     if (!given.same_dimension(wanted))
-        return read_.fail(
-            "L0402", value,
-            fmt::format("'{}' is in {}, '{}' takes {}", text.signal,
-                        given.text.empty() ? "plain numbers" : given.text, field.name,
-                        wanted.text.empty() ? "plain numbers" : wanted.text));
-    if (text.negated) copy.kind = Copy::Kind::negated;
-    else if (field.type == Type::boolean) copy.kind = Copy::Kind::boolean;
-    else if (widens) copy.kind = Copy::Kind::integer_to_real;
+        return read_.fail("L0402", value,
+                          fmt::format("'{}' is in {}, '{}' takes {}", text.signal,
+                                      given.text.empty() ? "plain numbers" : given.text, field.name,
+                                      wanted.text.empty() ? "plain numbers" : wanted.text));
+    if (text.negated)
+        copy.kind = Copy::Kind::negated;
+    else if (field.type == Type::boolean)
+        copy.kind = Copy::Kind::boolean;
+    else if (widens)
+        copy.kind = Copy::Kind::integer_to_real;
     else if (field.type == Type::real && given.text != wanted.text) {
         copy.kind = Copy::Kind::scaled;
         copy.factor = given.numerator * wanted.denominator;
@@ -364,8 +372,8 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
     copies_[static_cast<std::size_t>(index)].emplace_back(source_index, copy);
 }
 
-/// In one task a wire carries this scan's value from an earlier block, and only with `previous()` the last
-/// scan's from a later one or the block itself.
+/// In one task a wire carries this scan's value from an earlier block, and only with `previous()`
+/// the last scan's from a later one or the block itself.
 bool Linker::check_order(int index, const Node& value, const WireText& text, int source) {
     const Instance& block = blocks_[static_cast<std::size_t>(index)];
     const bool same_task =
@@ -382,8 +390,9 @@ bool Linker::check_order(int index, const Node& value, const WireText& text, int
     }
     const std::string path = loop(index, source);
     if (!path.empty())
-        read_.fail("L0404", value, fmt::format("feedback without previous(): {}", path),
-                   fmt::format("write previous({}) where the loop may be a scan late", text.signal));
+        read_.fail(
+            "L0404", value, fmt::format("feedback without previous(): {}", path),
+            fmt::format("write previous({}) where the loop may be a scan late", text.signal));
     else
         read_.fail("L0404", value,
                    fmt::format("'{}' is scanned after '{}': its value of this scan is not ready",
@@ -394,13 +403,15 @@ bool Linker::check_order(int index, const Node& value, const WireText& text, int
     return false;
 }
 
-/// The way back from block `to` to block `from` by the wires of the file: `a -> b -> a`; empty if there is none.
+/// The way back from block `to` to block `from` by the wires of the file: `a -> b -> a`; empty if
+/// there is none.
 std::string Linker::loop(int from, int to) const {
     std::vector<int> next(blocks_.size(), -1), queue{to};
     std::vector<bool> seen(blocks_.size());
     seen[static_cast<std::size_t>(to)] = true;
     for (std::size_t head = 0; head < queue.size() && queue[head] != from; ++head) {
-        for (const auto& [key, value] : blocks_[static_cast<std::size_t>(queue[head])].plan->ports) {
+        for (const auto& [key, value] :
+             blocks_[static_cast<std::size_t>(queue[head])].plan->ports) {
             const auto text = parse_wire(value);
             if (!text || text->previous) continue;
             const auto it = by_name_.find(text->signal.substr(0, text->signal.find('.')));
@@ -411,7 +422,9 @@ std::string Linker::loop(int from, int to) const {
         }
     }
     if (!seen[static_cast<std::size_t>(from)]) return {};
-    const auto name = [this](int i) { return blocks_[static_cast<std::size_t>(i)].plan->name.text; };
+    const auto name = [this](int i) {
+        return blocks_[static_cast<std::size_t>(i)].plan->name.text;
+    };
     std::string path = name(from);
     for (int at = from; at != to;) {
         at = next[static_cast<std::size_t>(at)];
@@ -420,34 +433,31 @@ std::string Linker::loop(int from, int to) const {
     return path + " -> " + name(from);
 }
 
-bool Linker::check_required(const Instance& block) {
-    bool complete = true;
+void Linker::check_required(const Instance& block) {
     for (const Field& field : block.type->fields) {
         const auto& ports = block.plan->ports;
         const auto is_field = [&](const auto& port) { return port.first.text == field.name; };
         if (!field.required || std::ranges::any_of(ports, is_field)) continue;
-        complete = false;
         read_.fail("L0403", block.plan->name,
                    fmt::format("'{}' ({}) needs its {} '{}': {}", block.plan->name.text,
                                block.type->name, name_of(field.direction), field.name, field.doc));
     }
-    return complete;
 }
 
 void Linker::collect_errors() {
     for (const Instance& block : blocks_) {
         if (!block.known()) continue;
-        const Field* error = block.type->find("error");
-        if (!error || error->type != Type::boolean || error->direction != Direction::output) continue;
-        const Field* id = block.type->find("error_id");
+        const Field* error = block.type->find_readable("error");
+        if (!error || error->type != Type::boolean || error->direction != Direction::output)
+            continue;
+        const Field* id = block.type->find_readable("error_id");
         ErrorFlag flag;
         flag.error = reinterpret_cast<const bool*>(block.live + error->offset);
         if (id) {
             flag.error_id = reinterpret_cast<const std::int64_t*>(block.live + id->offset);
             flag.names = id->names;
         }
-        flag.block = fmt::format("{}' ({})", block.plan->name.text, block.type->name);
-        flag.block.erase(flag.block.find('\''), 1);
+        flag.block = fmt::format("'{}' ({})", block.plan->name.text, block.type->name);
         out_.machine.tasks[static_cast<std::size_t>(block.task)].errors.push_back(std::move(flag));
     }
 }
@@ -465,6 +475,7 @@ void Linker::collect_signals() {
     for (const Instance& block : blocks_) {
         if (!block.known()) continue;
         for (const Field& field : block.type->fields) {
+            if (block.type->find_readable(field.name) != &field) continue;
             Signal signal = field_signal(block, field);
             signal.unit = unit_of(block, field).text;
             out_.machine.signals.push_back(std::move(signal));
@@ -505,7 +516,7 @@ std::optional<Signal> Linker::signal(const Node& node, const std::string& name) 
     }
     const Instance& block = blocks_[static_cast<std::size_t>(it->second)];
     if (!block.known()) return {};
-    const Field* field = block.type->find(port);
+    const Field* field = block.type->find_readable(port);
     if (!field) {
         unknown_port(node, block, port);
         return {};
@@ -529,37 +540,36 @@ void Linker::connect_run() {
 }
 
 void Linker::connect_stimuli() {
-    for (const StimulusPlan& plan : program_.stimuli) {
-        for (const auto& [key, value] : plan.set) {
-            const auto target = signal(key);
-            if (!target) continue;
-            if (wired_.contains(target->name)) {
-                read_.fail("L0409", key, fmt::format("'{}' is wired and cannot be set", target->name));
-                continue;
-            }
-            Field field;
-            field.name = target->name;
-            field.type = target->type;
-            field.names = target->names;
-            std::byte* slot = const_cast<std::byte*>(target->slot);
-            if (target->task >= 0) {
-                const auto dot = target->name.find('.');
-                const Instance& block =
-                    blocks_[static_cast<std::size_t>(by_name_.at(target->name.substr(0, dot)))];
-                field = *block.type->find(target->name.substr(dot + 1));
-                slot = block.live + field.offset;
-                if (field.direction != Direction::input) {
-                    read_.fail("L0405", key,
-                               fmt::format("'{}' is {} {}; a stimulus sets inputs", target->name,
-                                           field.direction == Direction::output ? "an" : "a",
-                                           name_of(field.direction)));
-                    continue;
-                }
-            }
-            if (const auto v = read_literal(read_, value, field, parsed(target->unit)))
-                out_.machine.stimuli.push_back({plan.at, slot, target->type, *v});
-        }
+    for (const StimulusPlan& plan : program_.stimuli)
+        for (const auto& [key, value] : plan.set) connect_stimulus(plan.at, key, value);
+}
+
+void Linker::connect_stimulus(std::int64_t at, const Node& key, const Node& value) {
+    const auto target = signal(key);
+    if (!target) return;
+    if (wired_.contains(target->name))
+        return read_.fail("L0409", key,
+                          fmt::format("'{}' is wired and cannot be set", target->name));
+    Field field;
+    field.name = target->name;
+    field.type = target->type;
+    std::byte* slot = const_cast<std::byte*>(target->slot);
+    Unit unit = parsed(target->unit);
+    if (target->task >= 0) {
+        const auto dot = target->name.find('.');
+        const Instance& block =
+            blocks_[static_cast<std::size_t>(by_name_.at(target->name.substr(0, dot)))];
+        const Field* settable = block.type->find_settable(target->name.substr(dot + 1));
+        if (!settable || settable->direction == Direction::parameter)
+            return read_.fail("L0405", key,
+                              fmt::format("'{}' is {}; a stimulus sets inputs", target->name,
+                                          settable ? "a parameter" : "an output"));
+        field = *settable;
+        unit = unit_of(block, field);
+        slot = block.live + field.offset;
     }
+    if (const auto v = read_literal(read_, value, field, unit))
+        out_.machine.stimuli.push_back({at, slot, field.type, *v});
 }
 
 void Linker::connect_trace() {
@@ -567,15 +577,12 @@ void Linker::connect_trace() {
     const TracePlan& plan = *program_.trace;
     TraceSetup setup;
     setup.every = plan.every;
-    const auto& tasks = out_.machine.tasks;
-    const auto it = std::ranges::find(tasks, plan.task.text, &Task::name);
-    if (it != tasks.end()) setup.task = static_cast<int>(it - tasks.begin());
-    else if (!plan.task.text.empty()) {
-        std::vector<std::string> names;
-        for (const Task& task : tasks) names.push_back(task.name);
+    const auto it = std::ranges::find(task_names_, plan.task.text);
+    if (it != task_names_.end())
+        setup.task = static_cast<int>(it - task_names_.begin());
+    else if (!plan.task.text.empty())
         read_.fail("L0206", plan.task, fmt::format("unknown task '{}'", plan.task.text),
-                   suggest(plan.task.text, names));
-    }
+                   suggest(plan.task.text, task_names_));
     for (const Node& node : plan.signals)
         if (auto s = signal(node)) setup.signals.push_back(std::move(*s));
     out_.trace = std::move(setup);
@@ -604,12 +611,14 @@ void Linker::connect_expectations() {
     for (const ExpectPlan& plan : program_.expectations) {
         const auto target = signal(plan.signal);
         if (!target) continue;
-        Expectation e{.text = {}, .signal = *target, .always = plan.always, .at = plan.at, .wanted = {}};
+        Expectation e{
+            .text = {}, .signal = *target, .always = plan.always, .at = plan.at, .wanted = {}};
         e.low = -std::numeric_limits<double>::infinity();
         e.high = -e.low;
         if (plan.equals) {
             const double value = bound(*target, *plan.equals).value_or(0);
-            const double slack = plan.within ? tolerance(*target, *plan.within, value).value_or(0) : 0;
+            const double slack =
+                plan.within ? tolerance(*target, *plan.within, value).value_or(0) : 0;
             e.low = value - slack;
             e.high = value + slack;
             e.wanted = plan.equals->text;
@@ -622,8 +631,9 @@ void Linker::connect_expectations() {
         };
         side(plan.at_least, "at least", e.low);
         side(plan.at_most, "at most", e.high);
-        const std::string when =
-            plan.always ? "always" : plan.at ? "at " + format_time(*plan.at) : "at the end";
+        const std::string when = plan.always ? "always"
+                                 : plan.at   ? "at " + format_time(*plan.at)
+                                             : "at the end";
         e.text = fmt::format("{}: {} {}{}", when, target->name, plan.equals ? "= " : "", e.wanted);
         out_.expectations.push_back(std::move(e));
     }

@@ -1,9 +1,9 @@
 #include "runtime/scan/executive.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
+
+#include <fmt/format.h>
 
 #include "runtime/model/units.hpp"
 
@@ -22,8 +22,12 @@ T read(const std::byte* slot) {
 
 void move(const Copy& copy) {
     switch (copy.kind) {
-        case Copy::Kind::word: std::memcpy(copy.target, copy.source, 8); break;
-        case Copy::Kind::boolean: std::memcpy(copy.target, copy.source, 1); break;
+        case Copy::Kind::word:
+            std::memcpy(copy.target, copy.source, 8);
+            break;
+        case Copy::Kind::boolean:
+            std::memcpy(copy.target, copy.source, 1);
+            break;
         case Copy::Kind::negated: {
             const bool value = !read<bool>(copy.source);
             std::memcpy(copy.target, &value, 1);
@@ -113,7 +117,8 @@ void Executive::instant() {
 
 void Executive::stimulate() {
     const auto& stimuli = machine_.stimuli;
-    for (; next_stimulus_ < stimuli.size() && stimuli[next_stimulus_].at <= now_; ++next_stimulus_) {
+    for (; next_stimulus_ < stimuli.size() && stimuli[next_stimulus_].at <= now_;
+         ++next_stimulus_) {
         const Stimulus& s = stimuli[next_stimulus_];
         store(s.type, s.target, s.value);
     }
@@ -133,12 +138,12 @@ void Executive::release() {
         if (state.due > now_) continue;
         const Task& task = machine_.tasks[i];
         if (state.pending || state.active)
-            return stop(Outcome::overrun,
-                        fmt::format("task '{}' overran: due again at {} in scan {}, before the scan "
-                                    "of {} had ended",
-                                    task.name, format_time(now_), state.index,
-                                    format_time(state.active ? state.scan.time
-                                                             : state.due - task.every)));
+            return stop(
+                Outcome::overrun,
+                fmt::format("task '{}' overran: due again at {} in scan {}, before the scan "
+                            "of {} had ended",
+                            task.name, format_time(now_), state.index,
+                            format_time(state.active ? state.scan.time : state.due - task.every)));
         state.pending = true;
         state.due += task.every + (task.jitter > 0 ? state.jitter.around_zero(task.jitter) : 0);
     }
@@ -195,7 +200,7 @@ void Executive::check_errors(const Task& task, const Scan& scan) {
             if (id < flag.names.size()) text += fmt::format(" ({})", flag.names[id]);
         }
         return stop(Outcome::block_error,
-                    fmt::format("block '{}' reports error{} in scan {} of task '{}' at {}",
+                    fmt::format("block {} reports error{} in scan {} of task '{}' at {}",
                                 flag.block, text, scan.index, task.name, format_time(scan.time)));
     }
 }

@@ -43,7 +43,7 @@ struct ErrorFlag {
     const bool* error = nullptr;
     const std::int64_t* error_id = nullptr;   ///< may be null
     std::span<const std::string_view> names;  ///< of error_id
-    std::string block;                        ///< `slave (gear_axis)`
+    std::string block;                        ///< `'slave' (gear_axis)`
 };
 
 /// A task ready to run: one flat list. Times in ns.
@@ -82,7 +82,7 @@ struct Stimulus {
 /// A checked and wired program in memory. Owns the blocks; movable, not copyable.
 struct Machine {
     std::vector<std::byte> memory;  ///< all blocks and inputs; zeroed, then constructed
-    std::vector<Task> tasks;        ///< in scan order of equal instants: priority, then place in the file
+    std::vector<Task> tasks;  ///< in scan order of equal instants: priority, then place in the file
     std::vector<Signal> signals;
     std::vector<Stimulus> stimuli;  ///< sorted by time
     std::optional<Signal> until;

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include "blocks/profile/velocity_ramp.hpp"
+
+namespace lineshaft {
+
+/// Why an axis set `error`. It holds its last good outputs and goes on when its inputs are good
+/// again.
+enum class AxisError : std::int64_t {
+    none,
+    not_finite,          ///< an input is NaN or infinite
+    limit_not_positive,  ///< velocity, acceleration or jerk limit is zero or negative
+    not_standing,        ///< positioning asked for while the axis follows a moving master
+};
+
+inline constexpr std::string_view axis_error_names[] = {"none", "not_finite", "limit_not_positive",
+                                                        "not_standing"};
+
+constexpr AxisError axis_error(PlanResult result) {
+    if (result == PlanResult::ok) return AxisError::none;
+    return result == PlanResult::not_finite ? AxisError::not_finite : AxisError::limit_not_positive;
+}
+
+/// Units an axis can be configured for, as on the controller; the master's unit of a gear likewise.
+enum class AxisUnit : std::int64_t { mm, rad, deg };
+
+inline constexpr std::string_view axis_unit_names[] = {"mm", "rad", "deg"};
+
+template <class... T>
+bool all_finite(T... values) {
+    return (std::isfinite(values) && ...);
+}
+
+/// True once per rising edge of `now`; `last` remembers.
+inline bool rising_edge(bool now, bool& last) {
+    const bool edge = now && !last;
+    last = now;
+    return edge;
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,147 @@
+#include "blocks/axis/virtual_axis.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+constexpr std::string_view motion_names[] = {"velocity", "absolute"};
+
+}  // namespace
+
+std::span<const Field> VirtualAxis::fields() {
+    using A = VirtualAxis;
+    static const Field table[] = {
+        parameter("unit", &A::unit, "", "unit of the axis").one_of(axis_unit_names),
+        parameter("motion", &A::motion, "", "follow `velocity`, or move to `target`")
+            .one_of(motion_names),
+        parameter("immediate", &A::immediate, "", "velocity changes take no time"),
+        parameter("start_position", &A::start_position, "{unit}", "position at the first scan"),
+        input("enable", &A::enable, "", "false: ramp to standstill"),
+        input("velocity", &A::wanted_velocity, "{unit}/s",
+              "velocity to hold; of an absolute move its greatest, above 0")
+            .must_be_set(),
+        input("acceleration", &A::acceleration_limit, "{unit}/s^2", "limit, both ways").above(0),
+        input("jerk", &A::jerk_limit, "{unit}/s^3", "limit, both ways").above(0),
+        input("execute", &A::execute, "", "rising edge: move to `target`"),
+        input("target", &A::target, "{unit}", "end of an absolute move"),
+        input("home", &A::home, "", "rising edge: set the position"),
+        input("home_position", &A::home_position, "{unit}", "position set by `home`"),
+        output("position", &A::position, "{unit}", "set-point"),
+        output("velocity", &A::velocity, "{unit}/s", "of the set-point"),
+        output("acceleration", &A::acceleration, "{unit}/s^2", "of the set-point"),
+        output("moving", &A::moving, "", "velocity or acceleration is not 0"),
+        output("done", &A::done, "", "the absolute move has reached its target"),
+        output("error", &A::error, "", "an input cannot be followed; outputs are held"),
+        output("error_id", &A::error_id, "", "why").one_of(axis_error_names),
+    };
+    return table;
+}
+
+void VirtualAxis::scan(const Scan& now) {
+    if (first_scan) {
+        first_scan = false;
+        begin_constant(now.time, start_position, 0);
+    }
+    error_id = check();
+    error = error_id != AxisError::none;
+    if (error) return;
+    advance(now.time);
+    if (rising_edge(home, last_home) && !moving) begin_constant(now.time, home_position, 0);
+    const bool edge = rising_edge(execute, last_execute);
+    if (!enable)
+        follow_velocity(now.time, 0);
+    else if (motion == Motion::velocity)
+        follow_velocity(now.time, wanted_velocity);
+    else if (edge)
+        begin_move(now.time);
+    advance(now.time);
+}
+
+AxisError VirtualAxis::check() const {
+    if (!all_finite(wanted_velocity, acceleration_limit, jerk_limit, target, home_position))
+        return AxisError::not_finite;
+    const bool velocity_good = motion == Motion::velocity || wanted_velocity > 0 || !execute;
+    return acceleration_limit > 0 && jerk_limit > 0 && velocity_good
+               ? AxisError::none
+               : AxisError::limit_not_positive;
+}
+
+void VirtualAxis::advance(std::int64_t time) {
+    const double t = seconds(time - phase_start);
+    switch (phase) {
+        case Phase::constant:
+            set({phase_position + phase_velocity * t, phase_velocity, 0, 0});
+            break;
+        case Phase::ramp: {
+            MotionState s = ramp.at(t);
+            s.position += phase_position;
+            set(s);
+            break;
+        }
+        case Phase::positioning: {
+            set(move.at(time));
+            if (!move.finished(time)) break;
+            begin_constant(time, target, 0);
+            done = true;
+            break;
+        }
+        case Phase::immediate_move: {
+            const double way = move.target - phase_position;
+            if (phase_velocity * t / way < 1) {
+                set({phase_position + phase_velocity * t, phase_velocity, 0, 0});
+                break;
+            }
+            begin_constant(time, move.target, 0);
+            done = true;
+            break;
+        }
+    }
+}
+
+void VirtualAxis::begin_constant(std::int64_t time, double from, double at_velocity) {
+    phase = Phase::constant;
+    phase_start = time;
+    phase_position = from;
+    phase_velocity = at_velocity;
+    set({from, at_velocity, 0, 0});
+}
+
+void VirtualAxis::follow_velocity(std::int64_t time, double goal) {
+    const double held = phase == Phase::ramp ? ramp_goal : phase_velocity;
+    const bool holds = phase == Phase::constant || phase == Phase::ramp;
+    if (holds && held == goal) return;
+    if (immediate) return begin_constant(time, position, goal);
+    error_id = axis_error(ramp.plan(velocity, acceleration, goal, acceleration_limit, jerk_limit));
+    error = error_id != AxisError::none;
+    if (error) return;
+    phase = Phase::ramp;
+    phase_start = time;
+    phase_position = position;
+    ramp_goal = goal;
+}
+
+void VirtualAxis::begin_move(std::int64_t time) {
+    done = false;
+    if (immediate) {
+        if (target == position) return void(done = true);
+        move.target = target;
+        phase = Phase::immediate_move;
+        phase_start = time;
+        phase_position = position;
+        phase_velocity = target < position ? -wanted_velocity : wanted_velocity;
+        return;
+    }
+    error_id = axis_error(
+        move.begin(position, target, wanted_velocity, acceleration_limit, jerk_limit, time));
+    error = error_id != AxisError::none;
+    if (!error) phase = Phase::positioning;
+}
+
+void VirtualAxis::set(const MotionState& state) {
+    position = state.position;
+    velocity = state.velocity;
+    acceleration = state.acceleration;
+    moving = state.velocity != 0 || state.acceleration != 0;
+}
+
+}  // namespace lineshaft

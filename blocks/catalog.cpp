@@ -1,0 +1,21 @@
+#include "blocks/catalog.hpp"
+
+#include "blocks/axis/gear_axis.hpp"
+#include "blocks/axis/simulated_drive.hpp"
+#include "blocks/axis/virtual_axis.hpp"
+#include "blocks/circle/circle_fit.hpp"
+#include "blocks/circle/circle_ratio.hpp"
+
+namespace lineshaft {
+
+Catalog standard_blocks() {
+    Catalog blocks;
+    blocks.add<VirtualAxis>();
+    blocks.add<GearAxis>();
+    blocks.add<SimulatedDrive>();
+    blocks.add<CircleRatio>();
+    blocks.add<CircleFit>();
+    return blocks;
+}
+
+}  // namespace lineshaft

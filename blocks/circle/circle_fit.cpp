@@ -1,0 +1,84 @@
+#include "blocks/circle/circle_fit.hpp"
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+namespace lineshaft {
+
+std::span<const Field> CircleFit::fields() {
+    using F = CircleFit;
+    static const Field table[] = {
+        parameter("radius", &F::radius, "mm", "wanted radius R").above(0).must_be_set(),
+        parameter("x0", &F::x0, "mm", "wanted centre"),
+        parameter("y0", &F::y0, "mm", "wanted centre"),
+        input("enable", &F::enable, "", "take samples").must_be_set(),
+        input("x", &F::x, "mm", "sample").must_be_set(),
+        input("y", &F::y, "mm", "sample").must_be_set(),
+        output("mean_deviation", &F::mean_deviation, "mm", "mean of | |P| - R |, the paper's MSE"),
+        output("largest_deviation", &F::largest_deviation, "mm", "greatest of | |P| - R |"),
+        output("worst_x", &F::worst_x, "mm", "where the deviation was largest"),
+        output("worst_y", &F::worst_y, "mm", "where the deviation was largest"),
+        output("centre_x", &F::centre_x, "mm", "estimated centre"),
+        output("centre_y", &F::centre_y, "mm", "estimated centre"),
+        output("offset", &F::offset, "mm", "D, estimated to wanted centre"),
+        output("fitted_radius", &F::fitted_radius, "mm", "of the estimated circle"),
+        output("closing_gap", &F::closing_gap, "mm", "first sample to where the path ended"),
+        output("samples", &F::samples, "", "taken since the rising edge"),
+    };
+    return table;
+}
+
+void CircleFit::scan(const Scan&) {
+    const bool rising = enable && !last_enable, falling = !enable && last_enable;
+    last_enable = enable;
+    if (!std::isfinite(x) || !std::isfinite(y)) return;
+    if (rising) begin();
+    if (enable) add();
+    if (enable || falling)
+        closing_gap = std::sqrt((x - first_x) * (x - first_x) + (y - first_y) * (y - first_y));
+}
+
+void CircleFit::begin() {
+    sums = {};
+    samples = 0;
+    deviation_sum = largest_deviation = 0;
+    first_x = x;
+    first_y = y;
+}
+
+void CircleFit::add() {
+    const double u = (x - x0) / radius, v = (y - y0) / radius, w = u * u + v * v;
+    const std::array<double, 8> terms{u * u, u * v, v * v, u, v, u * w, v * w, w};
+    for (std::size_t i = 0; i < terms.size(); ++i) sums[i] += terms[i];
+    ++samples;
+    const double deviation = std::abs(std::sqrt(w) - 1) * radius;
+    deviation_sum += deviation;
+    mean_deviation = deviation_sum / static_cast<double>(samples);
+    if (deviation > largest_deviation) {
+        largest_deviation = deviation;
+        worst_x = x;
+        worst_y = y;
+    }
+    solve();
+}
+
+void CircleFit::solve() {
+    const auto& [uu, uv, vv, u, v, uw, vw, w] = sums;
+    Eigen::Matrix3d normal;
+    normal << uu, uv, u, uv, vv, v, u, v, static_cast<double>(samples);
+    const Eigen::LDLT<Eigen::Matrix3d> factors(normal);
+    const Eigen::Vector3d pivots = factors.vectorD();
+    Eigen::Vector3d solution(0, 0, 1);
+    constexpr double singular = 1e-12;
+    if (pivots.minCoeff() > singular * pivots.maxCoeff())
+        solution = factors.solve(Eigen::Vector3d(uw, vw, w));
+    const double a = solution[0] / 2, b = solution[1] / 2;
+    centre_x = x0 + a * radius;
+    centre_y = y0 + b * radius;
+    offset = std::sqrt(a * a + b * b) * radius;
+    fitted_radius = std::sqrt(std::max(0.0, solution[2] + a * a + b * b)) * radius;
+}
+
+}  // namespace lineshaft

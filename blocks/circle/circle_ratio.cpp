@@ -1,0 +1,290 @@
+#include "blocks/circle/circle_ratio.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <sleef.h>
+
+#include "blocks/profile/velocity_ramp.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+constexpr std::string_view method_names[] = {"immediate", "early", "centred", "balanced", "ramp"};
+constexpr std::string_view time_names[] = {"paper", "paper_whole_clocks", "exact"};
+constexpr std::string_view state_names[] = {"idle", "approach", "home", "engage", "run", "done"};
+constexpr std::string_view error_names[] = {"none", "not_finite", "arc_is_empty"};
+
+constexpr double in_position = 1e-9;  // [mm]
+constexpr int clocks_to_settle = 3;   // until a job has been seen and its effect published
+constexpr int fixed_point_steps = 8;
+
+}  // namespace
+
+std::span<const Field> CircleRatio::fields() {
+    using C = CircleRatio;
+    static const Field table[] = {
+        parameter("method", &C::method, "", "when and how the ratios change").one_of(method_names),
+        parameter("transition_time", &C::transition_time, "",
+                  "of method early: eq. (18), the same rounded up to motion clocks, or exact")
+            .one_of(time_names),
+        parameter("radius", &C::radius, "mm", "of the arc").above(0),
+        parameter("speed", &C::speed, "mm/s", "along the arc").above(0),
+        parameter("step", &C::step, "mm", "wanted length of a step").above(0),
+        parameter("start_angle", &C::start_angle, "rad", "of the start point; 0 is (0, R)"),
+        parameter("end_angle", &C::end_angle, "rad", "clockwise when above start_angle"),
+        parameter("acceleration", &C::acceleration, "mm/s^2", "limit of the slaves").above(0),
+        parameter("jerk", &C::jerk, "mm/s^3", "limit of the slaves").above(0),
+        parameter("motion_clock", &C::motion_clock, "s", "of the axes: every(interpolator)")
+            .above(0)
+            .must_be_set(),
+        parameter(
+            "lead", &C::lead, "",
+            "motion clocks from the set-points that are read to the start of a job commanded now")
+            .at_least(0),
+        input("start", &C::start, "", "rising edge: do the arc").must_be_set(),
+        input("master_position", &C::master_position, "rad", "of the master axis").must_be_set(),
+        input("x_position", &C::x_position, "mm", "of slave X").must_be_set(),
+        input("x_velocity", &C::x_velocity, "mm/s", "of slave X (methods balanced, ramp)"),
+        input("y_position", &C::y_position, "mm", "of slave Y").must_be_set(),
+        input("y_velocity", &C::y_velocity, "mm/s", "of slave Y (methods balanced, ramp)"),
+        output("state", &C::state, "", "what it is doing").one_of(state_names),
+        output("approach", &C::approach, "", "slaves: move to start_x, start_y"),
+        output("home", &C::home, "", "slaves: position := start_x, start_y; master: 0"),
+        output("execute", &C::execute, "", "master: move to master_target"),
+        output("done", &C::done, "", "the master has reached its target"),
+        output("start_x", &C::start_x, "mm", "start point"),
+        output("start_y", &C::start_y, "mm", "start point"),
+        output("master_target", &C::master_target, "rad", "theta_n"),
+        output("master_velocity", &C::master_velocity, "rad/s", "v_G = speed / radius"),
+        output("ratio_x", &C::ratio_x, "mm/rad", "of slave X"),
+        output("ratio_y", &C::ratio_y, "mm/rad", "of slave Y"),
+        output("acceleration_x", &C::acceleration_x, "mm/s^2", "of X's next job"),
+        output("acceleration_y", &C::acceleration_y, "mm/s^2", "of Y's next job"),
+        output("step_x", &C::step_x, "", "step i of the ratio of X"),
+        output("step_y", &C::step_y, "", "step i of the ratio of Y"),
+        output("steps", &C::steps, "", "n"),
+        output("sagitta", &C::sagitta, "mm", "height of a step's arc over its chord"),
+        output("error", &C::error, "", "the arc cannot be done"),
+        output("error_id", &C::error_id, "", "why").one_of(error_names),
+    };
+    return table;
+}
+
+void CircleRatio::scan(const Scan& now) {
+    error_id = check();
+    error = error_id != Error::none;
+    if (error) return;
+    const bool edge = start && !last_start;
+    last_start = start;
+    switch (state) {
+        case State::idle:
+        case State::done:
+            if (!edge) break;
+            begin();
+            enter(State::approach, now);
+            break;
+        case State::approach:
+            if (std::abs(x_position - start_x) > in_position) break;
+            if (std::abs(y_position - start_y) > in_position || !waited(now)) break;
+            home = true;
+            enter(State::home, now);
+            break;
+        case State::home:
+            if (!waited(now)) break;
+            home = false;
+            engage();
+            enter(State::engage, now);
+            break;
+        case State::engage:
+            if (!waited(now)) break;
+            execute = true;
+            enter(State::run, now);
+            break;
+        case State::run:
+            run(now);
+            break;
+    }
+    publish();
+}
+
+CircleRatio::Error CircleRatio::check() const {
+    for (const double v : {master_position, x_position, x_velocity, y_position, y_velocity})
+        if (!std::isfinite(v)) return Error::not_finite;
+    return start_angle == end_angle ? Error::arc_is_empty : Error::none;
+}
+
+bool CircleRatio::waited(const Scan& now) const {
+    return seconds(now.time - state_since) >= clocks_to_settle * motion_clock;
+}
+
+void CircleRatio::enter(State next, const Scan& now) {
+    state = next;
+    state_since = now.time;
+}
+
+/// Steps 1 and 2: the arc, its start point, the master's way; the slaves are sent to the start.
+void CircleRatio::begin() {
+    arc = Arc::between(radius, start_angle, end_angle, step);
+    steps = arc.steps;
+    sagitta = arc.sagitta();
+    const Point from = arc.at(0);
+    start_x = from.x;
+    start_y = from.y;
+    master_target = arc.sweep;
+    master_velocity = master_speed();
+    x = {.coordinate = &Point::x, .acceleration = acceleration};
+    y = {.coordinate = &Point::y, .acceleration = acceleration};
+    done = execute = false;
+    approach = true;
+}
+
+/// Step 3, and 4 to 6 for the first step: the ratios that hold from standstill.
+void CircleRatio::engage() {
+    approach = false;
+    knot = 0;
+    next_clock = 0;
+    const bool straight = method != Method::ramp;
+    if (method == Method::balanced) next_clock = arc.steps > 1 ? switch_clock(1) : 0;
+    const double half = arc.step_angle() / 2;
+    const double scale = Sleef_cinz_tand1_u10purec(half) / half;
+    for (Axis* axis : {&x, &y}) {
+        double Point::*f = axis->coordinate;
+        axis->step = 1;
+        axis->ratio = straight ? arc.chord_ratio(1).*f : scale * (arc.slope(0).*f);
+        if (method == Method::balanced && arc.steps > 1) {
+            const double theta = master_speed() * static_cast<double>(next_clock) * motion_clock;
+            axis->ratio = (arc.at(theta, radius + 0.75 * sagitta).*f - arc.at(0).*f) / theta;
+        }
+        plan_change(*axis);
+    }
+}
+
+/// Steps 8 to 10.
+void CircleRatio::run(const Scan& now) {
+    if (master_position >= master_target) {
+        done = true;
+        execute = false;
+        return enter(State::done, now);
+    }
+    if (method == Method::balanced) return balance(job_clock());
+    if (method == Method::ramp) return ramp_step(job_clock());
+    double angle = master_position;
+    if (method == Method::centred)
+        angle +=
+            master_speed() * (static_cast<double>(lead) * motion_clock + seconds(now.interval) / 2);
+    poll(x, angle);
+    poll(y, angle);
+}
+
+void CircleRatio::poll(Axis& axis, double angle) {
+    if (axis.step >= arc.steps || angle < axis.switch_angle) return;
+    ++axis.step;
+    axis.ratio = arc.chord_ratio(axis.step).*axis.coordinate;
+    plan_change(axis);
+}
+
+/// Steps 4 and 5: the master's angle at which the ratio of step i + 1 is commanded.
+void CircleRatio::plan_change(Axis& axis) const {
+    if (axis.step >= arc.steps) return;
+    const double v_G = master_speed();
+    const double dv = std::abs(arc.chord_ratio(axis.step + 1).*axis.coordinate - axis.ratio) * v_G;
+    axis.switch_angle = arc.theta(axis.step);
+    if (method == Method::early) axis.switch_angle -= v_G * time_for(dv);
+    if (method == Method::centred) axis.switch_angle -= v_G * exact_time(dv) / 2;
+}
+
+double CircleRatio::time_for(double dv) const {
+    if (transition_time == TransitionTime::exact) return exact_time(dv);
+    const double T = acceleration / jerk + dv / acceleration;  // eq. (18)
+    if (transition_time == TransitionTime::paper) return T;
+    return std::ceil(T / motion_clock) * motion_clock;
+}
+
+double CircleRatio::exact_time(double dv) const {
+    return ramp_duration(dv, acceleration, jerk);
+}
+
+/// Motion clocks since the master's start at which a job commanded now would start; -1: not known
+/// yet.
+std::int64_t CircleRatio::job_clock() const {
+    if (master_position <= 0) return -1;
+    return std::llround(master_position / (master_speed() * motion_clock)) + lead;
+}
+
+/// The clock at which the change between steps j and j + 1 starts, for both axes.
+std::int64_t CircleRatio::switch_clock(std::int64_t j) const {
+    const double T = exact_time(speed * arc.step_angle());
+    return std::llround((arc.theta(j) / master_speed() - T / 2) / motion_clock);
+}
+
+void CircleRatio::balance(std::int64_t clock) {
+    if (clock < next_clock || knot + 1 >= arc.steps) return;
+    ++knot;
+    const bool last = knot + 1 == arc.steps;
+    next_clock = last ? 0 : switch_clock(knot + 1);
+    const double t = static_cast<double>(clock) * motion_clock;
+    const double next = last ? end_time() : static_cast<double>(next_clock) * motion_clock;
+    const double rho = last ? radius : radius + 0.75 * sagitta;
+    const double ahead = static_cast<double>(lead) * motion_clock * master_speed();
+    balance_axis(x, x_position + x.ratio * ahead, t, next, rho);
+    balance_axis(y, y_position + y.ratio * ahead, t, next, rho);
+}
+
+void CircleRatio::balance_axis(Axis& axis, double from, double t, double next, double rho) {
+    const double v_G = master_speed();
+    const double v_old = axis.ratio * v_G;
+    const double vertex = arc.at(v_G * next, rho).*axis.coordinate;
+    double v_new = v_old;
+    for (int i = 0; i < fixed_point_steps; ++i) {
+        const double T = exact_time(std::abs(v_new - v_old));
+        v_new = (vertex - from - v_old * T / 2) / (next - t - T / 2);
+    }
+    ++axis.step;
+    axis.ratio = v_new / v_G;
+}
+
+/// The clock of knot k, where step k + 1 begins.
+std::int64_t CircleRatio::knot_clock(std::int64_t k) const {
+    return std::llround(arc.theta(k) / (master_speed() * motion_clock));
+}
+
+void CircleRatio::ramp_step(std::int64_t clock) {
+    if (clock < next_clock || knot >= arc.steps) return;
+    ++knot;
+    const bool last = knot == arc.steps;
+    next_clock = last ? 0 : knot_clock(knot);
+    const double t = static_cast<double>(clock) * motion_clock;
+    const double next = last ? end_time() : static_cast<double>(next_clock) * motion_clock;
+    const double ahead = static_cast<double>(lead) * motion_clock / 2;
+    ramp_axis(x, x_position + (x_velocity + x.ratio * master_speed()) * ahead, t, next);
+    ramp_axis(y, y_position + (y_velocity + y.ratio * master_speed()) * ahead, t, next);
+}
+
+void CircleRatio::ramp_axis(Axis& axis, double from, double t, double next) {
+    const double v_G = master_speed();
+    const double dt = next - t;
+    const double half = arc.step_angle() / 2;
+    const double scale = Sleef_cinz_tand1_u10purec(half) / half;
+    const double missing = arc.at(v_G * t).*axis.coordinate - from;
+    const double v_new = scale * (arc.slope(v_G * next).*axis.coordinate) * v_G + missing / dt;
+    const double dv = std::abs(v_new - axis.ratio * v_G);
+    const double root = 1 - 4 * dv / (jerk * dt * dt);
+    axis.acceleration = acceleration;
+    if (root > 0 && dv > 0)
+        axis.acceleration = std::min(acceleration, 2 * dv / (dt * (1 + std::sqrt(root))));
+    axis.step = knot;
+    axis.ratio = v_new / v_G;
+}
+
+void CircleRatio::publish() {
+    ratio_x = x.ratio;
+    ratio_y = y.ratio;
+    acceleration_x = x.acceleration;
+    acceleration_y = y.acceleration;
+    step_x = x.step;
+    step_y = y.step;
+}
+
+}  // namespace lineshaft

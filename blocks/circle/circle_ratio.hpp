@@ -1,0 +1,108 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "blocks/circle/arc.hpp"
+#include "runtime/model/field.hpp"
+#include "runtime/model/scan.hpp"
+
+namespace lineshaft {
+
+/// The user program of the synchronised circle (Wei et al. 2025, steps 1 to 10): positions the axes
+/// on the start point, homes them, couples them at standstill, starts the master, and changes the
+/// ratios on the way.
+///
+/// `immediate` (ref. [16]) and `early` (13), (14), (18) change from k_i to k_{i+1} when the read
+/// master position has passed theta_i, or theta_i - v_G T. `centred` calls when the job would start
+/// nearest to theta_i - v_G T_exact / 2; it knows that a job starts `lead` motion clocks after the
+/// positions it reads.
+///
+/// `balanced` steers by position. Both axes switch at the clock nearest to theta_j / v_G - T / 2.
+/// The next ratio leads from where the slave will be at that clock to the vertex of a polygon
+/// balanced about the circle (radius R + 0.75 sagitta) at the *next* switch:
+///     v_new = (f(v_G t') - p - v_old T / 2) / (t' - t - T / 2),   T = T_exact(|v_new - v_old|),
+/// a few fixed-point steps. A job starts on a motion clock, which is inferred from the master's
+/// angle.
+///
+/// `ramp` lets each transition fill its step dt: the job's own acceleration is
+///     a = 2 dv / dt / (1 + sqrt(1 - 4 dv / (j dt^2))),
+/// so the velocity runs piecewise linearly through the knots' velocities, scaled so that each step
+/// covers its chord: v_k = v cos(theta_k) tan(dtheta/2) / (dtheta/2). Half of the position error at
+/// each knot is fed back.
+struct CircleRatio {
+    enum class Method : std::int64_t { immediate, early, centred, balanced, ramp };
+    enum class TransitionTime : std::int64_t { paper, paper_whole_clocks, exact };
+    enum class State : std::int64_t { idle, approach, home, engage, run, done };
+    enum class Error : std::int64_t { none, not_finite, arc_is_empty };
+
+    Method method = Method::early;
+    TransitionTime transition_time = TransitionTime::paper;
+    double radius = 20, speed = 10, step = 1;
+    double start_angle = 0, end_angle = 6.283185307179586;
+    double acceleration = 100, jerk = 5e4;
+    double motion_clock = 0.001;
+    std::int64_t lead = 1;
+
+    bool start = false;
+    double master_position = 0;
+    double x_position = 0, x_velocity = 0, y_position = 0, y_velocity = 0;
+
+    State state = State::idle;
+    bool approach = false, home = false, execute = false, done = false;
+    double start_x = 0, start_y = 0;
+    double master_target = 0, master_velocity = 0;
+    double ratio_x = 0, ratio_y = 0;
+    double acceleration_x = 100, acceleration_y = 100;
+    std::int64_t step_x = 0, step_y = 0, steps = 0;
+    double sagitta = 0;
+    bool error = false;
+    Error error_id = Error::none;
+
+    /// One slave: its coordinate of the arc's points, and what it was told.
+    struct Axis {
+        double Point::*coordinate = &Point::x;
+        std::int64_t step = 0;      ///< i of the ratio in force
+        double ratio = 0;           ///< [mm/rad]
+        double acceleration = 100;  ///< of its last job [mm/s^2]
+        double switch_angle = 0;    ///< of the next change [rad]
+    };
+
+    Arc arc;
+    Axis x, y;
+    bool last_start = false;
+    std::int64_t state_since = 0;
+    std::int64_t knot = 0;        ///< balanced, ramp: steps begun
+    std::int64_t next_clock = 0;  ///< balanced, ramp: motion clock of the next change
+
+    static constexpr std::string_view type = "circle_ratio";
+    static constexpr std::string_view doc =
+        "user program of a circular arc by variable synchronisation ratio";
+    static std::span<const Field> fields();
+    void scan(const Scan& now);
+
+  private:
+    Error check() const;
+    bool waited(const Scan& now) const;
+    void enter(State next, const Scan& now);
+    void begin();
+    void engage();
+    void run(const Scan& now);
+    void poll(Axis& axis, double job_angle);
+    void plan_change(Axis& axis) const;
+    double time_for(double dv) const;
+    double exact_time(double dv) const;
+    double master_speed() const { return speed / radius; }
+    double end_time() const { return arc.sweep / master_speed(); }
+    std::int64_t job_clock() const;
+    void balance(std::int64_t clock);
+    void balance_axis(Axis& axis, double from, double t, double next, double rho);
+    void ramp_step(std::int64_t clock);
+    void ramp_axis(Axis& axis, double from, double t, double next);
+    std::int64_t switch_clock(std::int64_t j) const;
+    std::int64_t knot_clock(std::int64_t k) const;
+    void publish();
+};
+
+}  // namespace lineshaft
