@@ -1,0 +1,292 @@
+#include "blocks/profile/seven_segment.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace lineshaft {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+bool is_limit(double x) {
+    return x > 0 && x <= std::numeric_limits<double>::max();
+}
+
+struct Ramp {
+    double jerk_time = 0;  // twice
+    double hold = 0;
+
+    double half_time() const { return jerk_time + 0.5 * hold; }
+};
+
+struct Move {
+    Ramp up, down;
+    double cruise = 0;
+    double peak = 0;
+    double end = 0;
+    MoveKind kind = MoveKind::accelerate_triangular;
+    bool reaches_Ve = true;
+};
+
+/// The problem seen from its slower end: time reversal leaves lengths and times as they are.
+struct Frame {
+    double lo, hi, D, A, J, L;
+    double tm;  // A/J
+    double c;   // A^2/J, the change of velocity from which a ramp is trapezoidal
+};
+
+Ramp ramp(double dv, const Frame& f) {
+    if (dv > f.c) return {f.tm, std::max(0.0, dv / f.A - f.tm)};
+    return {std::sqrt(dv / f.J), 0};
+}
+
+/// c4 x^4 + c3 x^3 + c2 x^2 + c1 x + c0
+struct Quartic {
+    double c4, c3, c2, c1, c0;
+};
+
+/// The root next to x in [low, high] by Halley's iteration.
+double root(const Quartic& p, double x, double low, double high) {
+    for (int i = 0; i < 20; ++i) {
+        const double value = (((p.c4 * x + p.c3) * x + p.c2) * x + p.c1) * x + p.c0;
+        const double slope = ((4 * p.c4 * x + 3 * p.c3) * x + 2 * p.c2) * x + p.c1;
+        const double bend = (6 * p.c4 * x + 3 * p.c3) * x + p.c2;
+        const double step = value * slope / (slope * slope - value * bend);
+        const double next = std::clamp(x - step, low, high);
+        const bool done = std::abs(next - x) <= 1e-6 * x;
+        x = next;
+        if (done) break;
+    }
+    return x;
+}
+
+double rough_cube_root(double x) {
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) / 3 + 0x2A9F7893782DA1CEu);
+}
+
+/// Root of a s^3 + b s = r within some percent.
+double rough_root(double a, double b, double r) {
+    const double k = rough_cube_root(r / a);
+    const double q = b / (a * k * k);
+    return k * (1 + 0.602 * q) / (1 + q * (0.770 + 0.602 * q));
+}
+
+Ramp accelerate(double V, const Frame& f) {
+    if (f.L > (2 * V + f.c) * f.tm) {
+        const double b = 2 * V + f.c;
+        const double R = 2 * (f.L - V * f.tm);
+        return {f.tm, std::max(0.0, 2 * R / (b + std::sqrt(b * b + 4 * f.A * R)) - f.tm)};
+    }
+    const double high = f.L / (2 * V) < f.tm ? f.L / (2 * V) : f.tm;
+    return {root({0, f.J, 0, 2 * V, -f.L}, std::min(high, rough_root(f.J, 2 * V, f.L)), 0, high),
+            0};
+}
+
+Ramp decelerate(double V, const Frame& f) {
+    if (V > 1.5 * f.c && f.L > (2 * V - f.c) * f.tm) {
+        const double b = 2 * V - f.c;
+        const double R = 2 * (f.L - V * f.tm);
+        const double square = std::max(0.0, b * b - 4 * f.A * R);
+        return {f.tm, std::max(0.0, 2 * R / (b + std::sqrt(square)) - f.tm)};
+    }
+    const double high = std::sqrt(V / (1.5 * f.J));
+    const double m = std::sqrt(std::max(0.0, 1 - 0.75 * f.L / (V * high)));
+    const double guess = high * (1 - m) * (1 + m * (0.174 + 0.147 * m));
+    return {root({0, f.J, 0, -2 * V, f.L}, guess, 0, high), 0};
+}
+
+/// The ramps from hi and from lo to the peak, one problem in two times.
+struct Ramps {
+    Ramp from_hi, from_lo;
+};
+
+Ramps both_trapezoidal(const Frame& f) {
+    const double b = 2 * f.hi + f.c;
+    const double R = f.L - f.hi * f.tm - 0.5 * (f.lo + f.hi) * (f.tm + f.D / f.A);
+    const double hold = std::max(0.0, 2 * R / (b + std::sqrt(b * b + 4 * f.A * R)) - f.tm);
+    return {{f.tm, hold}, {f.tm, hold + f.D / f.A}};
+}
+
+Ramps one_trapezoidal(const Frame& f) {
+    const double jj = 0.5 * f.J / f.tm;
+    const double rest = f.L - 0.5 * (f.lo + f.hi) * (f.tm + f.D / f.A);
+    const double h = 1.7 * f.hi / f.c;
+    const double r = 2 * rest / (f.c * f.tm);
+    const double z = r / (h + std::sqrt(h * h + r));
+    const double guess = std::min(1.0, 2 * z / (1 + std::sqrt(1 + 4 * z))) * f.tm;
+    const double s = root({jj, f.J, (f.hi + 0.5 * f.c) / f.tm, 2 * f.hi, -rest}, guess, 0, f.tm);
+    return {{s, 0}, {f.tm, std::max(0.0, (f.D + f.J * s * s) / f.A - f.tm)}};
+}
+
+Ramps neither_trapezoidal(const Frame& f) {
+    const double low = std::sqrt(f.D / f.J);
+    const double guess = std::max(low, rough_root(0.25 * f.J, f.lo + f.hi, f.L));
+    const double sum =
+        root({0.25 * f.J, 0, f.lo + f.hi, -f.L, -0.25 * f.D * f.D / f.J}, guess, low, 2 * f.tm);
+    const double difference = f.D / (f.J * sum);
+    return {{std::max(0.0, 0.5 * (sum - difference)), 0}, {0.5 * (sum + difference), 0}};
+}
+
+int peak_class(double top, const Frame& f) {
+    if (top - f.hi > f.c) {
+        const double w = f.D + f.c;
+        const double length =
+            (2 * f.hi + f.c) * f.tm + (f.lo + f.hi + f.c) * 0.5 * (w / f.A + f.tm);
+        if (f.L > length) return 0;
+    }
+    if (f.D >= f.c) return 1;
+    if (top - f.lo > f.c) {
+        const double w = f.c - f.D;
+        const double length = (2 * f.hi + w) * std::sqrt(w / f.J) + (2 * f.lo + f.c) * f.tm;
+        if (f.L > length) return 1;
+    }
+    return 2;
+}
+
+MoveKind kind_of(MoveKind first, int step) {
+    return static_cast<MoveKind>(static_cast<int>(first) + step);
+}
+
+Move one_ramp(const SevenSegment& p, const Frame& f, const Ramp& direct, bool reached) {
+    Move m;
+    m.reaches_Ve = reached;
+    const bool rising = p.Ve >= p.Vs;
+    const Ramp r = reached ? direct : rising ? accelerate(p.Vs, f) : decelerate(p.Vs, f);
+    (rising ? m.up : m.down) = r;
+    const double change = f.J * r.jerk_time * (r.jerk_time + r.hold);
+    m.end = reached ? p.Ve : rising ? std::min(p.Ve, p.Vs + change) : std::max(p.Ve, p.Vs - change);
+    m.peak = std::max(p.Vs, m.end);
+    m.kind = kind_of(rising ? MoveKind::accelerate_trapezoidal : MoveKind::decelerate_trapezoidal,
+                     r.hold > 0 ? 0 : 1);
+    return m;
+}
+
+Move with_peak(const SevenSegment& p, const Frame& f) {
+    const int which = peak_class(p.Vm, f);
+    const Ramps r = which == 0   ? both_trapezoidal(f)
+                    : which == 1 ? one_trapezoidal(f)
+                                 : neither_trapezoidal(f);
+    Move m;
+    const bool rising = p.Ve >= p.Vs;
+    m.up = rising ? r.from_lo : r.from_hi;
+    m.down = rising ? r.from_hi : r.from_lo;
+    m.peak =
+        std::min(p.Vm, f.hi + f.J * r.from_hi.jerk_time * (r.from_hi.jerk_time + r.from_hi.hold));
+    m.end = p.Ve;
+    m.kind = kind_of(rising ? MoveKind::peak_rising_both : MoveKind::peak_falling_both, which);
+    return m;
+}
+
+Move solve(const SevenSegment& p) {
+    const double tm = p.A / p.J;
+    const double lo = std::min(p.Vs, p.Ve);
+    const double hi = std::max(p.Vs, p.Ve);
+    const Frame f{lo, hi, hi - lo, p.A, p.J, p.L, tm, p.A * tm};
+
+    const Ramp direct = ramp(f.D, f);
+    const double L1 = (lo + hi) * direct.half_time();
+    if (p.L <= L1 * (1 + 2 * epsilon) && (f.D > 0 || p.L == 0))
+        return one_ramp(p, f, direct, p.L >= L1 * (1 - 2 * epsilon));
+
+    Move m;
+    m.up = ramp(p.Vm - p.Vs, f);
+    m.down = ramp(p.Vm - p.Ve, f);
+    const double rest =
+        p.L - ((p.Vs + p.Vm) * m.up.half_time() + (p.Vm + p.Ve) * m.down.half_time());
+    if (rest < 0) return with_peak(p, f);
+    m.cruise = rest / p.Vm;
+    m.peak = p.Vm;
+    m.end = p.Ve;
+    const bool rising = p.Ve >= p.Vs;
+    const int holds = (m.up.hold > 0) + (m.down.hold > 0);
+    m.kind =
+        kind_of(rising ? MoveKind::cruise_rising_both : MoveKind::cruise_falling_both, 2 - holds);
+    return m;
+}
+
+PlanResult check(const SevenSegment& p) {
+    if (!is_limit(p.Vm) || !is_limit(p.A) || !is_limit(p.J)) return PlanResult::limit_not_positive;
+    if (!std::isfinite(p.Vs) || !std::isfinite(p.Ve) || !std::isfinite(p.L))
+        return PlanResult::not_finite;
+    if (p.Vs < 0 || p.Ve < 0 || p.Vs > p.Vm || p.Ve > p.Vm) return PlanResult::velocity_above_limit;
+    return p.L < 0 ? PlanResult::negative_length : PlanResult::ok;
+}
+
+/// The first half counts from the start, the second half back from the end: both ends are exact.
+void fill_states(const SevenSegment& p, const Move& m, SevenSegmentPlan& out) {
+    auto& s = out.start;
+    const auto& T = out.T;
+    const auto turn = [](MotionState state, double acceleration, double jerk) {
+        return MotionState{state.position, state.velocity, acceleration, jerk};
+    };
+    const double up = p.J * T[0];
+    s[0] = {0, p.Vs, 0, p.J};
+    s[1] = turn(s[0].after(T[0]), up, 0);
+    s[2] = turn(s[1].after(T[1]), up, -p.J);
+    s[3] = {s[2].after(T[2]).position, m.peak, 0, 0};
+    const double down = p.J * T[6];
+    const MotionState back{0, m.end, 0, p.J};  // the second half in reversed time and position
+    const MotionState b6 = back.after(T[6]);
+    const MotionState b5 = turn(b6, down, 0).after(T[5]);
+    const MotionState b4 = turn(b5, down, -p.J).after(T[4]);
+    s[4] = {p.L - b4.position, m.peak, 0, -p.J};
+    s[5] = {p.L - b5.position, b5.velocity, -down, 0};
+    s[6] = {p.L - b6.position, b6.velocity, -down, p.J};
+    out.end = {p.L, m.end, 0, 0};
+}
+
+}  // namespace
+
+PlanResult plan(const SevenSegment& problem, SevenSegmentPlan& out) {
+    const PlanResult result = check(problem);
+    if (result != PlanResult::ok) return result;
+    const Move m = solve(problem);
+    const double up = 2 * m.up.half_time();
+    const double down = 2 * m.down.half_time();
+    const double duration = up + m.cruise + down;
+    if (!std::isfinite(duration)) return PlanResult::not_finite;
+
+    out.T = {m.up.jerk_time,   m.up.hold,   m.up.jerk_time,  m.cruise,
+             m.down.jerk_time, m.down.hold, m.down.jerk_time};
+    double t = 0;
+    for (std::size_t i = 0; i < 7; ++i) {
+        out.begin[i] = t;
+        t += out.T[i];
+    }
+    out.duration = t;
+    out.peak = m.peak;
+    out.kind = m.kind;
+    out.reaches_Ve = m.reaches_Ve;
+    fill_states(problem, m, out);
+    return PlanResult::ok;
+}
+
+MotionState SevenSegmentPlan::at(double t) const {
+    if (t >= duration) return end;
+    const double time = t > 0 ? t : 0;
+    std::size_t i = 0;
+    for (std::size_t k = 1; k < 7; ++k) i += time >= begin[k];
+    return start[i].after(time - begin[i]);
+}
+
+std::string_view name(MoveKind kind) {
+    static constexpr std::array<std::string_view, move_kinds> names = {
+        "accelerate_trapezoidal", "accelerate_triangular", "decelerate_trapezoidal",
+        "decelerate_triangular",  "cruise_rising_both",    "cruise_rising_first",
+        "cruise_rising_neither",  "cruise_falling_both",   "cruise_falling_second",
+        "cruise_falling_neither", "peak_rising_both",      "peak_rising_first",
+        "peak_rising_neither",    "peak_falling_both",     "peak_falling_second",
+        "peak_falling_neither"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+int equation(MoveKind kind) {
+    static constexpr std::array<int, move_kinds> equations = {1, 2, 3, 4,  5,  6, 8,  5,
+                                                              7, 8, 9, 10, 11, 9, 10, 11};
+    return equations[static_cast<std::size_t>(kind)];
+}
+
+}  // namespace lineshaft
