@@ -1,0 +1,24 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace lineshaft {
+
+/// Value of a name in a formula; empty when there is none.
+using Lookup = std::function<std::optional<double>(std::string_view name)>;
+
+struct FormulaResult {
+    double value = 0;
+    std::string error;         ///< empty when all is well
+    std::size_t position = 0;  ///< of the error in the text, from 0
+};
+
+/// Evaluates `1 - early / immediate`, `abs(a.fit.worst_x) / 20`: + - * / with the usual precedence, unary minus,
+/// parentheses, numbers, names (letters, digits, '_' and '.'), abs(x), sqrt(x), min(a, ...), max(a, ...),
+/// mean(a, ...). At most 100 levels deep.
+FormulaResult evaluate(std::string_view formula, const Lookup& lookup);
+
+}  // namespace lineshaft

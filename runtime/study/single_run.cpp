@@ -1,0 +1,48 @@
+#include "runtime/study/single_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "runtime/trace/csv_writer.hpp"
+
+namespace lineshaft {
+
+std::optional<Loaded> load_program(const std::string& path, const LoadOptions& options,
+                                   const Catalog& catalog, Diagnostics& out) {
+    const auto file = read_source(path, out);
+    if (!file) return {};
+    Loaded loaded{.program = read_program(file, options, out), .linked = {}};
+    loaded.linked = link(loaded.program, catalog, out);
+    if (!out.empty()) return {};
+    return loaded;
+}
+
+bool RunReport::expectations_hold() const { return std::ranges::all_of(verdicts, &Verdict::ok); }
+
+RunReport run(Loaded& loaded, const RunOptions& options) {
+    const auto start = std::chrono::steady_clock::now();
+    RunReport report;
+    Judge judge(loaded.linked.expectations);
+    std::vector<Observer*> observers;
+    std::optional<CsvWriter> csv;
+    std::optional<Recorder> recorder;
+    if (!options.trace_path.empty() && loaded.linked.trace) {
+        csv.emplace(options.trace_path, *loaded.linked.trace);
+        recorder.emplace(*loaded.linked.trace, *csv);
+        observers.push_back(&*recorder);
+    }
+    if (!loaded.linked.expectations.empty()) observers.push_back(&judge);
+    Executive executive(loaded.linked.machine);
+    report.result = executive.run(observers, options.interrupt, options.progress);
+    judge.finish(report.result);
+    report.verdicts = judge.verdicts();
+    if (recorder) {
+        recorder->flush();
+        report.trace_error = csv->finish(loaded.program.title, loaded.program.file->text);
+    }
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+    report.wall_seconds = wall.count();
+    return report;
+}
+
+}  // namespace lineshaft

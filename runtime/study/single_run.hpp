@@ -1,0 +1,42 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/program/link.hpp"
+
+namespace lineshaft {
+
+/// A program file, read, checked and wired.
+struct Loaded {
+    Program program;
+    Linked linked;
+};
+
+/// Empty when `out` got any diagnostic.
+std::optional<Loaded> load_program(const std::string& path, const LoadOptions& options,
+                                   const Catalog& catalog, Diagnostics& out);
+
+struct RunOptions {
+    std::string trace_path;  ///< CSV; empty: no trace is recorded
+    const std::atomic<bool>* interrupt = nullptr;
+    std::function<void(std::int64_t time)> progress;  ///< called now and then [ns]
+};
+
+/// What came of one run. Final values stand in the machine's signals.
+struct RunReport {
+    RunResult result;
+    std::vector<Verdict> verdicts;  ///< one per expectation of the program
+    std::string trace_error;        ///< why the trace is not there, if one was wanted
+    double wall_seconds = 0;
+
+    bool expectations_hold() const;
+    bool faulted() const { return result.outcome != Outcome::completed || !trace_error.empty(); }
+};
+
+RunReport run(Loaded& loaded, const RunOptions& options);
+
+}  // namespace lineshaft

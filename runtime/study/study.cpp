@@ -1,0 +1,475 @@
+#include "runtime/study/study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "runtime/program/reader.hpp"
+#include "runtime/study/formula.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+/// A comparison whose numbers wait for the signal's unit.
+struct PendingComparison {
+    Node signal;
+    Node body;  ///< map, or empty for a bare report
+};
+
+struct PendingCase {
+    StudyCase made;
+    std::vector<PendingComparison> comparisons;
+};
+
+class StudyReader {
+  public:
+    StudyReader(const LoadOptions& options, const Catalog& catalog, Diagnostics& out)
+        : options_(options), catalog_(catalog), read_(out) {}
+
+    Study read(std::shared_ptr<const SourceFile> file);
+
+  private:
+    void program(const Node& root);
+    void notes(const Node& node);
+    void cases(const Node& node);
+    void one_case(const Node& node);
+    void settings(const Node& node, std::vector<Setting>& into) const;
+    void comparisons(const Node& node, PendingCase& pending) const;
+    void grid(const Node& node, const PendingCase& common);
+    void check(PendingCase& pending);
+    std::optional<Comparison> compare(const PendingComparison& pending, const Machine& machine);
+    void claims(const Node& node);
+    void claim(const Node& node);
+    void check_formula(const Node& formula) const;
+    Bounds bounds(const Node& map, const Unit& unit) const;
+    void within(const Node& node, const Unit& unit, Bounds& bounds) const;
+
+    const LoadOptions& options_;
+    const Catalog& catalog_;
+    Reader read_;
+    Study study_;
+    std::shared_ptr<const SourceFile> program_file_;
+    std::vector<Setting> common_;
+    std::vector<PendingComparison> common_comparisons_;
+    std::int64_t common_repeat_ = 1;
+    std::int64_t runs_ = 0;
+    bool checkable_ = true;
+};
+
+Study StudyReader::read(std::shared_ptr<const SourceFile> file) {
+    study_.file = file;
+    study_.include_dirs = options_.include_dirs;
+    auto root = parse_yaml(file, read_.diagnostics());
+    if (!root) return std::move(study_);
+    read_.only_keys(*root, "a study",
+                    {"lineshaft_study", "title", "program", "notes", "set", "repeat", "compare",
+                     "cases", "claims"});
+    const Node* version = root->find("lineshaft_study");
+    if (!version || version->text != "1")
+        read_.fail("L0211", version ? *version : *root, "this is no study that is known here",
+                   "a study begins with 'lineshaft_study: 1'");
+    if (const Node* n = root->find("title"); n && read_.expect_scalar(*n, "the title"))
+        study_.title = n->text;
+    program(*root);
+    if (const Node* n = root->find("notes")) notes(*n);
+    if (const Node* n = root->find("set")) settings(*n, common_);
+    common_.insert(common_.end(), options_.settings.begin(), options_.settings.end());
+    if (const Node* n = root->find("repeat")) common_repeat_ = read_.integer(*n).value_or(1);
+    if (const Node* n = root->find("compare")) {
+        PendingCase common;
+        comparisons(*n, common);
+        common_comparisons_ = std::move(common.comparisons);
+    }
+    if (const Node* n = read_.require(*root, "cases", "a study")) cases(*n);
+    if (const Node* n = root->find("claims")) claims(*n);
+    return std::move(study_);
+}
+
+void StudyReader::program(const Node& root) {
+    const Node* node = read_.require(root, "program", "a study");
+    checkable_ = false;
+    if (!node || !read_.expect_scalar(*node, "'program'")) return;
+    Diagnostics& out = read_.diagnostics();
+    const auto path =
+        resolve_path(node->text, study_.file->path, options_.include_dirs, node->mark, out);
+    if (!path) return;
+    study_.program = *path;
+    program_file_ = read_source(*path, out, node->mark);
+    checkable_ = program_file_ != nullptr;
+}
+
+void StudyReader::notes(const Node& node) {
+    if (node.is_scalar()) return study_.notes.push_back(node.text);
+    if (!read_.expect_sequence(node, "'notes'")) return;
+    for (const Node& item : node.items)
+        if (read_.expect_scalar(item, "a note")) study_.notes.push_back(item.text);
+}
+
+void StudyReader::cases(const Node& node) {
+    if (!read_.expect_sequence(node, "'cases'")) return;
+    for (const Node& item : node.items)
+        if (read_.expect_map(item, "a case")) one_case(item);
+}
+
+void StudyReader::one_case(const Node& node) {
+    read_.only_keys(node, "a case", {"name", "set", "grid", "compare", "repeat"});
+    PendingCase pending;
+    pending.made.settings = common_;
+    pending.made.repeat = common_repeat_;
+    if (const Node* n = node.find("name"); n && read_.identifier(*n, "a case"))
+        pending.made.name = n->text;
+    if (const Node* n = node.find("set")) settings(*n, pending.made.settings);
+    if (const Node* n = node.find("repeat")) pending.made.repeat = read_.integer(*n).value_or(1);
+    if (pending.made.repeat < 1) {
+        read_.fail("L0305", node, "a case runs at least once");
+        return;
+    }
+    pending.comparisons = common_comparisons_;
+    if (const Node* n = node.find("compare")) comparisons(*n, pending);
+    if (const Node* n = node.find("grid")) return grid(*n, pending);
+    check(pending);
+}
+
+void StudyReader::settings(const Node& node, std::vector<Setting>& into) const {
+    if (!read_.expect_map(node, "'set'")) return;
+    for (const auto& [key, value] : node.entries) {
+        if (!read_.expect_scalar(value, "a setting")) continue;
+        std::erase_if(into, [&](const Setting& s) { return s.name == key.text; });
+        into.push_back({key.text, value.text, key.mark});
+    }
+}
+
+void StudyReader::comparisons(const Node& node, PendingCase& pending) const {
+    if (node.is_sequence()) {
+        for (const Node& item : node.items)
+            if (read_.expect_scalar(item, "a signal")) pending.comparisons.push_back({item, {}});
+        return;
+    }
+    if (!read_.expect_map(node, "'compare'")) return;
+    for (const auto& [signal, body] : node.entries) {
+        if (!body.is_empty() && !read_.expect_map(body, "a comparison")) continue;
+        read_.only_keys(body, "a comparison", {"paper", "within", "at_least", "at_most"});
+        pending.comparisons.push_back({signal, body});
+    }
+}
+
+/// Every combination, the last name varying fastest.
+void StudyReader::grid(const Node& node, const PendingCase& common) {
+    if (!read_.expect_map(node, "'grid'")) return;
+    std::int64_t product = common.made.repeat;
+    for (const auto& [name, values] : node.entries) {
+        if (!read_.expect_sequence(values, "the values of a grid")) return;
+        for (const Node& value : values.items)
+            if (!read_.expect_scalar(value, "a value of a grid")) return;
+        const auto count = static_cast<std::int64_t>(values.items.size());
+        if (count > 0 && product > most_runs / count)
+            return read_.fail("L0601", name,
+                              fmt::format("the grid makes at least {} runs, more than {}",
+                                          product * count, most_runs));
+        product *= count;
+    }
+    for (std::int64_t i = 0; i < product / common.made.repeat; ++i) {
+        PendingCase pending = common;
+        std::int64_t rest = i;
+        std::vector<Setting> chosen;
+        for (auto axis = node.entries.rbegin(); axis != node.entries.rend(); ++axis) {
+            const auto& values = axis->second.items;
+            const auto count = static_cast<std::int64_t>(values.size());
+            const Node& value = values[static_cast<std::size_t>(rest % count)];
+            chosen.insert(chosen.begin(), {axis->first.text, value.text, axis->first.mark});
+            rest /= count;
+        }
+        for (const Setting& s : chosen)
+            std::erase_if(pending.made.settings, [&](const Setting& old) { return old.name == s.name; });
+        pending.made.settings.insert(pending.made.settings.end(), chosen.begin(), chosen.end());
+        check(pending);
+    }
+}
+
+/// Loads the program once with the case's settings, so that every mistake is known before the first run.
+void StudyReader::check(PendingCase& pending) {
+    runs_ += pending.made.repeat;
+    if (runs_ > most_runs) {
+        if (checkable_)
+            read_.diagnostics().add("L0601", {}, fmt::format("the study makes more than {} runs", most_runs));
+        checkable_ = false;
+    }
+    if (!checkable_) return;
+    LoadOptions options{.settings = pending.made.settings, .include_dirs = options_.include_dirs};
+    const std::size_t before = read_.diagnostics().list().size();
+    const Program program = read_program(program_file_, options, read_.diagnostics());
+    const Linked linked = link(program, catalog_, read_.diagnostics());
+    if (read_.diagnostics().list().size() > before) return;
+    for (const PendingComparison& comparison : pending.comparisons)
+        if (auto made = compare(comparison, linked.machine))
+            pending.made.comparisons.push_back(std::move(*made));
+    study_.cases.push_back(std::move(pending.made));
+}
+
+std::optional<Comparison> StudyReader::compare(const PendingComparison& pending,
+                                               const Machine& machine) {
+    const Signal* signal = machine.find(pending.signal.text);
+    if (!signal) {
+        std::vector<std::string> names;
+        for (const Signal& s : machine.signals) names.push_back(s.name);
+        read_.fail("L0203", pending.signal,
+                   fmt::format("the program has no signal '{}'", pending.signal.text),
+                   suggest(pending.signal.text, names));
+        return {};
+    }
+    Comparison comparison{.signal = signal->name, .unit = signal->unit, .bounds = {}};
+    if (pending.body.is_map())
+        comparison.bounds = bounds(pending.body, Unit::parse(signal->unit).value());
+    return comparison;
+}
+
+Bounds StudyReader::bounds(const Node& map, const Unit& unit) const {
+    Bounds bounds;
+    if (const Node* n = map.find("paper")) bounds.paper = read_.real(*n, unit);
+    if (const Node* n = map.find("at_least")) bounds.at_least = read_.real(*n, unit);
+    if (const Node* n = map.find("at_most")) bounds.at_most = read_.real(*n, unit);
+    const Node* n = map.find("within");
+    if (!n) return bounds;
+    if (!bounds.paper) {
+        read_.fail("L0202", *n, "'within' without 'paper' has nothing to be within of");
+        return bounds;
+    }
+    if (n->is_sequence())
+        for (const Node& item : n->items) within(item, unit, bounds);
+    else within(*n, unit, bounds);
+    return bounds;
+}
+
+/// An absolute distance, a percentage of the paper's value, or `points` for a claim in percent.
+void StudyReader::within(const Node& node, const Unit& unit, Bounds& bounds) const {
+    static const Unit one;
+    const bool share = node.is_scalar() && node.text.ends_with('%');
+    std::optional<double> distance;
+    if (node.is_scalar() && node.text.ends_with(" points")) {
+        Node number = node;
+        number.text.resize(number.text.size() - 7);
+        distance = read_.real(number, one);
+        if (distance) *distance /= 100;
+    } else {
+        distance = read_.real(node, share ? one : unit);
+        if (distance && share) *distance *= std::abs(*bounds.paper);
+    }
+    if (distance) bounds.within.push_back(*distance);
+}
+
+void StudyReader::claims(const Node& node) {
+    if (!read_.expect_sequence(node, "'claims'")) return;
+    for (const Node& item : node.items)
+        if (read_.expect_map(item, "a claim")) claim(item);
+}
+
+void StudyReader::claim(const Node& node) {
+    static const Unit one;
+    read_.only_keys(node, "a claim",
+                    {"claim", "formula", "unit", "paper", "within", "at_least", "at_most"});
+    const Node* text = read_.require(node, "claim", "a claim");
+    const Node* formula = read_.require(node, "formula", "a claim");
+    if (!text || !formula || !read_.expect_scalar(*formula, "a formula")) return;
+    Claim made;
+    made.text = text->text;
+    made.formula = formula->text;
+    made.bounds = bounds(node, one);
+    check_formula(*formula);
+    const Node* unit = node.find("unit");
+    made.percent = unit && unit->text == "%";
+    if (unit && !made.percent)
+        read_.fail("L0304", *unit, fmt::format("a claim is a plain number or in %, not in '{}'", unit->text));
+    study_.claims.push_back(std::move(made));
+}
+
+/// Evaluated with all names at 1, so that a misspelt name is known before the first run.
+void StudyReader::check_formula(const Node& formula) const {
+    std::vector<std::string> known{"mean_relative_error", "greatest_relative_error"};
+    for (const StudyCase& c : study_.cases) {
+        if (c.name.empty()) continue;
+        known.push_back(c.name);
+        for (const Comparison& k : c.comparisons) known.push_back(c.name + "." + k.signal);
+    }
+    const auto result = evaluate(formula.text, [&](std::string_view name) {
+        return std::ranges::find(known, name) == known.end() ? std::nullopt : std::optional(1.0);
+    });
+    if (result.error.empty()) return;
+    Node place = formula;
+    const auto end = formula.text.find_first_of(" )+-*/,", result.position);
+    const std::string word = formula.text.substr(result.position, end - result.position);
+    place.mark.column += static_cast<int>(result.position) + (formula.quoted ? 1 : 0);
+    place.mark.length = static_cast<int>(std::max<std::size_t>(1, word.size()));
+    read_.fail("L0602", place, result.error, word.empty() ? "" : suggest(word, known));
+}
+
+struct CaseResult {
+    std::vector<std::vector<double>> values;  ///< per repeat, per comparison
+    std::vector<std::string> faults, deviations;
+    double machine_seconds = 0;
+    bool done = false;
+};
+
+std::string describe(const StudyCase& c) {
+    if (!c.name.empty()) return c.name;
+    std::string text;
+    for (const Setting& s : c.settings)
+        text += fmt::format("{}{}={}", text.empty() ? "" : ", ", s.name, s.value);
+    return text;
+}
+
+CaseResult run_case(const Study& study, const StudyCase& c, const Catalog& catalog,
+                    const StudyOptions& options) {
+    CaseResult result;
+    for (std::int64_t repeat = 0; repeat < c.repeat; ++repeat) {
+        Diagnostics unexpected;
+        auto loaded = load_program(study.program, {c.settings, study.include_dirs}, catalog, unexpected);
+        if (!loaded) {
+            result.faults.push_back(unexpected.render());
+            return result;
+        }
+        Machine& machine = loaded->linked.machine;
+        machine.seed += static_cast<std::uint64_t>(repeat);
+        const RunReport report = run(*loaded, {.trace_path = {}, .interrupt = options.interrupt, .progress = {}});
+        if (report.faulted())
+            result.faults.push_back(fmt::format("{}: {}", describe(c), report.result.message));
+        if (report.result.outcome == Outcome::interrupted) return result;
+        for (const Verdict& verdict : report.verdicts)
+            if (!verdict.ok)
+                result.deviations.push_back(fmt::format("{}: {}", describe(c), verdict.deviation));
+        result.machine_seconds += seconds(report.result.time);
+        std::vector<double> values;
+        for (const Comparison& comparison : c.comparisons)
+            values.push_back(as_real(machine.find(comparison.signal)->value()));
+        result.values.push_back(std::move(values));
+    }
+    result.done = true;
+    return result;
+}
+
+std::vector<CaseResult> run_cases(const Study& study, const Catalog& catalog,
+                                  const StudyOptions& options) {
+    std::vector<CaseResult> results(study.cases.size());
+    std::atomic<std::size_t> next = 0;
+    std::mutex progress_mutex;
+    std::size_t done = 0;
+    const auto work = [&] {
+        for (std::size_t i = next++; i < results.size(); i = next++) {
+            if (options.interrupt && *options.interrupt) return;
+            results[i] = run_case(study, study.cases[i], catalog, options);
+            const std::lock_guard lock(progress_mutex);
+            if (options.progress) options.progress(++done, results.size());
+        }
+    };
+    std::vector<std::jthread> threads;
+    for (unsigned i = 1; i < options.jobs; ++i) threads.emplace_back(work);
+    work();
+    threads.clear();
+    return results;
+}
+
+StudyRow make_row(const StudyCase& c, const CaseResult& result, std::size_t index) {
+    StudyRow row{.of = &c, .comparison = &c.comparisons[index]};
+    row.least = std::numeric_limits<double>::infinity();
+    row.greatest = -row.least;
+    double sum = 0;
+    for (const auto& values : result.values) {
+        sum += values[index];
+        row.least = std::min(row.least, values[index]);
+        row.greatest = std::max(row.greatest, values[index]);
+    }
+    row.ours = sum / static_cast<double>(result.values.size());
+    row.ok = row.comparison->bounds.hold(row.ours);
+    return row;
+}
+
+/// Names of a formula: each case's signals, and the errors relative to the paper over all rows.
+std::map<std::string, double, std::less<>> names_for_claims(const std::vector<StudyRow>& rows) {
+    std::map<std::string, double, std::less<>> names;
+    double sum = 0, greatest = 0;
+    int compared = 0;
+    for (const StudyRow& row : rows) {
+        const auto& paper = row.comparison->bounds.paper;
+        if (paper && *paper != 0) {
+            const double error = std::abs(row.ours - *paper) / std::abs(*paper);
+            sum += error;
+            greatest = std::max(greatest, error);
+            ++compared;
+        }
+        if (row.of->name.empty()) continue;
+        names.emplace(row.of->name, row.ours);
+        names.emplace(row.of->name + "." + row.comparison->signal, row.ours);
+    }
+    if (compared == 0) return names;
+    names["mean_relative_error"] = sum / compared;
+    names["greatest_relative_error"] = greatest;
+    return names;
+}
+
+/// A claim over a case that did not run to its end is left out; the fault stands in the report.
+void judge_claims(const Study& study, StudyReport& report) {
+    const auto names = names_for_claims(report.rows);
+    for (const Claim& claim : study.claims) {
+        const auto result = evaluate(claim.formula, [&](std::string_view name) {
+            const auto it = names.find(name);
+            return it == names.end() ? std::nullopt : std::optional(it->second);
+        });
+        if (result.error.empty())
+            report.claims.push_back({&claim, result.value, claim.bounds.hold(result.value)});
+    }
+}
+
+}  // namespace
+
+bool Bounds::hold(double value) const {
+    if (!judged()) return true;
+    if (at_least && !(value >= *at_least)) return false;
+    if (at_most && !(value <= *at_most)) return false;
+    return within.empty() || std::ranges::any_of(within, [&](double distance) {
+               return std::abs(value - *paper) <= distance;
+           });
+}
+
+bool StudyReport::ok() const {
+    return faults.empty() && deviations.empty() && !interrupted &&
+           std::ranges::all_of(rows, &StudyRow::ok) && std::ranges::all_of(claims, &ClaimRow::ok);
+}
+
+bool is_study(const SourceFile& file) {
+    return file.text.starts_with("lineshaft_study:") ||
+           file.text.find("\nlineshaft_study:") != std::string::npos;
+}
+
+Study read_study(std::shared_ptr<const SourceFile> file, const LoadOptions& options,
+                 const Catalog& catalog, Diagnostics& out) {
+    return StudyReader(options, catalog, out).read(std::move(file));
+}
+
+StudyReport run(const Study& study, const Catalog& catalog, const StudyOptions& options) {
+    const auto start = std::chrono::steady_clock::now();
+    StudyReport report;
+    const auto results = run_cases(study, catalog, options);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        const CaseResult& result = results[i];
+        report.machine_seconds += result.machine_seconds;
+        report.faults.insert(report.faults.end(), result.faults.begin(), result.faults.end());
+        report.deviations.insert(report.deviations.end(), result.deviations.begin(),
+                                 result.deviations.end());
+        if (!result.done) continue;
+        for (std::size_t k = 0; k < study.cases[i].comparisons.size(); ++k)
+            report.rows.push_back(make_row(study.cases[i], result, k));
+    }
+    report.interrupted = options.interrupt && *options.interrupt;
+    if (!report.interrupted) judge_claims(study, report);
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+    report.wall_seconds = wall.count();
+    return report;
+}
+
+}  // namespace lineshaft

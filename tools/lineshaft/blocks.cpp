@@ -1,0 +1,111 @@
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include "blocks/catalog.hpp"
+#include "runtime/program/diagnostic.hpp"
+#include "runtime/program/literal.hpp"
+#include "tools/lineshaft/command.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+struct BlocksCommand {
+    std::string type;
+    bool json = false;
+};
+
+/// A block as it is before its first scan, to read the defaults from.
+class Fresh {
+  public:
+    explicit Fresh(const BlockType& type) : memory_(type.size) { type.construct(memory_.data()); }
+    Value value(const Field& field) const { return load(field.type, memory_.data() + field.offset); }
+
+  private:
+    std::vector<std::byte> memory_;
+};
+
+std::string unit_text(const Field& field) {
+    std::string text(field.unit);
+    std::erase(text, '{');
+    std::erase(text, '}');
+    return text;
+}
+
+std::string kind_text(const Field& field) {
+    if (field.type == Type::enumeration) return fmt::format("{}", fmt::join(field.names, " | "));
+    return std::string(name_of(field.type));
+}
+
+nlohmann::ordered_json to_json(const BlockType& type) {
+    const Fresh fresh(type);
+    auto fields = nlohmann::ordered_json::array();
+    for (const Field& f : type.fields) {
+        nlohmann::ordered_json field{{"name", f.name},
+                                     {"direction", name_of(f.direction)},
+                                     {"type", name_of(f.type)},
+                                     {"unit", f.unit},
+                                     {"doc", f.doc},
+                                     {"default", describe(fresh.value(f), f.type, f.names, "")},
+                                     {"required", f.required}};
+        if (!f.names.empty()) field["values"] = f.names;
+        fields.push_back(std::move(field));
+    }
+    return {{"type", type.name}, {"doc", type.doc}, {"fields", fields}};
+}
+
+void print_fields(const BlockType& type, Direction direction) {
+    const Fresh fresh(type);
+    bool first = true;
+    for (const Field& f : type.fields) {
+        if (f.direction != direction) continue;
+        if (first) fmt::print("\n{}s\n", name_of(direction));
+        first = false;
+        std::string notes;
+        if (direction != Direction::output)
+            notes = f.required ? "must be set"
+                               : "default " + describe(fresh.value(f), f.type, f.names, "");
+        if (const std::string limits = describe_limits(f, ""); !limits.empty()) notes += ", " + limits;
+        fmt::print("  {:18} {:10} {}{}\n", f.name, unit_text(f), f.doc,
+                   notes.empty() ? "" : " (" + notes + ")");
+        if (f.type == Type::enumeration) fmt::print("  {:18} {:10} {}\n", "", "", kind_text(f));
+    }
+}
+
+Exit execute(const BlocksCommand& command) {
+    const Catalog catalog = standard_blocks();
+    if (command.type.empty()) {
+        auto list = nlohmann::ordered_json::array();
+        for (const BlockType& type : catalog.types()) {
+            if (command.json) list.push_back(to_json(type));
+            else fmt::print("{:18} {}\n", type.name, type.doc);
+        }
+        if (command.json) fmt::print("{}\n", list.dump(2));
+        return Exit::fine;
+    }
+    const BlockType* type = catalog.find(command.type);
+    if (!type) {
+        spdlog::error("unknown block type '{}'; {}", command.type, suggest(command.type, catalog.names()));
+        return Exit::wrong;
+    }
+    if (command.json) {
+        fmt::print("{}\n", to_json(*type).dump(2));
+        return Exit::fine;
+    }
+    fmt::print("{}: {}\n", type->name, type->doc);
+    for (const Direction d : {Direction::parameter, Direction::input, Direction::output})
+        print_fields(*type, d);
+    return Exit::fine;
+}
+
+}  // namespace
+
+void add_blocks(CLI::App& app, Exit& result) {
+    auto command = std::make_shared<BlocksCommand>();
+    CLI::App* sub = app.add_subcommand("blocks", "List the function blocks, or describe one");
+    sub->add_option("type", command->type, "A block type, such as gear_axis");
+    sub->add_flag("--json", command->json, "Print JSON for machines");
+    sub->callback([command, &result] { result = execute(*command); });
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,88 @@
+#include "tools/lineshaft/command.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace lineshaft {
+
+std::atomic<bool> interrupt_requested = false;
+
+namespace {
+
+std::int64_t now_ms() {
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
+}
+
+nlohmann::ordered_json to_json(const Diagnostic& d) {
+    return {{"code", d.code},
+            {"file", d.mark.file ? d.mark.file->path : ""},
+            {"line", d.mark.line},
+            {"column", d.mark.column},
+            {"message", d.message},
+            {"help", d.help}};
+}
+
+}  // namespace
+
+void CommonOptions::add_to(CLI::App& command) {
+    command.add_option("--set", settings, "Set a parameter of the program: name=value")
+        ->type_name("NAME=VALUE")
+        ->take_all()
+        ->expected(1, -1)
+        ->trigger_on_parse(false);
+    command.add_option("--include-dir", include_dirs, "Allow files below this folder, too")
+        ->type_name("DIR");
+    command.add_flag("--json", json, "Print one JSON object for machines");
+    command.add_flag("--quiet", quiet, "Print results only");
+}
+
+LoadOptions CommonOptions::load_options(Diagnostics& out) const {
+    LoadOptions options{.settings = {}, .include_dirs = include_dirs};
+    for (const std::string& text : settings) {
+        const auto equals = text.find('=');
+        if (equals == std::string::npos || equals == 0) {
+            out.add("L0502", {}, fmt::format("'{}' sets nothing", text), "write --set name=value");
+            continue;
+        }
+        options.settings.push_back({text.substr(0, equals), text.substr(equals + 1)});
+    }
+    return options;
+}
+
+Exit report(const Diagnostics& diagnostics, bool json) {
+    if (!json) {
+        fmt::print(stderr, "{}", diagnostics.render());
+        return Exit::wrong;
+    }
+    auto list = nlohmann::ordered_json::array();
+    for (const Diagnostic& d : diagnostics.list()) list.push_back(to_json(d));
+    fmt::print("{}\n", nlohmann::ordered_json{{"diagnostics", list}}.dump(2));
+    return Exit::wrong;
+}
+
+ProgressLine::ProgressLine(bool quiet)
+    : enabled_(!quiet && ::isatty(STDERR_FILENO) == 1), start_(now_ms()) {}
+
+ProgressLine::~ProgressLine() {
+    if (shown_ > 0) fmt::print(stderr, "\r\033[K");
+}
+
+void ProgressLine::show(const std::function<std::string(double)>& text) {
+    constexpr std::int64_t first_ms = 1000, every_ms = 200;
+    if (!enabled_) return;
+    const std::int64_t elapsed = now_ms() - start_;
+    if (elapsed < first_ms || elapsed - shown_ < every_ms) return;
+    shown_ = elapsed;
+    fmt::print(stderr, "\r\033[K{}", text(static_cast<double>(elapsed) / 1e3));
+    std::fflush(stderr);
+}
+
+nlohmann::ordered_json json_number(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+}  // namespace lineshaft

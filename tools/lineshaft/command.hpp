@@ -1,0 +1,68 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "runtime/model/catalog.hpp"
+#include "runtime/program/program.hpp"
+
+namespace lineshaft {
+
+/// What a command ends with.
+enum class Exit : int {
+    fine = 0,
+    failed = 1,   ///< an expectation, a bound or a claim does not hold
+    wrong = 2,    ///< the program or the command line is wrong
+    fault = 3,    ///< something went wrong while running: a block's error, a full disk
+    interrupted = 130,
+};
+
+/// Set by SIGINT and SIGTERM.
+extern std::atomic<bool> interrupt_requested;
+
+/// What most commands share.
+struct CommonOptions {
+    std::vector<std::string> settings;  ///< `name=value`
+    std::vector<std::string> include_dirs;
+    bool json = false;
+    bool quiet = false;
+
+    void add_to(CLI::App& command);
+    /// L0502 for what is not `name=value`.
+    LoadOptions load_options(Diagnostics& out) const;
+};
+
+/// Prints what is wrong, as a compiler does on stderr, or as JSON on stdout. Always Exit::wrong.
+Exit report(const Diagnostics& diagnostics, bool json);
+
+/// A line on a terminal that is rewritten while work goes on, once a second has passed.
+class ProgressLine {
+  public:
+    explicit ProgressLine(bool quiet);
+    ~ProgressLine();
+    void show(const std::function<std::string(double elapsed_seconds)>& text);
+
+  private:
+    bool enabled_;
+    std::int64_t start_, shown_ = 0;
+};
+
+/// A real number for JSON: null when it is not finite.
+nlohmann::ordered_json json_number(double value);
+
+/// `name` of the subcommand on `app`; `result` gets its exit code.
+using AddCommand = void (*)(CLI::App& app, Exit& result);
+void add_run(CLI::App& app, Exit& result);
+void add_check(CLI::App& app, Exit& result);
+void add_test(CLI::App& app, Exit& result);
+void add_study(CLI::App& app, Exit& result);
+void add_blocks(CLI::App& app, Exit& result);
+void add_schema(CLI::App& app, Exit& result);
+void add_explain(CLI::App& app, Exit& result);
+
+}  // namespace lineshaft

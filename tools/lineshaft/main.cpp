@@ -1,0 +1,51 @@
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <csignal>
+
+#include "runtime/version.hpp"
+#include "tools/lineshaft/command.hpp"
+
+namespace {
+
+void on_signal(int) { lineshaft::interrupt_requested = true; }
+
+void set_up_messages() {
+    spdlog::set_default_logger(spdlog::stderr_color_st("lineshaft"));
+    spdlog::set_pattern("%n: %^%l%$: %v");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    using namespace lineshaft;
+    set_up_messages();
+    std::signal(SIGINT, on_signal);
+    std::signal(SIGTERM, on_signal);
+    std::signal(SIGPIPE, SIG_IGN);
+
+    CLI::App app{"A PLC soft-runtime for motion control: runs YAML programs scan by scan in virtual time.",
+                 "lineshaft"};
+    app.set_version_flag("--version", std::string("lineshaft ") + version());
+    app.require_subcommand(1);
+    app.footer(
+        "Exit codes: 0 fine, 1 an expectation failed, 2 the program or the command line is wrong,\n"
+        "3 a fault while running, 130 interrupted. `lineshaft COMMAND --help` says more.");
+    Exit result = Exit::fine;
+    for (const AddCommand add :
+         {add_run, add_check, add_test, add_study, add_blocks, add_schema, add_explain})
+        add(app, result);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : static_cast<int>(Exit::wrong);
+    } catch (const std::exception& error) {
+        spdlog::error("{}", error.what());
+        return static_cast<int>(Exit::fault);
+    }
+    if (std::fflush(stdout) != 0) {
+        spdlog::error("cannot write to the standard output");
+        return static_cast<int>(Exit::fault);
+    }
+    return static_cast<int>(result);
+}

@@ -1,0 +1,106 @@
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include "blocks/catalog.hpp"
+#include "runtime/study/single_run.hpp"
+#include "tools/lineshaft/command.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+struct RunCommand {
+    CommonOptions common;
+    std::string program, trace;
+};
+
+nlohmann::ordered_json json_value(const Signal& signal) {
+    const Value value = signal.value();
+    if (const auto* b = std::get_if<bool>(&value)) return *b;
+    if (signal.type == Type::enumeration) return signal.describe(value);
+    if (const auto* i = std::get_if<std::int64_t>(&value)) return *i;
+    return json_number(std::get<double>(value));
+}
+
+void print_json(const Loaded& loaded, const RunReport& report) {
+    const Machine& machine = loaded.linked.machine;
+    nlohmann::ordered_json scans, signals;
+    for (std::size_t i = 0; i < machine.tasks.size(); ++i)
+        scans[machine.tasks[i].name] = report.result.scans[i];
+    for (const Signal& signal : machine.signals) signals[signal.name] = json_value(signal);
+    auto expect = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
+        expect.push_back({{"text", loaded.linked.expectations[i].text}, {"ok", report.verdicts[i].ok}});
+        if (!report.verdicts[i].ok) expect.back()["deviation"] = report.verdicts[i].deviation;
+    }
+    nlohmann::ordered_json object{{"program", loaded.program.file->path},
+                                  {"machine_time_s", seconds(report.result.time)},
+                                  {"wall_time_s", report.wall_seconds},
+                                  {"scans", scans},
+                                  {"signals", signals},
+                                  {"expect", expect}};
+    if (report.faulted())
+        object["fault"] = report.trace_error.empty() ? report.result.message : report.trace_error;
+    fmt::print("{}\n", object.dump(2));
+}
+
+void print_text(const RunCommand& command, const Loaded& loaded, const RunReport& report) {
+    for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
+        const Verdict& verdict = report.verdicts[i];
+        fmt::print("{}  {}\n", verdict.ok ? "ok    " : "FAILED", loaded.linked.expectations[i].text);
+        if (!verdict.ok) fmt::print("        {}\n", verdict.deviation);
+    }
+    if (command.common.quiet) return;
+    const double machine_seconds = seconds(report.result.time);
+    fmt::print("{}: machine time {:.3f} s, wall time {:.3f} s, {:.0f} times faster than the clock\n",
+               loaded.program.title, machine_seconds, report.wall_seconds,
+               machine_seconds / report.wall_seconds);
+    if (!command.trace.empty() && report.trace_error.empty())
+        fmt::print("trace: {}\n", command.trace);
+}
+
+Exit exit_code(const RunReport& report) {
+    if (report.result.outcome == Outcome::interrupted) return Exit::interrupted;
+    if (report.faulted()) return Exit::fault;
+    return report.expectations_hold() ? Exit::fine : Exit::failed;
+}
+
+Exit execute(const RunCommand& command) {
+    Diagnostics out;
+    const LoadOptions options = command.common.load_options(out);
+    auto loaded = load_program(command.program, options, standard_blocks(), out);
+    if (loaded && !command.trace.empty() && !loaded->linked.trace)
+        out.add("L0503", {loaded->program.file, 0, 0, 1}, "the program has no 'trace:' to write to " + command.trace,
+                "say under 'trace:' which task and signals to record");
+    if (!out.empty()) return report(out, command.common.json);
+
+    ProgressLine line(command.common.quiet || command.common.json);
+    const double whole = seconds(loaded->linked.machine.duration);
+    const auto progress = [&](std::int64_t time) {
+        line.show([&](double elapsed) {
+            return fmt::format("{:.1f} s of at most {:.1f} s, {:.0f} times faster than the clock",
+                               seconds(time), whole, seconds(time) / elapsed);
+        });
+    };
+    const RunReport result =
+        run(*loaded, {.trace_path = command.trace, .interrupt = &interrupt_requested, .progress = progress});
+    if (command.common.json) print_json(*loaded, result);
+    else print_text(command, *loaded, result);
+    if (!result.result.message.empty()) spdlog::error("{}", result.result.message);
+    if (!result.trace_error.empty()) spdlog::error("{}", result.trace_error);
+    return exit_code(result);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Exit& result) {
+    auto command = std::make_shared<RunCommand>();
+    CLI::App* sub = app.add_subcommand("run", "Run a program and judge its expectations");
+    sub->add_option("program", command->program, "The program, a YAML file")->required();
+    sub->add_option("--trace", command->trace, "Write the program's trace to this CSV file")
+        ->type_name("FILE");
+    command->common.add_to(*sub);
+    sub->callback([command, &result] { result = execute(*command); });
+}
+
+}  // namespace lineshaft
