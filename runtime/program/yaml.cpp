@@ -225,7 +225,7 @@ class Builder : public YAML::EventHandler {
         const std::size_t begin = source_.offset(mark);
         check_properties(begin, "?", anchor);
         count_node(begin);
-        if (stack_.empty()) stop("L0105", source_.mark(begin), "the file is empty");
+        if (stack_.empty()) stop("L0105", source_.mark(0), "the file is empty");
         if (expects_key()) {
             out_.add("L0107", source_.mark(begin), "an empty key",
                      "a key that is called null or ~ stands in quotes");
@@ -303,7 +303,8 @@ class Builder : public YAML::EventHandler {
         Node node;
         std::size_t begin = 0;
         bool flow = false;
-        bool is_key = false;
+        bool is_key = false;   // stands where a key is due; reported when closed, for an unclosed
+        bool in_key = false;   // bracket looks like one to the library
         bool has_key = false;  // of a map: the next node is the value of `key`
         Node key;
         std::size_t key_end = 0;
@@ -384,24 +385,23 @@ class Builder : public YAML::EventHandler {
             stop("L0106", source_.mark(begin),
                  fmt::format("nested deeper than {} levels", limits_.depth));
         }
-        const bool is_key = expects_key();
-        const bool in_key = !stack_.empty() && stack_.back().is_key;
-        if (is_key && !in_key) {
-            out_.add("L0107", source_.mark(begin), "a key that is no name",
-                     "a key is a word; a text with brackets stands in quotes");
-        }
         Frame frame;
         frame.node.kind = kind;
         frame.node.mark = source_.mark(begin);
         frame.begin = begin;
         frame.flow = style == YAML::EmitterStyle::Flow;
-        frame.is_key = is_key || in_key;
+        frame.is_key = expects_key();
+        frame.in_key = !stack_.empty() && (stack_.back().is_key || stack_.back().in_key);
         stack_.push_back(std::move(frame));
     }
 
     void close() {
         Frame frame = std::move(stack_.back());
         stack_.pop_back();
+        if (frame.is_key && !frame.in_key) {
+            out_.add("L0107", source_.mark(frame.begin), "a key that is no name",
+                     "a key is a word; a text with brackets stands in quotes");
+        }
         attach(std::move(frame.node), frame.begin + 1);
     }
 
