@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -23,7 +24,7 @@ struct Mark {
 
 /// What a user got wrong.
 struct Diagnostic {
-    std::string code;     ///< `L0203`; `lineshaft explain L0203` prints the paragraph behind it
+    std::string code;  ///< `L0203`; `lineshaft explain L0203` prints the paragraph behind it
     Mark mark;
     std::string message;  ///< one line, lower case, no full stop
     std::string help;     ///< shown under the caret: "did you mean 'shaft.velocity'?"; may be empty
@@ -37,6 +38,7 @@ class Diagnostics {
     const std::vector<Diagnostic>& list() const { return list_; }
 
     /// Sorted by file, line, column; equal ones once; at most `limit`, then "... and N more".
+    /// Every line ends with '\n'.
     std::string render(std::size_t limit = 50) const;
 
   private:
@@ -47,15 +49,18 @@ class Diagnostics {
 ///   FILE:9:22: error[L0203]: unknown port 'velocty' on 'shaft' (virtual_axis)
 ///      9 |     master_velocity: shaft.velocty
 ///        |                      ^~~~~~~~~~~~~ did you mean 'shaft.velocity'?
-/// Long lines are shown as a window around the mark; control characters as '?'; columns are characters
-/// (UTF-8 code points), not bytes.
+/// Long lines are shown as a window around the mark; control characters, and those that reorder or
+/// hide text, as '?', a tab as one space; columns are characters (UTF-8 code points), not bytes.
+/// Without a place: `error[L0001]: message` (after `FILE: ` if there is a file), the help below it.
 std::string render(const Diagnostic& diagnostic);
 
-/// The candidate nearest to `word` by edit distance (Damerau), empty if none is near (more than a third of
-/// the word's length, at least 1, at most 3 edits).
+/// The candidate nearest to `word` by edit distance (Damerau; capital letters count as small ones,
+/// the first of equally near ones wins), empty if none is near: more edits than a third of the
+/// word's length (at least 1, at most 3), or no letter in common.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
-/// "did you mean 'x'?" when one is near, else "known: a, b, c" (at most 12 names, then "..."); for `help`.
+/// For `help`: "did you mean 'x'?" when one is near, else "known: a, b, c" (at most 12 names, then
+/// "..."), empty without candidates.
 std::string suggest(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace lineshaft

@@ -1,7 +1,5 @@
 #include "runtime/study/study.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -9,6 +7,8 @@
 #include <map>
 #include <mutex>
 #include <thread>
+
+#include <fmt/format.h>
 
 #include "runtime/program/reader.hpp"
 #include "runtime/study/formula.hpp"
@@ -187,18 +187,21 @@ void StudyReader::grid(const Node& node, const PendingCase& common) {
             rest /= count;
         }
         for (const Setting& s : chosen)
-            std::erase_if(pending.made.settings, [&](const Setting& old) { return old.name == s.name; });
+            std::erase_if(pending.made.settings,
+                          [&](const Setting& old) { return old.name == s.name; });
         pending.made.settings.insert(pending.made.settings.end(), chosen.begin(), chosen.end());
         check(pending);
     }
 }
 
-/// Loads the program once with the case's settings, so that every mistake is known before the first run.
+/// Loads the program once with the case's settings, so that every mistake is known before the first
+/// run.
 void StudyReader::check(PendingCase& pending) {
     runs_ += pending.made.repeat;
     if (runs_ > most_runs) {
         if (checkable_)
-            read_.diagnostics().add("L0601", {}, fmt::format("the study makes more than {} runs", most_runs));
+            read_.diagnostics().add("L0601", {},
+                                    fmt::format("the study makes more than {} runs", most_runs));
         checkable_ = false;
     }
     if (!checkable_) return;
@@ -243,7 +246,8 @@ Bounds StudyReader::bounds(const Node& map, const Unit& unit) const {
     }
     if (n->is_sequence())
         for (const Node& item : n->items) within(item, unit, bounds);
-    else within(*n, unit, bounds);
+    else
+        within(*n, unit, bounds);
     return bounds;
 }
 
@@ -285,7 +289,8 @@ void StudyReader::claim(const Node& node) {
     const Node* unit = node.find("unit");
     made.percent = unit && unit->text == "%";
     if (unit && !made.percent)
-        read_.fail("L0304", *unit, fmt::format("a claim is a plain number or in %, not in '{}'", unit->text));
+        read_.fail("L0304", *unit,
+                   fmt::format("a claim is a plain number or in %, not in '{}'", unit->text));
     study_.claims.push_back(std::move(made));
 }
 
@@ -309,6 +314,11 @@ void StudyReader::check_formula(const Node& formula) const {
     read_.fail("L0602", place, result.error, word.empty() ? "" : suggest(word, known));
 }
 
+/// At the beginning of a line.
+bool has_key(const std::string& text, const std::string& key) {
+    return text.starts_with(key) || text.find("\n" + key) != std::string::npos;
+}
+
 struct CaseResult {
     std::vector<std::vector<double>> values;  ///< per repeat, per comparison
     std::vector<std::string> faults, deviations;
@@ -329,14 +339,16 @@ CaseResult run_case(const Study& study, const StudyCase& c, const Catalog& catal
     CaseResult result;
     for (std::int64_t repeat = 0; repeat < c.repeat; ++repeat) {
         Diagnostics unexpected;
-        auto loaded = load_program(study.program, {c.settings, study.include_dirs}, catalog, unexpected);
+        auto loaded =
+            load_program(study.program, {c.settings, study.include_dirs}, catalog, unexpected);
         if (!loaded) {
             result.faults.push_back(unexpected.render());
             return result;
         }
         Machine& machine = loaded->linked.machine;
         machine.seed += static_cast<std::uint64_t>(repeat);
-        const RunReport report = run(*loaded, {.trace_path = {}, .interrupt = options.interrupt, .progress = {}});
+        const RunReport report =
+            run(*loaded, {.trace_path = {}, .interrupt = options.interrupt, .progress = {}});
         if (report.faulted())
             result.faults.push_back(fmt::format("{}: {}", describe(c), report.result.message));
         if (report.result.outcome == Outcome::interrupted) return result;
@@ -442,8 +454,10 @@ bool StudyReport::ok() const {
 }
 
 bool is_study(const SourceFile& file) {
-    return file.text.starts_with("lineshaft_study:") ||
-           file.text.find("\nlineshaft_study:") != std::string::npos;
+    return has_key(file.text, "lineshaft_study:");
+}
+bool is_program(const SourceFile& file) {
+    return has_key(file.text, "lineshaft:");
 }
 
 Study read_study(std::shared_ptr<const SourceFile> file, const LoadOptions& options,

@@ -10,8 +10,8 @@
 
 namespace lineshaft {
 
-/// How near is near enough. A value holds when it is within any of the distances of the paper's value and
-/// inside both limits; without any of them nothing is judged.
+/// How near is near enough. A value holds when it is within any of the distances of the paper's
+/// value and inside both limits; without any of them nothing is judged.
 struct Bounds {
     std::optional<double> paper;
     std::vector<double> within;  ///< distances from `paper`, in the signal's unit
@@ -62,8 +62,9 @@ constexpr std::int64_t most_runs = 1'000'000;
 Study read_study(std::shared_ptr<const SourceFile> file, const LoadOptions& options,
                  const Catalog& catalog, Diagnostics& out);
 
-/// True for a file that calls itself a study.
+/// True for a file that calls itself a study, or a program.
 bool is_study(const SourceFile& file);
+bool is_program(const SourceFile& file);
 
 struct StudyRow {
     const StudyCase* of = nullptr;

@@ -1,0 +1,200 @@
+#include "runtime/study/table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace lineshaft {
+
+namespace {
+
+using Cells = std::vector<std::string>;
+
+/// Names of settings that differ between cases, in order of appearance.
+std::vector<std::string> varying(const Study& study) {
+    std::vector<std::string> order;
+    std::map<std::string, std::pair<std::string, std::size_t>> seen;  // name: first value, uses
+    std::map<std::string, bool> differs;
+    for (const StudyCase& c : study.cases) {
+        for (const Setting& s : c.settings) {
+            const auto [it, is_new] = seen.emplace(s.name, std::pair(s.value, 0));
+            if (is_new) order.push_back(s.name);
+            if (it->second.first != s.value) differs[s.name] = true;
+            ++it->second.second;
+        }
+    }
+    std::erase_if(order, [&](const std::string& name) {
+        return !differs[name] && seen[name].second == study.cases.size();
+    });
+    return order;
+}
+
+std::string setting(const StudyCase& c, const std::string& name) {
+    const auto it = std::ranges::find(c.settings, name, &Setting::name);
+    return it == c.settings.end() ? "" : it->value;
+}
+
+/// Enough digits to compare by eye.
+std::string number(double value, bool percent = false) {
+    if (percent) return fmt::format("{:.1f} %", value * 100);
+    return fmt::format("{:.4g}", value);
+}
+
+std::string difference(double ours, const Bounds& bounds, bool percent) {
+    if (!bounds.paper) return "";
+    const double d = ours - *bounds.paper;
+    if (percent) return fmt::format("{:+.1f} points", d * 100);
+    if (*bounds.paper == 0) return fmt::format("{:+.4g}", d);
+    return fmt::format("{:+.4f} ({:+.1f} %)", d, d / std::abs(*bounds.paper) * 100);
+}
+
+std::string limit_text(const Bounds& bounds, bool percent) {
+    std::string text;
+    if (bounds.at_least) text = ">= " + number(*bounds.at_least, percent);
+    if (bounds.at_most) {
+        if (!text.empty()) text += ", ";
+        text += "<= " + number(*bounds.at_most, percent);
+    }
+    return text;
+}
+
+std::string verdict(const Bounds& bounds, bool ok) {
+    if (!bounds.judged()) return "";
+    return ok ? "ok" : "FAILED";
+}
+
+std::string paper(const Bounds& bounds, bool percent) {
+    return bounds.paper ? number(*bounds.paper, percent) : "";
+}
+
+std::string align(const std::vector<Cells>& rows) {
+    std::vector<std::size_t> widths;
+    for (const Cells& row : rows) {
+        widths.resize(std::max(widths.size(), row.size()));
+        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    }
+    std::string text;
+    for (const Cells& row : rows) {
+        std::string line;
+        for (std::size_t i = 0; i < row.size(); ++i)
+            if (widths[i] > 0) line += fmt::format("{:<{}}  ", row[i], widths[i]);
+        line.erase(line.find_last_not_of(' ') + 1);
+        text += line + "\n";
+    }
+    return text;
+}
+
+std::string row_table(const Study& study, const StudyReport& report) {
+    const auto names = varying(study);
+    const bool any_limit = std::ranges::any_of(report.rows, [](const StudyRow& r) {
+        return r.comparison->bounds.at_least || r.comparison->bounds.at_most;
+    });
+    Cells head = names;
+    for (const char* title : {"signal", "paper", "ours", "difference"}) head.emplace_back(title);
+    head.emplace_back(any_limit ? "limit" : "");
+    std::vector<Cells> rows{head};
+    for (const StudyRow& row : report.rows) {
+        const Bounds& bounds = row.comparison->bounds;
+        Cells cells;
+        for (const std::string& name : names) cells.push_back(setting(*row.of, name));
+        cells.push_back(row.comparison->signal);
+        cells.push_back(paper(bounds, false));
+        cells.push_back(number(row.ours) +
+                        (row.comparison->unit.empty() ? "" : " " + row.comparison->unit));
+        cells.push_back(difference(row.ours, bounds, false));
+        cells.push_back(limit_text(bounds, false));
+        cells.push_back(verdict(bounds, row.ok));
+        rows.push_back(std::move(cells));
+    }
+    return align(rows);
+}
+
+std::string claim_table(const StudyReport& report) {
+    std::vector<Cells> rows{{"claim", "paper", "ours", "difference", "limit"}};
+    for (const ClaimRow& row : report.claims) {
+        const Claim& c = *row.claim;
+        rows.push_back({c.text, paper(c.bounds, c.percent), number(row.ours, c.percent),
+                        difference(row.ours, c.bounds, c.percent), limit_text(c.bounds, c.percent),
+                        verdict(c.bounds, row.ok)});
+    }
+    return align(rows);
+}
+
+nlohmann::ordered_json finite(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json paper_json(const Bounds& bounds, double scale) {
+    return bounds.paper ? nlohmann::ordered_json(*bounds.paper * scale)
+                        : nlohmann::ordered_json(nullptr);
+}
+
+}  // namespace
+
+std::string study_table(const Study& study, const StudyReport& report) {
+    std::string text = study.title + "\n\n" + row_table(study, report);
+    if (!report.claims.empty()) text += "\n" + claim_table(report);
+    for (const std::string& note : study.notes) text += "\n" + note + "\n";
+    for (const std::string& line : report.deviations) text += "\nexpectation failed: " + line;
+    for (const std::string& line : report.faults) text += "\nfault: " + line;
+    if (!report.faults.empty() || !report.deviations.empty()) text += "\n";
+    return text;
+}
+
+std::string first_failure(const StudyReport& report) {
+    const auto text = [](const std::string& what, double ours, const Bounds& bounds, bool percent) {
+        return fmt::format(
+            "{} is {}; paper {}, limit {}", what, number(ours, percent),
+            bounds.paper ? number(*bounds.paper, percent) : "none",
+            bounds.at_least || bounds.at_most ? limit_text(bounds, percent) : "none");
+    };
+    for (const StudyRow& row : report.rows) {
+        if (row.ok) continue;
+        std::string what = row.comparison->signal;
+        for (const Setting& s : row.of->settings) what += fmt::format(", {} {}", s.name, s.value);
+        return text(what, row.ours, row.comparison->bounds, false);
+    }
+    for (const ClaimRow& row : report.claims)
+        if (!row.ok) return text(row.claim->text, row.ours, row.claim->bounds, row.claim->percent);
+    return {};
+}
+
+nlohmann::ordered_json study_json(const Study& study, const StudyReport& report) {
+    auto rows = nlohmann::ordered_json::array();
+    for (const StudyRow& row : report.rows) {
+        nlohmann::ordered_json set = nlohmann::ordered_json::object();
+        for (const Setting& s : row.of->settings) set[s.name] = s.value;
+        nlohmann::ordered_json object{{"set", set},
+                                      {"signal", row.comparison->signal},
+                                      {"unit", row.comparison->unit},
+                                      {"paper", paper_json(row.comparison->bounds, 1)},
+                                      {"ours", finite(row.ours)},
+                                      {"ok", row.ok}};
+        if (row.of->repeat > 1) {
+            object["repeats"] = row.of->repeat;
+            object["least"] = finite(row.least);
+            object["greatest"] = finite(row.greatest);
+        }
+        rows.push_back(std::move(object));
+    }
+    auto claims = nlohmann::ordered_json::array();
+    for (const ClaimRow& row : report.claims) {
+        const double scale = row.claim->percent ? 100 : 1;
+        claims.push_back({{"set", nlohmann::ordered_json::object()},
+                          {"signal", row.claim->text},
+                          {"unit", row.claim->percent ? "%" : ""},
+                          {"paper", paper_json(row.claim->bounds, scale)},
+                          {"ours", finite(row.ours * scale)},
+                          {"ok", row.ok},
+                          {"formula", row.claim->formula}});
+    }
+    nlohmann::ordered_json object{{"title", study.title}, {"rows", rows}, {"claims", claims}};
+    if (!report.faults.empty()) object["faults"] = report.faults;
+    if (!report.deviations.empty()) object["deviations"] = report.deviations;
+    object["ok"] = report.ok();
+    return object;
+}
+
+}  // namespace lineshaft
