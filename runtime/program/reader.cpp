@@ -19,6 +19,10 @@ std::string_view name_of(Node::Kind kind) {
 
 }  // namespace
 
+bool is_plain(const Unit& unit) {
+    return unit.same_dimension({}) && unit.numerator == unit.denominator;
+}
+
 bool is_identifier(std::string_view text) {
     return !text.empty() && is_letter(text.front()) &&
            std::ranges::all_of(text, [](char c) { return is_letter(c) || is_digit(c); });
@@ -122,7 +126,7 @@ std::optional<std::int64_t> Reader::integer(const Node& node) const {
 std::optional<double> Reader::real(const Node& node, const Unit& unit) const {
     const auto q = quantity(node);
     if (!q) return {};
-    if (!q->has_unit && !unit.text.empty()) {
+    if (!q->has_unit && !is_plain(unit)) {
         fail("L0302", node, fmt::format("'{}' has no unit", node.text),
              fmt::format("did you mean '{} {}'?", node.text, unit.text));
         return {};

@@ -54,6 +54,9 @@ class Reader {
     Diagnostics& out_;
 };
 
+/// A unit that a plain number has as well: none, `mm/mm`.
+bool is_plain(const Unit& unit);
+
 bool is_identifier(std::string_view text);
 
 /// `a.b`, both identifiers.
