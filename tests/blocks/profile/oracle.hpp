@@ -15,6 +15,7 @@ __extension__ using Quad = __float128;
 
 inline Quad square_root(Quad x) {
     if (x <= 0) return 0;
+    if (x < Quad(1e-300)) return square_root(x * 0x1p200) * 0x1p-100;
     Quad y = std::sqrt(static_cast<double>(x));
     for (int i = 0; i < 2; ++i) y = (y + x / y) / 2;
     return y;

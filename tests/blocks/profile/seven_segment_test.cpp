@@ -8,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/blocks/profile/closed_form.hpp"
 #include "tests/blocks/profile/oracle.hpp"
 
 using namespace lineshaft;
@@ -181,7 +182,8 @@ SevenSegment random_problem(Random& random) {
     p.Ve = random.one_in(6) ? p.Vs : random_velocity(random, p.Vm);
     const auto first = static_cast<double>(L1(p));
     const auto second = static_cast<double>(L2(p));
-    switch (random.next() % 6) {
+    if (second == 0) p.L = p.Vm * p.A / p.J * random.decades(-6, 6);
+    switch (second == 0 ? 6 : first == 0 ? 2 + random.next() % 4 : random.next() % 6) {
         case 0:
             p.L = first * random.unit();
             break;
@@ -197,8 +199,11 @@ SevenSegment random_problem(Random& random) {
         case 4:
             p.L = second * (1 + random.decades(-6, 6));
             break;
-        default:
+        case 5:
             p.L = second * random.decades(-6, 3);
+            break;
+        default:
+            break;
     }
     return in_metres(p, random.one_in(2));
 }
@@ -237,7 +242,12 @@ SevenSegment fast_problem(Random& random) {
 using Make = std::function<SevenSegment(Random&)>;
 
 SevenSegment any(Random& random) {
+    return random_problem(random);
+}
+
+SevenSegment unequal(Random& random) {
     SevenSegment p = random_problem(random);
+    while (p.Vs == p.Ve) p = random_problem(random);
     return p;
 }
 
@@ -273,18 +283,18 @@ const std::vector<Family>& families() {
     static const std::vector<Family> list = {
         {"L = L1",
          [](Random& r) {
-             const auto p = any(r);
+             const auto p = unequal(r);
              return with_length(p, L1(p));
          }},
         {"L = L1, one ulp above",
          [](Random& r) {
-             auto p = any(r);
+             auto p = unequal(r);
              p.L = up(static_cast<double>(L1(p)));
              return p;
          }},
         {"L beside L1",
          [](Random& r) {
-             auto p = any(r);
+             auto p = unequal(r);
              p.L = beside(r, static_cast<double>(L1(p)));
              return p;
          }},
@@ -428,7 +438,7 @@ const std::vector<Family>& families() {
         {"L = 0",
          [](Random& r) {
              auto p = any(r);
-             p.L = 0;
+             p.L = r.one_in(2) ? 0 : r.decades(-323, -101);
              return p;
          }},
         {"tiny L",
@@ -464,4 +474,162 @@ TEST_CASE("moves on the borders between the kinds are exact, optimal and inside 
         INFO(family.name);
         report(family.name, figures);
     }
+}
+
+namespace {
+
+struct Set {
+    SevenSegment problem;
+    MoveKind kind;
+};
+
+/// 24 sets [mm, s]: the 16 kinds, then eight on their borders.
+const std::array<Set, 24> sets = {{
+    {{10, 200, 200, 500, 5000, 20}, MoveKind::accelerate_trapezoidal},
+    {{10, 200, 200, 500, 5000, 5}, MoveKind::accelerate_triangular},
+    {{120, 10, 200, 500, 5000, 20}, MoveKind::decelerate_trapezoidal},
+    {{120, 10, 200, 500, 5000, 10}, MoveKind::decelerate_triangular},
+    {{10, 20, 80, 500, 5000, 30}, MoveKind::cruise_rising_both},
+    {{10, 50, 80, 500, 5000, 30}, MoveKind::cruise_rising_first},
+    {{50, 60, 80, 500, 5000, 25}, MoveKind::cruise_rising_neither},
+    {{20, 10, 80, 500, 5000, 30}, MoveKind::cruise_falling_both},
+    {{50, 10, 80, 500, 5000, 30}, MoveKind::cruise_falling_second},
+    {{60, 50, 80, 500, 5000, 25}, MoveKind::cruise_falling_neither},
+    {{10, 20, 200, 500, 5000, 30}, MoveKind::peak_rising_both},
+    {{10, 40, 200, 500, 5000, 20}, MoveKind::peak_rising_first},
+    {{10, 40, 200, 500, 5000, 10}, MoveKind::peak_rising_neither},
+    {{20, 10, 200, 500, 5000, 30}, MoveKind::peak_falling_both},
+    {{40, 10, 200, 500, 5000, 20}, MoveKind::peak_falling_second},
+    {{40, 10, 200, 500, 5000, 10}, MoveKind::peak_falling_neither},
+    {{0, 100, 200, 500, 5000, 15}, MoveKind::accelerate_trapezoidal},  // L = L1
+    {{0, 0, 100, 500, 5000, 30}, MoveKind::cruise_rising_both},        // L = L2
+    {{50, 50, 50, 500, 5000, 30}, MoveKind::cruise_rising_neither},    // Vs = Ve = Vm
+    {{0, 0, 200, 500, 5000, 10}, MoveKind::peak_rising_neither},       // T2 = T6 = 0
+    {{10, 60, 200, 500, 5000, 20}, MoveKind::peak_rising_first},       // dv = A^2/J
+    {{100, 0, 100, 500, 5000, 25}, MoveKind::cruise_falling_second},   // Vs = Vm
+    {{60, 0, 200, 500, 5000, 6.5}, MoveKind::decelerate_triangular},   // not monotone down to Ve
+    {{20, 20, 200, 500, 5000, 1e-6}, MoveKind::peak_rising_neither},   // Vs = Ve, tiny L
+}};
+
+SevenSegmentPlan planned(const SevenSegment& problem) {
+    SevenSegmentPlan out;
+    INFO(line(problem));
+    REQUIRE(plan(problem, out) == PlanResult::ok);
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("24 sets of every kind end within 1.3e-14 mm and 4 ulp of L") {
+    for (const Set& set : sets) {
+        INFO(line(set.problem));
+        Figures figures;
+        check(set.problem, figures);
+        for (const std::string& failure : figures.failures) FAIL_CHECK(failure);
+        const SevenSegmentPlan out = planned(set.problem);
+        CHECK(name(out.kind) == name(set.kind));
+        const double error =
+            std::abs(static_cast<double>(run(set.problem, out).position - set.problem.L));
+        CHECK(error <= 1.3e-14);
+        CHECK(error <= 4 * ulp(set.problem.L));
+    }
+}
+
+TEST_CASE("a move is evaluated from each segment's own start") {
+    for (const Set& set : sets) {
+        INFO(line(set.problem));
+        const SevenSegment& p = set.problem;
+        const SevenSegmentPlan out = planned(p);
+        CHECK(out.at(-1).position == 0);
+        CHECK(out.at(0).velocity == p.Vs);
+        CHECK(out.at(out.duration).position == p.L);
+        CHECK(out.at(out.duration + 1).velocity == out.end.velocity);
+        CHECK(out.at(out.duration * (1 - 1e-15)).position == Approx(p.L).epsilon(1e-14));
+        for (int i = 1; i < 1000; ++i) {
+            const MotionState state = out.at(out.duration * i / 1000);
+            CHECK(state.velocity >= 0);
+            CHECK(state.velocity <= out.peak * (1 + 1e-14));
+            CHECK(std::abs(state.acceleration) <= p.A * (1 + 1e-14));
+            CHECK(std::abs(state.jerk) <= p.J);
+        }
+        for (const double t : out.begin) {
+            const MotionState before = out.at(std::nextafter(t, -1.0));
+            const MotionState after = out.at(t);
+            CHECK(std::abs(before.position - after.position) <= 1e-14 * p.L);
+            CHECK(std::abs(before.velocity - after.velocity) <= 1e-13 * p.Vm);
+            CHECK(std::abs(before.acceleration - after.acceleration) <= 1e-12 * p.A);
+        }
+    }
+}
+
+TEST_CASE("the equations of the paper give the same times where they keep their digits") {
+    Random random{7};
+    double worst = 0;
+    for (int i = 0; i < 20000; ++i) {
+        SevenSegment p = random_limits(random);
+        p.Vm = c_of(p) * random.decades(-1, 1);
+        p.Vs = p.Vm * random.between(0.05, 0.95);
+        p.Ve = p.Vm * random.between(0.05, 0.95);
+        const Quad first = L1(p);
+        const Quad second = L2(p);
+        const std::array<Quad, 3> lengths = {first * random.between(0.1, 0.9),
+                                             first + (second - first) * random.between(0.1, 0.9),
+                                             second * random.between(1, 5)};
+        p.L = static_cast<double>(lengths[random.next() % 3]);
+        const SevenSegmentPlan out = planned(p);
+        const std::array<double, 7> T = closed_form::times(p, out.kind);
+        for (std::size_t k = 0; k < 7; ++k) {
+            const double off = std::abs(T[k] - out.T[k]) / out.duration;
+            worst = std::max(worst, off);
+            if (!(off <= 1e-10)) FAIL(name(out.kind) << ": " << line(p));
+        }
+    }
+    if (std::getenv("LINESHAFT_FIGURES") != nullptr)
+        std::printf("closed forms: times differ by %.1e of the duration at most\n", worst);
+}
+
+TEST_CASE("a move says what it cannot plan and leaves the plan as it was") {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double inf = std::numeric_limits<double>::infinity();
+    const double huge = std::numeric_limits<double>::max();
+    SevenSegmentPlan out = planned({0, 0, 10, 10, 100, 5});
+    const auto result = [&](const SevenSegment& p) { return plan(p, out); };
+    CHECK(result({0, 0, 0, 1, 1, 1}) == PlanResult::limit_not_positive);
+    CHECK(result({0, 0, 1, -1, 1, 1}) == PlanResult::limit_not_positive);
+    CHECK(result({0, 0, 1, 1, nan, 1}) == PlanResult::limit_not_positive);
+    CHECK(result({0, 0, inf, 1, 1, 1}) == PlanResult::limit_not_positive);
+    CHECK(result({nan, 0, 1, 1, 1, 1}) == PlanResult::not_finite);
+    CHECK(result({0, nan, 1, 1, 1, 1}) == PlanResult::not_finite);
+    CHECK(result({0, 0, 1, 1, 1, nan}) == PlanResult::not_finite);
+    CHECK(result({0, 0, 1, 1, 1, inf}) == PlanResult::not_finite);
+    CHECK(result({-1, 0, 1, 1, 1, 1}) == PlanResult::velocity_above_limit);
+    CHECK(result({0, 1.5, 1, 1, 1, 1}) == PlanResult::velocity_above_limit);
+    CHECK(result({2, 0, 1, 1, 1, 1}) == PlanResult::velocity_above_limit);
+    CHECK(result({0, 0, 1, 1, 1, -1}) == PlanResult::negative_length);
+    CHECK(result({0, 0, 1e-300, 1, 1, huge}) == PlanResult::not_finite);
+    CHECK(out.end.position == 5);
+}
+
+TEST_CASE("numbers of any size are planned without harm or refused") {
+    Random random{8};
+    int plans = 0;
+    for (int i = 0; i < 200000; ++i) {
+        SevenSegment p;
+        for (double* quantity : {&p.Vm, &p.A, &p.J, &p.L}) *quantity = random.decades(-300, 300);
+        p.Vs = p.Vm * random.unit();
+        p.Ve = p.Vm * random.unit();
+        SevenSegmentPlan out;
+        if (plan(p, out) != PlanResult::ok) continue;
+        ++plans;
+        INFO(line(p));
+        for (std::size_t k = 0; k < 7; ++k) {
+            const MotionState& s = out.start[k];
+            const bool sound = out.T[k] >= 0 && out.T[k] <= out.duration && s.velocity >= 0 &&
+                               std::isfinite(s.position) && std::isfinite(s.velocity) &&
+                               std::isfinite(s.acceleration);
+            if (!sound) FAIL("segment " << k);
+        }
+        if (!std::isfinite(out.duration)) FAIL("duration");
+    }
+    CHECK(plans > 0);
 }
