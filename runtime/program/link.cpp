@@ -57,6 +57,11 @@ std::optional<WireText> parse_wire(const Node& node) {
     return wire;
 }
 
+/// A parameter whose value other fields' units may depend on.
+bool is_choice(const Field& field) {
+    return field.direction == Direction::parameter && field.type == Type::enumeration;
+}
+
 class Linker {
   public:
     Linker(const Program& program, const Catalog& catalog, Diagnostics& out)
@@ -69,7 +74,8 @@ class Linker {
     void find_blocks();
     void lay_out();
     void set_inputs();
-    void set_block(int index);
+    void set_choices(Instance& block);
+    void set_block(Instance& block);
     void set_port(Instance& block, const Node& key, const Node& value);
     void set_constant(Instance& block, const Field& field, const Node& value);
     std::optional<Value> interval_of(const Node& value, const Unit& unit);
@@ -114,7 +120,8 @@ Linked Linker::link() {
     lay_out();
     set_inputs();
     copies_.resize(blocks_.size());
-    for (std::size_t i = 0; i < blocks_.size(); ++i) set_block(static_cast<int>(i));
+    for (Instance& block : blocks_) set_choices(block);
+    for (Instance& block : blocks_) set_block(block);
     for (const Instance& block : blocks_) {
         if (!block.known()) continue;
         Task& task = out_.machine.tasks[static_cast<std::size_t>(block.task)];
@@ -253,13 +260,16 @@ Unit Linker::unit_of(const Instance& block, const Field& field) {
     return parsed(text);
 }
 
-void Linker::set_block(int index) {
-    Instance& block = blocks_[static_cast<std::size_t>(index)];
+/// First of all, because units may depend on it.
+void Linker::set_choices(Instance& block) {
     if (!block.known()) return;
     for (const auto& [key, value] : block.plan->ports)
-        if (const Field* field = block.type->find_settable(key.text);
-            field && field->direction == Direction::parameter && field->type == Type::enumeration)
+        if (const Field* field = block.type->find_settable(key.text); field && is_choice(*field))
             set_constant(block, *field, value);
+}
+
+void Linker::set_block(Instance& block) {
+    if (!block.known()) return;
     for (const auto& [key, value] : block.plan->ports) set_port(block, key, value);
     check_required(block);
 }
@@ -282,9 +292,7 @@ void Linker::set_port(Instance& block, const Node& key, const Node& value) {
     if (!read_.expect_scalar(value, fmt::format("'{}'", key.text))) return;
     const auto wire_text = parse_wire(value);
     if (!wire_text) {
-        const bool done =
-            field->direction == Direction::parameter && field->type == Type::enumeration;
-        if (!done) set_constant(block, *field, value);
+        if (!is_choice(*field)) set_constant(block, *field, value);
         return;
     }
     if (field->direction == Direction::parameter)

@@ -30,6 +30,14 @@ struct Node {
     std::vector<std::pair<Node, Node>> entries;  ///< map, in file order; keys are scalars, unique
     std::vector<Node> items;                     ///< sequence
 
+    // Defined in yaml.cpp: a pair of nodes inside a node is complete only there.
+    Node();
+    Node(const Node&);
+    Node(Node&&) noexcept;
+    Node& operator=(const Node&);
+    Node& operator=(Node&&) noexcept;
+    ~Node();
+
     bool is_scalar() const { return kind == Kind::scalar; }
     bool is_map() const { return kind == Kind::map; }
     bool is_sequence() const { return kind == Kind::sequence; }
