@@ -2,18 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <string>
 
 #include <catch2/catch.hpp>
 
+#include "tests/blocks/profile/oracle.hpp"
+
 using namespace lineshaft;
+using oracle::Quad;
+using oracle::Random;
 
 namespace {
-
-using Quad = __float128;
 
 struct Case {
     double v0, a0, v1, A, J;
@@ -95,20 +96,6 @@ void check(const Case& c) {
     const double optimum = double(optimal_duration(c));
     REQUIRE(std::abs(r.duration - optimum) <= 1e-13 * optimum + time_noise(c));
 }
-
-/// SplitMix64: the same numbers with every library.
-struct Random {
-    std::uint64_t state;
-    std::uint64_t next() {
-        std::uint64_t z = (state += 0x9e3779b97f4a7c15u);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return z ^ (z >> 31);
-    }
-    double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
-    double decades(double low, double high) { return std::pow(10, low + (high - low) * unit()); }
-    double sign() { return next() & 1 ? 1 : -1; }
-};
 
 }  // namespace
 
