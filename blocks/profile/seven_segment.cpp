@@ -102,8 +102,8 @@ double rough_cube_root(double x) {
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) / 3 + 0x2A9F7893782DA1CEu);
 }
 
-/// Root of a s^3 + b s = r within 5 percent, k being about the root for b = 0: k / (1 + q/3 ...)
-/// with q = b / (a k^2) as a rational function that is right for q = 0 and for great q.
+/// Root of a s^3 + b s = r within some percent, k being about the root for b = 0: k (1 + 0.602 q) /
+/// (1 + 0.770 q + 0.602 q^2) with q = b / (a k^2), right for small and for great q.
 double rough_root(double a, double b, double k) {
     const double g = a * k * k;
     return k * g * (g + 0.602 * b) / (g * g + b * (0.770 * g + 0.602 * b));

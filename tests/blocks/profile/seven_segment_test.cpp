@@ -521,6 +521,7 @@ SevenSegmentPlan planned(const SevenSegment& problem) {
 }  // namespace
 
 TEST_CASE("24 sets of every kind end within 1.3e-14 mm and 4 ulp of L") {
+    std::array<int, 12> solved{};
     for (const Set& set : sets) {
         INFO(line(set.problem));
         Figures figures;
@@ -532,7 +533,9 @@ TEST_CASE("24 sets of every kind end within 1.3e-14 mm and 4 ulp of L") {
             std::abs(static_cast<double>(run(set.problem, out).position - set.problem.L));
         CHECK(error <= 1.3e-14);
         CHECK(error <= 4 * ulp(set.problem.L));
+        ++solved[static_cast<std::size_t>(equation(out.kind))];
     }
+    CHECK(std::count(solved.begin() + 1, solved.end(), 0) == 0);
 }
 
 TEST_CASE("a move is evaluated from each segment's own start") {
