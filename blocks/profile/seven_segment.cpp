@@ -354,12 +354,8 @@ PlanResult plan(const SevenSegment& problem, SevenSegmentPlan& out) {
 
     out.T = {m.ramps[0].jerk_time, m.ramps[0].hold, m.ramps[0].jerk_time, m.cruise,
              m.ramps[1].jerk_time, m.ramps[1].hold, m.ramps[1].jerk_time};
-    double t = 0;
-    for (std::size_t i = 0; i < 7; ++i) {
-        out.begin[i] = t;
-        t += out.T[i];
-    }
-    out.duration = t;
+    for (std::size_t i = 0; i < 7; ++i) out.begin[i + 1] = out.begin[i] + out.T[i];
+    out.duration = out.begin[7];
     out.peak = m.peak;
     out.kind = m.kind;
     out.reaches_Ve = m.reaches_Ve;
@@ -370,8 +366,9 @@ PlanResult plan(const SevenSegment& problem, SevenSegmentPlan& out) {
 MotionState SevenSegmentPlan::at(double t) const {
     if (t >= duration) return end;
     const double time = t > 0 ? t : 0;
-    std::size_t i = 0;
-    for (std::size_t k = 1; k < 7; ++k) i += time >= begin[k];
+    std::size_t i = time >= begin[4] ? 4 : 0;
+    i += time >= begin[i + 2] ? 2 : 0;
+    i += time >= begin[i + 1] ? 1 : 0;
     return start[i].after(time - begin[i]);
 }
 

@@ -51,7 +51,7 @@ namespace lineshaft {
 ///     closed form, length p99 [ulp]    2.3e6     2.7e2     2.7e4        4.1e16, 1.2 % no root
 ///     here, length p99 [ulp]           2.4       1.3       3.3          3.4
 ///     closed form, the root [ns]       43        41        72           132
-///     here, the whole plan [ns]        54        53        82           80
+///     here, the whole plan [ns]        54        59        85           83
 ///
 /// (Least of many runs on one machine.) Over 5 million random problems, the times run in 113 bits,
 /// the length is off by 2.6 ulp of L at the 99th percentile and 7.8 at most, the end velocity
@@ -98,7 +98,7 @@ int equation(MoveKind kind);
 
 struct SevenSegmentPlan {
     std::array<double, 7> T{};         ///< durations of the segments, jerk +J 0 -J 0 -J 0 +J [s]
-    std::array<double, 7> begin{};     ///< time of each segment's start [s]
+    std::array<double, 8> begin{};     ///< time of each segment's start, and of the end [s]
     std::array<MotionState, 7> start;  ///< state at the start of each segment
     double duration = 0;               ///< [s]
     double peak = 0;                   ///< greatest velocity [u/s]
