@@ -15,6 +15,14 @@ bool is_limit(double x) {
     return x > 0 && x <= std::numeric_limits<double>::max();
 }
 
+/// Rounding can make a time negative; NaN stays, unlike with the arguments the other way round.
+double above_zero(double x) {
+    return std::max(x, 0.0);
+}
+double between(double x, double low, double high) {
+    return std::max(std::min(x, high), low);
+}
+
 struct Ramp {
     double jerk_time = 0;  // twice
     double hold = 0;
@@ -23,7 +31,7 @@ struct Ramp {
 };
 
 struct Move {
-    Ramp up, down;
+    std::array<Ramp, 2> ramps;  // up, down
     double cruise = 0;
     double peak = 0;
     double end = 0;
@@ -39,8 +47,27 @@ struct Frame {
 };
 
 Ramp ramp(double dv, const Frame& f) {
-    if (dv > f.c) return {f.tm, std::max(0.0, dv / f.A - f.tm)};
+    if (dv > f.c) return {f.tm, above_zero(dv / f.A - f.tm)};
     return {std::sqrt(dv / f.J), 0};
+}
+
+/// What rounding took from a product: a b = product + product_error, exactly (Dekker 1971).
+double product_error(double a, double b, double product) {
+    constexpr double split = 0x1p27 + 1;
+    const double aa = split * a;
+    const double a1 = aa - (aa - a);
+    const double a2 = a - a1;
+    const double bb = split * b;
+    const double b1 = bb - (bb - b);
+    const double b2 = b - b1;
+    return ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2;
+}
+
+/// What is missing to dv after a triangular ramp whose time t has been rounded.
+double shortfall(double dv, double t, double J) {
+    const double tt = t * t;
+    const double v = J * tt;
+    return (dv - v) - (product_error(J, tt, v) + J * product_error(t, t, tt));
 }
 
 /// c4 x^4 + c3 x^3 + c2 x^2 + c1 x + c0
@@ -48,54 +75,97 @@ struct Quartic {
     double c4, c3, c2, c1, c0;
 };
 
-/// The root next to x in [low, high] by Halley's iteration.
-double root(const Quartic& p, double x, double low, double high) {
+/// A relative step after which Householder's iteration of the fourth order leaves only rounding.
+constexpr double near = 3e-5;
+
+/// The root next to x in [low, high], by Householder's iteration of the fourth order, until a step
+/// is no greater than grain.
+double root(const Quartic& p, double x, double grain, double low, double high) {
     for (int i = 0; i < 20; ++i) {
-        const double value = (((p.c4 * x + p.c3) * x + p.c2) * x + p.c1) * x + p.c0;
-        const double slope = ((4 * p.c4 * x + 3 * p.c3) * x + 2 * p.c2) * x + p.c1;
-        const double bend = (6 * p.c4 * x + 3 * p.c3) * x + p.c2;
-        const double step = value * slope / (slope * slope - value * bend);
-        const double next = std::clamp(x - step, low, high);
-        const bool done = std::abs(next - x) <= 1e-6 * x;
+        const double xx = x * x;
+        const double f0 = ((p.c4 * xx + p.c2) * x + (p.c3 * xx + p.c1)) * x + p.c0;
+        const double f1 = (4 * p.c4 * xx + 2 * p.c2) * x + (3 * p.c3 * xx + p.c1);
+        const double f2 = 6 * p.c4 * xx + (3 * p.c3 * x + p.c2);
+        const double f3 = 4 * p.c4 * x + p.c3;
+        const double newton = f1 * f1 - f0 * f2;
+        const double step = f0 * newton / (f1 * (newton - f0 * f2) + f0 * f0 * f3);
+        const double next = between(x - step, low, high);
+        const bool done = std::abs(next - x) <= grain;
         x = next;
         if (done) break;
     }
     return x;
 }
 
+/// Within 3 percent: a third of the exponent, the mantissa carried along.
 double rough_cube_root(double x) {
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) / 3 + 0x2A9F7893782DA1CEu);
 }
 
-/// Root of a s^3 + b s = r within some percent.
-double rough_root(double a, double b, double r) {
-    const double k = rough_cube_root(r / a);
-    const double q = b / (a * k * k);
-    return k * (1 + 0.602 * q) / (1 + q * (0.770 + 0.602 * q));
+/// Root of a s^3 + b s = r within 5 percent, k being about the root for b = 0: k / (1 + q/3 ...)
+/// with q = b / (a k^2) as a rational function that is right for q = 0 and for great q.
+double rough_root(double a, double b, double k) {
+    const double g = a * k * k;
+    return k * g * (g + 0.602 * b) / (g * g + b * (0.770 * g + 0.602 * b));
 }
 
 Ramp accelerate(double V, const Frame& f) {
     if (f.L > (2 * V + f.c) * f.tm) {
         const double b = 2 * V + f.c;
         const double R = 2 * (f.L - V * f.tm);
-        return {f.tm, std::max(0.0, 2 * R / (b + std::sqrt(b * b + 4 * f.A * R)) - f.tm)};
+        return {f.tm, above_zero(2 * R / (b + std::sqrt(b * b + 4 * f.A * R)) - f.tm)};
     }
     const double high = f.L / (2 * V) < f.tm ? f.L / (2 * V) : f.tm;
-    return {root({0, f.J, 0, 2 * V, -f.L}, std::min(high, rough_root(f.J, 2 * V, f.L)), 0, high),
-            0};
+    const double guess = rough_root(f.J, 2 * V, rough_cube_root(f.L / f.J));
+    return {root({0, f.J, 0, 2 * V, -f.L}, guess, near * guess, 0, high), 0};
+}
+
+/// Near the greatest length that a deceleration can cover the time changes with the square root of
+/// the length that is left; there the length s (2V - J s^2) is taken with twice the digits.
+double refine_near_turn(double s, double V, const Frame& f, double high) {
+    for (int i = 0; i < 6; ++i) {
+        const double slope = 2 * V - 3 * f.J * s * s;
+        if (slope <= 0) break;
+        const double change = f.J * (s * s);
+        const double mean = 2 * V - change;
+        const double lost = ((2 * V - mean) - change) + shortfall(change, s, f.J);
+        const double length = s * mean;
+        const double missing = (f.L - length) - (product_error(s, mean, length) + s * lost);
+        s = between(s + missing / slope, 0, high);
+    }
+    return s;
+}
+
+/// (2V + c)^2 - 8 A L with twice the digits: it vanishes at the greatest length of a deceleration.
+double discriminant(double V, const Frame& f) {
+    const double AA = f.A * f.A;
+    const double c = AA / f.J;
+    const double Jc = f.J * c;
+    const double c_rest =
+        (((AA - Jc) - product_error(f.J, c, Jc)) + product_error(f.A, f.A, AA)) / f.J;
+    const double b = 2 * V + c;
+    const double b_rest = (c - (b - 2 * V)) + c_rest;
+    const double bb = b * b;
+    const double AL = f.A * f.L;
+    return (bb - 8 * AL) +
+           (product_error(b, b, bb) + 2 * b * b_rest - 8 * product_error(f.A, f.L, AL));
 }
 
 Ramp decelerate(double V, const Frame& f) {
     if (V > 1.5 * f.c && f.L > (2 * V - f.c) * f.tm) {
         const double b = 2 * V - f.c;
         const double R = 2 * (f.L - V * f.tm);
-        const double square = std::max(0.0, b * b - 4 * f.A * R);
-        return {f.tm, std::max(0.0, 2 * R / (b + std::sqrt(square)) - f.tm)};
+        const double rough = b * b - 4 * f.A * R;
+        const double square = rough > 1e-2 * b * b ? rough : discriminant(V, f);
+        const double y = 2 * R / (b + std::sqrt(above_zero(square)));
+        return {f.tm, above_zero(y - f.tm)};
     }
     const double high = std::sqrt(V / (1.5 * f.J));
-    const double m = std::sqrt(std::max(0.0, 1 - 0.75 * f.L / (V * high)));
+    const double m = std::sqrt(above_zero(1 - 0.75 * f.L / (V * high)));
     const double guess = high * (1 - m) * (1 + m * (0.174 + 0.147 * m));
-    return {root({0, f.J, 0, -2 * V, f.L}, guess, 0, high), 0};
+    const double grain = near * std::min(guess, high - guess);
+    const double s = root({0, f.J, 0, -2 * V, f.L}, guess, grain, 0, high);
+    return {m > 1e-2 ? s : refine_near_turn(s, V, f, high), 0};
 }
 
 /// The ramps from hi and from lo to the peak, one problem in two times.
@@ -106,7 +176,7 @@ struct Ramps {
 Ramps both_trapezoidal(const Frame& f) {
     const double b = 2 * f.hi + f.c;
     const double R = f.L - f.hi * f.tm - 0.5 * (f.lo + f.hi) * (f.tm + f.D / f.A);
-    const double hold = std::max(0.0, 2 * R / (b + std::sqrt(b * b + 4 * f.A * R)) - f.tm);
+    const double hold = above_zero(2 * R / (b + std::sqrt(b * b + 4 * f.A * R)) - f.tm);
     return {{f.tm, hold}, {f.tm, hold + f.D / f.A}};
 }
 
@@ -116,29 +186,32 @@ Ramps one_trapezoidal(const Frame& f) {
     const double h = 1.7 * f.hi / f.c;
     const double r = 2 * rest / (f.c * f.tm);
     const double z = r / (h + std::sqrt(h * h + r));
-    const double guess = std::min(1.0, 2 * z / (1 + std::sqrt(1 + 4 * z))) * f.tm;
-    const double s = root({jj, f.J, (f.hi + 0.5 * f.c) / f.tm, 2 * f.hi, -rest}, guess, 0, f.tm);
-    return {{s, 0}, {f.tm, std::max(0.0, (f.D + f.J * s * s) / f.A - f.tm)}};
+    const double guess = f.tm * between(2 * z / (1 + std::sqrt(1 + 4 * z)), 0, 1);
+    const double s =
+        root({jj, f.J, (f.hi + 0.5 * f.c) / f.tm, 2 * f.hi, -rest}, guess, near * guess, 0, f.tm);
+    return {{s, 0}, {f.tm, above_zero((f.D + f.J * s * s) / f.A - f.tm)}};
 }
 
 Ramps neither_trapezoidal(const Frame& f) {
     const double low = std::sqrt(f.D / f.J);
-    const double guess = std::max(low, rough_root(0.25 * f.J, f.lo + f.hi, f.L));
-    const double sum =
-        root({0.25 * f.J, 0, f.lo + f.hi, -f.L, -0.25 * f.D * f.D / f.J}, guess, low, 2 * f.tm);
+    const double guess =
+        std::max(low, rough_root(0.25 * f.J, f.lo + f.hi, rough_cube_root(4 * f.L / f.J)));
+    const double sum = root({0.25 * f.J, 0, f.lo + f.hi, -f.L, -0.25 * f.D * f.D / f.J}, guess,
+                            near * guess, low, 2 * f.tm);
     const double difference = f.D / (f.J * sum);
-    return {{std::max(0.0, 0.5 * (sum - difference)), 0}, {0.5 * (sum + difference), 0}};
+    return {{above_zero(0.5 * (sum - difference)), 0}, {0.5 * (sum + difference), 0}};
 }
 
-int peak_class(double top, const Frame& f) {
-    if (top - f.hi > f.c) {
+/// How many of the two ramps to a peak below Vm are triangular: the length at the borders decides.
+int triangular_ramps(double Vm, const Frame& f) {
+    if (Vm - f.hi > f.c) {
         const double w = f.D + f.c;
         const double length =
             (2 * f.hi + f.c) * f.tm + (f.lo + f.hi + f.c) * 0.5 * (w / f.A + f.tm);
         if (f.L > length) return 0;
     }
     if (f.D >= f.c) return 1;
-    if (top - f.lo > f.c) {
+    if (Vm - f.lo > f.c) {
         const double w = f.c - f.D;
         const double length = (2 * f.hi + w) * std::sqrt(w / f.J) + (2 * f.lo + f.c) * f.tm;
         if (f.L > length) return 1;
@@ -146,8 +219,9 @@ int peak_class(double top, const Frame& f) {
     return 2;
 }
 
-MoveKind kind_of(MoveKind first, int step) {
-    return static_cast<MoveKind>(static_cast<int>(first) + step);
+/// The kinds of a family stand in the order of their triangular ramps: none, one, both.
+MoveKind kind_of(MoveKind family, int triangular) {
+    return static_cast<MoveKind>(static_cast<int>(family) + triangular);
 }
 
 Move one_ramp(const SevenSegment& p, const Frame& f, const Ramp& direct, bool reached) {
@@ -155,7 +229,7 @@ Move one_ramp(const SevenSegment& p, const Frame& f, const Ramp& direct, bool re
     m.reaches_Ve = reached;
     const bool rising = p.Ve >= p.Vs;
     const Ramp r = reached ? direct : rising ? accelerate(p.Vs, f) : decelerate(p.Vs, f);
-    (rising ? m.up : m.down) = r;
+    m.ramps[rising ? 0 : 1] = r;
     const double change = f.J * r.jerk_time * (r.jerk_time + r.hold);
     m.end = reached ? p.Ve : rising ? std::min(p.Ve, p.Vs + change) : std::max(p.Ve, p.Vs - change);
     m.peak = std::max(p.Vs, m.end);
@@ -165,22 +239,61 @@ Move one_ramp(const SevenSegment& p, const Frame& f, const Ramp& direct, bool re
 }
 
 Move with_peak(const SevenSegment& p, const Frame& f) {
-    const int which = peak_class(p.Vm, f);
-    const Ramps r = which == 0   ? both_trapezoidal(f)
-                    : which == 1 ? one_trapezoidal(f)
-                                 : neither_trapezoidal(f);
+    const int triangular = triangular_ramps(p.Vm, f);
+    const Ramps r = triangular == 0   ? both_trapezoidal(f)
+                    : triangular == 1 ? one_trapezoidal(f)
+                                      : neither_trapezoidal(f);
     Move m;
     const bool rising = p.Ve >= p.Vs;
-    m.up = rising ? r.from_lo : r.from_hi;
-    m.down = rising ? r.from_hi : r.from_lo;
+    m.ramps[rising ? 0 : 1] = r.from_lo;
+    m.ramps[rising ? 1 : 0] = r.from_hi;
     m.peak =
         std::min(p.Vm, f.hi + f.J * r.from_hi.jerk_time * (r.from_hi.jerk_time + r.from_hi.hold));
     m.end = p.Ve;
-    m.kind = kind_of(rising ? MoveKind::peak_rising_both : MoveKind::peak_falling_both, which);
+    m.kind = kind_of(rising ? MoveKind::peak_rising_both : MoveKind::peak_falling_both, triangular);
+    return m;
+}
+
+double length_through_Vm(const SevenSegment& p, const Move& m) {
+    return (p.Vs + p.Vm) * m.ramps[0].half_time() + (p.Vm + p.Ve) * m.ramps[1].half_time();
+}
+
+/// Of two triangular ramps the longer one makes up for what rounding takes from the shorter, so
+/// that the end velocity bears one rounding only.
+void match_triangles(const SevenSegment& p, Move& m) {
+    const double rise = p.Vm - p.Vs;
+    const double fall = p.Vm - p.Ve;
+    if (fall > rise)
+        m.ramps[1].jerk_time = std::sqrt((fall - shortfall(rise, m.ramps[0].jerk_time, p.J)) / p.J);
+    else
+        m.ramps[0].jerk_time = std::sqrt((rise - shortfall(fall, m.ramps[1].jerk_time, p.J)) / p.J);
+}
+
+Move with_cruise(const SevenSegment& p, Move m) {
+    const int triangular = 2 - (m.ramps[0].hold > 0) - (m.ramps[1].hold > 0);
+    if (triangular == 2 && p.Vs != p.Ve) match_triangles(p, m);
+    m.cruise = above_zero(p.L - length_through_Vm(p, m)) / p.Vm;
+    m.peak = p.Vm;
+    m.end = p.Ve;
+    const bool rising = p.Ve >= p.Vs;
+    m.kind =
+        kind_of(rising ? MoveKind::cruise_rising_both : MoveKind::cruise_falling_both, triangular);
+    return m;
+}
+
+/// Nothing moves: the squares and cubes of such a length and of its times would be lost.
+constexpr double no_length = 1e-100;
+
+Move without_length(const SevenSegment& p) {
+    Move m;
+    m.peak = m.end = p.Vs;
+    m.reaches_Ve = p.Vs == p.Ve;
+    m.kind = p.Ve >= p.Vs ? MoveKind::accelerate_triangular : MoveKind::decelerate_triangular;
     return m;
 }
 
 Move solve(const SevenSegment& p) {
+    if (p.L < no_length) return without_length(p);
     const double tm = p.A / p.J;
     const double lo = std::min(p.Vs, p.Ve);
     const double hi = std::max(p.Vs, p.Ve);
@@ -188,23 +301,13 @@ Move solve(const SevenSegment& p) {
 
     const Ramp direct = ramp(f.D, f);
     const double L1 = (lo + hi) * direct.half_time();
-    if (p.L <= L1 * (1 + 2 * epsilon) && (f.D > 0 || p.L == 0))
-        return one_ramp(p, f, direct, p.L >= L1 * (1 - 2 * epsilon));
+    if (p.L <= L1) return one_ramp(p, f, direct, p.L >= L1 * (1 - 2 * epsilon));
 
     Move m;
-    m.up = ramp(p.Vm - p.Vs, f);
-    m.down = ramp(p.Vm - p.Ve, f);
-    const double rest =
-        p.L - ((p.Vs + p.Vm) * m.up.half_time() + (p.Vm + p.Ve) * m.down.half_time());
-    if (rest < 0) return with_peak(p, f);
-    m.cruise = rest / p.Vm;
-    m.peak = p.Vm;
-    m.end = p.Ve;
-    const bool rising = p.Ve >= p.Vs;
-    const int holds = (m.up.hold > 0) + (m.down.hold > 0);
-    m.kind =
-        kind_of(rising ? MoveKind::cruise_rising_both : MoveKind::cruise_falling_both, 2 - holds);
-    return m;
+    m.ramps[0] = ramp(p.Vm - p.Vs, f);
+    m.ramps[1] = ramp(p.Vm - p.Ve, f);
+    const double L2 = length_through_Vm(p, m);
+    return p.L >= L2 * (1 - epsilon) ? with_cruise(p, m) : with_peak(p, f);
 }
 
 PlanResult check(const SevenSegment& p) {
@@ -244,13 +347,13 @@ PlanResult plan(const SevenSegment& problem, SevenSegmentPlan& out) {
     const PlanResult result = check(problem);
     if (result != PlanResult::ok) return result;
     const Move m = solve(problem);
-    const double up = 2 * m.up.half_time();
-    const double down = 2 * m.down.half_time();
+    const double up = 2 * m.ramps[0].half_time();
+    const double down = 2 * m.ramps[1].half_time();
     const double duration = up + m.cruise + down;
     if (!std::isfinite(duration)) return PlanResult::not_finite;
 
-    out.T = {m.up.jerk_time,   m.up.hold,   m.up.jerk_time,  m.cruise,
-             m.down.jerk_time, m.down.hold, m.down.jerk_time};
+    out.T = {m.ramps[0].jerk_time, m.ramps[0].hold, m.ramps[0].jerk_time, m.cruise,
+             m.ramps[1].jerk_time, m.ramps[1].hold, m.ramps[1].jerk_time};
     double t = 0;
     for (std::size_t i = 0; i < 7; ++i) {
         out.begin[i] = t;

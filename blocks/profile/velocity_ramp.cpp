@@ -11,21 +11,6 @@ bool is_limit(double x) {
     return x > 0 && x <= std::numeric_limits<double>::max();
 }
 
-/// A phase of no length leaves no trace: the next one starts from its own exact start state.
-void append(VelocityRamp& ramp, double duration, double velocity, double acceleration,
-            double jerk) {
-    if (duration <= 0) return;
-    double position = 0;
-    if (ramp.count > 0) {
-        const auto& last = ramp.phases[static_cast<std::size_t>(ramp.count - 1)];
-        position = last.start.after(last.duration).position;
-    }
-    ramp.phases[static_cast<std::size_t>(ramp.count)] = {duration,
-                                                         {position, velocity, acceleration, jerk}};
-    ++ramp.count;
-    ramp.duration += duration;
-}
-
 /// What is missing to v1 once a0 has been brought to zero, or 0 if that is mere rounding.
 double missing_velocity(double v0, double a0, double v1, double J) {
     if (a0 == 0) return v1 - v0;
@@ -36,23 +21,30 @@ double missing_velocity(double v0, double a0, double v1, double J) {
     return std::abs(e) <= rounding ? 0 : e;
 }
 
-/// Appends the phases from a up to the peak; accelerations and e count along s. Returns the peak.
-double reach_peak(VelocityRamp& ramp, double v0, double s, double a, double e, double A, double J) {
-    if (a > A) {
-        append(ramp, (a - A) / J, v0, s * a, -s * J);
-        append(ramp, e / A, v0 + s * ((a - A) * (a + A) / (2 * J)), s * A, 0);
-        return A;
-    }
+/// Times and accelerations along the direction of the ramp.
+struct Shape {
+    double to_peak, hold, to_zero;  // durations
+    double peak;
+    double jerk;  // towards the peak
+};
+
+/// Selects instead of branching: which case it is cannot be foreseen.
+Shape shape_of(double a, double e, double A, double J) {
+    const bool above = a > A;
     const double peak_square = J * e + (a > 0 ? a * a : 0);
-    if (peak_square > A * A) {
-        append(ramp, (A - a) / J, v0, s * a, s * J);
-        append(ramp, (peak_square - A * A) / (J * A), v0 + s * ((A - a) * (A + a) / (2 * J)), s * A,
-               0);
-        return A;
-    }
-    const double peak = std::sqrt(peak_square);
-    append(ramp, a > 0 ? e / (peak + a) : (peak - a) / J, v0, s * a, s * J);
-    return peak;
+    const bool held = above || peak_square > A * A;
+    const double peak = held ? A : std::sqrt(peak_square);
+    const bool cancels = a > 0 && !held;
+    const double to_peak = (cancels ? e : std::abs(peak - a)) / (cancels ? peak + a : J);
+    const double held_gain = above ? J * e : peak_square - A * A;
+    return {to_peak, held ? held_gain / (J * A) : 0, peak / J, peak, above ? -J : J};
+}
+
+/// A phase of no length leaves no trace: the next one takes its place.
+int put(std::array<VelocityRamp::Phase, 4>& phases, int count, double duration,
+        const MotionState& start) {
+    phases[static_cast<std::size_t>(count)] = {duration, start};
+    return count + (duration > 0 ? 1 : 0);
 }
 
 }  // namespace
@@ -62,21 +54,28 @@ PlanResult VelocityRamp::plan(double v0, double a0, double v1, double accelerati
     if (!std::isfinite(v0) || !std::isfinite(a0) || !std::isfinite(v1))
         return PlanResult::not_finite;
 
-    const double missing = missing_velocity(v0, a0, v1, jerk);
+    const double J = jerk;
+    const double missing = missing_velocity(v0, a0, v1, J);
     const double s = std::copysign(1.0, missing == 0 ? a0 : missing);
-    VelocityRamp ramp;
-    const double peak =
-        missing == 0 ? s * a0 : reach_peak(ramp, v0, s, s * a0, s * missing, acceleration, jerk);
-    const double last_velocity = ramp.count == 0 ? v0 : v1 - s * (peak * peak / (2 * jerk));
-    append(ramp, peak / jerk, last_velocity, s * peak, -s * jerk);
-    if (ramp.count > 0) {
-        const Phase& last = ramp.phases[static_cast<std::size_t>(ramp.count - 1)];
-        ramp.end.position = last.start.after(last.duration).position;
-    }
-    ramp.end.velocity = v1;
-    if (!std::isfinite(ramp.duration) || !std::isfinite(ramp.end.position))
-        return PlanResult::not_finite;
-    *this = ramp;
+    const double a = s * a0;
+    const Shape shape = shape_of(a, s * missing, acceleration, J);
+    const double peak = shape.peak;
+
+    const MotionState rise{0, v0, a0, s * shape.jerk};
+    const MotionState hold{rise.after(shape.to_peak).position,
+                           v0 + s * (std::abs(peak - a) * (peak + a) / (2 * J)), s * peak, 0};
+    const double fall_velocity =
+        shape.to_peak > 0 || shape.hold > 0 ? v1 - s * (peak * peak / (2 * J)) : v0;
+    const MotionState fall{hold.after(shape.hold).position, fall_velocity, s * peak, -s * J};
+    const double distance = fall.after(shape.to_zero).position;
+    const double time = shape.to_peak + shape.hold + shape.to_zero;
+    if (!std::isfinite(time) || !std::isfinite(distance)) return PlanResult::not_finite;
+
+    count = put(phases, 0, shape.to_peak, rise);
+    count = put(phases, count, shape.hold, hold);
+    count = put(phases, count, shape.to_zero, fall);
+    duration = time;
+    end = {distance, v1, 0, 0};
     return PlanResult::ok;
 }
 

@@ -42,7 +42,7 @@ enum class PlanResult {
 /// and the jerk is +J from a0 to the peak, 0, -J from the peak to zero. From a0 > A it is -J down
 /// to A, held for e / A, then -J down to zero. If a0 overshoots v1, s is the way back and the first
 /// phase runs through zero acceleration. If e is no more than the rounding of its own terms the
-/// ramp is the single phase that brings a0 to zero.
+/// ramp only brings a0 to zero.
 struct VelocityRamp {
     struct Phase {
         double duration = 0;  ///< [s], > 0

@@ -63,6 +63,7 @@ std::string kind(Type type, std::span<const std::string_view> names) {
                                      : std::string(name_of(type));
 }
 
+/// A parameter whose value other fields' units may depend on.
 bool is_choice(const Field& field) {
     return field.direction == Direction::parameter && field.type == Type::enumeration;
 }
@@ -85,8 +86,8 @@ class Linker {
     void find_blocks();
     void lay_out();
     void set_inputs();
-    void set_units(Instance& block);
-    void set_block(int index);
+    void set_choices(Instance& block);
+    void set_block(Instance& block);
     void set_port(Instance& block, const Node& key, const Node& value);
     void set_constant(Instance& block, const Field& field, const Node& value);
     std::optional<Value> interval_of(const Node& value, const Unit& unit);
@@ -131,8 +132,8 @@ Linked Linker::link() {
     lay_out();
     set_inputs();
     copies_.resize(blocks_.size());
-    for (Instance& block : blocks_) set_units(block);
-    for (std::size_t i = 0; i < blocks_.size(); ++i) set_block(static_cast<int>(i));
+    for (Instance& block : blocks_) set_choices(block);
+    for (Instance& block : blocks_) set_block(block);
     for (const Instance& block : blocks_) {
         if (!block.known()) continue;
         Task& task = out_.machine.tasks[static_cast<std::size_t>(block.task)];
@@ -274,9 +275,8 @@ Unit Linker::unit_of(const Instance& block, const Field& field) {
     return parsed(text);
 }
 
-/// A wire needs to know the units at both of its ends: first of all come the parameters that choose
-/// them.
-void Linker::set_units(Instance& block) {
+/// First of all, because units at both ends of a wire may depend on it.
+void Linker::set_choices(Instance& block) {
     if (!block.known()) return;
     for (const auto& [key, value] : block.plan->ports) {
         const Field* field = block.type->find_settable(key.text);
@@ -285,8 +285,7 @@ void Linker::set_units(Instance& block) {
     }
 }
 
-void Linker::set_block(int index) {
-    Instance& block = blocks_[static_cast<std::size_t>(index)];
+void Linker::set_block(Instance& block) {
     if (!block.known()) return;
     for (const auto& [key, value] : block.plan->ports) set_port(block, key, value);
     check_required(block);

@@ -47,7 +47,7 @@ std::string difference(double ours, const Bounds& bounds, bool percent) {
     const double d = ours - *bounds.paper;
     if (percent) return fmt::format("{:+.1f} points", d * 100);
     if (*bounds.paper == 0) return fmt::format("{:+.4g}", d);
-    return fmt::format("{:+.4f} ({:+.1f} %)", d, d / std::abs(*bounds.paper) * 100);
+    return fmt::format("{:+.2g} ({:+.1f} %)", d, d / std::abs(*bounds.paper) * 100);
 }
 
 std::string limit_text(const Bounds& bounds, bool percent) {

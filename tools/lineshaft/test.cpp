@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <thread>
 
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
@@ -43,8 +44,10 @@ SuiteEntry test_study(const std::shared_ptr<const SourceFile>& file, const LoadO
     const Catalog catalog = standard_blocks();
     const Study study = read_study(file, options, catalog, out);
     if (!out.empty()) return {file->path, 0, out.render(), true};
-    const StudyReport report =
-        run(study, catalog, {.interrupt = &interrupt_requested, .progress = {}});
+    const StudyReport report = run(study, catalog,
+                                   {.jobs = std::max(1u, std::thread::hardware_concurrency()),
+                                    .interrupt = &interrupt_requested,
+                                    .progress = {}});
     entry.wall_seconds = report.wall_seconds;
     entry.error = !report.faults.empty();
     if (entry.error)

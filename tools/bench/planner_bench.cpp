@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "blocks/profile/seven_segment.hpp"
+#include "blocks/profile/velocity_ramp.hpp"
+
+using namespace lineshaft;
+
+namespace {
+
+/// SplitMix64: the same problems on every machine.
+struct Random {
+    std::uint64_t state;
+
+    std::uint64_t next() {
+        std::uint64_t z = (state += 0x9e3779b97f4a7c15u);
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+        return z ^ (z >> 31);
+    }
+    double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+    double between(double low, double high) { return low + (high - low) * unit(); }
+    double decades(double low, double high) { return std::pow(10, between(low, high)); }
+};
+
+double ramp_length(double from, double to, double A, double J) {
+    return 0.5 * (from + to) * ramp_duration(to - from, A, J);
+}
+
+/// One third of the problems each: one ramp only, with a peak, with cruise.
+SevenSegment random_problem(Random& random) {
+    SevenSegment p;
+    p.A = random.decades(0, 4);
+    p.J = p.A * random.decades(0, 3);
+    p.Vm = p.A * p.A / p.J * random.decades(-1.5, 1.5);
+    p.Vs = p.Vm * random.unit();
+    p.Ve = p.Vm * random.unit();
+    const double first = ramp_length(p.Vs, p.Ve, p.A, p.J);
+    const double second = ramp_length(p.Vs, p.Vm, p.A, p.J) + ramp_length(p.Vm, p.Ve, p.A, p.J);
+    switch (random.next() % 3) {
+        case 0:
+            p.L = first * random.unit();
+            break;
+        case 1:
+            p.L = random.between(first, second);
+            break;
+        default:
+            p.L = second * random.decades(0, 2);
+    }
+    return p;
+}
+
+std::vector<SevenSegment> problems(std::size_t count) {
+    Random random{2023};
+    std::vector<SevenSegment> list(count);
+    for (SevenSegment& p : list) p = random_problem(random);
+    return list;
+}
+
+std::vector<SevenSegment> problems_of(MoveKind kind) {
+    Random random{2023};
+    std::vector<SevenSegment> list;
+    SevenSegmentPlan out;
+    for (int tries = 0; tries < 1000000 && list.size() < 4096; ++tries) {
+        const SevenSegment p = random_problem(random);
+        if (plan(p, out) == PlanResult::ok && out.kind == kind) list.push_back(p);
+    }
+    return list;
+}
+
+struct Change {
+    double v0, a0, v1, A, J;
+};
+
+std::vector<Change> changes() {
+    Random random{2025};
+    std::vector<Change> list(4096);
+    for (Change& c : list) {
+        c.A = random.decades(0, 4);
+        c.J = c.A * random.decades(0, 3);
+        const double step = c.A * c.A / c.J;
+        c.v0 = step * random.between(-10, 10);
+        c.a0 = random.next() % 2 ? 0 : c.A * random.between(-1, 1);
+        c.v1 = c.v0 + step * random.between(-3, 3);
+    }
+    return list;
+}
+
+double bare_ramps(const std::vector<Change>& list) {
+    double sum = 0;
+    for (const Change& c : list) sum += ramp_duration(c.v1 - c.v0, c.A, c.J);
+    return sum;
+}
+
+/// Seconds for one bare ramp formula, the least of many repetitions: what the ratios stand on.
+double measure_baseline() {
+    using Clock = std::chrono::steady_clock;
+    const std::vector<Change> list = changes();
+    double best = 1;
+    for (int i = 0; i < 200; ++i) {
+        const auto start = Clock::now();
+        benchmark::DoNotOptimize(bare_ramps(list));
+        const std::chrono::duration<double> taken = Clock::now() - start;
+        best = std::min(best, taken.count() / static_cast<double>(list.size()));
+    }
+    return best;
+}
+
+double baseline = 0;
+
+/// Runs the loop and counts ns of processor time for each item, and the same as a ratio to the bare
+/// ramp formula.
+template <typename Loop>
+void measure(benchmark::State& state, std::size_t items, const Loop& loop) {
+    const std::clock_t start = std::clock();
+    for (auto _ : state) loop();
+    const double taken = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    const double all = static_cast<double>(state.iterations()) * static_cast<double>(items);
+    state.counters["ns"] = taken / all * 1e9;
+    state.counters["ratio"] = taken / all / baseline;
+}
+
+void bare_ramp(benchmark::State& state) {
+    const std::vector<Change> list = changes();
+    measure(state, list.size(), [&] { benchmark::DoNotOptimize(bare_ramps(list)); });
+}
+
+void velocity_ramp(benchmark::State& state) {
+    const std::vector<Change> list = changes();
+    VelocityRamp ramp;
+    measure(state, list.size(), [&] {
+        for (const Change& c : list) {
+            benchmark::DoNotOptimize(ramp.plan(c.v0, c.a0, c.v1, c.A, c.J));
+            benchmark::ClobberMemory();
+        }
+    });
+}
+
+void plan_all(benchmark::State& state, const std::vector<SevenSegment>& list) {
+    SevenSegmentPlan out;
+    measure(state, list.size(), [&] {
+        for (const SevenSegment& p : list) {
+            benchmark::DoNotOptimize(plan(p, out));
+            benchmark::ClobberMemory();
+        }
+    });
+}
+
+template <typename Motion>
+void evaluate(benchmark::State& state, const Motion& motion) {
+    constexpr int points = 4096;
+    const double step = motion.duration / points;
+    measure(state, points, [&] {
+        for (int i = 0; i < points; ++i) benchmark::DoNotOptimize(motion.at(step * i).position);
+    });
+}
+
+void evaluate_ramp(benchmark::State& state) {
+    VelocityRamp ramp;
+    ramp.plan(0, 0, 100, 500, 5000);
+    evaluate(state, ramp);
+}
+
+void evaluate_plan(benchmark::State& state) {
+    SevenSegmentPlan out;
+    plan({10, 20, 80, 500, 5000, 30}, out);
+    evaluate(state, out);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+    baseline = measure_baseline();
+    std::printf("ratio 1 = the bare ramp formula, %.2f ns\n", baseline * 1e9);
+
+    benchmark::RegisterBenchmark("bare_ramp", bare_ramp);
+    benchmark::RegisterBenchmark("velocity_ramp", velocity_ramp);
+    benchmark::RegisterBenchmark("velocity_ramp/at", evaluate_ramp);
+    benchmark::RegisterBenchmark("plan/at", evaluate_plan);
+    benchmark::RegisterBenchmark("plan/a_million_of_all_kinds", plan_all, problems(1000000));
+    for (int i = 0; i < move_kinds; ++i) {
+        const auto kind = static_cast<MoveKind>(i);
+        const std::string title = "plan/" + std::string(name(kind));
+        benchmark::RegisterBenchmark(title.c_str(), plan_all, problems_of(kind));
+    }
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+}
