@@ -86,11 +86,10 @@ void cancel(double& above, double& below) {
         b = std::round(b / pi);
     }
     if (!is_whole(a) || !is_whole(b)) return;
-    const auto x = static_cast<std::int64_t>(a);
-    const auto y = static_cast<std::int64_t>(b);
-    const std::int64_t common = std::gcd(x, y);
-    above = static_cast<double>(x / common);
-    below = static_cast<double>(y / common);
+    const std::int64_t common =
+        std::gcd(static_cast<std::int64_t>(a), static_cast<std::int64_t>(b));
+    above = a / static_cast<double>(common);
+    below = b / static_cast<double>(common);
 }
 
 struct Ratio {
@@ -326,6 +325,7 @@ std::variant<Quantity, QuantityError> parse_quantity(std::string_view text) {
 const std::vector<std::string>& unit_names() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> all;
+        all.reserve(named_units.size());
         for (const NamedUnit& named : named_units) all.emplace_back(named.name);
         return all;
     }();

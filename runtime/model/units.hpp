@@ -33,7 +33,7 @@ struct Unit {
 };
 
 /// `value` given in `from`, expressed in `to`; both of one dimension. Where the units' ratio is a
-/// finite decimal (all but min, h, rad against the others) the value is taken as the decimal text
+/// finite decimal (not so: s to min, deg to rad) the value is taken as the decimal text
 /// it is written with (`format_number`), and the result is that text's value in `to`, correctly
 /// rounded: 1.005 m is 1005 mm, not 1004.9999999999999. Else it is value * ratio, correctly
 /// rounded.

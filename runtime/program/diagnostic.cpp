@@ -46,7 +46,8 @@ std::vector<std::string> printable(std::string_view text, std::size_t most) {
 std::size_t skip(std::string_view& text, std::size_t count) {
     std::size_t skipped = 0;
     for (; skipped < count && !text.empty(); ++skipped) {
-        text.remove_prefix(first_character(text).bytes);
+        const bool ascii = static_cast<unsigned char>(text.front()) < 0x80;
+        text.remove_prefix(ascii ? 1 : first_character(text).bytes);
     }
     return skipped;
 }
@@ -179,11 +180,14 @@ std::string render(const Diagnostic& diagnostic) {
     if (placed) place += fmt::format("{}:{}:", mark.line, mark.column);
     if (!place.empty()) place += " ";
 
-    const std::string head = fmt::format("{}error[{}]: {}\n", place, diagnostic.code,
-                                         printable_text(diagnostic.message));
-    if (placed) return head + snippet(diagnostic);
-    if (diagnostic.help.empty()) return head;
-    return head + fmt::format("     | {}\n", printable_text(diagnostic.help));
+    std::string out = fmt::format("{}error[{}]: {}\n", place, diagnostic.code,
+                                  printable_text(diagnostic.message));
+    if (placed) {
+        out += snippet(diagnostic);
+    } else if (!diagnostic.help.empty()) {
+        out += fmt::format("     | {}\n", printable_text(diagnostic.help));
+    }
+    return out;
 }
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {

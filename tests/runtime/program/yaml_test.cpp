@@ -31,7 +31,7 @@ std::string errors(std::string text, const YamlLimits& limits = {}) {
     Diagnostics out;
     const auto start = std::chrono::steady_clock::now();
     CHECK_FALSE(parse_yaml(file_of(std::move(text)), out, limits).has_value());
-    CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
     CHECK_FALSE(out.empty());
     std::string all;
     for (const Diagnostic& d : out.list()) {
