@@ -157,13 +157,8 @@ void StudyReader::settings(const Node& node, std::vector<Setting>& into) const {
     if (!read_.expect_map(node, "'set'")) return;
     for (const auto& [key, value] : node.entries) {
         if (!read_.expect_scalar(value, "a setting")) continue;
-<<<<<<< HEAD
         std::erase_if(into, [&name = key.text](const Setting& s) { return s.name == name; });
-        into.push_back({key.text, value.text, key.mark});
-=======
-        std::erase_if(into, [&](const Setting& s) { return s.name == key.text; });
         into.push_back({key.text, value.text, key.mark, value.mark});
->>>>>>> corpus
     }
 }
 
