@@ -296,7 +296,8 @@ void Linker::set_port(Instance& block, const Node& key, const Node& value) {
     if (!field && block.type->find_readable(key.text))
         return read_.fail("L0405", key,
                           fmt::format("'{}' is an output of '{}' ({}) and cannot be set", key.text,
-                                      block.plan->name.text, block.type->name));
+                                      block.plan->name.text, block.type->name),
+                          fmt::format("'lineshaft blocks {}' lists its inputs", block.type->name));
     if (!field) {
         std::vector<std::string> settable{"type", "task"};
         for (const Field& f : block.type->fields)
@@ -585,7 +586,8 @@ void Linker::connect_stimulus(std::int64_t at, const Node& key, const Node& valu
     if (!target) return;
     if (wired_.contains(target->name))
         return read_.fail("L0409", key,
-                          fmt::format("'{}' is wired and cannot be set", target->name));
+                          fmt::format("'{}' is wired and cannot be set", target->name),
+                          "wire an input of the program (inputs.name) and set that");
     Field field;
     field.name = target->name;
     field.type = target->type;

@@ -13,10 +13,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* expectation_help =
+    "write it as {at: end, axis.position: 20 mm, within: 1e-9 mm}";
+constexpr const char* block_help =
+    "add blocks such as shaft: {type: virtual_axis, task: servo, ...}";
 constexpr const char* task_help = "add tasks such as tasks: {servo: {every: 2 ms}}";
 
 fs::path project_root(const fs::path& file) {
-    const fs::path own = fs::weakly_canonical(file).parent_path();
+    const fs::path own = fs::weakly_canonical(fs::absolute(file)).parent_path();
     for (fs::path folder = own; folder != folder.root_path(); folder = folder.parent_path())
         if (fs::is_directory(folder / "config")) return folder;
     return own;
@@ -121,9 +125,11 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
         read_.fail("L0202", *root, "a program has no 'tasks' and no 'controller'", task_help);
         program_.tasks_known = false;
     }
-    if (const Node* n = read_.require(*root, "blocks", "a program")) blocks(*n);
+    if (const Node* n = read_.require(*root, "blocks", "a program", block_help)) blocks(*n);
     if (const Node* n = root->find("inputs")) inputs(*n);
-    if (const Node* n = read_.require(*root, "run", "a program")) run(*n);
+    if (const Node* n =
+            read_.require(*root, "run", "a program", "say how long to run: run: {for: 2 s}"))
+        run(*n);
     if (const Node* n = root->find("stimulus")) stimuli(*n);
     if (const Node* n = root->find("trace")) trace(*n);
     if (const Node* n = root->find("expect")) expectations(*n);
@@ -207,7 +213,7 @@ void ProgramReader::task(const Node& name, const Node& body) {
                    "write its interval, such as every: 2 ms");
     time("every", plan->every);
     if (every && plan->every == 0 && read_.time(*every))
-        read_.fail("L0308", *every, "a task's interval is above 0");
+        read_.fail("L0308", *every, "a task's interval must be above 0");
     time("offset", plan->offset);
     time("cost", plan->cost);
     share("jitter", plan->every, plan->jitter);
@@ -224,7 +230,7 @@ void ProgramReader::task(const Node& name, const Node& body) {
 
 void ProgramReader::blocks(const Node& node) {
     if (!read_.expect_map(node, "'blocks'")) return;
-    if (node.entries.empty()) read_.fail("L0202", node, "'blocks' has no block");
+    if (node.entries.empty()) read_.fail("L0202", node, "'blocks' has no block", block_help);
     for (const auto& [name, body] : node.entries) {
         if (!read_.identifier(name, "a block")) continue;
         if (name.text == "inputs") {
@@ -268,7 +274,7 @@ void ProgramReader::run(const Node& node) {
     read_.only_keys(node, "'run'", {"for", "until", "seed", "on_error"});
     if (const Node* n = node.find("for")) {
         const auto duration = read_.time(*n);
-        if (duration == 0) read_.fail("L0308", *n, "a run takes longer than no time");
+        if (duration == 0) read_.fail("L0308", *n, "a run must be longer than 0 s");
         run.duration = duration.value_or(0);
     }
     if (const Node* n = node.find("until"); n && read_.expect_scalar(*n, "'until'")) run.until = *n;
@@ -349,7 +355,7 @@ void ProgramReader::expectation(const Node& item) {
                           "write two expectations");
     if (!always && !when)
         return read_.fail("L0202", item, "an expectation says neither 'at' nor 'always'",
-                          "{at: end, axis.position: 20 mm, within: 1e-9 mm}");
+                          expectation_help);
     bounds(item, plan);
     plan.always = always != nullptr;
     if (always && read_.expect_scalar(*always, "a signal")) plan.signal = *always;
@@ -372,13 +378,12 @@ void ProgramReader::expectation(const Node& item) {
         bounds(value, plan);
     }
     if (plan.signal.text.empty())
-        return read_.fail("L0202", item, "an expectation names no signal");
+        return read_.fail("L0202", item, "an expectation names no signal", expectation_help);
     if (!plan.equals && !plan.at_least && !plan.at_most)
         return read_.fail("L0202", item, "an expectation has no value and no bound",
                           "write SIGNAL: VALUE, at_least or at_most");
     if (plan.within && !plan.equals)
-        return read_.fail("L0202", *plan.within,
-                          "'within' without a value has nothing to be within of",
+        return read_.fail("L0202", *plan.within, "'within' is for a value, and there is none",
                           "write SIGNAL: VALUE beside it");
     if (plan.equals && (plan.at_least || plan.at_most))
         return read_.fail("L0213", item, "an expectation has a value or bounds, not both",
@@ -410,7 +415,8 @@ bool check_kind(const Reader& read, const Node& root, std::string_view kind) {
     const std::string begin = fmt::format("{} begins with '{}: 1'", wanted, kind);
     if (const Node* version = root.find(kind)) {
         if (version->text == "1") return true;
-        read.fail("L0211", *version, "this version of the file's form is not known", begin);
+        read.fail("L0211", *version,
+                  fmt::format("version '{}' of {} is not known", version->text, wanted), begin);
         return false;
     }
     for (const auto& [key, value] : root.entries)
@@ -419,7 +425,7 @@ bool check_kind(const Reader& read, const Node& root, std::string_view kind) {
                 read.fail("L0211", key, fmt::format("this is {}, not {}", what, wanted), begin);
                 return false;
             }
-    read.fail("L0211", root, fmt::format("this is not {}", wanted), begin);
+    read.fail("L0211", root, fmt::format("this file does not say that it is {}", wanted), begin);
     return false;
 }
 
@@ -432,10 +438,10 @@ std::optional<std::string> resolve_path(const std::string& named, const std::str
                                         const std::vector<std::string>& include_dirs, Mark where,
                                         Diagnostics& out) {
     const fs::path path = fs::path(from).parent_path() / named;
-    const fs::path real = fs::weakly_canonical(path);
+    const fs::path real = fs::weakly_canonical(fs::absolute(path));
     bool allowed = lies_below(real, project_root(from));
     for (const std::string& folder : include_dirs)
-        allowed = allowed || lies_below(real, fs::weakly_canonical(folder));
+        allowed = allowed || lies_below(real, fs::weakly_canonical(fs::absolute(folder)));
     if (allowed) return path.lexically_normal().string();
     out.add("L0002", std::move(where),
             fmt::format("'{}' lies outside of the program's project", named),

@@ -32,10 +32,11 @@ std::string given(const Quantity& q) {
     return (q.unit.same_dimension({}) ? "" : "in ") + measure(q.unit);
 }
 
-std::string number_help(std::string_view text) {
+std::string number_help(std::string_view text, std::string due) {
     if (text.size() > 1 && text[0] == '0' && is_digit(text[1]))
         return "a number has no leading zero";
-    return text.find(',') == text.npos ? "" : "a number has a decimal point, not a comma";
+    const bool comma = !text.empty() && is_digit(text[0]) && text.find(',') != text.npos;
+    return comma ? "a number has a decimal point, not a comma" : std::move(due);
 }
 
 /// The part of a quantity's unit that is none: `sec` of `10 mm/sec`; empty if there is no such
@@ -106,12 +107,15 @@ void Reader::only_keys(const Node& map, std::string_view what,
     for (const auto& [key, value] : map.entries)
         if (std::ranges::find(allowed, key.text) == allowed.end())
             fail("L0201", key, fmt::format("unknown key '{}' in {}", key.text, what),
-                 suggest(key.text, {allowed.begin(), allowed.end()}));
+                 key.text.find(':') == std::string::npos
+                     ? suggest(key.text, {allowed.begin(), allowed.end()})
+                     : "a blank is missing after ':'");
 }
 
-const Node* Reader::require(const Node& map, std::string_view key, std::string_view what) const {
+const Node* Reader::require(const Node& map, std::string_view key, std::string_view what,
+                            std::string help) const {
     const Node* value = map.find(key);
-    if (!value) fail("L0202", map, fmt::format("{} has no '{}'", what, key));
+    if (!value) fail("L0202", map, fmt::format("{} has no '{}'", what, key), std::move(help));
     return value;
 }
 
@@ -130,7 +134,7 @@ std::optional<bool> Reader::boolean(const Node& node) const {
     return {};
 }
 
-std::optional<Quantity> Reader::quantity(const Node& node) const {
+std::optional<Quantity> Reader::quantity(const Node& node, std::string due) const {
     if (!expect_scalar(node, "a number")) return {};
     if (node.quoted) {
         fail("L0301", node, "a text in quotes is no number", "write it without quotes");
@@ -146,7 +150,8 @@ std::optional<Quantity> Reader::quantity(const Node& node) const {
     const std::string unit =
         error == QuantityError::unknown_unit ? unknown_factor(node.text) : std::string();
     if (unit.empty() || unit.starts_with(','))
-        fail("L0301", node, fmt::format("'{}' is no number", node.text), number_help(node.text));
+        fail("L0301", node, fmt::format("'{}' is no number", node.text),
+             number_help(node.text, std::move(due)));
     else
         fail("L0304", node, fmt::format("unknown unit '{}' in '{}'", unit, node.text),
              suggest(unit, unit_names()));
@@ -154,7 +159,7 @@ std::optional<Quantity> Reader::quantity(const Node& node) const {
 }
 
 std::optional<std::int64_t> Reader::integer(const Node& node) const {
-    const auto q = quantity(node);
+    const auto q = quantity(node, "a whole number is due");
     if (!q) return {};
     if (q->is_integer && !q->has_unit) return q->integer;
     fail("L0309", node, fmt::format("'{}' is no whole number", node.text),
@@ -163,7 +168,8 @@ std::optional<std::int64_t> Reader::integer(const Node& node) const {
 }
 
 std::optional<double> Reader::real(const Node& node, const Unit& unit) const {
-    const auto q = quantity(node);
+    const auto q = quantity(node, is_plain(unit) ? "a plain number is due"
+                                                 : fmt::format("a number in {} is due", unit.text));
     if (!q) return {};
     if (!q->has_unit && !is_plain(unit)) {
         fail("L0302", node, fmt::format("'{}' has no unit", node.text),
@@ -182,7 +188,8 @@ std::optional<double> Reader::real(const Node& node, const Unit& unit) const {
 }
 
 std::optional<std::int64_t> Reader::time(const Node& node) const {
-    const auto q = quantity(node);
+    static constexpr const char* help = "write a time such as 2 ms";
+    const auto q = quantity(node, help);
     if (!q) return {};
     static const Unit second = *Unit::parse("s");
     if (!q->has_unit) {
@@ -191,8 +198,7 @@ std::optional<std::int64_t> Reader::time(const Node& node) const {
         return {};
     }
     if (!q->unit.same_dimension(second)) {
-        fail("L0308", node, fmt::format("'{}' is {}, a time is due", node.text, given(*q)),
-             "write a time such as 2 ms");
+        fail("L0308", node, fmt::format("'{}' is {}, a time is due", node.text, given(*q)), help);
         return {};
     }
     const auto ns = to_nanoseconds(*q);

@@ -118,7 +118,9 @@ class Evaluator {
             return std::accumulate(arguments.begin(), arguments.end(), 0.0) /
                    static_cast<double>(arguments.size());
         at_ = start;
-        fail(fmt::format("unknown function '{}' of {}", function, arguments.size()));
+        fail(fmt::format(
+            "no function '{}' of {}; known: abs(x), sqrt(x), min, max and mean", function,
+            arguments.size() == 1 ? "one value" : fmt::format("{} values", arguments.size())));
         return 0;
     }
 

@@ -143,6 +143,7 @@ void StudyReader::one_case(const Node& node) {
 std::string StudyReader::name(const Node& node) {
     const auto [it, added] = names_.insert(node.text);
     if (!added) read_.fail("L0212", node, fmt::format("a case before has the name '{}'", *it));
+    cases_known_ = cases_known_ && added;
     return *it;
 }
 
@@ -263,7 +264,8 @@ Bounds StudyReader::bounds(const Node& map, const Unit& unit) const {
     const Node* n = map.find("within");
     if (!n) return bounds;
     if (!map.find("paper"))
-        read_.fail("L0202", *n, "'within' without 'paper' has nothing to be within of");
+        read_.fail("L0202", *n, "'within' is for the paper's value, and there is none",
+                   "write paper: VALUE beside it");
     if (!bounds.paper) return bounds;
     if (n->is_sequence())
         for (const Node& item : n->items) within(item, unit, bounds);
@@ -327,7 +329,7 @@ void StudyReader::check_formula(const Node& formula) const {
         return std::ranges::find(known, name) == known.end() ? std::nullopt : std::optional(1.0);
     });
     const bool misspelt = !result.name.empty();
-    if (result.error.empty() || (misspelt && !cases_known_)) return;
+    if (result.error.empty() || (misspelt && !(cases_known_ && checkable_))) return;
     Node place = formula;
     const int quote = formula.quoted ? 1 : 0;
     const int length = static_cast<int>(formula.text.size());
