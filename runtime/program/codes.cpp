@@ -118,6 +118,18 @@ with 'lineshaft_controller: 1'. The number is the version of the file's form, so
 a later lineshaft can still tell what an old file means. This lineshaft reads version
 1.)"},
 
+    {"L0212", "something is named twice",
+     R"(A trace records each signal once, since two columns of one name cannot be told apart;
+the cases of a study have different names, since the claims' formulas go by them.
+Remove one of the two, or rename it.)"},
+    {"L0213", "entries that do not go together",
+     R"(An expectation is judged at one time ('at') or in every scan ('always'), and compares
+with a value or with bounds; 'within' is the tolerance of a value that is a number, and
+'at_least' is not above 'at_most'. Write one expectation for each thing that must hold:
+    expect:
+      - {at: end, slave.velocity: 15 mm/s, within: 1e-9 mm/s}
+      - {always: slave.velocity, at_least: 0 mm/s, at_most: 15.001 mm/s})"},
+
     {"L0301", "not a number",
      R"(A number is due: digits with an optional point and exponent, then an optional unit,
 such as 20, -1.5, 5e4 mm/s^3 or 1_000. Whole numbers may have a base as in IEC
@@ -223,7 +235,7 @@ blanks need quotes in the shell:
 
     {"L0601", "a study of too many runs",
      R"(The cases, the values of a grid multiplied with each other, and 'repeat' make more
-runs than a study may have. Sweep fewer values at once, or split the study.)"},
+runs than a study may have (a million). Sweep fewer values at once, or split the study.)"},
     {"L0602", "a mistake in a formula",
      R"(A claim's formula has + - * / and parentheses, numbers, the functions abs, sqrt, min,
 max, mean, and names: a case's name stands for its first compared signal,

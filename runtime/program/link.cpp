@@ -57,9 +57,21 @@ std::optional<WireText> parse_wire(const Node& node) {
     return wire;
 }
 
+/// `real`, or an enumeration's names.
+std::string kind(Type type, std::span<const std::string_view> names) {
+    return type == Type::enumeration ? fmt::format("one of {}", fmt::join(names, ", "))
+                                     : std::string(name_of(type));
+}
+
 /// A parameter whose value other fields' units may depend on.
 bool is_choice(const Field& field) {
     return field.direction == Direction::parameter && field.type == Type::enumeration;
+}
+
+/// What is neither a wire nor a constant, but was meant as a wire.
+bool resembles_wire(const Node& node) {
+    return !node.quoted && !node.text.empty() && is_identifier(node.text.substr(0, 1)) &&
+           node.text.find_first_of(".(") != std::string::npos;
 }
 
 class Linker {
@@ -173,7 +185,7 @@ void Linker::find_blocks() {
             const auto it = std::ranges::find(task_names_, plan.task.text);
             if (it != task_names_.end())
                 block.task = static_cast<int>(it - task_names_.begin());
-            else
+            else if (program_.tasks_known)
                 read_.fail("L0206", plan.task, fmt::format("unknown task '{}'", plan.task.text),
                            suggest(plan.task.text, task_names_));
         }
@@ -216,13 +228,17 @@ void Linker::lay_out() {
 void Linker::set_inputs() {
     std::byte* slot = out_.machine.memory.data();
     for (const auto& [name, value] : program_.inputs) {
+        input_names_.push_back(name.text);
         Signal signal{.name = "inputs." + name.text, .unit = {}, .names = {}, .slot = slot};
         Value initial;
-        if (value.text == "true" || value.text == "false") {
+        if (!value.quoted && (value.text == "true" || value.text == "false")) {
             signal.type = Type::boolean;
             initial = value.text == "true";
         } else {
-            const auto quantity = read_.quantity(value);
+            if (!value.quoted && is_identifier(value.text))
+                read_.fail("L0307", value, fmt::format("'{}' is no value of an input", value.text),
+                           "write true, false or a number");
+            const auto quantity = is_identifier(value.text) ? std::nullopt : read_.quantity(value);
             if (!quantity) continue;
             if (quantity->is_integer && !quantity->has_unit) {
                 signal.type = Type::integer;
@@ -234,7 +250,6 @@ void Linker::set_inputs() {
             }
         }
         store(signal.type, slot, initial);
-        input_names_.push_back(name.text);
         inputs_.emplace(name.text, signal);
         out_.machine.signals.push_back(signal);
         slot += 8;
@@ -260,12 +275,14 @@ Unit Linker::unit_of(const Instance& block, const Field& field) {
     return parsed(text);
 }
 
-/// First of all, because units may depend on it.
+/// First of all, because units at both ends of a wire may depend on it.
 void Linker::set_choices(Instance& block) {
     if (!block.known()) return;
-    for (const auto& [key, value] : block.plan->ports)
-        if (const Field* field = block.type->find_settable(key.text); field && is_choice(*field))
+    for (const auto& [key, value] : block.plan->ports) {
+        const Field* field = block.type->find_settable(key.text);
+        if (field && is_choice(*field) && value.is_scalar() && !parse_wire(value))
             set_constant(block, *field, value);
+    }
 }
 
 void Linker::set_block(Instance& block) {
@@ -279,7 +296,8 @@ void Linker::set_port(Instance& block, const Node& key, const Node& value) {
     if (!field && block.type->find_readable(key.text))
         return read_.fail("L0405", key,
                           fmt::format("'{}' is an output of '{}' ({}) and cannot be set", key.text,
-                                      block.plan->name.text, block.type->name));
+                                      block.plan->name.text, block.type->name),
+                          fmt::format("'lineshaft blocks {}' lists its inputs", block.type->name));
     if (!field) {
         std::vector<std::string> settable{"type", "task"};
         for (const Field& f : block.type->fields)
@@ -306,6 +324,10 @@ void Linker::set_port(Instance& block, const Node& key, const Node& value) {
 void Linker::set_constant(Instance& block, const Field& field, const Node& value) {
     const Unit unit = unit_of(block, field);
     std::optional<Value> constant = interval_of(value, unit);
+    if (!constant && field.direction == Direction::input && resembles_wire(value))
+        return read_.fail("L0208", value,
+                          fmt::format("'{}' is neither a constant nor a wire", value.text),
+                          "a wire is written block.port, NOT block.port or previous(block.port)");
     if (!constant) constant = read_literal(read_, value, field, unit);
     if (constant) store(field.type, block.live + field.offset, *constant);
 }
@@ -320,6 +342,7 @@ std::optional<Value> Linker::interval_of(const Node& value, const Unit& unit) {
     const auto& tasks = out_.machine.tasks;
     const auto it = std::ranges::find(tasks, name, &Task::name);
     if (it != tasks.end()) return convert(seconds(it->every), second, unit);
+    if (!program_.tasks_known) return 0.0;
     read_.fail("L0206", value, fmt::format("unknown task '{}'", name), suggest(name, task_names_));
     return 0.0;
 }
@@ -350,18 +373,20 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
         const Instance& from = blocks_[static_cast<std::size_t>(source_index)];
         copy.source = from.live + (source->slot - from.published);
     }
-    if (text.negated && (source->type != Type::boolean || field.type != Type::boolean))
+    if (text.negated && source->type != Type::boolean)
         return read_.fail(
             "L0408", value,
             fmt::format("NOT is for booleans, '{}' is {}", text.signal, name_of(source->type)));
     const bool widens = source->type == Type::integer && field.type == Type::real;
     if ((source->type != field.type && !widens) || !std::ranges::equal(source->names, field.names))
-        return read_.fail("L0401", value,
-                          fmt::format("'{}' is {}, '{}' takes {}", text.signal,
-                                      name_of(source->type), field.name, name_of(field.type)));
+        return read_.fail(
+            "L0401", value,
+            fmt::format("'{}' is {}, '{}' takes {}", text.signal, kind(source->type, source->names),
+                        field.name, kind(field.type, field.names)));
     const Unit wanted = unit_of(block, field);
     const Unit& given = parsed(source->unit);
-    if (!given.same_dimension(wanted))
+    const bool whole = field.type == Type::integer && given.text != wanted.text;
+    if (!given.same_dimension(wanted) || whole)
         return read_.fail("L0402", value,
                           fmt::format("'{}' is in {}, '{}' takes {}", text.signal,
                                       given.text.empty() ? "plain numbers" : given.text, field.name,
@@ -372,8 +397,9 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
         copy.kind = Copy::Kind::boolean;
     else if (widens)
         copy.kind = Copy::Kind::integer_to_real;
-    else if (field.type == Type::real && given.text != wanted.text) {
+    else if (field.type == Type::real && given.text != wanted.text)
         copy.kind = Copy::Kind::scaled;
+    if (given.text != wanted.text) {
         copy.factor = given.numerator * wanted.denominator;
         copy.divisor = given.denominator * wanted.numerator;
     }
@@ -411,9 +437,10 @@ bool Linker::check_order(int index, const Node& value, const WireText& text, int
     return false;
 }
 
-/// The way back from block `to` to block `from` by the wires of the file: `a -> b -> a`; empty if
+/// The way back from block `to` to block `from` by the wires of their task: `a -> b -> a`; empty if
 /// there is none.
 std::string Linker::loop(int from, int to) const {
+    const int task = blocks_[static_cast<std::size_t>(from)].task;
     std::vector<int> next(blocks_.size(), -1), queue{to};
     std::vector<bool> seen(blocks_.size());
     seen[static_cast<std::size_t>(to)] = true;
@@ -424,6 +451,7 @@ std::string Linker::loop(int from, int to) const {
             if (!text || text->previous) continue;
             const auto it = by_name_.find(text->signal.substr(0, text->signal.find('.')));
             if (it == by_name_.end() || seen[static_cast<std::size_t>(it->second)]) continue;
+            if (blocks_[static_cast<std::size_t>(it->second)].task != task) continue;
             seen[static_cast<std::size_t>(it->second)] = true;
             next[static_cast<std::size_t>(it->second)] = queue[head];
             queue.push_back(it->second);
@@ -512,6 +540,7 @@ std::optional<Signal> Linker::signal(const Node& node, const std::string& name) 
     const std::string port = name.substr(dot + 1);
     if (owner == "inputs") {
         if (const auto it = inputs_.find(port); it != inputs_.end()) return it->second;
+        if (std::ranges::find(input_names_, port) != input_names_.end()) return {};
         read_.fail("L0208", node, fmt::format("the program has no input '{}'", port),
                    input_names_.empty() ? "it has no 'inputs:'" : suggest(port, input_names_));
         return {};
@@ -557,7 +586,8 @@ void Linker::connect_stimulus(std::int64_t at, const Node& key, const Node& valu
     if (!target) return;
     if (wired_.contains(target->name))
         return read_.fail("L0409", key,
-                          fmt::format("'{}' is wired and cannot be set", target->name));
+                          fmt::format("'{}' is wired and cannot be set", target->name),
+                          "wire an input of the program (inputs.name) and set that");
     Field field;
     field.name = target->name;
     field.type = target->type;
@@ -570,8 +600,9 @@ void Linker::connect_stimulus(std::int64_t at, const Node& key, const Node& valu
         const Field* settable = block.type->find_settable(target->name.substr(dot + 1));
         if (!settable || settable->direction == Direction::parameter)
             return read_.fail("L0405", key,
-                              fmt::format("'{}' is {}; a stimulus sets inputs", target->name,
-                                          settable ? "a parameter" : "an output"));
+                              fmt::format("'{}' is {} and cannot be set", target->name,
+                                          settable ? "a parameter" : "an output"),
+                              "a stimulus sets inputs");
         field = *settable;
         unit = unit_of(block, field);
         slot = block.live + field.offset;
@@ -588,7 +619,7 @@ void Linker::connect_trace() {
     const auto it = std::ranges::find(task_names_, plan.task.text);
     if (it != task_names_.end())
         setup.task = static_cast<int>(it - task_names_.begin());
-    else if (!plan.task.text.empty())
+    else if (!plan.task.text.empty() && program_.tasks_known)
         read_.fail("L0206", plan.task, fmt::format("unknown task '{}'", plan.task.text),
                    suggest(plan.task.text, task_names_));
     for (const Node& node : plan.signals)
@@ -607,6 +638,12 @@ std::optional<double> Linker::bound(const Signal& signal, const Node& node) {
 
 std::optional<double> Linker::tolerance(const Signal& signal, const Node& node, double around) {
     static const Unit one;
+    if (signal.type == Type::boolean || signal.type == Type::enumeration) {
+        read_.fail("L0213", node,
+                   fmt::format("'within' is for numbers, '{}' is {}", signal.name,
+                               kind(signal.type, signal.names)));
+        return {};
+    }
     const bool share = node.is_scalar() && node.text.ends_with('%');
     const auto value = read_.real(node, share ? one : parsed(signal.unit));
     if (!value) return {};
@@ -639,6 +676,8 @@ void Linker::connect_expectations() {
         };
         side(plan.at_least, "at least", e.low);
         side(plan.at_most, "at most", e.high);
+        if (plan.at_least && plan.at_most && e.low > e.high)
+            read_.fail("L0213", *plan.at_least, "'at_least' is above 'at_most': this never holds");
         const std::string when = plan.always ? "always"
                                  : plan.at   ? "at " + format_time(*plan.at)
                                              : "at the end";

@@ -1,9 +1,9 @@
 #include "runtime/program/program.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
+
+#include <fmt/format.h>
 
 #include "runtime/program/reader.hpp"
 
@@ -13,8 +13,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* expectation_help =
+    "write it as {at: end, axis.position: 20 mm, within: 1e-9 mm}";
+constexpr const char* block_help =
+    "add blocks such as shaft: {type: virtual_axis, task: servo, ...}";
+constexpr const char* task_help = "add tasks such as tasks: {servo: {every: 2 ms}}";
+
 fs::path project_root(const fs::path& file) {
-    const fs::path own = fs::weakly_canonical(file).parent_path();
+    const fs::path own = fs::weakly_canonical(fs::absolute(file)).parent_path();
     for (fs::path folder = own; folder != folder.root_path(); folder = folder.parent_path())
         if (fs::is_directory(folder / "config")) return folder;
     return own;
@@ -25,10 +31,24 @@ bool lies_below(const fs::path& file, const fs::path& folder) {
     return !relative.empty() && *relative.begin() != "..";
 }
 
+/// A parameter's text in force, and where a study sets it.
+struct ParameterValue {
+    Node node;
+    Mark set_at;
+};
+
+using ParameterValues = std::map<std::string, ParameterValue>;
+
+std::vector<std::string> names_of(const ParameterValues& values) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : values) names.push_back(name);
+    return names;
+}
+
 /// Replaces `$name` by the parameter's text throughout a tree.
 class Substitution {
   public:
-    Substitution(const std::map<std::string, Node>& values, const Reader& read)
+    Substitution(const ParameterValues& values, const Reader& read)
         : values_(values), read_(read) {}
 
     void apply(Node& node) const {
@@ -38,20 +58,22 @@ class Substitution {
         const std::string name = node.text.substr(1);
         const auto it = values_.find(name);
         if (it == values_.end()) return unknown(node, name);
-        node.text = it->second.text;
-        node.quoted = it->second.quoted;
+        const auto& [value, set_at] = it->second;
+        node.text = value.text;
+        node.quoted = value.quoted;
         node.parameter = name;
+        if (set_at.file) node.mark = set_at;
     }
 
   private:
-    void unknown(const Node& node, const std::string& name) const {
-        std::vector<std::string> known;
-        for (const auto& [parameter, value] : values_) known.push_back(parameter);
+    void unknown(Node& node, const std::string& name) const {
         read_.fail("L0207", node, fmt::format("unknown parameter '{}'", name),
-                   known.empty() ? "the program has no 'parameters:'" : suggest(name, known));
+                   values_.empty() ? "the program has no 'parameters:'"
+                                   : suggest(name, names_of(values_)));
+        node.parameter = name;
     }
 
-    const std::map<std::string, Node>& values_;
+    const ParameterValues& values_;
     const Reader& read_;
 };
 
@@ -62,17 +84,18 @@ class ProgramReader {
     Program read(std::shared_ptr<const SourceFile> file);
 
   private:
-    void version(const Node& root);
     void parameters(const Node& root);
-    void settings(std::map<std::string, Node>& values);
+    void settings(ParameterValues& values);
     void controller(const Node& node);
     void tasks(const Node& node);
     void task(const Node& name, const Node& body);
     void blocks(const Node& node);
+    void block(BlockPlan& plan, const Node& body);
     void inputs(const Node& node);
     void run(const Node& node);
     void stimuli(const Node& node);
     void trace(const Node& node);
+    void traced(const Node& signals, TracePlan& plan);
     void expectations(const Node& node);
     void expectation(const Node& item);
     void bounds(const Node& map, ExpectPlan& plan);
@@ -81,17 +104,16 @@ class ProgramReader {
     const LoadOptions& options_;
     Reader read_;
     Program program_;
-    std::map<std::string, Node> values_;
+    ParameterValues values_;
 };
 
 Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     program_.file = file;
     auto root = parse_yaml(file, read_.diagnostics());
-    if (!root) return std::move(program_);
+    if (!root || !check_kind(read_, *root, "lineshaft")) return std::move(program_);
     read_.only_keys(*root, "a program",
                     {"lineshaft", "title", "parameters", "controller", "tasks", "blocks", "inputs",
                      "run", "stimulus", "trace", "expect"});
-    version(*root);
     parameters(*root);
     Substitution(values_, read_).apply(*root);
     program_.title = fs::path(file->path).stem().string();
@@ -99,25 +121,19 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
         program_.title = n->text;
     if (const Node* n = root->find("controller")) controller(*n);
     if (const Node* n = root->find("tasks")) tasks(*n);
-    if (!root->find("tasks") && !root->find("controller"))
-        read_.fail("L0202", *root, "a program has no 'tasks' and no 'controller'");
-    if (const Node* n = read_.require(*root, "blocks", "a program")) blocks(*n);
+    if (!root->find("tasks") && !root->find("controller")) {
+        read_.fail("L0202", *root, "a program has no 'tasks' and no 'controller'", task_help);
+        program_.tasks_known = false;
+    }
+    if (const Node* n = read_.require(*root, "blocks", "a program", block_help)) blocks(*n);
     if (const Node* n = root->find("inputs")) inputs(*n);
-    if (const Node* n = read_.require(*root, "run", "a program")) run(*n);
+    if (const Node* n =
+            read_.require(*root, "run", "a program", "say how long to run: run: {for: 2 s}"))
+        run(*n);
     if (const Node* n = root->find("stimulus")) stimuli(*n);
     if (const Node* n = root->find("trace")) trace(*n);
     if (const Node* n = root->find("expect")) expectations(*n);
     return std::move(program_);
-}
-
-void ProgramReader::version(const Node& root) {
-    const Node* node = root.find("lineshaft");
-    if (!node)
-        read_.fail("L0211", root, "this is no lineshaft program",
-                   "a program begins with 'lineshaft: 1'");
-    else if (node->text != "1")
-        read_.fail("L0211", *node, fmt::format("version '{}' of the program form is not known", node->text),
-                   "this lineshaft reads version 1");
 }
 
 void ProgramReader::parameters(const Node& root) {
@@ -125,33 +141,34 @@ void ProgramReader::parameters(const Node& root) {
     if (node && read_.expect_map(*node, "'parameters'"))
         for (const auto& [key, value] : node->entries)
             if (read_.identifier(key, "a parameter") && read_.expect_scalar(value, "a parameter"))
-                values_.emplace(key.text, value);
+                values_.emplace(key.text, ParameterValue{value, {}});
     settings(values_);
     if (node)
         for (const auto& [key, value] : node->entries)
             if (const auto it = values_.find(key.text); it != values_.end())
-                program_.parameters.emplace_back(key.text, it->second.text);
+                program_.parameters.emplace_back(key.text, it->second.node.text);
 }
 
-void ProgramReader::settings(std::map<std::string, Node>& values) {
-    std::vector<std::string> known;
-    for (const auto& [name, value] : values) known.push_back(name);
+void ProgramReader::settings(ParameterValues& values) {
     for (const Setting& setting : options_.settings) {
         const auto it = values.find(setting.name);
         if (it == values.end()) {
             read_.diagnostics().add(
                 "L0501", setting.mark,
                 fmt::format("the program has no parameter '{}' to set", setting.name),
-                known.empty() ? "it has no 'parameters:' at all" : suggest(setting.name, known));
+                values.empty() ? "it has no 'parameters:'"
+                               : suggest(setting.name, names_of(values)));
             continue;
         }
-        it->second.text = setting.value;
-        it->second.quoted = false;
+        it->second.node.text = setting.value;
+        it->second.node.quoted = false;
+        it->second.set_at = setting.value_mark;
     }
 }
 
 void ProgramReader::controller(const Node& node) {
-    if (!read_.expect_scalar(node, "'controller'")) return;
+    program_.tasks_known = false;
+    if (!read_.expect_scalar(node, "'controller'") || node.is_unknown_parameter()) return;
     Diagnostics& out = read_.diagnostics();
     const auto path =
         resolve_path(node.text, program_.file->path, options_.include_dirs, node.mark, out);
@@ -159,19 +176,22 @@ void ProgramReader::controller(const Node& node) {
     const auto file = read_source(*path, out, node.mark);
     if (!file) return;
     auto root = parse_yaml(file, out);
-    if (!root) return;
+    if (!root || !check_kind(read_, *root, "lineshaft_controller")) return;
+    program_.tasks_known = true;
     read_.only_keys(*root, "a controller", {"lineshaft_controller", "title", "tasks"});
-    const Node* version = root->find("lineshaft_controller");
-    if (!version || version->text != "1")
-        read_.fail("L0211", version ? *version : *root, "this is no lineshaft controller",
-                   "a controller begins with 'lineshaft_controller: 1'");
     if (const Node* n = read_.require(*root, "tasks", "a controller")) tasks(*n);
 }
 
 void ProgramReader::tasks(const Node& node) {
-    if (!read_.expect_map(node, "'tasks'")) return;
-    for (const auto& [name, body] : node.entries)
-        if (read_.identifier(name, "a task") && read_.expect_map(body, "a task")) task(name, body);
+    if (read_.expect_map(node, "'tasks'") && node.entries.empty())
+        read_.fail("L0202", node, "'tasks' has no task", task_help);
+    if (node.entries.empty()) program_.tasks_known = false;
+    for (const auto& [name, body] : node.entries) {
+        if (read_.identifier(name, "a task") && read_.expect_map(body, "a task"))
+            task(name, body);
+        else
+            program_.tasks_known = false;
+    }
 }
 
 void ProgramReader::task(const Node& name, const Node& body) {
@@ -184,7 +204,8 @@ void ProgramReader::task(const Node& name, const Node& body) {
         if (const Node* n = body.find(key)) target = read_.time(*n).value_or(target);
     };
     const auto share = [&](const char* key, std::int64_t whole, std::int64_t& target) {
-        if (const Node* n = body.find(key)) target = read_.time_or_share(*n, whole).value_or(target);
+        if (const Node* n = body.find(key))
+            target = read_.time_or_share(*n, whole).value_or(target);
     };
     const Node* every = body.find("every");
     if (!every && plan->every == 0)
@@ -192,7 +213,7 @@ void ProgramReader::task(const Node& name, const Node& body) {
                    "write its interval, such as every: 2 ms");
     time("every", plan->every);
     if (every && plan->every == 0 && read_.time(*every))
-        read_.fail("L0308", *every, "a task's interval is above 0");
+        read_.fail("L0308", *every, "a task's interval must be above 0");
     time("offset", plan->offset);
     time("cost", plan->cost);
     share("jitter", plan->every, plan->jitter);
@@ -209,6 +230,7 @@ void ProgramReader::task(const Node& name, const Node& body) {
 
 void ProgramReader::blocks(const Node& node) {
     if (!read_.expect_map(node, "'blocks'")) return;
+    if (node.entries.empty()) read_.fail("L0202", node, "'blocks' has no block", block_help);
     for (const auto& [name, body] : node.entries) {
         if (!read_.identifier(name, "a block")) continue;
         if (name.text == "inputs") {
@@ -216,19 +238,26 @@ void ProgramReader::blocks(const Node& node) {
                        "inputs.x names the program's own inputs");
             continue;
         }
-        if (!read_.expect_map(body, "a block")) continue;
-        BlockPlan plan{.name = name, .type = {}, .task = {}, .ports = {}};
-        const std::string what = fmt::format("block '{}'", name.text);
-        const Node* type = body.find("type");
-        const Node* task = body.find("task");
-        if (!type) read_.fail("L0202", name, what + " has no 'type'");
-        else if (read_.expect_scalar(*type, "a type")) plan.type = *type;
-        if (!task) read_.fail("L0202", name, what + " has no 'task'", "say which task scans it");
-        else if (read_.expect_scalar(*task, "a task's name")) plan.task = *task;
-        for (const auto& [key, value] : body.entries)
-            if (key.text != "type" && key.text != "task") plan.ports.emplace_back(key, value);
-        program_.blocks.push_back(std::move(plan));
+        program_.blocks.push_back({.name = name, .type = {}, .task = {}, .ports = {}});
+        if (read_.expect_map(body, "a block")) block(program_.blocks.back(), body);
     }
+}
+
+void ProgramReader::block(BlockPlan& plan, const Node& body) {
+    const std::string what = fmt::format("block '{}'", plan.name.text);
+    const Node* type = body.find("type");
+    const Node* task = body.find("task");
+    if (!type)
+        read_.fail("L0202", plan.name, what + " has no 'type'",
+                   "'lineshaft blocks' lists the types");
+    else if (read_.expect_scalar(*type, "a type"))
+        plan.type = *type;
+    if (!task)
+        read_.fail("L0202", plan.name, what + " has no 'task'", "say which task scans it");
+    else if (read_.expect_scalar(*task, "a task's name"))
+        plan.task = *task;
+    for (const auto& [key, value] : body.entries)
+        if (key.text != "type" && key.text != "task") plan.ports.emplace_back(key, value);
 }
 
 void ProgramReader::inputs(const Node& node) {
@@ -243,13 +272,20 @@ void ProgramReader::run(const Node& node) {
     run.mark = node.mark;
     if (!read_.expect_map(node, "'run'")) return;
     read_.only_keys(node, "'run'", {"for", "until", "seed", "on_error"});
-    if (const Node* n = node.find("for")) run.duration = read_.time(*n).value_or(0);
+    if (const Node* n = node.find("for")) {
+        const auto duration = read_.time(*n);
+        if (duration == 0) read_.fail("L0308", *n, "a run must be longer than 0 s");
+        run.duration = duration.value_or(0);
+    }
     if (const Node* n = node.find("until"); n && read_.expect_scalar(*n, "'until'")) run.until = *n;
     if (!node.find("for"))
         read_.fail("L0202", node, "'run' has no 'for'",
                    "say how long to run, such as for: 2 s; with 'until' it is the limit");
-    if (const Node* n = node.find("seed"))
-        run.seed = static_cast<std::uint64_t>(read_.integer(*n).value_or(1));
+    if (const Node* n = node.find("seed")) {
+        const std::int64_t seed = read_.integer(*n).value_or(1);
+        if (seed < 0) read_.fail("L0305", *n, fmt::format("'{}' is below 0", n->text));
+        run.seed = static_cast<std::uint64_t>(seed);
+    }
     const Node* on_error = node.find("on_error");
     if (!on_error || !read_.expect_scalar(*on_error, "'on_error'")) return;
     run.continue_on_error = on_error->text == "continue";
@@ -266,7 +302,8 @@ void ProgramReader::stimuli(const Node& node) {
         StimulusPlan plan;
         if (const Node* n = read_.require(item, "at", "a stimulus"))
             plan.at = read_.time(*n).value_or(0);
-        if (const Node* n = read_.require(item, "set", "a stimulus"); n && read_.expect_map(*n, "'set'"))
+        if (const Node* n = read_.require(item, "set", "a stimulus");
+            n && read_.expect_map(*n, "'set'"))
             plan.set = n->entries;
         program_.stimuli.push_back(std::move(plan));
     }
@@ -282,13 +319,24 @@ void ProgramReader::trace(const Node& node) {
         plan.task = *n;
     if (const Node* n = node.find("every")) {
         plan.every = read_.integer(*n).value_or(1);
-        if (plan.every < 1) read_.fail("L0305", *n, "a trace records every 1st scan or fewer");
+        if (plan.every < 1)
+            read_.fail("L0305", *n, fmt::format("'{}' is below 1", n->text),
+                       "1 records every scan, 10 every tenth");
     }
     const Node* signals = read_.require(node, "signals", "'trace'");
-    if (signals && read_.expect_sequence(*signals, "'signals'"))
-        for (const Node& signal : signals->items)
-            if (read_.expect_scalar(signal, "a signal")) plan.signals.push_back(signal);
+    if (signals && read_.expect_sequence(*signals, "'signals'")) traced(*signals, plan);
     program_.trace = std::move(plan);
+}
+
+void ProgramReader::traced(const Node& signals, TracePlan& plan) {
+    if (signals.items.empty()) read_.fail("L0202", signals, "'signals' has no signal");
+    for (const Node& signal : signals.items) {
+        if (!read_.expect_scalar(signal, "a signal")) continue;
+        const auto same = [&](const Node& other) { return other.text == signal.text; };
+        if (std::ranges::any_of(plan.signals, same))
+            read_.fail("L0212", signal, fmt::format("'{}' is in this trace already", signal.text));
+        plan.signals.push_back(signal);
+    }
 }
 
 void ProgramReader::expectations(const Node& node) {
@@ -302,9 +350,12 @@ void ProgramReader::expectation(const Node& item) {
     plan.mark = item.mark;
     const Node* always = item.find("always");
     const Node* when = item.find("at");
-    if (!always == !when)
-        return read_.fail("L0202", item, "an expectation says either 'at' or 'always'",
-                          "{at: end, axis.position: 20 mm, within: 1e-9 mm}");
+    if (always && when)
+        return read_.fail("L0213", item, "an expectation says 'at' or 'always', not both",
+                          "write two expectations");
+    if (!always && !when)
+        return read_.fail("L0202", item, "an expectation says neither 'at' nor 'always'",
+                          expectation_help);
     bounds(item, plan);
     plan.always = always != nullptr;
     if (always && read_.expect_scalar(*always, "a signal")) plan.signal = *always;
@@ -314,7 +365,8 @@ void ProgramReader::expectation(const Node& item) {
             key.text == "at_least" || key.text == "at_most")
             continue;
         if (always || !plan.signal.text.empty()) {
-            read_.fail("L0201", key, fmt::format("an expectation has one signal, '{}' is a second", key.text));
+            read_.fail("L0201", key,
+                       fmt::format("an expectation has one signal, '{}' is a second", key.text));
             continue;
         }
         plan.signal = key;
@@ -326,10 +378,16 @@ void ProgramReader::expectation(const Node& item) {
         bounds(value, plan);
     }
     if (plan.signal.text.empty())
-        return read_.fail("L0202", item, "an expectation names no signal");
+        return read_.fail("L0202", item, "an expectation names no signal", expectation_help);
     if (!plan.equals && !plan.at_least && !plan.at_most)
         return read_.fail("L0202", item, "an expectation has no value and no bound",
                           "write SIGNAL: VALUE, at_least or at_most");
+    if (plan.within && !plan.equals)
+        return read_.fail("L0202", *plan.within, "'within' is for a value, and there is none",
+                          "write SIGNAL: VALUE beside it");
+    if (plan.equals && (plan.at_least || plan.at_most))
+        return read_.fail("L0213", item, "an expectation has a value or bounds, not both",
+                          "write two expectations");
     program_.expectations.push_back(std::move(plan));
 }
 
@@ -346,6 +404,31 @@ void ProgramReader::at(const Node& node, ExpectPlan& plan) {
 
 }  // namespace
 
+bool check_kind(const Reader& read, const Node& root, std::string_view kind) {
+    struct Kind {
+        std::string_view key, what;
+    };
+    static constexpr Kind kinds[] = {{"lineshaft", "a program"},
+                                     {"lineshaft_study", "a study"},
+                                     {"lineshaft_controller", "a controller"}};
+    const std::string_view wanted = std::ranges::find(kinds, kind, &Kind::key)->what;
+    const std::string begin = fmt::format("{} begins with '{}: 1'", wanted, kind);
+    if (const Node* version = root.find(kind)) {
+        if (version->text == "1") return true;
+        read.fail("L0211", *version,
+                  fmt::format("version '{}' of {} is not known", version->text, wanted), begin);
+        return false;
+    }
+    for (const auto& [key, value] : root.entries)
+        for (const auto& [other, what] : kinds)
+            if (key.text == other) {
+                read.fail("L0211", key, fmt::format("this is {}, not {}", what, wanted), begin);
+                return false;
+            }
+    read.fail("L0211", root, fmt::format("this file does not say that it is {}", wanted), begin);
+    return false;
+}
+
 Program read_program(std::shared_ptr<const SourceFile> file, const LoadOptions& options,
                      Diagnostics& out) {
     return ProgramReader(options, out).read(std::move(file));
@@ -355,10 +438,10 @@ std::optional<std::string> resolve_path(const std::string& named, const std::str
                                         const std::vector<std::string>& include_dirs, Mark where,
                                         Diagnostics& out) {
     const fs::path path = fs::path(from).parent_path() / named;
-    const fs::path real = fs::weakly_canonical(path);
+    const fs::path real = fs::weakly_canonical(fs::absolute(path));
     bool allowed = lies_below(real, project_root(from));
     for (const std::string& folder : include_dirs)
-        allowed = allowed || lies_below(real, fs::weakly_canonical(folder));
+        allowed = allowed || lies_below(real, fs::weakly_canonical(fs::absolute(folder)));
     if (allowed) return path.lexically_normal().string();
     out.add("L0002", std::move(where),
             fmt::format("'{}' lies outside of the program's project", named),

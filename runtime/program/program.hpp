@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/program/diagnostic.hpp"
+#include "runtime/program/reader.hpp"
 #include "runtime/program/yaml.hpp"
 
 namespace lineshaft {
@@ -16,7 +17,8 @@ namespace lineshaft {
 struct Setting {
     std::string name;
     std::string value;
-    Mark mark = {};  ///< in a study file; none for the command line
+    Mark mark = {};        ///< of the name in a study file; none for the command line
+    Mark value_mark = {};  ///< likewise of the value
 };
 
 /// A cyclic activity, as written in `tasks:` of a program or of its controller file. Times in ns.
@@ -25,12 +27,13 @@ struct TaskPlan {
     Mark mark;
     std::int64_t every = 0;
     std::int64_t offset = 0;
-    std::int64_t priority = 1;     ///< a larger number wins, as Siemens counts
-    std::int64_t jitter = 0;       ///< each interval is drawn from every +- jitter
-    std::int64_t cost = 0;         ///< execution time: outputs are published this long after the start
+    std::int64_t priority = 1;  ///< a larger number wins, as Siemens counts
+    std::int64_t jitter = 0;    ///< each interval is drawn from every +- jitter
+    std::int64_t cost = 0;      ///< execution time: outputs are published this long after the start
     std::int64_t cost_jitter = 0;  ///< each execution time is drawn from cost +- cost_jitter
 };
 
+/// What could not be read, and is reported, is empty.
 struct BlockPlan {
     Node name;
     Node type;
@@ -39,8 +42,8 @@ struct BlockPlan {
 };
 
 struct RunPlan {
-    std::int64_t duration = 0;   ///< [ns] 0: not given
-    std::optional<Node> until;   ///< boolean signal that ends the run
+    std::int64_t duration = 0;  ///< [ns] 0: not given
+    std::optional<Node> until;  ///< boolean signal that ends the run
     std::uint64_t seed = 1;
     bool continue_on_error = false;
     Mark mark;
@@ -72,6 +75,7 @@ struct Program {
     std::string title;
     std::vector<std::pair<std::string, std::string>> parameters;  ///< name, value in force
     std::vector<TaskPlan> tasks;
+    bool tasks_known = true;  ///< false: not all could be read, a name may be one of the missing
     std::vector<BlockPlan> blocks;
     std::vector<std::pair<Node, Node>> inputs;
     std::vector<StimulusPlan> stimuli;
@@ -86,14 +90,18 @@ struct LoadOptions {
     std::vector<std::string> include_dirs;  ///< allowed besides the project root
 };
 
-/// Checks the structure of `file` and replaces parameters. Files that it names (a controller) are read.
-/// Whatever is wrong goes to `out`; the result is then as much as could be understood.
+/// Checks the structure of `file` and replaces parameters. Files that it names (a controller) are
+/// read. Whatever is wrong goes to `out`; the result is then as much as could be understood.
 Program read_program(std::shared_ptr<const SourceFile> file, const LoadOptions& options,
                      Diagnostics& out);
 
-/// `named` relative to the folder of `from`, if it lies below the project root of `from` (the nearest
-/// parent folder that holds `config/`, else its own folder) or below an include directory; else empty, and
-/// an L0002 diagnostic at `where`.
+/// L0211 and false unless `root` is a file of `kind`, one of `lineshaft`, `lineshaft_study`,
+/// `lineshaft_controller`, in version 1. What else it holds means nothing then.
+bool check_kind(const Reader& read, const Node& root, std::string_view kind);
+
+/// `named` relative to the folder of `from`, if it lies below the project root of `from` (the
+/// nearest parent folder that holds `config/`, else its own folder) or below an include directory;
+/// else empty, and an L0002 diagnostic at `where`.
 std::optional<std::string> resolve_path(const std::string& named, const std::string& from,
                                         const std::vector<std::string>& include_dirs, Mark where,
                                         Diagnostics& out);

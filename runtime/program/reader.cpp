@@ -1,20 +1,61 @@
 #include "runtime/program/reader.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+
+#include <fmt/format.h>
 
 namespace lineshaft {
 
 namespace {
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
 
 std::string_view name_of(Node::Kind kind) {
     constexpr std::string_view names[] = {"a single value", "a map", "a list"};
     return names[static_cast<std::size_t>(kind)];
+}
+
+/// `mm/s (length/time)`, or `a plain number`.
+std::string measure(const Unit& unit) {
+    const bool plain = unit.same_dimension({});
+    return plain ? "a plain number" : fmt::format("{} ({})", unit.text, unit.dimension_name());
+}
+
+std::string given(const Quantity& q) {
+    return (q.unit.same_dimension({}) ? "" : "in ") + measure(q.unit);
+}
+
+std::string number_help(std::string_view text, std::string due) {
+    if (text.size() > 1 && text[0] == '0' && is_digit(text[1]))
+        return "a number has no leading zero";
+    const bool comma = !text.empty() && is_digit(text[0]) && text.find(',') != text.npos;
+    return comma ? "a number has a decimal point, not a comma" : std::move(due);
+}
+
+/// The part of a quantity's unit that is none: `sec` of `10 mm/sec`; empty if there is no such
+/// part.
+std::string unknown_factor(std::string_view text) {
+    const std::string_view number = text.substr(text.starts_with('+') ? 1 : 0);
+    double ignored = 0;
+    const char* const end =
+        std::from_chars(number.data(), number.data() + number.size(), ignored).ptr;
+    const auto blank = text.find(' ');
+    std::string_view rest = number.substr(static_cast<std::size_t>(end - number.data()));
+    if (blank != text.npos) rest = text.substr(blank + 1);
+    while (!rest.empty()) {
+        const auto length = std::min(rest.find_first_of("*/"), rest.size());
+        const std::string_view factor = rest.substr(0, length);
+        if (factor != "1" && !Unit::parse(factor)) return std::string(factor);
+        rest.remove_prefix(std::min(length + 1, rest.size()));
+    }
+    return {};
 }
 
 }  // namespace
@@ -35,6 +76,7 @@ bool is_signal_name(std::string_view text) {
 }
 
 void Reader::fail(const char* code, const Node& node, std::string message, std::string help) const {
+    if (node.is_unknown_parameter()) return;
     if (!node.parameter.empty())
         message += fmt::format(" (parameter '{}' is '{}')", node.parameter, node.text);
     out_.add(code, node.mark, std::move(message), std::move(help));
@@ -65,12 +107,15 @@ void Reader::only_keys(const Node& map, std::string_view what,
     for (const auto& [key, value] : map.entries)
         if (std::ranges::find(allowed, key.text) == allowed.end())
             fail("L0201", key, fmt::format("unknown key '{}' in {}", key.text, what),
-                 suggest(key.text, {allowed.begin(), allowed.end()}));
+                 key.text.find(':') == std::string::npos
+                     ? suggest(key.text, {allowed.begin(), allowed.end()})
+                     : "a blank is missing after ':'");
 }
 
-const Node* Reader::require(const Node& map, std::string_view key, std::string_view what) const {
+const Node* Reader::require(const Node& map, std::string_view key, std::string_view what,
+                            std::string help) const {
     const Node* value = map.find(key);
-    if (!value) fail("L0202", map, fmt::format("{} has no '{}'", what, key));
+    if (!value) fail("L0202", map, fmt::format("{} has no '{}'", what, key), std::move(help));
     return value;
 }
 
@@ -89,7 +134,7 @@ std::optional<bool> Reader::boolean(const Node& node) const {
     return {};
 }
 
-std::optional<Quantity> Reader::quantity(const Node& node) const {
+std::optional<Quantity> Reader::quantity(const Node& node, std::string due) const {
     if (!expect_scalar(node, "a number")) return {};
     if (node.quoted) {
         fail("L0301", node, "a text in quotes is no number", "write it without quotes");
@@ -97,34 +142,34 @@ std::optional<Quantity> Reader::quantity(const Node& node) const {
     }
     const auto result = parse_quantity(node.text);
     if (const auto* quantity = std::get_if<Quantity>(&result)) return *quantity;
-    switch (std::get<QuantityError>(result)) {
-        case QuantityError::not_a_number:
-            fail("L0301", node, fmt::format("'{}' is no number", node.text));
-            break;
-        case QuantityError::out_of_range:
-            fail("L0305", node, fmt::format("'{}' is beyond a 64-bit number's range", node.text));
-            break;
-        case QuantityError::unknown_unit: {
-            const auto start = node.text.find_first_of(' ');
-            const std::string unit =
-                start == std::string::npos ? node.text : node.text.substr(start + 1);
-            fail("L0304", node, fmt::format("unknown unit in '{}'", node.text),
-                 suggest(unit, unit_names()));
-        }
+    const QuantityError error = std::get<QuantityError>(result);
+    if (error == QuantityError::out_of_range) {
+        fail("L0305", node, fmt::format("'{}' is beyond a 64-bit number's range", node.text));
+        return {};
     }
+    const std::string unit =
+        error == QuantityError::unknown_unit ? unknown_factor(node.text) : std::string();
+    if (unit.empty() || unit.starts_with(','))
+        fail("L0301", node, fmt::format("'{}' is no number", node.text),
+             number_help(node.text, std::move(due)));
+    else
+        fail("L0304", node, fmt::format("unknown unit '{}' in '{}'", unit, node.text),
+             suggest(unit, unit_names()));
     return {};
 }
 
 std::optional<std::int64_t> Reader::integer(const Node& node) const {
-    const auto q = quantity(node);
+    const auto q = quantity(node, "a whole number is due");
     if (!q) return {};
     if (q->is_integer && !q->has_unit) return q->integer;
-    fail("L0309", node, fmt::format("'{}' is no whole number", node.text));
+    fail("L0309", node, fmt::format("'{}' is no whole number", node.text),
+         q->has_unit ? "write it without a unit" : "write it without point and exponent");
     return {};
 }
 
 std::optional<double> Reader::real(const Node& node, const Unit& unit) const {
-    const auto q = quantity(node);
+    const auto q = quantity(node, is_plain(unit) ? "a plain number is due"
+                                                 : fmt::format("a number in {} is due", unit.text));
     if (!q) return {};
     if (!q->has_unit && !is_plain(unit)) {
         fail("L0302", node, fmt::format("'{}' has no unit", node.text),
@@ -132,9 +177,8 @@ std::optional<double> Reader::real(const Node& node, const Unit& unit) const {
         return {};
     }
     if (!q->unit.same_dimension(unit)) {
-        const std::string due = unit.text.empty() ? "a plain number is" : unit.text + " is";
         fail("L0303", node,
-             fmt::format("'{}' is {}, where {} due", node.text, q->unit.dimension_name(), due));
+             fmt::format("'{}' is {}, {} is due", node.text, given(*q), measure(unit)));
         return {};
     }
     const double value = convert(q->number, q->unit, unit);
@@ -144,7 +188,8 @@ std::optional<double> Reader::real(const Node& node, const Unit& unit) const {
 }
 
 std::optional<std::int64_t> Reader::time(const Node& node) const {
-    const auto q = quantity(node);
+    static constexpr const char* help = "write a time such as 2 ms";
+    const auto q = quantity(node, help);
     if (!q) return {};
     static const Unit second = *Unit::parse("s");
     if (!q->has_unit) {
@@ -153,14 +198,16 @@ std::optional<std::int64_t> Reader::time(const Node& node) const {
         return {};
     }
     if (!q->unit.same_dimension(second)) {
-        fail("L0308", node, fmt::format("'{}' is {}, no time", node.text, q->unit.dimension_name()),
-             "write a time such as 2 ms");
+        fail("L0308", node, fmt::format("'{}' is {}, a time is due", node.text, given(*q)), help);
         return {};
     }
     const auto ns = to_nanoseconds(*q);
     if (ns && *ns >= 0) return ns;
-    fail("L0308", node, fmt::format("'{}' is no time that can be kept", node.text),
-         "a time is a whole number of nanoseconds, not negative, at most 292 years");
+    if (q->number < 0)
+        fail("L0308", node, fmt::format("'{}' is below 0", node.text));
+    else
+        fail("L0308", node, fmt::format("'{}' is no whole number of nanoseconds", node.text),
+             "times are counted in ns, up to 292 years");
     return {};
 }
 
@@ -169,8 +216,7 @@ std::optional<std::int64_t> Reader::time_or_share(const Node& node, std::int64_t
     static const Unit one;
     const auto share = real(node, one);
     if (!share) return {};
-    if (*share >= 0 && *share <= 1)
-        return std::llround(*share * static_cast<double>(whole));
+    if (*share >= 0 && *share <= 1) return std::llround(*share * static_cast<double>(whole));
     fail("L0305", node, fmt::format("'{}' is not between 0 % and 100 %", node.text));
     return {};
 }

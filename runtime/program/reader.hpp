@@ -13,7 +13,8 @@
 namespace lineshaft {
 
 /// Reads checked values out of nodes; what is wrong becomes a diagnostic at the node's place.
-/// Every function returns nothing, or a harmless default, after reporting.
+/// Every function returns nothing, or a harmless default, after reporting. Nothing is reported of an
+/// unknown parameter, for that has been already.
 class Reader {
   public:
     explicit Reader(Diagnostics& out) : out_(out) {}
@@ -30,14 +31,16 @@ class Reader {
                    std::initializer_list<std::string_view> allowed) const;
 
     /// The value at `key`; L0202 at the map when it is missing.
-    const Node* require(const Node& map, std::string_view key, std::string_view what) const;
+    const Node* require(const Node& map, std::string_view key, std::string_view what,
+                        std::string help = {}) const;
 
     /// Letters, digits and underscores, not starting with a digit; L0210 otherwise.
     bool identifier(const Node& node, std::string_view what) const;
 
     std::optional<bool> boolean(const Node& node) const;
     std::optional<std::int64_t> integer(const Node& node) const;
-    std::optional<Quantity> quantity(const Node& node) const;
+    /// `due` is what is wanted instead of something that is no number, for the message.
+    std::optional<Quantity> quantity(const Node& node, std::string due = {}) const;
 
     /// A quantity in `unit`: L0302 when the unit is missing, L0303 when it measures something else.
     std::optional<double> real(const Node& node, const Unit& unit) const;

@@ -515,6 +515,22 @@ std::size_t indenting_tab(const Source& source, std::size_t offset) {
     return tab == std::string_view::npos ? tab : begin + tab;
 }
 
+/// Place of the colon of `key:value` in the last line before that of `offset`, or npos: YAML reads on
+/// there as in one text of two lines.
+std::size_t glued_colon(const Source& source, std::size_t offset) {
+    const std::size_t begin = source.line_begin(source.line_index(offset));
+    const std::size_t end = source.text().substr(0, begin).find_last_not_of(" \r\n");
+    if (end == std::string_view::npos) return end;
+    const std::size_t start = source.line_begin(source.line_index(end));
+    const std::string_view line = source.text().substr(start, end + 1 - start);
+    const std::size_t key = line.find_first_not_of(" -");
+    const std::size_t colon = line.find_first_of(": #\"'[{", key);
+    if (colon == std::string_view::npos || line[colon] != ':' || colon + 1 == line.size()) {
+        return std::string_view::npos;
+    }
+    return line[colon + 1] == ' ' ? std::string_view::npos : start + colon;
+}
+
 void report(const YAML::Exception& fault, const Source& source, const Builder& builder,
             Diagnostics& out) {
     std::size_t offset = source.offset(fault.mark);
@@ -533,6 +549,11 @@ void report(const YAML::Exception& fault, const Source& source, const Builder& b
     const bool in_brackets = bracket == '[' || bracket == '{';
     if (at_end && in_brackets) {
         out.add("L0101", opened, fmt::format("this '{}' is never closed", bracket));
+        return;
+    }
+    const std::size_t glued = glued_colon(source, offset);
+    if (fault.msg == YAML::ErrorMsg::MAP_VALUE && glued != std::string_view::npos) {
+        out.add("L0101", source.mark(glued), "a blank is missing after ':'");
         return;
     }
     const Translation* known = translation_of(fault.msg);

@@ -41,6 +41,8 @@ struct Node {
     bool is_scalar() const { return kind == Kind::scalar; }
     bool is_map() const { return kind == Kind::map; }
     bool is_sequence() const { return kind == Kind::sequence; }
+    /// `$name` of no parameter: reported, and no further mistake is looked for here.
+    bool is_unknown_parameter() const { return !parameter.empty() && text == "$" + parameter; }
     bool is_empty() const { return is_scalar() && text.empty() && !quoted; }
     const Node* find(std::string_view key) const;  ///< map's value, or null
     std::vector<std::string> keys() const;

@@ -37,7 +37,8 @@ void move(const Copy& copy) {
             break;
         }
         case Copy::Kind::integer_to_real: {
-            const auto value = static_cast<double>(read<std::int64_t>(copy.source));
+            const auto whole = static_cast<double>(read<std::int64_t>(copy.source));
+            const double value = whole * copy.factor / copy.divisor;
             std::memcpy(copy.target, &value, 8);
             break;
         }

@@ -19,7 +19,7 @@ struct Copy {
         word,             ///< 8 bytes
         boolean,          ///< 1 byte
         negated,          ///< boolean, inverted (`NOT x.q`)
-        integer_to_real,  ///< widening
+        integer_to_real,  ///< widening, then as scaled
         scaled,           ///< real from another unit of the dimension: times factor, over divisor
     };
 

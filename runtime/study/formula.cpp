@@ -1,18 +1,20 @@
 #include "runtime/study/formula.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
+#include <fmt/format.h>
+
 namespace lineshaft {
 
 namespace {
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
 bool is_name_start(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
@@ -25,7 +27,8 @@ class Evaluator {
     FormulaResult result() {
         result_.value = sum();
         skip_blanks();
-        if (at_ < text_.size()) fail(fmt::format("'{}' is not expected here", text_.substr(at_, 1)));
+        if (at_ < text_.size())
+            fail(fmt::format("'{}' is not expected here", text_.substr(at_, 1)));
         return result_;
     }
 
@@ -35,18 +38,24 @@ class Evaluator {
     double sum() {
         double value = product();
         while (true) {
-            if (take('+')) value += product();
-            else if (take('-')) value -= product();
-            else return value;
+            if (take('+'))
+                value += product();
+            else if (take('-'))
+                value -= product();
+            else
+                return value;
         }
     }
 
     double product() {
         double value = factor();
         while (true) {
-            if (take('*')) value *= factor();
-            else if (take('/')) value /= factor();
-            else return value;
+            if (take('*'))
+                value *= factor();
+            else if (take('/'))
+                value /= factor();
+            else
+                return value;
         }
     }
 
@@ -90,6 +99,7 @@ class Evaluator {
         const auto value = lookup_(word);
         if (!value) {
             at_ = start;
+            if (!failed()) result_.name = word;
             fail(fmt::format("unknown name '{}'", word));
         }
         return value.value_or(0);
@@ -108,7 +118,9 @@ class Evaluator {
             return std::accumulate(arguments.begin(), arguments.end(), 0.0) /
                    static_cast<double>(arguments.size());
         at_ = start;
-        fail(fmt::format("unknown function '{}' of {}", function, arguments.size()));
+        fail(fmt::format(
+            "no function '{}' of {}; known: abs(x), sqrt(x), min, max and mean", function,
+            arguments.size() == 1 ? "one value" : fmt::format("{} values", arguments.size())));
         return 0;
     }
 

@@ -13,6 +13,7 @@ using Lookup = std::function<std::optional<double>(std::string_view name)>;
 struct FormulaResult {
     double value = 0;
     std::string error;         ///< empty when all is well
+    std::string name;          ///< that is unknown, if that is the error
     std::size_t position = 0;  ///< of the error in the text, from 0
 };
 

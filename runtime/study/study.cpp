@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include <fmt/format.h>
@@ -17,6 +18,9 @@ namespace lineshaft {
 
 namespace {
 
+/// No further case is checked: a grid may make a million of one mistake.
+constexpr std::size_t enough_mistakes = 100;
+
 /// A comparison whose numbers wait for the signal's unit.
 struct PendingComparison {
     Node signal;
@@ -24,6 +28,7 @@ struct PendingComparison {
 };
 
 struct PendingCase {
+    Node place;
     StudyCase made;
     std::vector<PendingComparison> comparisons;
 };
@@ -40,6 +45,8 @@ class StudyReader {
     void notes(const Node& node);
     void cases(const Node& node);
     void one_case(const Node& node);
+    std::string name(const Node& node);
+    std::int64_t repeat(const Node& node) const;
     void settings(const Node& node, std::vector<Setting>& into) const;
     void comparisons(const Node& node, PendingCase& pending) const;
     void grid(const Node& node, const PendingCase& common);
@@ -60,28 +67,26 @@ class StudyReader {
     std::vector<PendingComparison> common_comparisons_;
     std::int64_t common_repeat_ = 1;
     std::int64_t runs_ = 0;
-    bool checkable_ = true;
+    bool checkable_ = true;    ///< there is a program, and the runs are not too many
+    bool cases_known_ = true;  ///< every case so far is without mistakes
+    std::set<std::string> names_;
 };
 
 Study StudyReader::read(std::shared_ptr<const SourceFile> file) {
     study_.file = file;
     study_.include_dirs = options_.include_dirs;
     auto root = parse_yaml(file, read_.diagnostics());
-    if (!root) return std::move(study_);
+    if (!root || !check_kind(read_, *root, "lineshaft_study")) return std::move(study_);
     read_.only_keys(*root, "a study",
                     {"lineshaft_study", "title", "program", "notes", "set", "repeat", "compare",
                      "cases", "claims"});
-    const Node* version = root->find("lineshaft_study");
-    if (!version || version->text != "1")
-        read_.fail("L0211", version ? *version : *root, "this is no study that is known here",
-                   "a study begins with 'lineshaft_study: 1'");
     if (const Node* n = root->find("title"); n && read_.expect_scalar(*n, "the title"))
         study_.title = n->text;
     program(*root);
     if (const Node* n = root->find("notes")) notes(*n);
     if (const Node* n = root->find("set")) settings(*n, common_);
     common_.insert(common_.end(), options_.settings.begin(), options_.settings.end());
-    if (const Node* n = root->find("repeat")) common_repeat_ = read_.integer(*n).value_or(1);
+    if (const Node* n = root->find("repeat")) common_repeat_ = repeat(*n);
     if (const Node* n = root->find("compare")) {
         PendingCase common;
         comparisons(*n, common);
@@ -114,6 +119,7 @@ void StudyReader::notes(const Node& node) {
 
 void StudyReader::cases(const Node& node) {
     if (!read_.expect_sequence(node, "'cases'")) return;
+    if (node.items.empty()) read_.fail("L0202", node, "'cases' has no case");
     for (const Node& item : node.items)
         if (read_.expect_map(item, "a case")) one_case(item);
 }
@@ -123,18 +129,29 @@ void StudyReader::one_case(const Node& node) {
     PendingCase pending;
     pending.made.settings = common_;
     pending.made.repeat = common_repeat_;
+    pending.place.mark = node.mark;
     if (const Node* n = node.find("name"); n && read_.identifier(*n, "a case"))
-        pending.made.name = n->text;
+        pending.made.name = name(*n);
     if (const Node* n = node.find("set")) settings(*n, pending.made.settings);
-    if (const Node* n = node.find("repeat")) pending.made.repeat = read_.integer(*n).value_or(1);
-    if (pending.made.repeat < 1) {
-        read_.fail("L0305", node, "a case runs at least once");
-        return;
-    }
+    if (const Node* n = node.find("repeat")) pending.made.repeat = repeat(*n);
     pending.comparisons = common_comparisons_;
     if (const Node* n = node.find("compare")) comparisons(*n, pending);
     if (const Node* n = node.find("grid")) return grid(*n, pending);
     check(pending);
+}
+
+std::string StudyReader::name(const Node& node) {
+    const auto [it, added] = names_.insert(node.text);
+    if (!added) read_.fail("L0212", node, fmt::format("a case before has the name '{}'", *it));
+    cases_known_ = cases_known_ && added;
+    return *it;
+}
+
+std::int64_t StudyReader::repeat(const Node& node) const {
+    const std::int64_t times = read_.integer(node).value_or(1);
+    if (times >= 1) return times;
+    read_.fail("L0305", node, fmt::format("'{}' is below 1: a case runs at least once", node.text));
+    return 1;
 }
 
 void StudyReader::settings(const Node& node, std::vector<Setting>& into) const {
@@ -142,7 +159,7 @@ void StudyReader::settings(const Node& node, std::vector<Setting>& into) const {
     for (const auto& [key, value] : node.entries) {
         if (!read_.expect_scalar(value, "a setting")) continue;
         std::erase_if(into, [&name = key.text](const Setting& s) { return s.name == name; });
-        into.push_back({key.text, value.text, key.mark});
+        into.push_back({key.text, value.text, key.mark, value.mark});
     }
 }
 
@@ -169,10 +186,13 @@ void StudyReader::grid(const Node& node, const PendingCase& common) {
         for (const Node& value : values.items)
             if (!read_.expect_scalar(value, "a value of a grid")) return;
         const auto count = static_cast<std::int64_t>(values.items.size());
-        if (count > 0 && product > most_runs / count)
+        if (count == 0)
+            return read_.fail("L0202", values,
+                              fmt::format("the grid has no value of '{}'", name.text));
+        if (product > most_runs / count)
             return read_.fail("L0601", name,
-                              fmt::format("the grid makes at least {} runs, more than {}",
-                                          product * count, most_runs));
+                              fmt::format("the grid makes {} runs or more", product * count),
+                              fmt::format("a study makes at most {}", most_runs));
         product *= count;
     }
     for (std::int64_t i = 0; i < product / common.made.repeat; ++i) {
@@ -183,7 +203,8 @@ void StudyReader::grid(const Node& node, const PendingCase& common) {
             const auto& values = axis->second.items;
             const auto count = static_cast<std::int64_t>(values.size());
             const Node& value = values[static_cast<std::size_t>(rest % count)];
-            chosen.insert(chosen.begin(), {axis->first.text, value.text, axis->first.mark});
+            chosen.insert(chosen.begin(),
+                          {axis->first.text, value.text, axis->first.mark, value.mark});
             rest /= count;
         }
         for (const Setting& s : chosen)
@@ -200,16 +221,18 @@ void StudyReader::check(PendingCase& pending) {
     runs_ += pending.made.repeat;
     if (runs_ > most_runs) {
         if (checkable_)
-            read_.diagnostics().add("L0601", {},
-                                    fmt::format("the study makes more than {} runs", most_runs));
+            read_.fail("L0601", pending.place,
+                       fmt::format("with this case the study makes {} runs or more", runs_),
+                       fmt::format("a study makes at most {}", most_runs));
         checkable_ = false;
     }
-    if (!checkable_) return;
+    if (!checkable_ || read_.diagnostics().list().size() > enough_mistakes) return;
     LoadOptions options{.settings = pending.made.settings, .include_dirs = options_.include_dirs};
     const std::size_t before = read_.diagnostics().list().size();
     const Program program = read_program(program_file_, options, read_.diagnostics());
     const Linked linked = link(program, catalog_, read_.diagnostics());
-    if (read_.diagnostics().list().size() > before) return;
+    cases_known_ = cases_known_ && read_.diagnostics().list().size() == before;
+    if (!cases_known_) return;
     for (const PendingComparison& comparison : pending.comparisons)
         if (auto made = compare(comparison, linked.machine))
             pending.made.comparisons.push_back(std::move(*made));
@@ -240,10 +263,10 @@ Bounds StudyReader::bounds(const Node& map, const Unit& unit) const {
     if (const Node* n = map.find("at_most")) bounds.at_most = read_.real(*n, unit);
     const Node* n = map.find("within");
     if (!n) return bounds;
-    if (!bounds.paper) {
-        read_.fail("L0202", *n, "'within' without 'paper' has nothing to be within of");
-        return bounds;
-    }
+    if (!map.find("paper"))
+        read_.fail("L0202", *n, "'within' is for the paper's value, and there is none",
+                   "write paper: VALUE beside it");
+    if (!bounds.paper) return bounds;
     if (n->is_sequence())
         for (const Node& item : n->items) within(item, unit, bounds);
     else
@@ -305,13 +328,16 @@ void StudyReader::check_formula(const Node& formula) const {
     const auto result = evaluate(formula.text, [&](std::string_view name) {
         return std::ranges::find(known, name) == known.end() ? std::nullopt : std::optional(1.0);
     });
-    if (result.error.empty()) return;
+    const bool misspelt = !result.name.empty();
+    if (result.error.empty() || (misspelt && !(cases_known_ && checkable_))) return;
     Node place = formula;
-    const auto end = formula.text.find_first_of(" )+-*/,", result.position);
-    const std::string word = formula.text.substr(result.position, end - result.position);
-    place.mark.column += static_cast<int>(result.position) + (formula.quoted ? 1 : 0);
-    place.mark.length = static_cast<int>(std::max<std::size_t>(1, word.size()));
-    read_.fail("L0602", place, result.error, word.empty() ? "" : suggest(word, known));
+    const int quote = formula.quoted ? 1 : 0;
+    const int length = static_cast<int>(formula.text.size());
+    if (formula.mark.length == length + 2 * quote) {
+        place.mark.column += static_cast<int>(result.position) + quote;
+        place.mark.length = std::max(1, static_cast<int>(result.name.size()));
+    }
+    read_.fail("L0602", place, result.error, misspelt ? suggest(result.name, known) : "");
 }
 
 /// At the beginning of a line.

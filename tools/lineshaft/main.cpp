@@ -1,18 +1,30 @@
+#include <algorithm>
+#include <csignal>
+
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
-
-#include <csignal>
 
 #include "runtime/version.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace {
 
-void on_signal(int) { lineshaft::interrupt_requested = true; }
+void on_signal(int) {
+    lineshaft::interrupt_requested = true;
+}
 
 void set_up_messages() {
     spdlog::set_default_logger(spdlog::stderr_color_st("lineshaft"));
     spdlog::set_pattern("%n: %^%l%$: %v");
+}
+
+/// What is wrong with `word` as a command; empty when nothing is.
+std::string unknown_command(const CLI::App& app, const std::string& word) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    if (std::ranges::find(names, word) != names.end()) return {};
+    return fmt::format("unknown command '{}'; {}", word, lineshaft::suggest(word, names));
 }
 
 }  // namespace
@@ -24,8 +36,9 @@ int main(int argc, char** argv) {
     std::signal(SIGTERM, on_signal);
     std::signal(SIGPIPE, SIG_IGN);
 
-    CLI::App app{"A PLC soft-runtime for motion control: runs YAML programs scan by scan in virtual time.",
-                 "lineshaft"};
+    CLI::App app{
+        "A PLC soft-runtime for motion control: runs YAML programs scan by scan in virtual time.",
+        "lineshaft"};
     app.set_version_flag("--version", std::string("lineshaft ") + version());
     app.require_subcommand(1);
     app.footer(
@@ -35,6 +48,15 @@ int main(int argc, char** argv) {
     for (const AddCommand add :
          {add_run, add_check, add_test, add_study, add_blocks, add_schema, add_explain})
         add(app, result);
+    if (argc > 1 && argv[1][0] != '-') {
+        if (const std::string message = unknown_command(app, argv[1]); !message.empty()) {
+            spdlog::error("{}", message);
+            return static_cast<int>(Exit::wrong);
+        }
+    }
+    app.failure_message([](const CLI::App*, const CLI::Error& error) {
+        return fmt::format("lineshaft: error: {}\nlineshaft --help says more.\n", error.what());
+    });
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
