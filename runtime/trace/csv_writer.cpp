@@ -1,9 +1,5 @@
 #include "runtime/trace/csv_writer.hpp"
 
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <array>
 #include <bit>
 #include <cerrno>
@@ -11,7 +7,11 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "runtime/version.hpp"
 
@@ -45,9 +45,12 @@ void flush_folder(const std::string& path) {
 
 std::string csvw_type(Type type) {
     switch (type) {
-        case Type::boolean: return "boolean";
-        case Type::real: return "double";
-        default: return "integer";
+        case Type::boolean:
+            return "boolean";
+        case Type::real:
+            return "double";
+        default:
+            return "integer";
     }
 }
 
@@ -68,7 +71,8 @@ std::string text_hash(std::string_view text) {
 }
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), part_(path_ + ".part") {
-    if (std::filesystem::is_directory(path_)) {
+    std::error_code unknown;  // opening tells it
+    if (std::filesystem::is_directory(path_, unknown)) {
         error_ = fmt::format("cannot write '{}': it is a directory", path_);
         return;
     }
@@ -104,13 +108,12 @@ CsvWriter::CsvWriter(std::string path, const TraceSetup& setup)
     std::string header = "time,scan";
     for (const Signal& signal : signals_) header += "," + signal.name;
     file_.write(header + "\n");
+    row_.resize((2 + signals_.size()) * longest_number);
 }
 
 void CsvWriter::rows(const std::uint64_t* words, std::size_t rows) {
-    text_.resize(rows * (2 + signals_.size()) * longest_number);
-    char* end = text_.data();
     for (std::size_t row = 0; row < rows; ++row) {
-        end = append_real(end, seconds(static_cast<std::int64_t>(*words++)));
+        char* end = append_real(row_.data(), seconds(static_cast<std::int64_t>(*words++)));
         *end++ = ',';
         end = append_integer(end, static_cast<std::int64_t>(*words++));
         for (const Signal& signal : signals_) {
@@ -118,9 +121,9 @@ void CsvWriter::rows(const std::uint64_t* words, std::size_t rows) {
             end = append(end, signal.type, *words++);
         }
         *end++ = '\n';
+        file_.write({row_.data(), static_cast<std::size_t>(end - row_.data())});
     }
     row_count_ += static_cast<std::int64_t>(rows);
-    file_.write({text_.data(), static_cast<std::size_t>(end - text_.data())});
 }
 
 std::string CsvWriter::finish(const std::string& title, const std::string& program_text) {
@@ -129,14 +132,13 @@ std::string CsvWriter::finish(const std::string& title, const std::string& progr
     columns.push_back({{"titles", "time"}, {"datatype", "double"}, {"unit", "s"}});
     columns.push_back({{"titles", "scan"}, {"datatype", "integer"}});
     for (const Signal& signal : signals_) columns.push_back(csvw_column(signal));
-    const nlohmann::ordered_json metadata{
-        {"@context", "http://www.w3.org/ns/csvw"},
-        {"url", std::filesystem::path(path_).filename().string()},
-        {"dc:title", title},
-        {"lineshaft:version", version()},
-        {"lineshaft:program", text_hash(program_text)},
-        {"lineshaft:rows", row_count_},
-        {"tableSchema", {{"columns", columns}}}};
+    const nlohmann::ordered_json metadata{{"@context", "http://www.w3.org/ns/csvw"},
+                                          {"url", std::filesystem::path(path_).filename().string()},
+                                          {"dc:title", title},
+                                          {"lineshaft:version", version()},
+                                          {"lineshaft:program", text_hash(program_text)},
+                                          {"lineshaft:rows", row_count_},
+                                          {"tableSchema", {{"columns", columns}}}};
     OutputFile sidecar(path_ + "-metadata.json");
     sidecar.write(metadata.dump(2) + "\n");
     sidecar.commit();

@@ -50,7 +50,7 @@ class CsvWriter : public TraceSink {
     OutputFile file_;
     std::string path_;
     std::vector<Signal> signals_;
-    std::string text_;
+    std::string row_;  ///< room for one row
     std::int64_t row_count_ = 0;
 };
 
