@@ -8,13 +8,13 @@
 
 namespace lineshaft {
 
-/// Why an axis set `error`. It holds its last good outputs and goes on when its inputs are good
-/// again.
+/// Why an axis set `error`. With inputs that it cannot read it holds its last good outputs and goes
+/// on when they are good again; a motion that it cannot plan is refused and the one before goes on.
 enum class AxisError : std::int64_t {
     none,
-    not_finite,          ///< an input is NaN or infinite
+    not_finite,          ///< an input is NaN or infinite, or what it asks for is
     limit_not_positive,  ///< velocity, acceleration or jerk limit is zero or negative
-    not_standing,        ///< positioning asked for while the axis follows a moving master
+    not_standing,        ///< positioning asked for while the axis is coupled or moves
 };
 
 inline constexpr std::string_view axis_error_names[] = {"none", "not_finite", "limit_not_positive",

@@ -43,28 +43,25 @@ std::span<const Field> GearAxis::fields() {
 
 void GearAxis::scan(const Scan& now) {
     error_id = check();
-    error = error_id != AxisError::none;
-    if (error) return;
-    if (first_scan) {
-        first_scan = false;
-        position = start_position;
-        job_ratio = ratio;
-        anchor(start_position, master_position);
+    if (error_id == AxisError::none) {
+        error_id = advance(now.time);
+        const AxisError refused = command(now.time);
+        if (error_id == AxisError::none) error_id = refused;
+        in_gear = phase == Phase::synchronous;
+        moving = phase == Phase::positioning;
     }
-    advance(now.time);
-    if (rising_edge(home, last_home) && phase == Phase::synchronous)
+    error = error_id != AxisError::none;
+}
+
+AxisError GearAxis::command(std::int64_t time) {
+    if (rising_edge(home, last_home) && phase == Phase::synchronous) {
         anchor(home_position, master_position);
-    if (rising_edge(move, last_move))
-        error_id = begin_positioning(now.time);
-    else if (phase != Phase::positioning && ratio != job_ratio) {
-        job_ratio = ratio;
-        job_acceleration = acceleration_limit;
-        job_jerk = jerk_limit;
-        error_id = begin_transition(now.time);
+        position = home_position;
     }
-    error = error_id != AxisError::none;
-    in_gear = phase == Phase::synchronous;
-    moving = phase == Phase::positioning;
+    AxisError result = AxisError::none;
+    if (phase != Phase::positioning && ratio != job.ratio) result = begin_job(time);
+    if (rising_edge(move, last_move)) result = begin_positioning(time);
+    return result;
 }
 
 AxisError GearAxis::check() const {
@@ -76,46 +73,63 @@ AxisError GearAxis::check() const {
                : AxisError::limit_not_positive;
 }
 
-void GearAxis::advance(std::int64_t time) {
+AxisError GearAxis::advance(std::int64_t time) {
+    if (first_scan) {
+        first_scan = false;
+        position = start_position;
+        anchor(start_position, master_position);
+        return AxisError::none;
+    }
     if (phase == Phase::positioning) {
-        set(positioning.at(time));
+        const MotionState s = positioning.at(time);
         if (positioning.finished(time)) anchor(positioning.target, master_position);
-        return;
+        return set(s);
     }
     if (phase == Phase::transition) {
         const double t = seconds(time - ramp_start);
-        MotionState s = ramp.at(t);
-        s.position += ramp_position;
-        set(s);
-        if (t + one_nanosecond >= ramp.duration)
-            anchor(ramp_position + ramp.end.position,
-                   master_position - master_velocity * (t - ramp.duration));
-        else if (job_ratio * master_velocity != ramp_goal)
-            error_id = begin_transition(time);
+        if (t + one_nanosecond < ramp.duration) return ride_ramp(time, t);
+        const double master_then = master_position - master_velocity * (t - ramp.duration);
+        if (!std::isfinite(master_then)) return AxisError::not_finite;
+        anchor(ramp_position + ramp.end.position, master_then);
     }
-    if (phase == Phase::synchronous)
-        set({anchor_position + job_ratio * (master_position - anchor_master),
-             job_ratio * master_velocity, 0, 0});
+    return set({anchor_position + job.ratio * (master_position - anchor_master),
+                job.ratio * master_velocity, 0, 0});
+}
+
+AxisError GearAxis::ride_ramp(std::int64_t time, double t) {
+    MotionState s = ramp.at(t);
+    s.position += ramp_position;
+    const AxisError result = set(s);
+    if (result != AxisError::none || job.ratio * master_velocity == ramp_goal) return result;
+    return begin_transition(time);
+}
+
+AxisError GearAxis::begin_job(std::int64_t time) {
+    const Job last = job;
+    job = {ratio, acceleration_limit, jerk_limit};
+    const AxisError result = begin_transition(time);
+    if (result != AxisError::none) job = last;
+    return result;
 }
 
 /// From the state set by advance() to the job's ratio.
 AxisError GearAxis::begin_transition(std::int64_t time) {
-    ramp_goal = job_ratio * master_velocity;
-    if (velocity == ramp_goal && acceleration == 0) {
+    const double goal = job.ratio * master_velocity;
+    if (velocity == goal && acceleration == 0) {
         anchor(position, master_position);
         return AxisError::none;
     }
-    const PlanResult result =
-        ramp.plan(velocity, acceleration, ramp_goal, job_acceleration, job_jerk);
+    const PlanResult result = ramp.plan(velocity, acceleration, goal, job.acceleration, job.jerk);
     if (result != PlanResult::ok) return axis_error(result);
     ramp_start = time;
     ramp_position = position;
+    ramp_goal = goal;
     phase = Phase::transition;
     return AxisError::none;
 }
 
 AxisError GearAxis::begin_positioning(std::int64_t time) {
-    if (ratio != 0 || job_ratio != 0 || velocity != 0) return AxisError::not_standing;
+    if (job.ratio != 0 || velocity != 0) return AxisError::not_standing;
     const PlanResult result =
         positioning.begin(position, target, move_velocity, acceleration_limit, jerk_limit, time);
     if (result == PlanResult::ok) phase = Phase::positioning;
@@ -126,13 +140,15 @@ void GearAxis::anchor(double at_position, double at_master) {
     phase = Phase::synchronous;
     anchor_position = at_position;
     anchor_master = at_master;
-    if (job_ratio == 0) set({at_position, 0, 0, 0});
 }
 
-void GearAxis::set(const MotionState& state) {
+/// What no double can hold is not set.
+AxisError GearAxis::set(const MotionState& state) {
+    if (!all_finite(state.position, state.velocity)) return AxisError::not_finite;
     position = state.position;
     velocity = state.velocity;
     acceleration = state.acceleration;
+    return AxisError::none;
 }
 
 }  // namespace lineshaft

@@ -43,7 +43,10 @@ struct GearAxis {
     enum class Phase : std::int64_t { synchronous, transition, positioning };
     Phase phase = Phase::synchronous;
     bool first_scan = true, last_home = false, last_move = false;
-    double job_ratio = 0, job_acceleration = 100, job_jerk = 5e4;
+    struct Job {
+        double ratio = 0, acceleration = 100, jerk = 5e4;
+    };
+    Job job;
     double anchor_position = 0, anchor_master = 0;
     std::int64_t ramp_start = 0;
     double ramp_position = 0, ramp_goal = 0;
@@ -58,11 +61,14 @@ struct GearAxis {
 
   private:
     AxisError check() const;
-    void advance(std::int64_t time);
+    AxisError advance(std::int64_t time);
+    AxisError ride_ramp(std::int64_t time, double t);
+    AxisError command(std::int64_t time);
+    AxisError begin_job(std::int64_t time);
     AxisError begin_transition(std::int64_t time);
     AxisError begin_positioning(std::int64_t time);
     void anchor(double at_position, double at_master);
-    void set(const MotionState& state);
+    AxisError set(const MotionState& state);
 };
 
 }  // namespace lineshaft

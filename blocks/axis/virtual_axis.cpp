@@ -43,18 +43,21 @@ void VirtualAxis::scan(const Scan& now) {
         begin_constant(now.time, start_position, 0);
     }
     error_id = check();
+    if (error_id == AxisError::none) {
+        advance(now.time);
+        error_id = command(now.time);
+        const AxisError reached = advance(now.time);
+        if (error_id == AxisError::none) error_id = reached;
+    }
     error = error_id != AxisError::none;
-    if (error) return;
-    advance(now.time);
-    if (rising_edge(home, last_home) && !moving) begin_constant(now.time, home_position, 0);
+}
+
+AxisError VirtualAxis::command(std::int64_t time) {
+    if (rising_edge(home, last_home) && !moving) begin_constant(time, home_position, 0);
     const bool edge = rising_edge(execute, last_execute);
-    if (!enable)
-        follow_velocity(now.time, 0);
-    else if (motion == Motion::velocity)
-        follow_velocity(now.time, wanted_velocity);
-    else if (edge)
-        begin_move(now.time);
-    advance(now.time);
+    if (!enable) return follow_velocity(time, 0);
+    if (motion == Motion::velocity) return follow_velocity(time, wanted_velocity);
+    return edge ? begin_move(time) : AxisError::none;
 }
 
 AxisError VirtualAxis::check() const {
@@ -66,36 +69,26 @@ AxisError VirtualAxis::check() const {
                : AxisError::limit_not_positive;
 }
 
-void VirtualAxis::advance(std::int64_t time) {
+AxisError VirtualAxis::advance(std::int64_t time) {
     const double t = seconds(time - phase_start);
     switch (phase) {
-        case Phase::constant:
-            set({phase_position + phase_velocity * t, phase_velocity, 0, 0});
-            break;
         case Phase::ramp: {
             MotionState s = ramp.at(t);
             s.position += phase_position;
-            set(s);
-            break;
+            return set(s);
         }
-        case Phase::positioning: {
-            set(move.at(time));
-            if (!move.finished(time)) break;
-            begin_constant(time, target, 0);
-            done = true;
-            break;
-        }
+        case Phase::positioning:
+            if (!move.finished(time)) return set(move.at(time));
+            return end_move(time);
         case Phase::immediate_move: {
             const double way = move.target - phase_position;
-            if (phase_velocity * t / way < 1) {
-                set({phase_position + phase_velocity * t, phase_velocity, 0, 0});
-                break;
-            }
-            begin_constant(time, move.target, 0);
-            done = true;
+            if (!(phase_velocity * t / way < 1)) return end_move(time);
             break;
         }
+        case Phase::constant:
+            break;
     }
+    return set({phase_position + phase_velocity * t, phase_velocity, 0, 0});
 }
 
 void VirtualAxis::begin_constant(std::int64_t time, double from, double at_velocity) {
@@ -106,42 +99,56 @@ void VirtualAxis::begin_constant(std::int64_t time, double from, double at_veloc
     set({from, at_velocity, 0, 0});
 }
 
-void VirtualAxis::follow_velocity(std::int64_t time, double goal) {
+AxisError VirtualAxis::follow_velocity(std::int64_t time, double goal) {
     const double held = phase == Phase::ramp ? ramp_goal : phase_velocity;
     const bool holds = phase == Phase::constant || phase == Phase::ramp;
-    if (holds && held == goal) return;
-    if (immediate) return begin_constant(time, position, goal);
-    error_id = axis_error(ramp.plan(velocity, acceleration, goal, acceleration_limit, jerk_limit));
-    error = error_id != AxisError::none;
-    if (error) return;
+    if (holds && held == goal) return AxisError::none;
+    if (immediate) {
+        begin_constant(time, position, goal);
+        return AxisError::none;
+    }
+    const PlanResult result =
+        ramp.plan(velocity, acceleration, goal, acceleration_limit, jerk_limit);
+    if (result != PlanResult::ok) return axis_error(result);
     phase = Phase::ramp;
     phase_start = time;
     phase_position = position;
     ramp_goal = goal;
+    return AxisError::none;
 }
 
-void VirtualAxis::begin_move(std::int64_t time) {
-    done = false;
-    if (immediate) {
-        if (target == position) return void(done = true);
+AxisError VirtualAxis::begin_move(std::int64_t time) {
+    if (!immediate) {
+        if (moving) return AxisError::not_standing;
+        const PlanResult result =
+            move.begin(position, target, wanted_velocity, acceleration_limit, jerk_limit, time);
+        if (result != PlanResult::ok) return axis_error(result);
+        phase = Phase::positioning;
+    } else {
         move.target = target;
         phase = Phase::immediate_move;
         phase_start = time;
         phase_position = position;
         phase_velocity = target < position ? -wanted_velocity : wanted_velocity;
-        return;
     }
-    error_id = axis_error(
-        move.begin(position, target, wanted_velocity, acceleration_limit, jerk_limit, time));
-    error = error_id != AxisError::none;
-    if (!error) phase = Phase::positioning;
+    done = false;
+    return AxisError::none;
 }
 
-void VirtualAxis::set(const MotionState& state) {
+AxisError VirtualAxis::end_move(std::int64_t time) {
+    begin_constant(time, move.target, 0);
+    done = true;
+    return AxisError::none;
+}
+
+/// What no double can hold is not set.
+AxisError VirtualAxis::set(const MotionState& state) {
+    if (!all_finite(state.position, state.velocity)) return AxisError::not_finite;
     position = state.position;
     velocity = state.velocity;
     acceleration = state.acceleration;
     moving = state.velocity != 0 || state.acceleration != 0;
+    return AxisError::none;
 }
 
 }  // namespace lineshaft

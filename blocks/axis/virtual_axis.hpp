@@ -13,11 +13,11 @@ namespace lineshaft {
 ///
 /// `motion: velocity` follows the input `velocity` while `enable` is true (PLCopen
 /// MC_MoveVelocity). `motion: absolute` moves to `target` at each rising edge of `execute`
-/// (MC_MoveAbsolute); velocity, acceleration and jerk are taken with the edge. Without `enable` the
-/// axis ramps to standstill (MC_Halt). Velocity changes are S-curves under `acceleration` and
-/// `jerk`; with `immediate` they take no time, as the set-point of a virtual axis may. Positions
-/// come from the closed form of each phase, not from summing up: they do not drift. `home` sets the
-/// position of a standing axis (MC_Home, direct).
+/// (MC_MoveAbsolute); target and limits are taken with the edge, by S-curve from standstill only.
+/// Without `enable` the axis ramps to standstill (MC_Halt). Velocity changes are S-curves under
+/// `acceleration` and `jerk`; with `immediate` they take no time, as the set-point of a virtual
+/// axis may. Positions come from the closed form of each phase, not from summing up: they do not
+/// drift. `home` sets the position of a standing axis (MC_Home, direct).
 struct VirtualAxis {
     enum class Motion : std::int64_t { velocity, absolute };
 
@@ -54,11 +54,13 @@ struct VirtualAxis {
 
   private:
     AxisError check() const;
-    void advance(std::int64_t time);
+    AxisError advance(std::int64_t time);
+    AxisError command(std::int64_t time);
     void begin_constant(std::int64_t time, double from, double at_velocity);
-    void follow_velocity(std::int64_t time, double goal);
-    void begin_move(std::int64_t time);
-    void set(const MotionState& state);
+    AxisError follow_velocity(std::int64_t time, double goal);
+    AxisError begin_move(std::int64_t time);
+    AxisError end_move(std::int64_t time);
+    AxisError set(const MotionState& state);
 };
 
 }  // namespace lineshaft

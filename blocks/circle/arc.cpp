@@ -7,13 +7,20 @@
 
 namespace lineshaft {
 
+namespace {
+
+constexpr double most_steps = 1e9;
+
+}  // namespace
+
 Arc Arc::between(double radius, double start, double end, double step) {
     Arc arc;
     arc.radius = radius;
     arc.start = start;
     arc.direction = end < start ? -1 : 1;
     arc.sweep = std::abs(end - start);
-    arc.steps = static_cast<std::int64_t>(std::max(1.0, std::round(arc.sweep * radius / step)));
+    const double wanted = std::round(arc.sweep * radius / step);
+    arc.steps = static_cast<std::int64_t>(std::clamp(wanted, 1.0, most_steps));
     return arc;
 }
 

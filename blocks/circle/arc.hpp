@@ -16,7 +16,7 @@ struct Arc {
     double start = 0;        ///< phi of the start point [rad]
     double direction = 1;    ///< +1 clockwise, -1 counter-clockwise
     double sweep = 0;        ///< theta_n [rad], > 0
-    std::int64_t steps = 1;  ///< n = round(sweep R / step), at least 1
+    std::int64_t steps = 1;  ///< n = round(sweep R / step), 1 .. 10^9
 
     /// From `start` to `end` [rad]; clockwise when end > start. step: wanted length of a step [mm].
     static Arc between(double radius, double start, double end, double step);

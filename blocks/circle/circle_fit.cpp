@@ -7,6 +7,12 @@
 
 namespace lineshaft {
 
+namespace {
+
+constexpr double farthest = 1e9;  // [radii] of a sample: sums of squares of squares stay numbers
+
+}  // namespace
+
 std::span<const Field> CircleFit::fields() {
     using F = CircleFit;
     static const Field table[] = {
@@ -31,13 +37,13 @@ std::span<const Field> CircleFit::fields() {
 }
 
 void CircleFit::scan(const Scan&) {
-    const bool rising = enable && !last_enable, falling = !enable && last_enable;
-    last_enable = enable;
-    if (!std::isfinite(x) || !std::isfinite(y)) return;
-    if (rising) begin();
-    if (enable) add();
-    if (enable || falling)
+    const bool sample =
+        std::abs(x - x0) <= farthest * radius && std::abs(y - y0) <= farthest * radius;
+    if (sample && enable && !taking) begin();
+    if (sample && enable) add();
+    if (sample && (enable || taking))
         closing_gap = std::sqrt((x - first_x) * (x - first_x) + (y - first_y) * (y - first_y));
+    taking = enable && (sample || taking);
 }
 
 void CircleFit::begin() {
@@ -56,7 +62,7 @@ void CircleFit::add() {
     const double deviation = std::abs(std::sqrt(w) - 1) * radius;
     deviation_sum += deviation;
     mean_deviation = deviation_sum / static_cast<double>(samples);
-    if (deviation > largest_deviation) {
+    if (samples == 1 || deviation > largest_deviation) {
         largest_deviation = deviation;
         worst_x = x;
         worst_y = y;

@@ -13,7 +13,8 @@ namespace lineshaft {
 /// Centre by algebraic least squares, running: x^2 + y^2 = 2 xc x + 2 yc y + c (Wei et al. 2025,
 /// ref. [11]); before three samples that span a circle the wanted centre stands. offset D =
 /// |estimated - wanted centre| (19). Deviation of a sample: | |P - wanted centre| - R |;
-/// mean_deviation is its mean, the paper's MSE (20).
+/// mean_deviation is its mean, the paper's MSE (20). A sample that is no number, or farther than
+/// 10^9 radii away, is left out.
 struct CircleFit {
     double radius = 20, x0 = 0, y0 = 0;
 
@@ -29,7 +30,7 @@ struct CircleFit {
     /// Sums over samples, relative to the wanted centre, in radii: u u, u v, v v, u, v, u w, v w,
     /// w; w = u u + v v.
     std::array<double, 8> sums{};
-    bool last_enable = false;
+    bool taking = false;  ///< enabled, and the first sample has been taken
 
     static constexpr std::string_view type = "circle_fit";
     static constexpr std::string_view doc = "centre, offset and deviations of a circle's samples";

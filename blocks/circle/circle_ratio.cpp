@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view method_names[] = {"immediate", "early", "centred", "balanced", "ramp"};
 constexpr std::string_view time_names[] = {"paper", "paper_whole_clocks", "exact"};
 constexpr std::string_view state_names[] = {"idle", "approach", "home", "engage", "run", "done"};
-constexpr std::string_view error_names[] = {"none", "not_finite", "arc_is_empty"};
+constexpr std::string_view error_names[] = {"none", "not_finite", "arc_is_empty", "steps_too_fast"};
 
 constexpr double in_position = 1e-9;  // [mm]
 constexpr int clocks_to_settle = 3;   // until a job has been seen and its effect published
@@ -73,7 +73,7 @@ std::span<const Field> CircleRatio::fields() {
 }
 
 void CircleRatio::scan(const Scan& now) {
-    error_id = check();
+    error_id = check(now);
     error = error_id != Error::none;
     if (error) return;
     const bool edge = start && !last_start;
@@ -109,10 +109,25 @@ void CircleRatio::scan(const Scan& now) {
     publish();
 }
 
-CircleRatio::Error CircleRatio::check() const {
+CircleRatio::Error CircleRatio::check(const Scan& now) const {
     for (const double v : {master_position, x_position, x_velocity, y_position, y_velocity})
         if (!std::isfinite(v)) return Error::not_finite;
-    return start_angle == end_angle ? Error::arc_is_empty : Error::none;
+    if (!std::isnormal(master_speed()) || !std::isfinite(end_angle - start_angle))
+        return Error::not_finite;
+    if (start_angle == end_angle) return Error::arc_is_empty;
+    const Arc wanted = Arc::between(radius, start_angle, end_angle, step);
+    const double step_time = wanted.step_angle() / master_speed();
+    return wanted.steps == 1 || step_time >= least_step_time(wanted, now) ? Error::none
+                                                                          : Error::steps_too_fast;
+}
+
+/// A scan changes each ratio once; a change that steers by position must have ended before the
+/// next.
+double CircleRatio::least_step_time(const Arc& wanted, const Scan& now) const {
+    const double scan = seconds(now.interval);
+    if (method != Method::balanced && method != Method::ramp) return scan;
+    return scan + static_cast<double>(lead + 1) * motion_clock +
+           exact_time(speed * wanted.step_angle());
 }
 
 bool CircleRatio::waited(const Scan& now) const {
@@ -145,20 +160,20 @@ void CircleRatio::engage() {
     approach = false;
     knot = 0;
     next_clock = 0;
-    const bool straight = method != Method::ramp;
-    if (method == Method::balanced) next_clock = arc.steps > 1 ? switch_clock(1) : 0;
-    const double half = arc.step_angle() / 2;
-    const double scale = Sleef_cinz_tand1_u10purec(half) / half;
+    if (method == Method::balanced && arc.steps > 1) next_clock = switch_clock(1);
     for (Axis* axis : {&x, &y}) {
-        double Point::*f = axis->coordinate;
         axis->step = 1;
-        axis->ratio = straight ? arc.chord_ratio(1).*f : scale * (arc.slope(0).*f);
-        if (method == Method::balanced && arc.steps > 1) {
-            const double theta = master_speed() * static_cast<double>(next_clock) * motion_clock;
-            axis->ratio = (arc.at(theta, radius + 0.75 * sagitta).*f - arc.at(0).*f) / theta;
-        }
+        axis->ratio = first_ratio(axis->coordinate);
         plan_change(*axis);
     }
+}
+
+double CircleRatio::first_ratio(double Point::*f) const {
+    const double half = arc.step_angle() / 2;
+    if (method == Method::ramp) return Sleef_cinz_tand1_u10purec(half) / half * (arc.slope(0).*f);
+    if (method != Method::balanced || arc.steps == 1) return arc.chord_ratio(1).*f;
+    const double theta = master_speed() * static_cast<double>(next_clock) * motion_clock;
+    return (arc.at(theta, radius + 0.75 * sagitta).*f - arc.at(0).*f) / theta;
 }
 
 /// Steps 8 to 10.
@@ -232,17 +247,20 @@ void CircleRatio::balance(std::int64_t clock) {
     balance_axis(y, y_position + y.ratio * ahead, t, next, rho);
 }
 
+/// An axis that cannot come back to the arc within the step keeps its ratio.
 void CircleRatio::balance_axis(Axis& axis, double from, double t, double next, double rho) {
     const double v_G = master_speed();
     const double v_old = axis.ratio * v_G;
     const double vertex = arc.at(v_G * next, rho).*axis.coordinate;
+    axis.step = knot + 1;
     double v_new = v_old;
     for (int i = 0; i < fixed_point_steps; ++i) {
         const double T = exact_time(std::abs(v_new - v_old));
-        v_new = (vertex - from - v_old * T / 2) / (next - t - T / 2);
+        const double left = next - t - T / 2;
+        if (!(left > 0)) return;
+        v_new = (vertex - from - v_old * T / 2) / left;
     }
-    ++axis.step;
-    axis.ratio = v_new / v_G;
+    if (std::isfinite(v_new / v_G)) axis.ratio = v_new / v_G;
 }
 
 /// The clock of knot k, where step k + 1 begins.
@@ -265,16 +283,18 @@ void CircleRatio::ramp_step(std::int64_t clock) {
 void CircleRatio::ramp_axis(Axis& axis, double from, double t, double next) {
     const double v_G = master_speed();
     const double dt = next - t;
+    axis.step = knot;
+    if (!(dt > 0)) return;
     const double half = arc.step_angle() / 2;
     const double scale = Sleef_cinz_tand1_u10purec(half) / half;
     const double missing = arc.at(v_G * t).*axis.coordinate - from;
     const double v_new = scale * (arc.slope(v_G * next).*axis.coordinate) * v_G + missing / dt;
+    if (!std::isfinite(v_new / v_G)) return;
     const double dv = std::abs(v_new - axis.ratio * v_G);
     const double root = 1 - 4 * dv / (jerk * dt * dt);
     axis.acceleration = acceleration;
     if (root > 0 && dv > 0)
         axis.acceleration = std::min(acceleration, 2 * dv / (dt * (1 + std::sqrt(root))));
-    axis.step = knot;
     axis.ratio = v_new / v_G;
 }
 

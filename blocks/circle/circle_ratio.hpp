@@ -35,7 +35,12 @@ struct CircleRatio {
     enum class Method : std::int64_t { immediate, early, centred, balanced, ramp };
     enum class TransitionTime : std::int64_t { paper, paper_whole_clocks, exact };
     enum class State : std::int64_t { idle, approach, home, engage, run, done };
-    enum class Error : std::int64_t { none, not_finite, arc_is_empty };
+    enum class Error : std::int64_t {
+        none,
+        not_finite,      ///< an input, or the master's velocity, is no number
+        arc_is_empty,    ///< start and end angle are equal
+        steps_too_fast,  ///< a step takes less than a scan, or than a change of ratio
+    };
 
     Method method = Method::early;
     TransitionTime transition_time = TransitionTime::paper;
@@ -83,11 +88,13 @@ struct CircleRatio {
     void scan(const Scan& now);
 
   private:
-    Error check() const;
+    Error check(const Scan& now) const;
+    double least_step_time(const Arc& wanted, const Scan& now) const;
     bool waited(const Scan& now) const;
     void enter(State next, const Scan& now);
     void begin();
     void engage();
+    double first_ratio(double Point::*coordinate) const;
     void run(const Scan& now);
     void poll(Axis& axis, double job_angle);
     void plan_change(Axis& axis) const;

@@ -102,8 +102,8 @@ double rough_cube_root(double x) {
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) / 3 + 0x2A9F7893782DA1CEu);
 }
 
-/// Root of a s^3 + b s = r within 5 percent, k being about the root for b = 0: k / (1 + q/3 ...)
-/// with q = b / (a k^2) as a rational function that is right for q = 0 and for great q.
+/// Root of a s^3 + b s = r within some percent, k being about the root for b = 0: k (1 + 0.602 q) /
+/// (1 + 0.770 q + 0.602 q^2) with q = b / (a k^2), right for small and for great q.
 double rough_root(double a, double b, double k) {
     const double g = a * k * k;
     return k * g * (g + 0.602 * b) / (g * g + b * (0.770 * g + 0.602 * b));
@@ -354,12 +354,8 @@ PlanResult plan(const SevenSegment& problem, SevenSegmentPlan& out) {
 
     out.T = {m.ramps[0].jerk_time, m.ramps[0].hold, m.ramps[0].jerk_time, m.cruise,
              m.ramps[1].jerk_time, m.ramps[1].hold, m.ramps[1].jerk_time};
-    double t = 0;
-    for (std::size_t i = 0; i < 7; ++i) {
-        out.begin[i] = t;
-        t += out.T[i];
-    }
-    out.duration = t;
+    for (std::size_t i = 0; i < 7; ++i) out.begin[i + 1] = out.begin[i] + out.T[i];
+    out.duration = out.begin[7];
     out.peak = m.peak;
     out.kind = m.kind;
     out.reaches_Ve = m.reaches_Ve;
@@ -370,8 +366,9 @@ PlanResult plan(const SevenSegment& problem, SevenSegmentPlan& out) {
 MotionState SevenSegmentPlan::at(double t) const {
     if (t >= duration) return end;
     const double time = t > 0 ? t : 0;
-    std::size_t i = 0;
-    for (std::size_t k = 1; k < 7; ++k) i += time >= begin[k];
+    std::size_t i = time >= begin[4] ? 4 : 0;
+    i += time >= begin[i + 2] ? 2 : 0;
+    i += time >= begin[i + 1] ? 1 : 0;
     return start[i].after(time - begin[i]);
 }
 

@@ -9,58 +9,54 @@ namespace lineshaft {
 
 /// Jerk-limited move along a path from Vs to Ve, acceleration zero at both ends (Liu 2023): seven
 /// segments of jerk +J, 0, -J, 0, -J, 0, +J, in the shortest time. With tm = A/J and c = A^2/J a
-/// ramp between two velocities dv apart is
+/// ramp between two velocities Va and Vb, dv apart, is
 ///
-///     trapezoidal if dv > c:  jerk time tm,            hold dv/A - tm
-///     triangular otherwise:   jerk time sqrt(dv/J),    hold 0
+///     trapezoidal if dv > c:   jerk time tm,           hold dv/A - tm
+///     triangular otherwise:    jerk time sqrt(dv/J),   hold 0
 ///
-/// and its length is (Va + Vb) (jerk time + hold/2)                                             (9)
+/// and its length is (Va + Vb) (jerk time + hold/2), equation (9) of the paper. Two lengths part
+/// three kinds of move: L1 = ramp(Vs, Ve) (10) and L2 = ramp(Vs, Vm) + ramp(Vm, Ve) (11).
+/// Below, s is a jerk time and y = tm + hold; on the left the number of `equation` and the paper's.
 ///
-/// L1 = ramp(Vs, Ve)  (10)  and  L2 = ramp(Vs, Vm) + ramp(Vm, Ve)  (11)  part three kinds of move.
-/// Below, V is Vs, lo and hi are the smaller and the greater of Vs and Ve, D = hi - lo, s is a jerk
-/// time and y = tm + hold; numbers in brackets are the paper's, numbers of `equation` come first.
+/// L < L1, one ramp only, Ve is not reached (L within rounding of L1 does reach it). V is Vs; upper
+/// signs if Ve >= Vs, lower signs if not; the velocity reached is V +- A y or V +- J s^2:
 ///
-/// L <= L1: one ramp only, Ve is not reached (+ if Ve >= Vs, else -; the velocity reached is V +- J
-/// s^2 or V +- A y)
+///     1 (12), 3 (14)    A y^2 +- (2V +- c) y -+ 2 (L - V tm) = 0
+///     2 (13), 4 (15)    J s^3 +- 2V s -+ L = 0
 ///
-///      1, 3   A y^2 +- (2V +- c) y -+ 2 (L - V tm) = 0                                   (12),
-///      (14) 2, 4   J s^3 +- 2V s -+ L = 0 (13), (15)
+/// The length of a deceleration is greatest where it ends at V/3, at c/2 if it is trapezoidal
+/// there; before that comes the lesser of two positive roots.
 ///
-/// The length of a deceleration is greatest at V/3 (at c/2 if it is trapezoidal there); the lesser
-/// root is the one that comes before. L within rounding of L1 reaches Ve.
+/// L >= L2, cruise at Vm:
 ///
-/// L >= L2: cruise
+///     5 to 8 (16..19)   T4 = (L - L2) / Vm
 ///
-///      5..8   T4 = (L - L2) / Vm                                                       (16) to
-///      (19)
+/// Between, a peak below Vm. Reversed in time a move has the same length, so only the slower end lo
+/// and the faster end hi matter, D = hi - lo. The ramp at hi has y or s, the ramp at lo follows:
 ///
-/// between: a peak below Vm. Reversed in time a move has the same length, so only the faster end hi
-/// and the slower end lo matter. The ramp at hi has jerk time s or y, the one at lo the rest:
+///     9 (21)            A y^2 + (2 hi + c) y - (L - hi tm - (lo + hi)(tm + D/A)/2) = 0,
+///                       hold at lo = hold at hi + D/A
+///     10 (23)           J/(2 tm) s^4 + J s^3 + (hi + c/2)/tm s^2 + 2 hi s
+///                       - (L - (lo + hi)(tm + D/A)/2) = 0,  hold at lo = (D + J s^2)/A - tm
+///     11 (30)           J/4 m^4 + (lo + hi) m^2 - L m - D^2/(4J) = 0,
+///                       m the sum of the two jerk times, D/(J m) their difference
 ///
-///      9      A y^2 + (2 hi + c) y - (L - hi tm - (lo + hi)(tm + D/A)/2) = 0 (21)
-///             hold at lo = hold at hi + D/A
-///     10      J^2/(2A) s^4 + J s^3 + (hi + c/2)/tm s^2 + 2 hi s
-///                 - (L - (lo + hi)(tm + D/A)/2) = 0 (23)
-///             hold at lo = (D + J s^2)/A - tm
-///     11      J/4 m^4 + (lo + hi) m^2 - L m - D^2/(4J) = 0,  m the sum of both jerk times (30)
-///             their difference is D/(J m)
+/// No unknown is the peak velocity: the length has a square-root singularity where the peak meets
+/// hi. The quadratics are solved in closed form, written without cancellation. The cubics and
+/// quartics go by Householder's iteration of the fourth order, kept in a bracket, from a start
+/// within some percent: two steps, seldom three. The paper's closed forms (Shengjin's, Ferrari's:
+/// tests/blocks/profile/closed_form.hpp) lost by measurement, over 600,000 random problems:
 ///
-/// Each has one positive root and is convex from there on up; none has the peak velocity as its
-/// unknown, because the length has a square-root singularity where the peak meets hi. The
-/// quadratics are solved in closed form, written without cancellation. The cubics and quartics go
-/// by Householder's iteration of the fourth order from a start within some percent: two steps. The
-/// paper's closed forms (Shengjin, Ferrari; tests/blocks/profile/closed_form.hpp) lost, over
-/// 600,000 random problems:
+///     equation                         2 cubic   4 cubic   10 quartic   11 quartic
+///     closed form, length p99 [ulp]    2.3e6     2.7e2     2.7e4        4.1e16, 1.2 % no root
+///     here, length p99 [ulp]           2.4       1.3       3.3          3.4
+///     closed form, the root [ns]       43        41        72           132
+///     here, the whole plan [ns]        54        59        85           83
 ///
-///     equation                          2 cubic    4 cubic    10 quartic    11 quartic
-///     closed form, length p99 [ulp]     2.3e6      2.7e2      2.7e4         4.1e16, 1.2 % fail
-///     here, length p99 [ulp]            2.4        1.3        3.3           3.4
-///     closed form, root alone [ns]      43         41         72            132
-///     here, the whole plan [ns]         54         53         82            80
-///
-/// Over 5 million random problems, times taken in 113 bits: length off by 2.7 ulp of L at the 99th
-/// percentile and 7.6 at most, end velocity by 3.5 ulp of Vm at most, duration within 2.4e-15 of
-/// the optimum, limits kept to 6e-16.
+/// (Least of many runs on one machine.) Over 5 million random problems, the times run in 113 bits,
+/// the length is off by 2.6 ulp of L at the 99th percentile and 7.8 at most, the end velocity
+/// by 3.5 ulp of Vm at most, the duration by 2.4e-15 of the optimum at most; limits are kept to
+/// 6e-16.
 ///
 /// A length below 1e-100 takes no time. Quantities so great or small that a result overflows are
 /// refused as not_finite.
@@ -102,7 +98,7 @@ int equation(MoveKind kind);
 
 struct SevenSegmentPlan {
     std::array<double, 7> T{};         ///< durations of the segments, jerk +J 0 -J 0 -J 0 +J [s]
-    std::array<double, 7> begin{};     ///< time of each segment's start [s]
+    std::array<double, 8> begin{};     ///< time of each segment's start, and of the end [s]
     std::array<MotionState, 7> start;  ///< state at the start of each segment
     double duration = 0;               ///< [s]
     double peak = 0;                   ///< greatest velocity [u/s]

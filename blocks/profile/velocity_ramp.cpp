@@ -12,9 +12,9 @@ bool is_limit(double x) {
 }
 
 /// What is missing to v1 once a0 has been brought to zero, or 0 if that is mere rounding.
-double missing_velocity(double v0, double a0, double v1, double J) {
+double missing_velocity(double v0, double a0, double v1, double half_per_jerk) {
     if (a0 == 0) return v1 - v0;
-    const double gained = a0 * std::abs(a0) / (2 * J);
+    const double gained = a0 * std::abs(a0) * half_per_jerk;
     const double e = (v1 - v0) - gained;
     const double rounding = 2 * std::numeric_limits<double>::epsilon() *
                             std::max({std::abs(v0), std::abs(v1), std::abs(gained)});
@@ -55,7 +55,8 @@ PlanResult VelocityRamp::plan(double v0, double a0, double v1, double accelerati
         return PlanResult::not_finite;
 
     const double J = jerk;
-    const double missing = missing_velocity(v0, a0, v1, J);
+    const double half_per_jerk = 0.5 / J;
+    const double missing = missing_velocity(v0, a0, v1, half_per_jerk);
     const double s = std::copysign(1.0, missing == 0 ? a0 : missing);
     const double a = s * a0;
     const Shape shape = shape_of(a, s * missing, acceleration, J);
@@ -63,9 +64,9 @@ PlanResult VelocityRamp::plan(double v0, double a0, double v1, double accelerati
 
     const MotionState rise{0, v0, a0, s * shape.jerk};
     const MotionState hold{rise.after(shape.to_peak).position,
-                           v0 + s * (std::abs(peak - a) * (peak + a) / (2 * J)), s * peak, 0};
+                           v0 + s * (std::abs(peak - a) * (peak + a) * half_per_jerk), s * peak, 0};
     const double fall_velocity =
-        shape.to_peak > 0 || shape.hold > 0 ? v1 - s * (peak * peak / (2 * J)) : v0;
+        shape.to_peak > 0 || shape.hold > 0 ? v1 - s * (peak * peak * half_per_jerk) : v0;
     const MotionState fall{hold.after(shape.hold).position, fall_velocity, s * peak, -s * J};
     const double distance = fall.after(shape.to_zero).position;
     const double time = shape.to_peak + shape.hold + shape.to_zero;

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "runtime/model/units.hpp"
-
 namespace lineshaft {
 
 namespace {
@@ -18,6 +16,11 @@ T read(const std::byte* slot) {
     T value;
     std::memcpy(&value, slot, sizeof value);
     return value;
+}
+
+/// The end of time when the sum lies beyond it.
+std::int64_t later(std::int64_t time, std::int64_t by) {
+    return by > 0 && time > never - by ? never : time + by;
 }
 
 void move(const Copy& copy) {
@@ -50,7 +53,11 @@ void move(const Copy& copy) {
 }  // namespace
 
 std::string format_time(std::int64_t nanoseconds) {
-    return format_number(seconds(nanoseconds)) + " s";
+    constexpr std::int64_t second = 1'000'000'000;
+    std::string text = fmt::format("{}", nanoseconds / second);
+    if (nanoseconds % second != 0) text += fmt::format(".{:09}", nanoseconds % second);
+    if (text.find('.') != std::string::npos) text.erase(text.find_last_not_of('0') + 1);
+    return text + " s";
 }
 
 Executive::Executive(Machine& machine) : machine_(machine) {
@@ -73,12 +80,12 @@ RunResult Executive::run(const std::vector<Observer*>& observers,
         advance(next);
         instant();
         next = next_event();
-        for (Observer* observer : observers) observer->settled(now_, next);
-        if (stopped_) return result_;
-        if (machine_.until && read<bool>(machine_.until->slot)) {
-            result_.time = now_;
-            return result_;
-        }
+        const bool reached = machine_.until && read<bool>(machine_.until->slot);
+        const std::int64_t last =
+            stopped_ || reached ? now_ : std::min(next - 1, machine_.duration);
+        for (Observer* observer : observers) observer->settled(now_, last + 1);
+        result_.time = now_;
+        if (stopped_ || reached) return result_;
         if (instants % 4096 != 0) continue;
         if (progress) progress(now_);
         if (interrupt && *interrupt) {
@@ -99,7 +106,8 @@ std::int64_t Executive::next_event() const {
     if (next_stimulus_ < machine_.stimuli.size())
         next = std::min(next, machine_.stimuli[next_stimulus_].at);
     if (!running_.empty())
-        next = std::min(next, now_ + states_[static_cast<std::size_t>(running_.back())].remaining);
+        next = std::min(next,
+                        later(now_, states_[static_cast<std::size_t>(running_.back())].remaining));
     return next;
 }
 
@@ -112,8 +120,8 @@ void Executive::advance(std::int64_t time) {
 void Executive::instant() {
     stimulate();
     finish_top();
-    release();
-    start_pending();
+    if (!stopped_) release();
+    if (!stopped_) start_pending();
 }
 
 void Executive::stimulate() {
@@ -144,9 +152,11 @@ void Executive::release() {
                 fmt::format("task '{}' overran: due again at {} in scan {}, before the scan "
                             "of {} had ended",
                             task.name, format_time(now_), state.index,
-                            format_time(state.active ? state.scan.time : state.due - task.every)));
+                            format_time(state.active ? state.scan.time : state.released)));
         state.pending = true;
-        state.due += task.every + (task.jitter > 0 ? state.jitter.around_zero(task.jitter) : 0);
+        state.released = state.due;
+        const std::int64_t off = task.jitter > 0 ? state.jitter.around_zero(task.jitter) : 0;
+        state.due = later(later(state.due, task.every), off);
     }
 }
 

@@ -19,7 +19,8 @@ class Observer {
     /// After the outputs of a scan of task `task` (its index) have been published.
     virtual void scanned(int task, const Scan& scan) = 0;
 
-    /// Everything due at `time` has run; nothing changes before `next`, which is later.
+    /// Everything due at `time` has run; nothing changes before `next`, which is later, and at most
+    /// one nanosecond past the end of the run.
     virtual void settled(std::int64_t time, std::int64_t next) = 0;
 };
 
@@ -56,6 +57,7 @@ class Executive {
         Random jitter;
         Random cost_jitter;
         std::int64_t due = 0;        ///< next release [ns]
+        std::int64_t released = 0;   ///< last release [ns]
         std::int64_t remaining = 0;  ///< of the scan under way [ns]
         std::int64_t index = 0;      ///< of the next scan
         Scan scan;                   ///< the one under way

@@ -1,8 +1,8 @@
 #include "runtime/scan/judge.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include <fmt/format.h>
 
 namespace lineshaft {
 
@@ -19,7 +19,8 @@ Judge::Judge(std::vector<Expectation> expectations) : expectations_(std::move(ex
 
 void Judge::scanned(int task, const Scan& scan) {
     for (const std::size_t i : always_)
-        if (expectations_[i].signal.task == task && verdicts_[i].ok) judge(i, scan.time, scan.index);
+        if (expectations_[i].signal.task == task && verdicts_[i].ok)
+            judge(i, scan.time, scan.index);
 }
 
 void Judge::settled(std::int64_t time, std::int64_t next) {
@@ -39,16 +40,20 @@ void Judge::judge(std::size_t index, std::int64_t time, std::optional<std::int64
     Verdict& verdict = verdicts_[index];
     verdict.ok = number >= e.low && number <= e.high;
     if (verdict.ok) return;
-    verdict.deviation = fmt::format("{} is {} at {}", e.signal.name, e.signal.describe(value),
-                                    format_time(time));
-    if (scan) verdict.deviation += fmt::format(", scan {}", *scan);
+    verdict.deviation =
+        fmt::format("{} is {} at {}", e.signal.name, e.signal.describe(value), format_time(time));
+    if (scan && *scan < 0)
+        verdict.deviation += ", before the first scan";
+    else if (scan)
+        verdict.deviation += fmt::format(", scan {}", *scan);
     verdict.deviation += fmt::format("; expected {}", e.wanted);
 }
 
 void Judge::finish(const RunResult& result) {
     for (; next_timed_ < timed_.size(); ++next_timed_)
         verdicts_[timed_[next_timed_]].deviation =
-            fmt::format("the run ended at {}, before it", format_time(result.time));
+            fmt::format("{}: the run ended at {}, before it",
+                        expectations_[timed_[next_timed_]].text, format_time(result.time));
     for (std::size_t i = 0; i < expectations_.size(); ++i) {
         const Expectation& e = expectations_[i];
         if (e.always || e.at) continue;
@@ -58,6 +63,8 @@ void Judge::finish(const RunResult& result) {
     }
 }
 
-bool Judge::ok() const { return std::ranges::all_of(verdicts_, &Verdict::ok); }
+bool Judge::ok() const {
+    return std::ranges::all_of(verdicts_, &Verdict::ok);
+}
 
 }  // namespace lineshaft

@@ -18,7 +18,7 @@ std::int64_t Random::around_zero(std::int64_t spread) {
     __extension__ using Wide = unsigned __int128;
     const Wide range = static_cast<Wide>(spread) * 2 + 1;
     const Wide scaled = (next() * range) >> 64;
-    return static_cast<std::int64_t>(scaled) - spread;
+    return static_cast<std::int64_t>(scaled - static_cast<Wide>(spread));
 }
 
 }  // namespace lineshaft

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <string>
 
 #include "blocks/profile/seven_segment.hpp"
@@ -11,7 +12,12 @@
 namespace lineshaft::oracle {
 
 /// Quadruple precision: 113 bits, 34 digits.
+#ifdef __SIZEOF_FLOAT128__
 __extension__ using Quad = __float128;
+#else
+using Quad = long double;  // of 113 bits where there is no __float128, as on AArch64
+static_assert(std::numeric_limits<Quad>::digits == 113);
+#endif
 
 inline Quad square_root(Quad x) {
     if (x <= 0) return 0;
@@ -50,6 +56,11 @@ inline std::string line(const SevenSegment& p) {
                   ".L = %.17g}",
                   p.Vs, p.Ve, p.Vm, p.A, p.J, p.L);
     return text;
+}
+
+/// Past the test framework, which would break the line.
+inline void print_failure(const std::string& why, const std::string& problem) {
+    std::fprintf(stderr, "%s: %s\n", why.c_str(), problem.c_str());
 }
 
 struct Ramp {

@@ -51,17 +51,17 @@ std::string brief(double x) {
     return text;
 }
 
-/// Figures of many plans, and the first few that break a bar.
+/// Figures of many plans; the first few that break a bar are printed.
 struct Figures {
     std::vector<float> length_errors;  ///< [ulp of L]
     double end_velocity = 0;           ///< greatest error [ulp of Vm]
     double duration = 0;               ///< greatest relative distance from the optimum
     double limits = 0;                 ///< greatest relative excess over Vm, A
     std::array<long, move_kinds> seen{};
-    std::vector<std::string> failures;
+    int failures = 0;
 
     void fail(const SevenSegment& p, const std::string& why) {
-        if (failures.size() < 10) failures.push_back(why + ": " + line(p));
+        if (++failures <= 10) print_failure(why, line(p));
     }
 
     double percentile(double share) {
@@ -134,8 +134,7 @@ void check(const SevenSegment& p, Figures& figures) {
 }
 
 void report(const std::string& title, Figures& figures) {
-    for (const std::string& failure : figures.failures) UNSCOPED_INFO(failure);
-    CHECK(figures.failures.empty());
+    CHECK(figures.failures == 0);
     const double p99 = figures.percentile(0.99);
     CHECK(p99 <= 4);
     if (std::getenv("LINESHAFT_FIGURES") == nullptr) return;
@@ -521,18 +520,25 @@ SevenSegmentPlan planned(const SevenSegment& problem) {
 }  // namespace
 
 TEST_CASE("24 sets of every kind end within 1.3e-14 mm and 4 ulp of L") {
+    std::array<int, 12> solved{};
+    double greatest = 0;
     for (const Set& set : sets) {
         INFO(line(set.problem));
         Figures figures;
         check(set.problem, figures);
-        for (const std::string& failure : figures.failures) FAIL_CHECK(failure);
+        CHECK(figures.failures == 0);
         const SevenSegmentPlan out = planned(set.problem);
         CHECK(name(out.kind) == name(set.kind));
         const double error =
             std::abs(static_cast<double>(run(set.problem, out).position - set.problem.L));
         CHECK(error <= 1.3e-14);
         CHECK(error <= 4 * ulp(set.problem.L));
+        greatest = std::max(greatest, error);
+        ++solved[static_cast<std::size_t>(equation(out.kind))];
     }
+    CHECK(std::count(solved.begin() + 1, solved.end(), 0) == 0);
+    if (std::getenv("LINESHAFT_FIGURES") != nullptr)
+        std::printf("24 sets: displacement error %.1e mm at most\n", greatest);
 }
 
 TEST_CASE("a move is evaluated from each segment's own start") {
@@ -581,7 +587,9 @@ TEST_CASE("the equations of the paper give the same times where they keep their 
         for (std::size_t k = 0; k < 7; ++k) {
             const double off = std::abs(T[k] - out.T[k]) / out.duration;
             worst = std::max(worst, off);
-            if (!(off <= 1e-10)) FAIL(name(out.kind) << ": " << line(p));
+            if (off <= 1e-10) continue;
+            print_failure("times differ", line(p));
+            FAIL(name(out.kind));
         }
     }
     if (std::getenv("LINESHAFT_FIGURES") != nullptr)
@@ -621,15 +629,16 @@ TEST_CASE("numbers of any size are planned without harm or refused") {
         SevenSegmentPlan out;
         if (plan(p, out) != PlanResult::ok) continue;
         ++plans;
-        INFO(line(p));
+        bool sound = std::isfinite(out.duration);
         for (std::size_t k = 0; k < 7; ++k) {
             const MotionState& s = out.start[k];
-            const bool sound = out.T[k] >= 0 && out.T[k] <= out.duration && s.velocity >= 0 &&
-                               std::isfinite(s.position) && std::isfinite(s.velocity) &&
-                               std::isfinite(s.acceleration);
-            if (!sound) FAIL("segment " << k);
+            sound = sound && out.T[k] >= 0 && out.T[k] <= out.duration && s.velocity >= 0 &&
+                    std::isfinite(s.position) && std::isfinite(s.velocity) &&
+                    std::isfinite(s.acceleration);
         }
-        if (!std::isfinite(out.duration)) FAIL("duration");
+        if (sound) continue;
+        print_failure("not sound", line(p));
+        FAIL();
     }
     CHECK(plans > 0);
 }

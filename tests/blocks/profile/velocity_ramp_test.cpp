@@ -2,18 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <string>
 
 #include <catch2/catch.hpp>
 
+#include "tests/blocks/profile/oracle.hpp"
+
 using namespace lineshaft;
+using oracle::Quad;
+using oracle::Random;
 
 namespace {
-
-using Quad = __float128;
 
 struct Case {
     double v0, a0, v1, A, J;
@@ -71,44 +72,32 @@ double time_noise(const Case& c) {
 
 void check(const Case& c) {
     const VelocityRamp r = planned(c);
-    INFO(line(c));
-    Quad x = 0, v = c.v0, a = c.a0, t = 0;
+    const auto require = [&](bool holds, const char* what) {
+        if (!holds) oracle::print_failure(what, line(c));
+        REQUIRE(holds);
+    };
+    Quad x = 0, v = c.v0, a = c.a0;
     const double limit = std::max(c.A, std::abs(c.a0));
     const double top = std::max({std::abs(c.v0), std::abs(c.v1), c.a0 * c.a0 / (2 * c.J)});
     for (std::size_t i = 0; i < static_cast<std::size_t>(r.count); ++i) {
         const auto& p = r.phases[i];
-        REQUIRE(p.duration > 0);
-        REQUIRE(std::abs(p.start.jerk) <= c.J);
-        REQUIRE(std::abs(p.start.acceleration) <= limit);
-        REQUIRE(std::abs(double(v) - p.start.velocity) <= 1e-14 * top);
+        require(p.duration > 0, "phase duration");
+        require(std::abs(p.start.jerk) <= c.J, "jerk limit");
+        require(std::abs(p.start.acceleration) <= limit, "acceleration limit");
+        require(std::abs(double(v) - p.start.velocity) <= 1e-14 * top, "velocity between phases");
         const Quad d = p.duration, j = p.start.jerk;
         x += d * (v + d * (a / 2 + d * j / 6));
         v += d * (a + d * j / 2);
         a += d * j;
-        t += d;
     }
-    REQUIRE(r.end.velocity == c.v1);
-    REQUIRE(r.end.acceleration == 0);
-    REQUIRE(std::abs(double(v) - c.v1) <= 1e-14 * top);
-    REQUIRE(std::abs(double(a)) <= 1e-14 * limit);
-    REQUIRE(std::abs(double(x) - r.end.position) <= 1e-14 * top * r.duration);
+    require(r.end.velocity == c.v1, "end velocity");
+    require(r.end.acceleration == 0, "end acceleration");
+    require(std::abs(double(v) - c.v1) <= 1e-14 * top, "velocity run");
+    require(std::abs(double(a)) <= 1e-14 * limit, "acceleration run");
+    require(std::abs(double(x) - r.end.position) <= 1e-14 * top * r.duration, "distance");
     const double optimum = double(optimal_duration(c));
-    REQUIRE(std::abs(r.duration - optimum) <= 1e-13 * optimum + time_noise(c));
+    require(std::abs(r.duration - optimum) <= 1e-13 * optimum + time_noise(c), "duration");
 }
-
-/// SplitMix64: the same numbers with every library.
-struct Random {
-    std::uint64_t state;
-    std::uint64_t next() {
-        std::uint64_t z = (state += 0x9e3779b97f4a7c15u);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return z ^ (z >> 31);
-    }
-    double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
-    double decades(double low, double high) { return std::pow(10, low + (high - low) * unit()); }
-    double sign() { return next() & 1 ? 1 : -1; }
-};
 
 }  // namespace
 

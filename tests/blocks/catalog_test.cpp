@@ -1,0 +1,289 @@
+#include "blocks/catalog.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "runtime/model/units.hpp"
+#include "runtime/scan/random.hpp"
+#include "tests/allocations.hpp"
+#include "tests/blocks/scanning.hpp"
+
+using namespace lineshaft;
+using namespace lineshaft::test;
+
+namespace {
+
+/// A block in memory of its own, as the linker makes it.
+class Instance {
+  public:
+    explicit Instance(const BlockType& type) : type_(type), memory_(type.size) {
+        type.construct(memory_.data());
+    }
+
+    void scan(std::int64_t index) {
+        type_.scan(memory_.data(),
+                   {.time = index * millisecond, .interval = millisecond, .index = index});
+    }
+    void set(const Field& field, const Value& value) {
+        store(field.type, memory_.data() + field.offset, value);
+    }
+    Value get(const Field& field) const { return load(field.type, memory_.data() + field.offset); }
+    bool same_bytes(const Instance& other) const {
+        return std::memcmp(memory_.data(), other.memory_.data(), memory_.size()) == 0;
+    }
+
+  private:
+    const BlockType& type_;
+    std::vector<std::byte> memory_;
+};
+
+/// Leaves something else on the stack where a scan has its locals.
+__attribute__((noinline)) void dirty_stack(unsigned char pattern) {
+    volatile unsigned char garbage[8192];
+    for (volatile unsigned char& byte : garbage) byte = pattern;
+}
+
+double any_real(Random& random) {
+    constexpr double values[] = {0,   -0.0,     1,         -1,        0.001,  20,       -5,
+                                 1e6, denormal, -denormal, largest,   -1e300, -largest, 1e-300,
+                                 100, 5e4,      1e300,     6.2831853, 0.02,   3};
+    return values[random.next() % std::size(values)];
+}
+
+/// Any finite value of the field's type.
+Value any_value(const Field& field, Random& random) {
+    constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+    switch (field.type) {
+        case Type::boolean:
+            return random.next() % 2 == 0;
+        case Type::enumeration:
+            return static_cast<std::int64_t>(random.next() % field.names.size());
+        case Type::integer: {
+            const std::int64_t values[] = {0, 1, -1, 1000, most, -most - 1};
+            return values[random.next() % std::size(values)];
+        }
+        default:
+            return any_real(random);
+    }
+}
+
+/// What a program file could set: usual sizes, inside the limits.
+Value usual_parameter(const Field& field, Random& random) {
+    if (field.type != Type::real && field.type != Type::integer) return any_value(field, random);
+    constexpr std::int64_t sizes[] = {1, 2, 3, 10, 100};
+    const std::int64_t size = sizes[random.next() % std::size(sizes)];
+    if (field.type == Type::integer) return size;
+    return static_cast<double>(size);
+}
+
+void set_some(Instance& block, const BlockType& type, Random& random) {
+    for (const Field& f : type.fields)
+        if (f.direction == Direction::input && random.next() % 8 == 0)
+            block.set(f, any_value(f, random));
+}
+
+void set_parameters(Instance& block, const BlockType& type, Random& random) {
+    for (const Field& f : type.fields)
+        if (f.direction == Direction::parameter && random.next() % 2 == 0)
+            block.set(f, usual_parameter(f, random));
+}
+
+void check_finite_outputs(const Instance& block, const BlockType& type) {
+    for (const Field& f : type.fields) {
+        if (f.direction != Direction::output || f.type != Type::real) continue;
+        INFO("output " << f.name);
+        REQUIRE(std::isfinite(as_real(block.get(f))));
+    }
+}
+
+std::string replaced(std::string text, std::string_view parameter, std::string_view value) {
+    const std::string place = "{" + std::string(parameter) + "}";
+    for (auto at = text.find(place); at != std::string::npos; at = text.find(place))
+        text.replace(at, place.size(), value);
+    return text;
+}
+
+/// The unit with every combination of the enumerations that it names.
+std::vector<std::string> units(const BlockType& type, const Field& field) {
+    std::vector<std::string> texts{std::string(field.unit)};
+    for (const Field& p : type.fields) {
+        if (p.direction != Direction::parameter || p.type != Type::enumeration) continue;
+        std::vector<std::string> next;
+        for (const std::string& text : texts)
+            for (const std::string_view value : p.names)
+                next.push_back(replaced(text, p.name, value));
+        texts = std::move(next);
+    }
+    return texts;
+}
+
+bool is_snake_case(std::string_view name) {
+    return !name.empty() && name.front() >= 'a' && name.front() <= 'z' &&
+           std::ranges::all_of(name, [](char c) {
+               return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+           });
+}
+
+}  // namespace
+
+TEST_CASE("every block and field has a name in snake_case and a doc string") {
+    const Catalog catalog = standard_blocks();
+    std::set<std::string_view> types;
+    for (const BlockType& type : catalog.types()) {
+        INFO("block " << type.name);
+        CHECK(is_snake_case(type.name));
+        CHECK(types.insert(type.name).second);
+        CHECK_FALSE(type.doc.empty());
+        std::set<std::string_view> settable{"type", "task"}, outputs;  // keys of every block
+        for (const Field& f : type.fields) {
+            INFO("field " << f.name);
+            CHECK(is_snake_case(f.name));
+            CHECK_FALSE(f.doc.empty());
+            CHECK((f.direction == Direction::output ? outputs : settable).insert(f.name).second);
+        }
+    }
+}
+
+TEST_CASE("every field lies in its block and no two overlap") {
+    const Catalog catalog = standard_blocks();
+    for (const BlockType& type : catalog.types()) {
+        std::vector<bool> used(type.size);
+        for (const Field& f : type.fields) {
+            INFO(type.name << "." << f.name);
+            REQUIRE(f.offset + size_of(f.type) <= type.size);
+            for (std::size_t i = f.offset; i < f.offset + size_of(f.type); ++i) {
+                CHECK_FALSE(used[i]);
+                used[i] = true;
+            }
+        }
+    }
+}
+
+TEST_CASE("every default is a value that a program could set") {
+    const Catalog catalog = standard_blocks();
+    for (const BlockType& type : catalog.types()) {
+        const Instance block(type);
+        for (const Field& f : type.fields) {
+            INFO(type.name << "." << f.name);
+            CHECK(f.names.empty() == (f.type != Type::enumeration));
+            if (f.direction == Direction::output) continue;
+            const double value = as_real(block.get(f));
+            CHECK(f.admits(value));
+            if (f.type != Type::enumeration) continue;
+            CHECK(value >= 0);
+            CHECK(value < static_cast<double>(f.names.size()));
+        }
+    }
+}
+
+TEST_CASE("every unit is known, whatever the parameters that it names") {
+    const Catalog catalog = standard_blocks();
+    for (const BlockType& type : catalog.types()) {
+        for (const Field& f : type.fields) {
+            for (const std::string& text : units(type, f)) {
+                INFO(type.name << "." << f.name << ": unit '" << text << "'");
+                CHECK(Unit::parse(text).has_value());
+            }
+            if (f.type == Type::boolean || f.type == Type::enumeration) CHECK(f.unit.empty());
+        }
+    }
+}
+
+TEST_CASE("errors are a boolean with the reason beside it") {
+    const Catalog catalog = standard_blocks();
+    for (const BlockType& type : catalog.types()) {
+        INFO("block " << type.name);
+        const Field* error = type.find_readable("error");
+        const Field* id = type.find_readable("error_id");
+        CHECK((error != nullptr) == (id != nullptr));
+        if (!error || !id) continue;
+        CHECK(error->direction == Direction::output);
+        CHECK(error->type == Type::boolean);
+        CHECK(id->type == Type::enumeration);
+        CHECK(id->names.front() == "none");
+    }
+}
+
+TEST_CASE("equal inputs give equal bytes, whatever was in memory before") {
+    const Catalog catalog = standard_blocks();
+    for (const BlockType& type : catalog.types()) {
+        for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+            INFO("block " << type.name << ", seed " << seed);
+            Instance a(type), b(type);
+            Random for_a(seed, type.name), for_b(seed, type.name);
+            set_parameters(a, type, for_a);
+            set_parameters(b, type, for_b);
+            for (std::int64_t i = 0; i < 1000; ++i) {
+                set_some(a, type, for_a);
+                set_some(b, type, for_b);
+                dirty_stack(0x00);
+                a.scan(i);
+                dirty_stack(0xff);
+                b.scan(i);
+            }
+            CHECK(a.same_bytes(b));
+        }
+    }
+}
+
+TEST_CASE("no block allocates in its scan") {
+    const Catalog catalog = standard_blocks();
+    for (const BlockType& type : catalog.types()) {
+        INFO("block " << type.name);
+        Instance block(type);
+        Random random(1, type.name);
+        const std::int64_t before = allocations();
+        for (std::int64_t i = 0; i < 1000; ++i) {
+            set_some(block, type, random);
+            block.scan(i);
+        }
+        CHECK(allocations() == before);
+    }
+}
+
+TEST_CASE("finite inputs give finite outputs, however extreme") {
+    const Catalog catalog = standard_blocks();
+    for (const BlockType& type : catalog.types()) {
+        for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+            INFO("block " << type.name << ", seed " << seed);
+            Instance block(type);
+            Random random(seed, type.name);
+            set_parameters(block, type, random);
+            for (std::int64_t i = 0; i < 500; ++i) {
+                set_some(block, type, random);
+                block.scan(i);
+                check_finite_outputs(block, type);
+            }
+        }
+    }
+}
+
+TEST_CASE("an input that is no number is reported and held off the outputs") {
+    const Catalog catalog = standard_blocks();
+    for (const BlockType& type : catalog.types()) {
+        const Field* error = type.find_readable("error");
+        for (const Field& input : type.fields) {
+            if (input.direction != Direction::input || input.type != Type::real) continue;
+            for (const double bad : {not_a_number, infinite, -infinite}) {
+                INFO(type.name << "." << input.name << " = " << bad);
+                Instance block(type);
+                for (std::int64_t i = 0; i < 10; ++i) block.scan(i);
+                const Value good = block.get(input);
+                block.set(input, bad);
+                block.scan(10);
+                check_finite_outputs(block, type);
+                if (error) CHECK(std::get<bool>(block.get(*error)));
+                block.set(input, good);
+                block.scan(11);
+                check_finite_outputs(block, type);
+                if (error) CHECK_FALSE(std::get<bool>(block.get(*error)));
+            }
+        }
+    }
+}

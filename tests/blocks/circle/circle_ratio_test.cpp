@@ -1,0 +1,407 @@
+#include "blocks/circle/circle_ratio.hpp"
+
+#include <cmath>
+
+#include <catch2/catch.hpp>
+
+#include "blocks/axis/gear_axis.hpp"
+#include "blocks/axis/virtual_axis.hpp"
+#include "blocks/circle/circle_fit.hpp"
+#include "tests/blocks/scanning.hpp"
+
+using namespace lineshaft;
+using namespace lineshaft::test;
+
+namespace {
+
+using State = CircleRatio::State;
+using Method = CircleRatio::Method;
+
+constexpr double pi = 3.14159265358979323846;
+constexpr Method all_methods[] = {Method::immediate, Method::early, Method::centred,
+                                  Method::balanced, Method::ramp};
+
+CircleRatio circle(Method method, double start = 0, double end = 2 * pi) {
+    CircleRatio c;
+    c.method = method;
+    c.start_angle = start;
+    c.end_angle = end;
+    return c;
+}
+
+void scan(CircleRatio& c, Clock& clock, int times) {
+    for (int i = 0; i < times; ++i) clock.scan(c);
+}
+
+/// Drives by hand to the state run, as axes that are in position at once would.
+void engage(CircleRatio& c, Clock& clock) {
+    c.start = true;
+    clock.scan(c);
+    c.x_position = c.start_x;
+    c.y_position = c.start_y;
+    for (int i = 0; i < 20 && c.state != State::run; ++i) clock.scan(c);
+    REQUIRE(c.state == State::run);
+}
+
+void poll_at(CircleRatio& c, Clock& clock, double master_position) {
+    c.master_position = master_position;
+    clock.scan(c);
+}
+
+/// The whole method in a loop: MC_Servo, then the user program, then MC_Interpolator.
+struct Loop {
+    CircleRatio circle;
+    VirtualAxis g;
+    GearAxis x, y;
+    CircleFit fit;
+    Clock clock;
+
+    explicit Loop(const CircleRatio& c) : circle(c) {
+        g.motion = VirtualAxis::Motion::absolute;
+        g.immediate = true;
+        fit.radius = c.radius;
+        circle.start = true;
+        clock.interval = std::llround(c.motion_clock * 1e9);
+    }
+
+    void scan() {
+        const Scan now{.time = clock.time(), .interval = clock.interval, .index = clock.index};
+        circle.master_position = g.position;
+        circle.x_position = x.position;
+        circle.x_velocity = x.velocity;
+        circle.y_position = y.position;
+        circle.y_velocity = y.velocity;
+        circle.scan(now);
+        interpolate(now);
+        ++clock.index;
+        REQUIRE_FALSE((circle.error || g.error || x.error || y.error));
+    }
+
+    void interpolate(const Scan& now) {
+        g.wanted_velocity = circle.master_velocity;
+        g.target = circle.master_target;
+        g.execute = circle.execute;
+        g.home = circle.home;
+        g.scan(now);
+        gear(x, circle.ratio_x, circle.acceleration_x, circle.start_x, now);
+        gear(y, circle.ratio_y, circle.acceleration_y, circle.start_y, now);
+        fit.enable = g.moving;
+        fit.x = x.position;
+        fit.y = y.position;
+        fit.scan(now);
+    }
+
+    void gear(GearAxis& axis, double ratio, double acceleration, double start, const Scan& now) {
+        axis.master_position = g.position;
+        axis.master_velocity = g.velocity;
+        axis.ratio = ratio;
+        axis.acceleration_limit = acceleration;
+        axis.move = circle.approach;
+        axis.home = circle.home;
+        axis.target = axis.home_position = start;
+        axis.scan(now);
+    }
+
+    void run() {
+        for (int i = 0; i < 200'000 && !circle.done; ++i) scan();
+        REQUIRE(circle.done);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("the circle goes from idle over approach, home and engage to run and done") {
+    CircleRatio c = circle(Method::immediate, 0.7, 0.7 + pi / 2);
+    Clock clock;
+    scan(c, clock, 5);
+    CHECK(c.state == State::idle);
+    CHECK_FALSE(c.approach);
+    c.start = true;
+    clock.scan(c);
+    CHECK(c.state == State::approach);
+    CHECK(c.approach);
+    CHECK(c.start_x == Approx(20 * std::sin(0.7)));
+    CHECK(c.start_y == Approx(20 * std::cos(0.7)));
+    CHECK(c.steps == 31);
+    CHECK(c.master_target == Approx(pi / 2));
+    CHECK(c.master_velocity == 0.5);
+    scan(c, clock, 10);
+    CHECK(c.state == State::approach);
+    c.x_position = c.start_x;
+    scan(c, clock, 10);
+    CHECK(c.state == State::approach);
+    c.y_position = c.start_y;
+    clock.scan(c);
+    CHECK(c.state == State::home);
+    CHECK(c.home);
+    scan(c, clock, 2);
+    CHECK(c.state == State::home);
+    clock.scan(c);
+    CHECK(c.state == State::engage);
+    CHECK_FALSE(c.home);
+    CHECK_FALSE(c.approach);
+    CHECK(c.step_x == 1);
+    CHECK(c.ratio_x == c.arc.chord_ratio(1).x);
+    CHECK(c.ratio_y == c.arc.chord_ratio(1).y);
+    CHECK_FALSE(c.execute);
+    scan(c, clock, 3);
+    CHECK(c.state == State::run);
+    CHECK(c.execute);
+    poll_at(c, clock, c.master_target);
+    CHECK(c.state == State::done);
+    CHECK(c.done);
+    CHECK_FALSE(c.execute);
+    scan(c, clock, 5);
+    CHECK(c.state == State::done);
+}
+
+TEST_CASE("start held true does one arc, a new rising edge does another") {
+    CircleRatio c = circle(Method::immediate);
+    Clock clock;
+    engage(c, clock);
+    poll_at(c, clock, c.master_target);
+    CHECK(c.done);
+    scan(c, clock, 10);
+    CHECK(c.state == State::done);
+    c.start = false;
+    clock.scan(c);
+    CHECK(c.done);
+    c.start = true;
+    clock.scan(c);
+    CHECK(c.state == State::approach);
+    CHECK_FALSE(c.done);
+    CHECK(c.ratio_x == 0);
+    CHECK(c.ratio_y == 0);
+}
+
+namespace {
+
+/// Checks that X changes from step i when the master reaches `angle`, and not before.
+void check_switch(CircleRatio& c, Clock& clock, std::int64_t i, double angle) {
+    INFO("from step " << i << " at " << angle);
+    REQUIRE(c.step_x == i);
+    poll_at(c, clock, angle - 1e-12);
+    REQUIRE(c.step_x == i);
+    poll_at(c, clock, angle + 1e-12);
+    REQUIRE(c.step_x == i + 1);
+    REQUIRE(c.ratio_x == c.arc.chord_ratio(i + 1).x);
+}
+
+/// |k_{i+1} - k_i| v_G of X.
+double velocity_change(const CircleRatio& c, std::int64_t i) {
+    return std::abs(c.arc.chord_ratio(i + 1).x - c.arc.chord_ratio(i).x) * c.speed / c.radius;
+}
+
+}  // namespace
+
+TEST_CASE("immediate changes the ratio when the master reaches theta_i") {
+    CircleRatio c = circle(Method::immediate);
+    Clock clock;
+    engage(c, clock);
+    for (std::int64_t i = 1; i < c.steps; ++i) check_switch(c, clock, i, c.arc.theta(i));
+    CHECK(c.step_x == c.steps);
+}
+
+TEST_CASE("early changes the ratio v_G T before theta_i, T by equation (18)") {
+    CircleRatio c = circle(Method::early);
+    Clock clock;
+    engage(c, clock);
+    for (std::int64_t i = 1; i < c.steps; ++i) {
+        const double T = 100 / 5e4 + velocity_change(c, i) / 100;
+        check_switch(c, clock, i, c.arc.theta(i) - 0.5 * T);
+    }
+}
+
+TEST_CASE("early can round T up to whole motion clocks, or take it exactly") {
+    for (const auto kind :
+         {CircleRatio::TransitionTime::paper_whole_clocks, CircleRatio::TransitionTime::exact}) {
+        CircleRatio c = circle(Method::early);
+        c.transition_time = kind;
+        c.motion_clock = 0.002;
+        Clock clock;
+        engage(c, clock);
+        for (std::int64_t i = 1; i < c.steps; ++i) {
+            const double dv = velocity_change(c, i);
+            const double whole = std::ceil((100 / 5e4 + dv / 100) / 0.002) * 0.002;
+            const double exact = dv >= 0.2 ? 100 / 5e4 + dv / 100 : 2 * std::sqrt(dv / 5e4);
+            const bool rounds = kind == CircleRatio::TransitionTime::paper_whole_clocks;
+            check_switch(c, clock, i, c.arc.theta(i) - 0.5 * (rounds ? whole : exact));
+        }
+    }
+}
+
+TEST_CASE("centred calls so that the job starts half a transition before theta_i") {
+    CircleRatio c = circle(Method::centred);
+    c.lead = 3;
+    Clock clock;
+    engage(c, clock);
+    for (std::int64_t i = 1; i < c.steps; ++i) {
+        const double dv = velocity_change(c, i);
+        const double T = dv >= 0.2 ? 100 / 5e4 + dv / 100 : 2 * std::sqrt(dv / 5e4);
+        const double known_delay = 3 * 0.001 + 0.0005;  // lead, and half a scan on average
+        check_switch(c, clock, i, c.arc.theta(i) - 0.5 * (T / 2 + known_delay));
+    }
+}
+
+TEST_CASE("early has its own switching angle for each axis") {
+    CircleRatio c = circle(Method::early);
+    Clock clock;
+    engage(c, clock);
+    // Near the start X's velocity hardly changes, Y's changes most: Y's T is longer.
+    const double theta = c.arc.theta(1);
+    const double dv_y = std::abs(c.arc.chord_ratio(2).y - c.arc.chord_ratio(1).y) * 0.5;
+    poll_at(c, clock, theta - 0.5 * (0.002 + dv_y / 100) + 1e-9);
+    CHECK(c.step_y == 2);
+    CHECK(c.step_x == 1);
+}
+
+TEST_CASE("a counter-clockwise arc leaves the start point to the other side") {
+    for (const Method method : all_methods) {
+        CircleRatio there = circle(method, 0, pi / 2), back = circle(method, 0, -pi / 2);
+        Clock a, b;
+        engage(there, a);
+        engage(back, b);
+        CHECK(there.ratio_x > 19);
+        CHECK(back.ratio_x == -there.ratio_x);
+        CHECK(back.ratio_y == there.ratio_y);
+        CHECK(back.master_target == there.master_target);
+    }
+}
+
+TEST_CASE("an arc of one step is driven with one ratio") {
+    for (const Method method : all_methods) {
+        INFO("method " << static_cast<int>(method));
+        CircleRatio c = circle(method, 0.5, 0.53);
+        Loop loop(c);
+        loop.run();
+        CHECK(loop.circle.steps == 1);
+        CHECK(loop.circle.step_x == 1);
+        const Point end = loop.circle.arc.at(loop.circle.arc.sweep);
+        const double missed = std::hypot(loop.x.position - end.x, loop.y.position - end.y);
+        // The velocity's ramp begins up to three clocks after the master.
+        const double late = 10 * 0.03 * 0.003 / 2;
+        CHECK(missed <= (method == Method::ramp ? late : 64 * epsilon * 20));
+    }
+}
+
+TEST_CASE("an arc of no length and inputs that are no numbers are errors") {
+    CircleRatio c = circle(Method::early, 1, 1);
+    Clock clock;
+    clock.scan(c);
+    CHECK(c.error);
+    CHECK(c.error_id == CircleRatio::Error::arc_is_empty);
+    CHECK(c.state == State::idle);
+    for (double CircleRatio::*input :
+         {&CircleRatio::master_position, &CircleRatio::x_position, &CircleRatio::x_velocity,
+          &CircleRatio::y_position, &CircleRatio::y_velocity}) {
+        CircleRatio good = circle(Method::early);
+        engage(good, clock);
+        CircleRatio bad = good;
+        bad.*input = not_a_number;
+        clock.scan(bad);
+        CHECK(bad.error);
+        CHECK(bad.error_id == CircleRatio::Error::not_finite);
+        CHECK(bad.ratio_x == good.ratio_x);
+        CHECK(bad.state == State::run);
+        bad.*input = good.*input;
+        clock.scan(bad);
+        CHECK_FALSE(bad.error);
+    }
+}
+
+TEST_CASE("a speed that no double can turn into an angular velocity is an error") {
+    for (const double radius : {1e300, 1e-300}) {
+        CircleRatio c = circle(Method::balanced);
+        c.radius = radius;
+        c.speed = radius > 1 ? 1e-10 : 1e10;
+        Clock clock;
+        clock.scan(c);
+        CHECK(c.error_id == CircleRatio::Error::not_finite);
+    }
+}
+
+TEST_CASE("balanced brings the mean deviation to a quarter of the sagitta, both ways round") {
+    for (const double end : {2 * pi, -2 * pi}) {
+        Loop loop(circle(Method::balanced, 0, end));
+        loop.run();
+        CHECK(loop.fit.mean_deviation <= 0.27 * loop.circle.sagitta);
+        CHECK(loop.fit.mean_deviation >= 0.24 * loop.circle.sagitta);
+        CHECK(loop.fit.offset <= 1e-4);
+        CHECK(loop.fit.closing_gap <= 1e-4);
+    }
+}
+
+TEST_CASE("ramp leaves no polygon") {
+    for (const double end : {2 * pi, -2 * pi}) {
+        Loop loop(circle(Method::ramp, 0, end));
+        loop.run();
+        CHECK(loop.fit.mean_deviation <= 1e-4);
+        CHECK(loop.fit.offset <= 1e-4);
+        CHECK(loop.fit.closing_gap <= 1e-4);
+    }
+}
+
+TEST_CASE("a second circle is as good as the first") {
+    Loop loop(circle(Method::balanced, 0.7, 2));
+    loop.run();
+    const double first = loop.fit.mean_deviation;
+    loop.circle.start = false;
+    loop.scan();
+    loop.circle.start = true;
+    loop.scan();
+    REQUIRE_FALSE(loop.circle.done);
+    loop.run();
+    CHECK(loop.fit.mean_deviation == Approx(first).epsilon(1e-6));
+}
+
+TEST_CASE("steps that take less than a scan of the user program are an error") {
+    for (const Method method : all_methods) {
+        INFO("method " << static_cast<int>(method));
+        CircleRatio c = circle(method);
+        c.step = 0.1;
+        c.start = true;
+        const std::int64_t step_time = 10 * millisecond;
+        Clock slow{.interval = step_time + millisecond};
+        slow.scan(c);
+        CHECK(c.error);
+        CHECK(c.error_id == CircleRatio::Error::steps_too_fast);
+        CHECK(c.state == State::idle);
+        Clock fast{.interval = millisecond};
+        fast.scan(c);
+        CHECK_FALSE(c.error);
+        CHECK(c.state == State::approach);
+    }
+}
+
+TEST_CASE("methods that steer by position need steps that outlast a change of ratio") {
+    for (const Method method : all_methods) {
+        INFO("method " << static_cast<int>(method));
+        CircleRatio c = circle(method);
+        const bool steers = method == Method::balanced || method == Method::ramp;
+        c.step = 0.01;  // 1 ms
+        Clock clock{.interval = 500 * microsecond};
+        clock.scan(c);
+        CHECK(c.error == steers);
+        c.start_angle = 6.2825;  // one step
+        clock.scan(c);
+        CHECK_FALSE(c.error);
+    }
+}
+
+TEST_CASE("a slave far away from the arc gets no ratio that is no number") {
+    for (const Method method : {Method::balanced, Method::ramp}) {
+        for (const double place : {1e300, -largest}) {
+            CircleRatio c = circle(method);
+            Clock clock;
+            engage(c, clock);
+            c.x_position = place;
+            c.y_velocity = place;
+            for (int i = 1; i < 500; ++i) {
+                poll_at(c, clock, i * 5e-4);
+                REQUIRE(std::isfinite(c.ratio_x));
+                REQUIRE(std::isfinite(c.ratio_y));
+                REQUIRE(std::isfinite(c.acceleration_x));
+            }
+        }
+    }
+}
