@@ -89,6 +89,7 @@ class ProgramReader {
     void controller(const Node& node);
     void tasks(const Node& node);
     void task(const Node& name, const Node& body);
+    void check_task(const TaskPlan& plan, const Node& name, const Node& body);
     void blocks(const Node& node);
     void block(BlockPlan& plan, const Node& body);
     void inputs(const Node& node);
@@ -218,14 +219,27 @@ void ProgramReader::task(const Node& name, const Node& body) {
     time("cost", plan->cost);
     share("jitter", plan->every, plan->jitter);
     share("cost_jitter", plan->cost, plan->cost_jitter);
-    if (plan->every > 0 && plan->jitter >= plan->every)
-        read_.fail("L0305", *body.find(body.find("jitter") ? "jitter" : "every"),
-                   fmt::format("the jitter of task '{}' is not below its interval", name.text));
-    if (plan->cost_jitter > plan->cost)
-        read_.fail("L0305", *body.find(body.find("cost_jitter") ? "cost_jitter" : "cost"),
-                   fmt::format("the cost_jitter of task '{}' is above its cost", name.text));
     if (const Node* n = body.find("priority"))
         plan->priority = read_.integer(*n).value_or(plan->priority);
+    check_task(*plan, name, body);
+}
+
+/// Parts of it may come from the controller's file: then the name is the place.
+void ProgramReader::check_task(const TaskPlan& plan, const Node& name, const Node& body) {
+    const auto fail = [&](std::initializer_list<const char*> keys, std::string_view what) {
+        const Node* place = nullptr;
+        for (const char* key : keys)
+            if (!place) place = body.find(key);
+        read_.fail("L0305", place ? *place : name, fmt::format(fmt::runtime(what), name.text));
+    };
+    if (plan.every == 0) return;
+    if (plan.jitter >= plan.every)
+        fail({"jitter", "every"}, "the jitter of task '{}' is not below its interval");
+    if (plan.cost_jitter > plan.cost)
+        fail({"cost_jitter", "cost"}, "the cost_jitter of task '{}' is above its cost");
+    if (plan.cost - plan.cost_jitter > plan.every)
+        fail({"cost", "every"},
+             "the cost of task '{}' is above its interval: it never ends in time");
 }
 
 void ProgramReader::blocks(const Node& node) {
