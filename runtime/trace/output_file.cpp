@@ -26,11 +26,12 @@ void flush_folder(const std::string& path) {
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), part_(path_ + ".part") {
     std::error_code unknown;  // opening tells it
-    if (fs::is_directory(path_, unknown)) {
+    const fs::file_status status = fs::status(path_, unknown);
+    if (fs::is_directory(status)) {
         error_ = fmt::format("cannot write '{}': it is a directory", path_);
         return;
     }
-    regular_ = !fs::exists(path_) || fs::is_regular_file(path_);
+    regular_ = !fs::exists(status) || fs::is_regular_file(status);
     file_ = std::fopen(regular_ ? part_.c_str() : path_.c_str(), "wb");
     if (!file_) fail("open");
 }
