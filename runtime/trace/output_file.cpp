@@ -26,12 +26,12 @@ void flush_folder(const std::string& path) {
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), part_(path_ + ".part") {
     std::error_code unknown;  // opening tells it
-    const fs::file_status there = fs::status(path_, unknown);
-    if (fs::is_directory(there)) {
+    const fs::file_status status = fs::status(path_, unknown);
+    if (fs::is_directory(status)) {
         error_ = fmt::format("cannot write '{}': it is a directory", path_);
         return;
     }
-    regular_ = !fs::exists(there) || fs::is_regular_file(there);
+    regular_ = !fs::exists(status) || fs::is_regular_file(status);
     file_ = std::fopen(regular_ ? part_.c_str() : path_.c_str(), "wb");
     if (!file_) fail("open");
 }
