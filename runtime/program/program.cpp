@@ -19,10 +19,17 @@ constexpr const char* block_help =
     "add blocks such as shaft: {type: virtual_axis, task: servo, ...}";
 constexpr const char* task_help = "add tasks such as tasks: {servo: {every: 2 ms}}";
 
+/// Without links and dots; empty, and why, when the path cannot be followed.
+fs::path real_path(const fs::path& path, std::error_code& error) {
+    const fs::path whole = fs::absolute(path, error);
+    return error ? fs::path() : fs::weakly_canonical(whole, error);
+}
+
 fs::path project_root(const fs::path& file) {
-    const fs::path own = fs::weakly_canonical(fs::absolute(file)).parent_path();
+    std::error_code unknown;  // then nothing lies below
+    const fs::path own = real_path(file, unknown).parent_path();
     for (fs::path folder = own; folder != folder.root_path(); folder = folder.parent_path())
-        if (fs::is_directory(folder / "config")) return folder;
+        if (fs::is_directory(folder / "config", unknown)) return folder;
     return own;
 }
 
@@ -451,12 +458,18 @@ Program read_program(std::shared_ptr<const SourceFile> file, const LoadOptions& 
 std::optional<std::string> resolve_path(const std::string& named, const std::string& from,
                                         const std::vector<std::string>& include_dirs, Mark where,
                                         Diagnostics& out) {
-    const fs::path path = fs::path(from).parent_path() / named;
-    const fs::path real = fs::weakly_canonical(fs::absolute(path));
+    const fs::path path = (fs::path(from).parent_path() / named).lexically_normal();
+    std::error_code error;
+    const fs::path real = real_path(path, error);
+    if (error) {
+        out.add("L0001", std::move(where),
+                fmt::format("cannot read '{}': {}", named, error.message()));
+        return {};
+    }
     bool allowed = lies_below(real, project_root(from));
     for (const std::string& folder : include_dirs)
-        allowed = allowed || lies_below(real, fs::weakly_canonical(fs::absolute(folder)));
-    if (allowed) return path.lexically_normal().string();
+        allowed = allowed || lies_below(real, real_path(folder, error));
+    if (allowed) return path.string();
     out.add("L0002", std::move(where),
             fmt::format("'{}' lies outside of the program's project", named),
             "a project is the nearest folder above that holds config/; allow others with "

@@ -2,16 +2,12 @@
 
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "runtime/version.hpp"
 
@@ -33,14 +29,6 @@ char* append_real(char* end, double value) {
 char* append(char* end, Type type, std::uint64_t bits) {
     if (type == Type::real) return append_real(end, std::bit_cast<double>(bits));
     return append_integer(end, static_cast<std::int64_t>(bits));
-}
-
-void flush_folder(const std::string& path) {
-    const auto folder = std::filesystem::absolute(path).parent_path();
-    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY);
-    if (descriptor < 0) return;
-    ::fsync(descriptor);
-    ::close(descriptor);
 }
 
 std::string csvw_type(Type type) {
@@ -70,39 +58,6 @@ std::string text_hash(std::string_view text) {
     return fmt::format("{:016x}", hash);
 }
 
-OutputFile::OutputFile(std::string path) : path_(std::move(path)), part_(path_ + ".part") {
-    std::error_code unknown;  // opening tells it
-    if (std::filesystem::is_directory(path_, unknown)) {
-        error_ = fmt::format("cannot write '{}': it is a directory", path_);
-        return;
-    }
-    file_ = std::fopen(part_.c_str(), "wb");
-    if (!file_) fail("open");
-}
-
-OutputFile::~OutputFile() {
-    if (file_) std::fclose(file_);
-}
-
-void OutputFile::write(std::string_view text) {
-    if (!error_.empty()) return;
-    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail("write");
-}
-
-bool OutputFile::commit() {
-    if (!error_.empty()) return false;
-    if (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0) fail("write");
-    if (std::fclose(file_) != 0 && error_.empty()) fail("close");
-    file_ = nullptr;
-    if (error_.empty() && std::rename(part_.c_str(), path_.c_str()) != 0) fail("rename");
-    if (error_.empty()) flush_folder(path_);
-    return error_.empty();
-}
-
-void OutputFile::fail(const char* what) {
-    error_ = fmt::format("cannot {} '{}': {}", what, path_, std::strerror(errno));
-}
-
 CsvWriter::CsvWriter(std::string path, const TraceSetup& setup)
     : file_(path), path_(std::move(path)), signals_(setup.signals) {
     std::string header = "time,scan";
@@ -127,7 +82,7 @@ void CsvWriter::rows(const std::uint64_t* words, std::size_t rows) {
 }
 
 std::string CsvWriter::finish(const std::string& title, const std::string& program_text) {
-    if (!file_.commit()) return file_.error();
+    if (!file_.commit() || !file_.is_regular()) return file_.error();
     nlohmann::ordered_json columns = nlohmann::ordered_json::array();
     columns.push_back({{"titles", "time"}, {"datatype", "double"}, {"unit", "s"}});
     columns.push_back({{"titles", "scan"}, {"datatype", "integer"}});

@@ -204,3 +204,25 @@ TEST_CASE("program: a link does not lead out of the project") {
     Diagnostics out;
     CHECK_FALSE(resolve_path("c.yaml", from, {}, {}, out).has_value());
 }
+
+TEST_CASE("program: a link in the middle of a path does not lead out of the project") {
+    const Folder folder;
+    fs::create_directories(folder.path() / "project/config/deep");
+    const std::string from = folder.write("project/p.yaml", "");
+    folder.write("secret.yaml", "");
+    fs::create_directory_symlink("config/deep", folder.path() / "project/link");
+    Diagnostics out;
+    CHECK_FALSE(resolve_path("link/../../secret.yaml", from, {}, {}, out).has_value());
+}
+
+TEST_CASE("program: a path that cannot be followed is told") {
+    const Folder folder;
+    const std::string from = folder.write("p.yaml", "");
+    fs::create_symlink("loop.yaml", folder.path() / "loop.yaml");
+    Diagnostics out;
+    CHECK_FALSE(resolve_path("loop.yaml", from, {}, {}, out).has_value());
+    CHECK_FALSE(resolve_path(std::string(300, 'x'), from, {}, {}, out).has_value());
+    REQUIRE(out.list().size() == 2);
+    CHECK(out.list()[0].code == "L0001");
+    CHECK(out.list()[1].code == "L0001");
+}

@@ -88,8 +88,9 @@ TEST_CASE("a mistake is named where it stands") {
     check_error("2a", "'a' is not expected here", 1);
     check_error("1 + * 2", "a number, a name or '(' is expected here", 4);
     check_error("1)", "')' is not expected here", 1);
-    check_error("root(2)", "unknown function 'root' of 1", 0);
-    check_error("2 * abs(1, 2)", "unknown function 'abs' of 2", 4);
+    const std::string known = "; known: abs(x), sqrt(x), min, max and mean";
+    check_error("root(2)", "no function 'root' of one value" + known, 0);
+    check_error("2 * abs(1, 2)", "no function 'abs' of 2 values" + known, 4);
     check_error("min()", "a number, a name or '(' is expected here", 4);
     check_error("1e999", "no number", 0);
     check_error(".", "no number", 0);

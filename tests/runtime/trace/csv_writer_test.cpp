@@ -153,18 +153,6 @@ TEST_CASE("a trace appears under its name only when it is whole") {
     CHECK_FALSE(fs::exists(path + "-metadata.json.part"));
 }
 
-TEST_CASE("an abandoned file stays in its part, the one before under its name") {
-    const Folder folder;
-    const std::string path = folder / "t.txt";
-    std::ofstream(path) << "old";
-    {
-        OutputFile file(path);
-        file.write("new");
-    }
-    CHECK(read(path) == "old");
-    CHECK(read(path + ".part") == "new");
-}
-
 TEST_CASE("a folder in the way is told") {
     const Folder folder;
     const std::string path = folder / "t.csv";
