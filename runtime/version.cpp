@@ -2,6 +2,8 @@
 
 namespace lineshaft {
 
-const char* version() { return LINESHAFT_VERSION; }
+const char* version() {
+    return LINESHAFT_VERSION;
+}
 
 }  // namespace lineshaft

@@ -27,11 +27,13 @@ constexpr std::string_view name_of(Direction direction) {
 struct Field {
     std::string_view name = {};
     std::string_view doc = {};
-    std::string_view unit = {};  ///< `mm/s`; `{p}` in it stands for the value of the enumeration parameter p
+    std::string_view unit =
+        {};  ///< `mm/s`; `{p}` in it stands for the value of the enumeration parameter p
     Direction direction = Direction::parameter;
     Type type = Type::real;
-    std::size_t offset = 0;                   ///< of the member in the block's struct
-    std::span<const std::string_view> names = {};  ///< of an enumeration, in the order of its values
+    std::size_t offset = 0;  ///< of the member in the block's struct
+    std::span<const std::string_view> names =
+        {};  ///< of an enumeration, in the order of its values
     double minimum = -std::numeric_limits<double>::infinity();
     double maximum = std::numeric_limits<double>::infinity();
     bool minimum_excluded = false;
@@ -84,9 +86,12 @@ namespace detail {
 
 template <class T>
 constexpr Type type_of() {
-    if constexpr (std::is_same_v<T, bool>) return Type::boolean;
-    else if constexpr (std::is_same_v<T, std::int64_t>) return Type::integer;
-    else if constexpr (std::is_same_v<T, double>) return Type::real;
+    if constexpr (std::is_same_v<T, bool>)
+        return Type::boolean;
+    else if constexpr (std::is_same_v<T, std::int64_t>)
+        return Type::integer;
+    else if constexpr (std::is_same_v<T, double>)
+        return Type::real;
     else {
         static_assert(std::is_enum_v<T> && sizeof(T) == 8,
                       "a field is bool, std::int64_t, double, or an enum class : std::int64_t");

@@ -17,9 +17,12 @@ T read(const std::byte* slot) {
 
 Value load(Type type, const std::byte* slot) {
     switch (type) {
-        case Type::boolean: return read<bool>(slot);
-        case Type::real: return read<double>(slot);
-        default: return read<std::int64_t>(slot);
+        case Type::boolean:
+            return read<bool>(slot);
+        case Type::real:
+            return read<double>(slot);
+        default:
+            return read<std::int64_t>(slot);
     }
 }
 

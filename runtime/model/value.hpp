@@ -16,7 +16,9 @@ enum class Type : std::uint8_t { boolean, integer, real, enumeration };
 /// Enumerations count as integers here; their names stand in the field.
 using Value = std::variant<bool, std::int64_t, double>;
 
-constexpr std::size_t size_of(Type type) { return type == Type::boolean ? 1 : 8; }
+constexpr std::size_t size_of(Type type) {
+    return type == Type::boolean ? 1 : 8;
+}
 
 constexpr std::string_view name_of(Type type) {
     constexpr std::string_view names[] = {"boolean", "integer", "real", "enumeration"};

@@ -18,8 +18,8 @@ struct Linked {
     std::vector<Expectation> expectations;
 };
 
-/// Checks every name, type, unit, limit and wire of `program` and lays its blocks out in memory. What is wrong
-/// goes to `out`; the result is usable only when nothing went there.
+/// Checks every name, type, unit, limit and wire of `program` and lays its blocks out in memory.
+/// What is wrong goes to `out`; the result is usable only when nothing went there.
 Linked link(const Program& program, const Catalog& catalog, Diagnostics& out);
 
 }  // namespace lineshaft

@@ -1,9 +1,9 @@
 #include "runtime/program/literal.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 
 namespace lineshaft {
 
@@ -32,8 +32,9 @@ std::optional<Value> read_integer(const Reader& read, const Node& node, const Fi
     if (!value) return {};
     if (*value == std::trunc(*value) && std::abs(*value) < 9e15)
         return Value(static_cast<std::int64_t>(*value));
-    read.fail("L0309", node, fmt::format("'{}' is no whole number of {} for '{}'", node.text,
-                                         unit.text, field.name));
+    read.fail(
+        "L0309", node,
+        fmt::format("'{}' is no whole number of {} for '{}'", node.text, unit.text, field.name));
     return {};
 }
 
@@ -60,8 +61,10 @@ std::optional<Value> read_literal(const Reader& read, const Node& node, const Fi
         if (const auto b = read.boolean(node)) value = *b;
         return value;
     }
-    if (field.type == Type::integer) value = read_integer(read, node, field, unit);
-    else if (const auto number = read.real(node, unit)) value = *number;
+    if (field.type == Type::integer)
+        value = read_integer(read, node, field, unit);
+    else if (const auto number = read.real(node, unit))
+        value = *number;
     if (!value || field.admits(as_real(*value))) return value;
     read.fail("L0305", node, fmt::format("'{}' is out of range for '{}'", node.text, field.name),
               "it must be " + describe_limits(field, unit.text));

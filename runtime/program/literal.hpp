@@ -8,8 +8,8 @@
 
 namespace lineshaft {
 
-/// A constant for `field`, whose unit is `unit` here: checked for type, unit, names and limits; reported to
-/// `read` when it does not fit.
+/// A constant for `field`, whose unit is `unit` here: checked for type, unit, names and limits;
+/// reported to `read` when it does not fit.
 std::optional<Value> read_literal(const Reader& read, const Node& node, const Field& field,
                                   const Unit& unit);
 

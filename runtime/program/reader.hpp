@@ -13,8 +13,8 @@
 namespace lineshaft {
 
 /// Reads checked values out of nodes; what is wrong becomes a diagnostic at the node's place.
-/// Every function returns nothing, or a harmless default, after reporting. Nothing is reported of an
-/// unknown parameter, for that has been already.
+/// Every function returns nothing, or a harmless default, after reporting. Nothing is reported of
+/// an unknown parameter, for that has been already.
 class Reader {
   public:
     explicit Reader(Diagnostics& out) : out_(out) {}

@@ -515,8 +515,8 @@ std::size_t indenting_tab(const Source& source, std::size_t offset) {
     return tab == std::string_view::npos ? tab : begin + tab;
 }
 
-/// Place of the colon of `key:value` in the last line before that of `offset`, or npos: YAML reads on
-/// there as in one text of two lines.
+/// Place of the colon of `key:value` in the last line before that of `offset`, or npos: YAML reads
+/// on there as in one text of two lines.
 std::size_t glued_colon(const Source& source, std::size_t offset) {
     const std::size_t begin = source.line_begin(source.line_index(offset));
     const std::size_t end = source.text().substr(0, begin).find_last_not_of(" \r\n");

@@ -17,9 +17,9 @@ struct FormulaResult {
     std::size_t position = 0;  ///< of the error in the text, from 0
 };
 
-/// Evaluates `1 - early / immediate`, `abs(a.fit.worst_x) / 20`: + - * / with the usual precedence, unary minus,
-/// parentheses, numbers, names (letters, digits, '_' and '.'), abs(x), sqrt(x), min(a, ...), max(a, ...),
-/// mean(a, ...). At most 100 levels deep.
+/// Evaluates `1 - early / immediate`, `abs(a.fit.worst_x) / 20`: + - * / with the usual precedence,
+/// unary minus, parentheses, numbers, names (letters, digits, '_' and '.'), abs(x), sqrt(x), min(a,
+/// ...), max(a, ...), mean(a, ...). At most 100 levels deep.
 FormulaResult evaluate(std::string_view formula, const Lookup& lookup);
 
 }  // namespace lineshaft

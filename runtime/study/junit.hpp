@@ -9,7 +9,7 @@ struct SuiteEntry {
     std::string name;
     double wall_seconds = 0;
     std::string failure = {};  ///< first deviation; empty: passed
-    bool error = false;   ///< it could not be judged: a wrong program, a fault
+    bool error = false;        ///< it could not be judged: a wrong program, a fault
 };
 
 /// JUnit XML of a suite, as CI servers read it.

@@ -17,7 +17,9 @@ std::optional<Loaded> load_program(const std::string& path, const LoadOptions& o
     return loaded;
 }
 
-bool RunReport::expectations_hold() const { return std::ranges::all_of(verdicts, &Verdict::ok); }
+bool RunReport::expectations_hold() const {
+    return std::ranges::all_of(verdicts, &Verdict::ok);
+}
 
 RunReport run(Loaded& loaded, const RunOptions& options) {
     const auto start = std::chrono::steady_clock::now();

@@ -19,7 +19,9 @@ struct BlocksCommand {
 class Fresh {
   public:
     explicit Fresh(const BlockType& type) : memory_(type.size) { type.construct(memory_.data()); }
-    Value value(const Field& field) const { return load(field.type, memory_.data() + field.offset); }
+    Value value(const Field& field) const {
+        return load(field.type, memory_.data() + field.offset);
+    }
 
   private:
     std::vector<std::byte> memory_;
@@ -65,7 +67,8 @@ void print_fields(const BlockType& type, Direction direction) {
         if (direction != Direction::output)
             notes = f.required ? "must be set"
                                : "default " + describe(fresh.value(f), f.type, f.names, "");
-        if (const std::string limits = describe_limits(f, ""); !limits.empty()) notes += ", " + limits;
+        if (const std::string limits = describe_limits(f, ""); !limits.empty())
+            notes += ", " + limits;
         fmt::print("  {:18} {:10} {}{}\n", f.name, unit_text(f), f.doc,
                    notes.empty() ? "" : " (" + notes + ")");
         if (f.type == Type::enumeration) fmt::print("  {:18} {:10} {}\n", "", "", kind_text(f));
@@ -77,15 +80,18 @@ Exit execute(const BlocksCommand& command) {
     if (command.type.empty()) {
         auto list = nlohmann::ordered_json::array();
         for (const BlockType& type : catalog.types()) {
-            if (command.json) list.push_back(to_json(type));
-            else fmt::print("{:18} {}\n", type.name, type.doc);
+            if (command.json)
+                list.push_back(to_json(type));
+            else
+                fmt::print("{:18} {}\n", type.name, type.doc);
         }
         if (command.json) fmt::print("{}\n", list.dump(2));
         return Exit::fine;
     }
     const BlockType* type = catalog.find(command.type);
     if (!type) {
-        spdlog::error("unknown block type '{}'; {}", command.type, suggest(command.type, catalog.names()));
+        spdlog::error("unknown block type '{}'; {}", command.type,
+                      suggest(command.type, catalog.names()));
         return Exit::wrong;
     }
     if (command.json) {

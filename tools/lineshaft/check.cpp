@@ -17,8 +17,10 @@ void check(const std::string& path, const LoadOptions& options, Diagnostics& out
     const auto file = read_source(path, out);
     if (!file) return;
     const Catalog catalog = standard_blocks();
-    if (is_study(*file)) read_study(file, options, catalog, out);
-    else link(read_program(file, options, out), catalog, out);
+    if (is_study(*file))
+        read_study(file, options, catalog, out);
+    else
+        link(read_program(file, options, out), catalog, out);
 }
 
 Exit execute(const CheckCommand& command) {
@@ -26,7 +28,8 @@ Exit execute(const CheckCommand& command) {
     const LoadOptions options = command.common.load_options(out);
     for (const std::string& path : command.files) check(path, options, out);
     if (!out.empty()) return report(out, command.common.json);
-    if (command.common.json) fmt::print("{{\"diagnostics\": []}}\n");
+    if (command.common.json)
+        fmt::print("{{\"diagnostics\": []}}\n");
     else if (!command.common.quiet)
         for (const std::string& path : command.files) fmt::print("ok  {}\n", path);
     return Exit::fine;

@@ -1,10 +1,10 @@
 #include "tools/lineshaft/command.hpp"
 
-#include <fmt/core.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <cmath>
+
+#include <fmt/core.h>
+#include <unistd.h>
 
 namespace lineshaft {
 
@@ -18,12 +18,9 @@ std::int64_t now_ms() {
 }
 
 nlohmann::ordered_json to_json(const Diagnostic& d) {
-    return {{"code", d.code},
-            {"file", d.mark.file ? d.mark.file->path : ""},
-            {"line", d.mark.line},
-            {"column", d.mark.column},
-            {"message", d.message},
-            {"help", d.help}};
+    return {{"code", d.code},       {"file", d.mark.file ? d.mark.file->path : ""},
+            {"line", d.mark.line},  {"column", d.mark.column},
+            {"message", d.message}, {"help", d.help}};
 }
 
 }  // namespace

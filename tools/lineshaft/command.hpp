@@ -1,12 +1,13 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "runtime/model/catalog.hpp"
 #include "runtime/program/program.hpp"
@@ -16,9 +17,9 @@ namespace lineshaft {
 /// What a command ends with.
 enum class Exit : int {
     fine = 0,
-    failed = 1,   ///< an expectation, a bound or a claim does not hold
-    wrong = 2,    ///< the program or the command line is wrong
-    fault = 3,    ///< something went wrong while running: a block's error, a full disk
+    failed = 1,  ///< an expectation, a bound or a claim does not hold
+    wrong = 2,   ///< the program or the command line is wrong
+    fault = 3,   ///< something went wrong while running: a block's error, a full disk
     interrupted = 130,
 };
 

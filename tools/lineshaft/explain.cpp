@@ -12,7 +12,8 @@ void add_explain(CLI::App& app, Exit& result) {
     sub->add_option("code", *code, "A code such as L0203; all codes without it");
     sub->callback([code, &result] {
         if (code->empty()) {
-            for (const CodeText& text : diagnostic_codes()) fmt::print("{}  {}\n", text.code, text.title);
+            for (const CodeText& text : diagnostic_codes())
+                fmt::print("{}  {}\n", text.code, text.title);
             return;
         }
         if (const CodeText* text = find_code(*code)) {

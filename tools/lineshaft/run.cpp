@@ -30,7 +30,8 @@ void print_json(const Loaded& loaded, const RunReport& report) {
     for (const Signal& signal : machine.signals) signals[signal.name] = json_value(signal);
     auto expect = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
-        expect.push_back({{"text", loaded.linked.expectations[i].text}, {"ok", report.verdicts[i].ok}});
+        expect.push_back(
+            {{"text", loaded.linked.expectations[i].text}, {"ok", report.verdicts[i].ok}});
         if (!report.verdicts[i].ok) expect.back()["deviation"] = report.verdicts[i].deviation;
     }
     nlohmann::ordered_json object{{"program", loaded.program.file->path},
@@ -47,14 +48,16 @@ void print_json(const Loaded& loaded, const RunReport& report) {
 void print_text(const RunCommand& command, const Loaded& loaded, const RunReport& report) {
     for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
         const Verdict& verdict = report.verdicts[i];
-        fmt::print("{}  {}\n", verdict.ok ? "ok    " : "FAILED", loaded.linked.expectations[i].text);
+        fmt::print("{}  {}\n", verdict.ok ? "ok    " : "FAILED",
+                   loaded.linked.expectations[i].text);
         if (!verdict.ok) fmt::print("        {}\n", verdict.deviation);
     }
     if (command.common.quiet) return;
     const double machine_seconds = seconds(report.result.time);
-    fmt::print("{}: machine time {:.3f} s, wall time {:.3f} s, {:.0f} times faster than the clock\n",
-               loaded.program.title, machine_seconds, report.wall_seconds,
-               machine_seconds / report.wall_seconds);
+    fmt::print(
+        "{}: machine time {:.3f} s, wall time {:.3f} s, {:.0f} times faster than the clock\n",
+        loaded.program.title, machine_seconds, report.wall_seconds,
+        machine_seconds / report.wall_seconds);
     if (!command.trace.empty() && report.trace_error.empty())
         fmt::print("trace: {}\n", command.trace);
 }
@@ -70,7 +73,8 @@ Exit execute(const RunCommand& command) {
     const LoadOptions options = command.common.load_options(out);
     auto loaded = load_program(command.program, options, standard_blocks(), out);
     if (loaded && !command.trace.empty() && !loaded->linked.trace)
-        out.add("L0503", {loaded->program.file, 0, 0, 1}, "the program has no 'trace:' to write to " + command.trace,
+        out.add("L0503", {loaded->program.file, 0, 0, 1},
+                "the program has no 'trace:' to write to " + command.trace,
                 "say under 'trace:' which task and signals to record");
     if (!out.empty()) return report(out, command.common.json);
 
@@ -83,9 +87,12 @@ Exit execute(const RunCommand& command) {
         });
     };
     const RunReport result =
-        run(*loaded, {.trace_path = command.trace, .interrupt = &interrupt_requested, .progress = progress});
-    if (command.common.json) print_json(*loaded, result);
-    else print_text(command, *loaded, result);
+        run(*loaded,
+            {.trace_path = command.trace, .interrupt = &interrupt_requested, .progress = progress});
+    if (command.common.json)
+        print_json(*loaded, result);
+    else
+        print_text(command, *loaded, result);
     if (!result.result.message.empty()) spdlog::error("{}", result.result.message);
     if (!result.trace_error.empty()) spdlog::error("{}", result.trace_error);
     return exit_code(result);

@@ -8,7 +8,8 @@
 namespace lineshaft {
 
 void add_schema(CLI::App& app, Exit&) {
-    CLI::App* sub = app.add_subcommand("schema", "Print the JSON schema of program and study files");
+    CLI::App* sub =
+        app.add_subcommand("schema", "Print the JSON schema of program and study files");
     sub->callback([] { fmt::print("{}\n", program_schema(standard_blocks()).dump(2)); });
 }
 
