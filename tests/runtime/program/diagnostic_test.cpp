@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 using namespace lineshaft;
 
@@ -124,7 +125,7 @@ TEST_CASE("diagnostics are sorted by place, equal ones shown once") {
 
 TEST_CASE("a limit ends the list with the number left out") {
     Diagnostics all;
-    for (int i = 0; i < 60; ++i) all.add("L0001", {}, "m" + std::to_string(100 + i));
+    for (int i = 0; i < 60; ++i) all.add("L0001", {}, fmt::format("m{}", 100 + i));
     CHECK(all.render(2) == "error[L0001]: m100\nerror[L0001]: m101\n... and 58 more\n");
     CHECK(all.render().find("... and 10 more\n") != std::string::npos);
     CHECK(all.render(60).find("more") == std::string::npos);
