@@ -5,6 +5,7 @@
 #include "blocks/axis/virtual_axis.hpp"
 #include "blocks/circle/circle_fit.hpp"
 #include "blocks/circle/circle_ratio.hpp"
+#include "blocks/pulse/pto.hpp"
 
 namespace lineshaft {
 
@@ -15,6 +16,7 @@ Catalog standard_blocks() {
     blocks.add<SimulatedDrive>();
     blocks.add<CircleRatio>();
     blocks.add<CircleFit>();
+    blocks.add<Pto>();
     return blocks;
 }
 

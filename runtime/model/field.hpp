@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -27,11 +28,13 @@ constexpr std::string_view name_of(Direction direction) {
 struct Field {
     std::string_view name = {};
     std::string_view doc = {};
-    std::string_view unit = {};  ///< `mm/s`; `{p}` in it stands for the value of the enumeration parameter p
+    std::string_view unit =
+        {};  ///< `mm/s`; `{p}` in it stands for the value of the enumeration parameter p
     Direction direction = Direction::parameter;
     Type type = Type::real;
-    std::size_t offset = 0;                   ///< of the member in the block's struct
-    std::span<const std::string_view> names = {};  ///< of an enumeration, in the order of its values
+    std::size_t offset = 0;  ///< of the member in the block's struct
+    std::span<const std::string_view> names =
+        {};  ///< of an enumeration, in the order of its values
     double minimum = -std::numeric_limits<double>::infinity();
     double maximum = std::numeric_limits<double>::infinity();
     bool minimum_excluded = false;
@@ -80,13 +83,28 @@ struct Field {
     }
 };
 
+/// A list of rows of whole numbers that a program may give a block once, before it runs:
+/// `profile: [[2 kHz, 10 kHz, 200], [10 kHz, 10 kHz, 3400]]`. Plain data: room for `capacity` rows
+/// in the block, each of as many std::int64_t as there are columns, and the number of those given.
+struct TableField {
+    std::string_view name = {};
+    std::string_view doc = {};
+    std::span<const Field> columns = {};  ///< name, unit and limits of each number in a row
+    std::size_t capacity = 0;             ///< rows
+    std::size_t size_offset = 0;          ///< of the number of rows given, std::int64_t
+    std::size_t rows_offset = 0;
+};
+
 namespace detail {
 
 template <class T>
 constexpr Type type_of() {
-    if constexpr (std::is_same_v<T, bool>) return Type::boolean;
-    else if constexpr (std::is_same_v<T, std::int64_t>) return Type::integer;
-    else if constexpr (std::is_same_v<T, double>) return Type::real;
+    if constexpr (std::is_same_v<T, bool>)
+        return Type::boolean;
+    else if constexpr (std::is_same_v<T, std::int64_t>)
+        return Type::integer;
+    else if constexpr (std::is_same_v<T, double>)
+        return Type::real;
     else {
         static_assert(std::is_enum_v<T> && sizeof(T) == 8,
                       "a field is bool, std::int64_t, double, or an enum class : std::int64_t");
@@ -94,18 +112,24 @@ constexpr Type type_of() {
     }
 }
 
+/// Of a member of the block.
+template <class Block, class T>
+std::size_t offset_of(T Block::*member) {
+    static const Block probe{};
+    return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&(probe.*member)) -
+                                    reinterpret_cast<const std::byte*>(&probe));
+}
+
 template <class Block, class T>
 Field field(Direction direction, std::string_view name, T Block::*member, std::string_view unit,
             std::string_view doc) {
-    static const Block probe{};
     Field f;
     f.name = name;
     f.doc = doc;
     f.unit = unit;
     f.direction = direction;
     f.type = type_of<T>();
-    f.offset = static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&(probe.*member)) -
-                                        reinterpret_cast<const std::byte*>(&probe));
+    f.offset = offset_of(member);
     return f;
 }
 
@@ -125,6 +149,32 @@ Field input(std::string_view name, T Block::*member, std::string_view unit, std:
 template <class Block, class T>
 Field output(std::string_view name, T Block::*member, std::string_view unit, std::string_view doc) {
     return detail::field(Direction::output, name, member, unit, doc);
+}
+
+/// Of a member with `std::int64_t size` and an array `rows`, whose element is a plain struct of the
+/// columns.
+template <class Block, class T>
+TableField table(std::string_view name, T Block::*member, std::span<const Field> columns,
+                 std::string_view doc) {
+    using Row = typename decltype(T::rows)::value_type;
+    static_assert(sizeof(Row) % sizeof(std::int64_t) == 0);
+    const std::size_t place = detail::offset_of(member);
+    return {.name = name,
+            .doc = doc,
+            .columns = columns,
+            .capacity = std::tuple_size_v<decltype(T::rows)>,
+            .size_offset = place + detail::offset_of(&T::size),
+            .rows_offset = place + detail::offset_of(&T::rows)};
+}
+
+/// One number of a row; limits as those of a field.
+inline Field column(std::string_view name, std::string_view unit, std::string_view doc) {
+    Field f;
+    f.name = name;
+    f.doc = doc;
+    f.unit = unit;
+    f.type = Type::integer;
+    return f;
 }
 
 }  // namespace lineshaft
