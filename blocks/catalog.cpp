@@ -5,6 +5,7 @@
 #include "blocks/axis/virtual_axis.hpp"
 #include "blocks/circle/circle_fit.hpp"
 #include "blocks/circle/circle_ratio.hpp"
+#include "blocks/pulse/constant_jerk_line.hpp"
 #include "blocks/pulse/pto.hpp"
 
 namespace lineshaft {
@@ -17,6 +18,7 @@ Catalog standard_blocks() {
     blocks.add<CircleRatio>();
     blocks.add<CircleFit>();
     blocks.add<Pto>();
+    blocks.add<ConstantJerkLine>();
     return blocks;
 }
 

@@ -26,8 +26,8 @@ class PulseSink {
 /// `scan` only takes the commands; `publish(time)` puts them into effect when the outputs of the
 /// task reach the hardware, which is after the task's cost. `next_event_time()` announces a time
 /// [ns] that is not later than the next event (never: nothing will happen by itself). The executive
-/// makes that time an instant. At the beginning of every instant it calls `advance(time, sink)`,
-/// never beyond an announced time: the block's outputs are then those of the hardware at that
+/// makes that time an instant. At the beginning of every instant, and after each publish, it calls
+/// `advance(time, sink)`, never beyond an announced time: the block's outputs are then those of the hardware at that
 /// time, seen at once by all tasks, and its rising edges up to that time go to the sink, if there is
 /// one. After an advance the announced time is later than it.
 template <class Block>

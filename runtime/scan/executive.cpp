@@ -247,8 +247,11 @@ void Executive::publish(int index) {
     State& state = states_[static_cast<std::size_t>(index)];
     state.active = false;
     if (task.published != task.live) std::memcpy(task.published, task.live, task.size);
-    for (const DeviceCall& device : machine_.devices)
-        if (device.task == index) device.calls.publish(device.block, now_);
+    for (const DeviceCall& device : machine_.devices) {
+        if (device.task != index) continue;
+        device.calls.publish(device.block, now_);
+        device.calls.advance(device.block, now_, device.sink);
+    }
     ++result_.scans[static_cast<std::size_t>(index)];
     for (Observer* observer : *observers_) observer->scanned(index, state.scan);
     if (!machine_.continue_on_error) check_errors(task, state.scan);

@@ -39,6 +39,8 @@ struct Output {
         ++pto.job;
         pto.scan({.time = now});
         pto.publish(now);
+        pto.advance(now, &tape);
+        REQUIRE(pto.next_event_time() > now);
     }
     void execute(std::int64_t start_rate, std::int64_t end_rate, std::int64_t count) {
         pto.start_rate = start_rate;
