@@ -61,7 +61,7 @@ TEST_CASE("the manual's profile takes 33.33 + 340 + 66.67 = 440 ms") {
 
 TEST_CASE("a continuous ramp's edges are where the integral of its rate is whole") {
     Random random(4, "ramps");
-    for (int i = 0; i < 300; ++i) {
+    for (std::size_t i = 0; i < 300; ++i) {
         const PulseSegment s = any_segment(random, 2000);
         const PulseTime start{static_cast<std::int64_t>(random.next() % 1'000'000'007),
                               static_cast<double>(random.next() % 1000) / 1000};
@@ -80,7 +80,7 @@ TEST_CASE("a continuous ramp's edges are where the integral of its rate is whole
 
 TEST_CASE("per pulse each pulse keeps the rate with which it began") {
     Random random(5, "per pulse");
-    for (int i = 0; i < 300; ++i) {
+    for (std::size_t i = 0; i < 300; ++i) {
         const PulseSegment s = any_segment(random, 2000);
         PulseTrain train = train_of(s, RateUpdate::per_pulse);
         INFO(s.start_rate << " -> " << s.end_rate << " Hz in " << s.count);
