@@ -8,16 +8,20 @@ namespace lineshaft {
 
 PlanResult Positioning::begin(double position, double goal, double velocity, double acceleration,
                               double jerk, std::int64_t time) {
-    const PlanResult result = lineshaft::plan({.Vs = 0,
-                                               .Ve = 0,
-                                               .Vm = velocity,
-                                               .A = acceleration,
-                                               .J = jerk,
-                                               .L = std::abs(goal - position)},
-                                              plan);
+    return begin({.position = position}, goal, {.Vm = velocity, .A = acceleration, .J = jerk},
+                 time);
+}
+
+PlanResult Positioning::begin(const MotionState& from, double goal, SevenSegment problem,
+                              std::int64_t time) {
+    const bool back = goal < from.position || (goal == from.position && from.velocity < 0);
+    problem.Vs = back ? -from.velocity : from.velocity;
+    problem.L = std::abs(goal - from.position);
+    const PlanResult result = lineshaft::plan(problem, plan);
     if (result != PlanResult::ok) return result;
-    start_position = position;
+    start_position = from.position;
     target = goal;
+    direction = back ? -1 : 1;
     start_time = time;
     return result;
 }
@@ -27,13 +31,17 @@ bool Positioning::finished(std::int64_t time) const {
 }
 
 MotionState Positioning::at(std::int64_t time) const {
-    if (finished(time)) return {.position = target};
-    const double sign = target < start_position ? -1 : 1;
-    const MotionState s = plan.at(seconds(time - start_time));
-    return {.position = start_position + sign * s.position,
-            .velocity = sign * s.velocity,
-            .acceleration = sign * s.acceleration,
-            .jerk = sign * s.jerk};
+    const double t = seconds(time - start_time);
+    if (finished(time)) {
+        if (plan.end.velocity == 0) return {.position = target};
+        const double velocity = direction * plan.end.velocity;
+        return {.position = target + velocity * (t - plan.duration), .velocity = velocity};
+    }
+    const MotionState s = plan.at(t);
+    return {.position = start_position + direction * s.position,
+            .velocity = direction * s.velocity,
+            .acceleration = direction * s.acceleration,
+            .jerk = direction * s.jerk};
 }
 
 }  // namespace lineshaft

@@ -73,7 +73,8 @@ std::span<const Field> CircleRatio::fields() {
 }
 
 void CircleRatio::scan(const Scan& now) {
-    error_id = check(now);
+    if (state == State::idle || state == State::done) arc_error = check_arc(now);
+    error_id = inputs_finite() ? arc_error : Error::not_finite;
     error = error_id != Error::none;
     if (error) return;
     const bool edge = start && !last_start;
@@ -109,9 +110,13 @@ void CircleRatio::scan(const Scan& now) {
     publish();
 }
 
-CircleRatio::Error CircleRatio::check(const Scan& now) const {
-    for (const double v : {master_position, x_position, x_velocity, y_position, y_velocity})
-        if (!std::isfinite(v)) return Error::not_finite;
+bool CircleRatio::inputs_finite() const {
+    return std::isfinite(master_position) && std::isfinite(x_position) &&
+           std::isfinite(x_velocity) && std::isfinite(y_position) && std::isfinite(y_velocity);
+}
+
+/// Of the parameters: looked at before an arc, not on the way.
+CircleRatio::Error CircleRatio::check_arc(const Scan& now) const {
     if (!std::isnormal(master_speed()) || !std::isfinite(end_angle - start_angle))
         return Error::not_finite;
     if (start_angle == end_angle) return Error::arc_is_empty;

@@ -77,6 +77,7 @@ struct CircleRatio {
     Arc arc;
     Axis x, y;
     bool last_start = false;
+    Error arc_error = Error::none;
     std::int64_t state_since = 0;
     std::int64_t knot = 0;        ///< balanced, ramp: steps begun
     std::int64_t next_clock = 0;  ///< balanced, ramp: motion clock of the next change
@@ -88,7 +89,8 @@ struct CircleRatio {
     void scan(const Scan& now);
 
   private:
-    Error check(const Scan& now) const;
+    bool inputs_finite() const;
+    Error check_arc(const Scan& now) const;
     double least_step_time(const Arc& wanted, const Scan& now) const;
     bool waited(const Scan& now) const;
     void enter(State next, const Scan& now);

@@ -372,15 +372,19 @@ MotionState SevenSegmentPlan::at(double t) const {
     return start[i].after(time - begin[i]);
 }
 
+double SevenSegmentPlan::displacement_error() const {
+    long double x = 0, v = start[0].velocity, a = 0;
+    for (std::size_t i = 0; i < 7; ++i) {
+        const long double t = T[i], j = start[i].jerk;
+        x += t * (v + t * (a / 2 + t * j / 6));
+        v += t * (a + t * j / 2);
+        a += t * j;
+    }
+    return static_cast<double>(std::abs(x - end.position));
+}
+
 std::string_view name(MoveKind kind) {
-    static constexpr std::array<std::string_view, move_kinds> names = {
-        "accelerate_trapezoidal", "accelerate_triangular", "decelerate_trapezoidal",
-        "decelerate_triangular",  "cruise_rising_both",    "cruise_rising_first",
-        "cruise_rising_neither",  "cruise_falling_both",   "cruise_falling_second",
-        "cruise_falling_neither", "peak_rising_both",      "peak_rising_first",
-        "peak_rising_neither",    "peak_falling_both",     "peak_falling_second",
-        "peak_falling_neither"};
-    return names[static_cast<std::size_t>(kind)];
+    return move_kind_names[static_cast<std::size_t>(kind)];
 }
 
 int equation(MoveKind kind) {

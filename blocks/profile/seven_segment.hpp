@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string_view>
 
 #include "blocks/profile/velocity_ramp.hpp"
@@ -70,7 +71,7 @@ struct SevenSegment {
 
 /// What a move looks like. A ramp is trapezoidal if it reaches A and holds it, else triangular.
 /// `rising` is Ve >= Vs, `falling` Ve < Vs; both, first, second, neither: the trapezoidal ramps.
-enum class MoveKind {
+enum class MoveKind : std::int64_t {
     accelerate_trapezoidal,
     accelerate_triangular,
     decelerate_trapezoidal,
@@ -88,6 +89,14 @@ enum class MoveKind {
     peak_falling_second,
     peak_falling_neither,
 };
+
+inline constexpr std::string_view move_kind_names[] = {
+    "accelerate_trapezoidal", "accelerate_triangular", "decelerate_trapezoidal",
+    "decelerate_triangular",  "cruise_rising_both",    "cruise_rising_first",
+    "cruise_rising_neither",  "cruise_falling_both",   "cruise_falling_second",
+    "cruise_falling_neither", "peak_rising_both",      "peak_rising_first",
+    "peak_rising_neither",    "peak_falling_both",     "peak_falling_second",
+    "peak_falling_neither"};
 
 inline constexpr int move_kinds = 16;
 
@@ -108,6 +117,10 @@ struct SevenSegmentPlan {
     bool reaches_Ve = true;  ///< false: L is too short for Vs -> Ve
 
     MotionState at(double t) const;  ///< clamped to 0..duration
+
+    /// What the times miss L by [u], run from Vs one after the other in extended precision: the
+    /// plan's error, not that of at(), which is exact at both ends.
+    double displacement_error() const;
 };
 
 /// On failure `out` is unchanged.

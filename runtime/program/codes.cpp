@@ -125,7 +125,8 @@ Remove one of the two, or rename it.)"},
     {"L0213", "entries that do not go together",
      R"(An expectation is judged at one time ('at') or in every scan ('always'), and compares
 with a value or with bounds; 'within' is the tolerance of a value that is a number, and
-'at_least' is not above 'at_most'. Write one expectation for each thing that must hold:
+'at_least' is not above 'at_most', in a study neither. A study's grid has no name, since
+its cases would share it. Write one expectation for each thing that must hold:
     expect:
       - {at: end, slave.velocity: 15 mm/s, within: 1e-9 mm/s}
       - {always: slave.velocity, at_least: 0 mm/s, at_most: 15.001 mm/s}

@@ -19,10 +19,17 @@ constexpr const char* block_help =
     "add blocks such as shaft: {type: virtual_axis, task: servo, ...}";
 constexpr const char* task_help = "add tasks such as tasks: {servo: {every: 2 ms}}";
 
+/// Without links and dots; empty, and why, when the path cannot be followed.
+fs::path real_path(const fs::path& path, std::error_code& error) {
+    const fs::path whole = fs::absolute(path, error);
+    return error ? fs::path() : fs::weakly_canonical(whole, error);
+}
+
 fs::path project_root(const fs::path& file) {
-    const fs::path own = fs::weakly_canonical(fs::absolute(file)).parent_path();
+    std::error_code unknown;  // then nothing lies below
+    const fs::path own = real_path(file, unknown).parent_path();
     for (fs::path folder = own; folder != folder.root_path(); folder = folder.parent_path())
-        if (fs::is_directory(folder / "config")) return folder;
+        if (fs::is_directory(folder / "config", unknown)) return folder;
     return own;
 }
 
@@ -91,6 +98,7 @@ class ProgramReader {
     void task(const Node& name, const Node& body);
     void interval(TaskPlan& plan, const Node& name, const Node& body);
     void events(TaskPlan& plan, const Node& on, const Node& body);
+    void check_task(const TaskPlan& plan, const Node& name, const Node& body);
     void blocks(const Node& node);
     void block(BlockPlan& plan, const Node& body);
     void inputs(const Node& node);
@@ -202,16 +210,33 @@ void ProgramReader::task(const Node& name, const Node& body) {
     auto plan = std::ranges::find(program_.tasks, name.text, &TaskPlan::name);
     if (plan == program_.tasks.end())
         plan = program_.tasks.insert(plan, {.name = name.text, .mark = name.mark, .on = {}});
-    if (const Node* on = body.find("on")) events(*plan, *on, body);
-    else interval(*plan, name, body);
+    if (const Node* on = body.find("on"))
+        events(*plan, *on, body);
+    else
+        interval(*plan, name, body);
     if (const Node* n = body.find("cost")) plan->cost = read_.time(*n).value_or(plan->cost);
     if (const Node* n = body.find("cost_jitter"))
         plan->cost_jitter = read_.time_or_share(*n, plan->cost).value_or(plan->cost_jitter);
-    if (plan->cost_jitter > plan->cost)
-        read_.fail("L0305", *body.find(body.find("cost_jitter") ? "cost_jitter" : "cost"),
-                   fmt::format("the cost_jitter of task '{}' is above its cost", name.text));
     if (const Node* n = body.find("priority"))
         plan->priority = read_.integer(*n).value_or(plan->priority);
+    check_task(*plan, name, body);
+}
+
+/// Parts of it may come from the controller's file: then the name is the place.
+void ProgramReader::check_task(const TaskPlan& plan, const Node& name, const Node& body) {
+    const auto fail = [&](std::initializer_list<const char*> keys, std::string_view what) {
+        const Node* place = nullptr;
+        for (const char* key : keys)
+            if (!place) place = body.find(key);
+        read_.fail("L0305", place ? *place : name, fmt::format(fmt::runtime(what), name.text));
+    };
+    if (plan.every > 0 && plan.jitter >= plan.every)
+        fail({"jitter", "every"}, "the jitter of task '{}' is not below its interval");
+    if (plan.cost_jitter > plan.cost)
+        fail({"cost_jitter", "cost"}, "the cost_jitter of task '{}' is above its cost");
+    if (plan.every > 0 && plan.cost - plan.cost_jitter > plan.every)
+        fail({"cost", "every"},
+             "the cost of task '{}' is above its interval: it never ends in time");
 }
 
 void ProgramReader::interval(TaskPlan& plan, const Node& name, const Node& body) {
@@ -227,16 +252,15 @@ void ProgramReader::interval(TaskPlan& plan, const Node& name, const Node& body)
     if (const Node* n = body.find("offset")) plan.offset = read_.time(*n).value_or(plan.offset);
     if (const Node* n = body.find("jitter"))
         plan.jitter = read_.time_or_share(*n, plan.every).value_or(plan.jitter);
-    if (plan.every > 0 && plan.jitter >= plan.every)
-        read_.fail("L0305", *body.find(body.find("jitter") ? "jitter" : "every"),
-                   fmt::format("the jitter of task '{}' is not below its interval", name.text));
 }
 
 void ProgramReader::events(TaskPlan& plan, const Node& on, const Node& body) {
     plan.on.clear();
     plan.every = plan.offset = plan.jitter = 0;
-    if (on.is_sequence()) plan.on = on.items;
-    else plan.on.push_back(on);
+    if (on.is_sequence())
+        plan.on = on.items;
+    else
+        plan.on.push_back(on);
     if (plan.on.empty()) read_.fail("L0202", on, "'on' names no signal");
     for (const Node& signal : plan.on)
         if (!read_.expect_scalar(signal, "a signal")) return plan.on.clear();
@@ -455,12 +479,18 @@ Program read_program(std::shared_ptr<const SourceFile> file, const LoadOptions& 
 std::optional<std::string> resolve_path(const std::string& named, const std::string& from,
                                         const std::vector<std::string>& include_dirs, Mark where,
                                         Diagnostics& out) {
-    const fs::path path = fs::path(from).parent_path() / named;
-    const fs::path real = fs::weakly_canonical(fs::absolute(path));
+    const fs::path path = (fs::path(from).parent_path() / named).lexically_normal();
+    std::error_code error;
+    const fs::path real = real_path(path, error);
+    if (error) {
+        out.add("L0001", std::move(where),
+                fmt::format("cannot read '{}': {}", named, error.message()));
+        return {};
+    }
     bool allowed = lies_below(real, project_root(from));
     for (const std::string& folder : include_dirs)
-        allowed = allowed || lies_below(real, fs::weakly_canonical(fs::absolute(folder)));
-    if (allowed) return path.lexically_normal().string();
+        allowed = allowed || lies_below(real, real_path(folder, error));
+    if (allowed) return path.string();
     out.add("L0002", std::move(where),
             fmt::format("'{}' lies outside of the program's project", named),
             "a project is the nearest folder above that holds config/; allow others with "

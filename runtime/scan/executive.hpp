@@ -39,11 +39,12 @@ struct RunResult {
     std::string message;              ///< what happened, unless completed
 };
 
-/// Runs a machine in virtual time. A scan takes its inputs at its start and publishes its outputs when its
-/// cost has passed. A task of higher priority that falls due in between runs in between, on what was
-/// published, and puts the end off by its own cost; one of lower or equal priority waits. At one instant:
-/// devices, then stimuli, then outputs that are due, then tasks by priority. The run covers
-/// [0, duration], both included. Nothing is allocated, locked or looked up by name while cycling.
+/// Runs a machine in virtual time. A scan takes its inputs at its start and publishes its outputs
+/// when its cost has passed. A task of higher priority that falls due in between runs in between,
+/// on what was published, and puts the end off by its own cost; one of lower or equal priority
+/// waits. At one instant: devices, then stimuli, then outputs that are due, then tasks by priority.
+/// The run covers [0, duration], both included. Nothing is allocated, locked or looked up by name
+/// while cycling.
 ///
 /// An event task is released by each rising edge of a published boolean: of a device, a stimulus or
 /// another task's output. A value that is true from the start is no edge. Several edges at one

@@ -9,16 +9,16 @@
 
 namespace lineshaft {
 
-/// A statement about a signal, at an instant, at the end, or after every scan of the task that writes it.
-/// It holds when low <= value <= high; true counts as 1, an enumeration as its number.
+/// A statement about a signal, at an instant, at the end, or after every scan of the task that
+/// writes it. It holds when low <= value <= high; true counts as 1, an enumeration as its number.
 struct Expectation {
-    std::string text;                ///< as `run` prints it: `at 1 s: slave.in_gear = true`
+    std::string text;  ///< as `run` prints it: `at 1 s: slave.in_gear = true`
     Signal signal;
     bool always = false;
     std::optional<std::int64_t> at;  ///< [ns]; empty and not always: at the end
     double low = 0;
     double high = 0;
-    std::string wanted;              ///< `true`, `15 mm/s`, for the message
+    std::string wanted;  ///< `true`, `15 mm/s`, for the message
 };
 
 struct Verdict {

@@ -5,8 +5,8 @@
 
 namespace lineshaft {
 
-/// Seeded generator of one named use ("main.jitter"), so that adding a use elsewhere does not change its draws.
-/// SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
+/// Seeded generator of one named use ("main.jitter"), so that adding a use elsewhere does not
+/// change its draws. SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
 class Random {
   public:
     Random(std::uint64_t seed, std::string_view name);

@@ -33,6 +33,12 @@ struct PendingCase {
     std::vector<PendingComparison> comparisons;
 };
 
+bool has_paper(const StudyCase& c) {
+    return std::ranges::any_of(c.comparisons, [](const Comparison& comparison) {
+        return comparison.bounds.paper.value_or(0) != 0;
+    });
+}
+
 class StudyReader {
   public:
     StudyReader(const LoadOptions& options, const Catalog& catalog, Diagnostics& out)
@@ -136,7 +142,12 @@ void StudyReader::one_case(const Node& node) {
     if (const Node* n = node.find("repeat")) pending.made.repeat = repeat(*n);
     pending.comparisons = common_comparisons_;
     if (const Node* n = node.find("compare")) comparisons(*n, pending);
-    if (const Node* n = node.find("grid")) return grid(*n, pending);
+    const Node* values = node.find("grid");
+    if (values && node.find("name"))
+        read_.fail("L0213", *node.find("name"),
+                   "a grid makes many cases, which cannot share a name",
+                   "leave the name out, or write the cases one by one");
+    if (values) return grid(*values, pending);
     check(pending);
 }
 
@@ -231,11 +242,17 @@ void StudyReader::check(PendingCase& pending) {
     const std::size_t before = read_.diagnostics().list().size();
     const Program program = read_program(program_file_, options, read_.diagnostics());
     const Linked linked = link(program, catalog_, read_.diagnostics());
-    cases_known_ = cases_known_ && read_.diagnostics().list().size() == before;
-    if (!cases_known_) return;
-    for (const PendingComparison& comparison : pending.comparisons)
-        if (auto made = compare(comparison, linked.machine))
+    if (read_.diagnostics().list().size() > before) {
+        cases_known_ = false;
+        return;
+    }
+    for (const PendingComparison& comparison : pending.comparisons) {
+        auto made = compare(comparison, linked.machine);
+        if (!made)
+            cases_known_ = false;
+        else
             pending.made.comparisons.push_back(std::move(*made));
+    }
     study_.cases.push_back(std::move(pending.made));
 }
 
@@ -261,6 +278,9 @@ Bounds StudyReader::bounds(const Node& map, const Unit& unit) const {
     if (const Node* n = map.find("paper")) bounds.paper = read_.real(*n, unit);
     if (const Node* n = map.find("at_least")) bounds.at_least = read_.real(*n, unit);
     if (const Node* n = map.find("at_most")) bounds.at_most = read_.real(*n, unit);
+    if (bounds.at_least && bounds.at_most && *bounds.at_least > *bounds.at_most)
+        read_.fail("L0213", *map.find("at_least"),
+                   "'at_least' is above 'at_most': this never holds");
     const Node* n = map.find("within");
     if (!n) return bounds;
     if (!map.find("paper"))
@@ -288,6 +308,8 @@ void StudyReader::within(const Node& node, const Unit& unit, Bounds& bounds) con
         distance = read_.real(node, share ? one : unit);
         if (distance && share) *distance *= std::abs(*bounds.paper);
     }
+    if (distance && *distance < 0)
+        read_.fail("L0305", node, fmt::format("'{}' is below 0", node.text));
     if (distance) bounds.within.push_back(*distance);
 }
 
@@ -319,12 +341,14 @@ void StudyReader::claim(const Node& node) {
 
 /// Evaluated with all names at 1, so that a misspelt name is known before the first run.
 void StudyReader::check_formula(const Node& formula) const {
-    std::vector<std::string> known{"mean_relative_error", "greatest_relative_error"};
+    std::vector<std::string> known;
     for (const StudyCase& c : study_.cases) {
-        if (c.name.empty()) continue;
+        if (c.name.empty() || c.comparisons.empty()) continue;
         known.push_back(c.name);
         for (const Comparison& k : c.comparisons) known.push_back(c.name + "." + k.signal);
     }
+    if (std::ranges::any_of(study_.cases, has_paper))
+        known.insert(known.end(), {"mean_relative_error", "greatest_relative_error"});
     const auto result = evaluate(formula.text, [&](std::string_view name) {
         return std::ranges::find(known, name) == known.end() ? std::nullopt : std::optional(1.0);
     });

@@ -95,11 +95,14 @@ std::string align(const std::vector<Cells>& rows) {
     return text;
 }
 
+bool has_limit(const Bounds& bounds) {
+    return bounds.at_least || bounds.at_most;
+}
+
 std::string row_table(const Study& study, const StudyReport& report) {
     const auto names = varying(study);
-    const bool any_limit = std::ranges::any_of(report.rows, [](const StudyRow& r) {
-        return r.comparison->bounds.at_least || r.comparison->bounds.at_most;
-    });
+    const bool any_limit = std::ranges::any_of(
+        report.rows, [](const StudyRow& r) { return has_limit(r.comparison->bounds); });
     Cells head = names;
     for (const char* title : {"signal", "paper", "ours", "difference"}) head.emplace_back(title);
     head.emplace_back(any_limit ? "limit" : "");
@@ -121,7 +124,9 @@ std::string row_table(const Study& study, const StudyReport& report) {
 }
 
 std::string claim_table(const StudyReport& report) {
-    std::vector<Cells> rows{{"claim", "paper", "ours", "difference", "limit"}};
+    const bool any_limit = std::ranges::any_of(
+        report.claims, [](const ClaimRow& r) { return has_limit(r.claim->bounds); });
+    std::vector<Cells> rows{{"claim", "paper", "ours", "difference", any_limit ? "limit" : ""}};
     for (const ClaimRow& row : report.claims) {
         const Claim& c = *row.claim;
         rows.push_back({c.text, paper(c.bounds, c.percent), number(row.ours, c.percent),

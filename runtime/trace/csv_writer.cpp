@@ -1,16 +1,12 @@
 #include "runtime/trace/csv_writer.hpp"
 
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "runtime/version.hpp"
@@ -35,19 +31,14 @@ char* append(char* end, Type type, std::uint64_t bits) {
     return append_integer(end, static_cast<std::int64_t>(bits));
 }
 
-void flush_folder(const std::string& path) {
-    const auto folder = std::filesystem::absolute(path).parent_path();
-    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY);
-    if (descriptor < 0) return;
-    ::fsync(descriptor);
-    ::close(descriptor);
-}
-
 std::string csvw_type(Type type) {
     switch (type) {
-        case Type::boolean: return "boolean";
-        case Type::real: return "double";
-        default: return "integer";
+        case Type::boolean:
+            return "boolean";
+        case Type::real:
+            return "double";
+        default:
+            return "integer";
     }
 }
 
@@ -67,50 +58,17 @@ std::string text_hash(std::string_view text) {
     return fmt::format("{:016x}", hash);
 }
 
-OutputFile::OutputFile(std::string path) : path_(std::move(path)), part_(path_ + ".part") {
-    if (std::filesystem::is_directory(path_)) {
-        error_ = fmt::format("cannot write '{}': it is a directory", path_);
-        return;
-    }
-    file_ = std::fopen(part_.c_str(), "wb");
-    if (!file_) fail("open");
-}
-
-OutputFile::~OutputFile() {
-    if (file_) std::fclose(file_);
-}
-
-void OutputFile::write(std::string_view text) {
-    if (!error_.empty()) return;
-    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail("write");
-}
-
-bool OutputFile::commit() {
-    if (!error_.empty()) return false;
-    if (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0) fail("write");
-    if (std::fclose(file_) != 0 && error_.empty()) fail("close");
-    file_ = nullptr;
-    if (error_.empty() && std::rename(part_.c_str(), path_.c_str()) != 0) fail("rename");
-    if (error_.empty()) flush_folder(path_);
-    return error_.empty();
-}
-
-void OutputFile::fail(const char* what) {
-    error_ = fmt::format("cannot {} '{}': {}", what, path_, std::strerror(errno));
-}
-
 CsvWriter::CsvWriter(std::string path, const TraceSetup& setup)
     : file_(path), path_(std::move(path)), signals_(setup.signals) {
     std::string header = "time,scan";
     for (const Signal& signal : signals_) header += "," + signal.name;
     file_.write(header + "\n");
+    row_.resize((2 + signals_.size()) * longest_number);
 }
 
 void CsvWriter::rows(const std::uint64_t* words, std::size_t rows) {
-    text_.resize(rows * (2 + signals_.size()) * longest_number);
-    char* end = text_.data();
     for (std::size_t row = 0; row < rows; ++row) {
-        end = append_real(end, seconds(static_cast<std::int64_t>(*words++)));
+        char* end = append_real(row_.data(), seconds(static_cast<std::int64_t>(*words++)));
         *end++ = ',';
         end = append_integer(end, static_cast<std::int64_t>(*words++));
         for (const Signal& signal : signals_) {
@@ -118,25 +76,24 @@ void CsvWriter::rows(const std::uint64_t* words, std::size_t rows) {
             end = append(end, signal.type, *words++);
         }
         *end++ = '\n';
+        file_.write({row_.data(), static_cast<std::size_t>(end - row_.data())});
     }
     row_count_ += static_cast<std::int64_t>(rows);
-    file_.write({text_.data(), static_cast<std::size_t>(end - text_.data())});
 }
 
 std::string CsvWriter::finish(const std::string& title, const std::string& program_text) {
-    if (!file_.commit()) return file_.error();
+    if (!file_.commit() || !file_.is_regular()) return file_.error();
     nlohmann::ordered_json columns = nlohmann::ordered_json::array();
     columns.push_back({{"titles", "time"}, {"datatype", "double"}, {"unit", "s"}});
     columns.push_back({{"titles", "scan"}, {"datatype", "integer"}});
     for (const Signal& signal : signals_) columns.push_back(csvw_column(signal));
-    const nlohmann::ordered_json metadata{
-        {"@context", "http://www.w3.org/ns/csvw"},
-        {"url", std::filesystem::path(path_).filename().string()},
-        {"dc:title", title},
-        {"lineshaft:version", version()},
-        {"lineshaft:program", text_hash(program_text)},
-        {"lineshaft:rows", row_count_},
-        {"tableSchema", {{"columns", columns}}}};
+    const nlohmann::ordered_json metadata{{"@context", "http://www.w3.org/ns/csvw"},
+                                          {"url", std::filesystem::path(path_).filename().string()},
+                                          {"dc:title", title},
+                                          {"lineshaft:version", version()},
+                                          {"lineshaft:program", text_hash(program_text)},
+                                          {"lineshaft:rows", row_count_},
+                                          {"tableSchema", {{"columns", columns}}}};
     OutputFile sidecar(path_ + "-metadata.json");
     sidecar.write(metadata.dump(2) + "\n");
     sidecar.commit();

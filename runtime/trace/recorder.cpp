@@ -11,9 +11,7 @@ constexpr std::size_t rows_per_block = 1024;
 }  // namespace
 
 Recorder::Recorder(TraceSetup setup, TraceSink& sink)
-    : setup_(std::move(setup)),
-      sink_(sink),
-      words_((2 + setup_.signals.size()) * rows_per_block) {}
+    : setup_(std::move(setup)), sink_(sink), words_((2 + setup_.signals.size()) * rows_per_block) {}
 
 void Recorder::scanned(int task, const Scan& scan) {
     if (task != setup_.task || scan.index % setup_.every != 0) return;

@@ -9,7 +9,7 @@ namespace lineshaft {
 
 /// What a trace records.
 struct TraceSetup {
-    int task = 0;            ///< after each `every`-th scan of this task
+    int task = 0;  ///< after each `every`-th scan of this task
     std::int64_t every = 1;
     std::vector<Signal> signals;
 };
@@ -23,8 +23,8 @@ class TraceSink {
     virtual void rows(const std::uint64_t* words, std::size_t rows) = 0;
 };
 
-/// Copies the traced signals into a block of rows after each recorded scan; full blocks go to the sink.
-/// Nothing is allocated while cycling.
+/// Copies the traced signals into a block of rows after each recorded scan; full blocks go to the
+/// sink. Nothing is allocated while cycling.
 class Recorder : public Observer {
   public:
     Recorder(TraceSetup setup, TraceSink& sink);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include "runtime/model/units.hpp"
 #include "runtime/scan/random.hpp"
@@ -103,7 +104,7 @@ void check_finite_outputs(const Instance& block, const BlockType& type) {
 }
 
 std::string replaced(std::string text, std::string_view parameter, std::string_view value) {
-    const std::string place = "{" + std::string(parameter) + "}";
+    const std::string place = fmt::format("{{{}}}", parameter);
     for (auto at = text.find(place); at != std::string::npos; at = text.find(place))
         text.replace(at, place.size(), value);
     return text;

@@ -9,7 +9,7 @@
 #include "runtime/study/junit.hpp"
 #include "runtime/study/study.hpp"
 #include "runtime/study/table.hpp"
-#include "runtime/trace/csv_writer.hpp"
+#include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {

@@ -55,6 +55,34 @@ TEST_CASE("a positioning to where the axis stands is finished at once") {
     CHECK(move.at(start).position == 3);
 }
 
+TEST_CASE("a positioning with velocities at its ends keeps the one that it ends with") {
+    for (const double sign : {1.0, -1.0}) {
+        Positioning move;
+        REQUIRE(move.begin({.position = 2, .velocity = sign * 5}, 2 + sign * 10,
+                           {.Ve = 8, .Vm = 20, .A = 100, .J = 5e3}, start) == PlanResult::ok);
+        CHECK(move.at(start).position == 2);
+        CHECK(move.at(start).velocity == sign * 5);
+        const auto end = start + static_cast<std::int64_t>(std::ceil(move.plan.duration * 1e9));
+        CHECK(std::abs(move.at(end).position - (2 + sign * 10)) <= 8 * 1e-9);
+        for (const std::int64_t later : {end, end + millisecond, end + 5000 * millisecond}) {
+            const double late = seconds(later - start) - move.plan.duration;
+            CHECK(move.at(later).velocity == sign * 8);
+            CHECK(move.at(later).acceleration == 0);
+            CHECK(move.at(later).position == 2 + sign * 10 + sign * 8 * late);
+        }
+    }
+}
+
+TEST_CASE("a positioning away from the velocity that an axis has is refused") {
+    Positioning move = planned(0, 8);
+    const SevenSegment limits{.Vm = 20, .A = 100, .J = 5e3};
+    CHECK(move.begin({.velocity = 1}, -3, limits, start) == PlanResult::velocity_above_limit);
+    CHECK(move.begin({.velocity = -1}, 3, limits, start) == PlanResult::velocity_above_limit);
+    CHECK(move.target == 8);
+    CHECK(move.begin({.velocity = -1}, 0, limits, start) == PlanResult::ok);
+    CHECK(move.at(start).velocity == -1);
+}
+
 TEST_CASE("a positioning that cannot be planned leaves the one before it") {
     Positioning move = planned(0, 8);
     CHECK(move.begin(0, 9, 0, 100, 5e3, start) == PlanResult::limit_not_positive);

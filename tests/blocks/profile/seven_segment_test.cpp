@@ -533,6 +533,7 @@ TEST_CASE("24 sets of every kind end within 1.3e-14 mm and 4 ulp of L") {
             std::abs(static_cast<double>(run(set.problem, out).position - set.problem.L));
         CHECK(error <= 1.3e-14);
         CHECK(error <= 4 * ulp(set.problem.L));
+        CHECK(std::abs(out.displacement_error() - error) <= 0.01 * ulp(set.problem.L));
         greatest = std::max(greatest, error);
         ++solved[static_cast<std::size_t>(equation(out.kind))];
     }

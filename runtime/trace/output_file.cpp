@@ -1,0 +1,64 @@
+#include "runtime/trace/output_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace lineshaft {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void flush_folder(const std::string& path) {
+    const auto folder = fs::absolute(path).parent_path();
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY);
+    if (descriptor < 0) return;
+    ::fsync(descriptor);
+    ::close(descriptor);
+}
+
+}  // namespace
+
+OutputFile::OutputFile(std::string path) : path_(std::move(path)), part_(path_ + ".part") {
+    std::error_code unknown;  // opening tells it
+    const fs::file_status status = fs::status(path_, unknown);
+    if (fs::is_directory(status)) {
+        error_ = fmt::format("cannot write '{}': it is a directory", path_);
+        return;
+    }
+    regular_ = !fs::exists(status) || fs::is_regular_file(status);
+    file_ = std::fopen(regular_ ? part_.c_str() : path_.c_str(), "wb");
+    if (!file_) fail("open");
+}
+
+OutputFile::~OutputFile() {
+    if (file_) std::fclose(file_);
+}
+
+void OutputFile::write(std::string_view text) {
+    if (!error_.empty()) return;
+    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail("write");
+}
+
+bool OutputFile::commit() {
+    if (!error_.empty()) return false;
+    if (std::fflush(file_) != 0) fail("write");
+    if (regular_ && error_.empty() && ::fsync(::fileno(file_)) != 0) fail("write");
+    if (std::fclose(file_) != 0 && error_.empty()) fail("close");
+    file_ = nullptr;
+    if (!regular_ || !error_.empty()) return error_.empty();
+    if (std::rename(part_.c_str(), path_.c_str()) != 0) fail("rename");
+    flush_folder(path_);
+    return error_.empty();
+}
+
+void OutputFile::fail(const char* what) {
+    error_ = fmt::format("cannot {} '{}': {}", what, path_, std::strerror(errno));
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace lineshaft {
+
+/// A file that appears under its name only when it is whole: written as `NAME.part`, then flushed
+/// to the disk and renamed. What has been written when something goes wrong stays in `NAME.part`.
+/// What exists and is no regular file (a device, a pipe) is written to as it is.
+class OutputFile {
+  public:
+    explicit OutputFile(std::string path);
+    ~OutputFile();
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+
+    void write(std::string_view text);
+    /// False when any step failed: see error().
+    bool commit();
+
+    /// False for a device or a pipe.
+    bool is_regular() const { return regular_; }
+
+    /// `cannot write 'x.csv': No space left on device`; empty while all is well.
+    const std::string& error() const { return error_; }
+
+  private:
+    void fail(const char* what);
+
+    std::string path_;
+    std::string part_;
+    bool regular_ = true;
+    std::FILE* file_ = nullptr;
+    std::string error_;
+};
+
+}  // namespace lineshaft

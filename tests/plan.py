@@ -1,0 +1,184 @@
+#!/usr/bin/python3
+"""`lineshaft plan`: CSV in, CSV out, and what it says about lines that it cannot read.
+
+usage: plan.py LINESHAFT
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+HEADER = "Vs,Ve,Vm,A,J,L\n"
+OUTPUT_HEADER = "ok,case,equation,T1,T2,T3,T4,T5,T6,T7,end_velocity"
+NOT_PLANNED = "0,,,,,,,,,,"
+GOOD = "0,0,100,500,5000,30"
+PLANNED = "1,cruise_rising_both,5,0.1,0.1,0.1,0,0.1,0.1,0.1,0"
+NAMES = "Vs, Ve, Vm, A, J, L"
+SIGNS = (1, 0, -1, 0, -1, 0, 1)
+
+# What it is, the input, the rows of output after the header, what stands on stderr after `stdin:`.
+ANSWERS = [
+    ("one line", HEADER + GOOD + "\n", [PLANNED], []),
+    ("no newline at the end", HEADER + GOOD, [PLANNED], []),
+    ("header only", HEADER, [], []),
+    ("header without a newline", HEADER.strip(), [], []),
+    ("CRLF", (HEADER + GOOD + "\n" + GOOD + "\n").replace("\n", "\r\n"), [PLANNED] * 2, []),
+    ("CRLF, no newline at the end", HEADER.replace("\n", "\r\n") + GOOD + "\r", [PLANNED], []),
+    ("blank lines", "\n" + HEADER + "\n" + GOOD + "\n  \t\n\r\n" + GOOD + "\n\n", [PLANNED] * 2, []),
+    ("blanks", " Vs , Ve,Vm,\tA,J,L \n 0,0 , 100,\t500,5000  ,  30 \n", [PLANNED], []),
+    ("a byte order mark", "\ufeff" + HEADER + GOOD, [PLANNED], []),
+    ("quotes", '"Vs","Ve","Vm","A","J","L"\n"0","0",100,500,5000,"30"\n', [PLANNED], []),
+    ("columns in another order", "L,J,A,Vm,Ve,Vs\n30,5000,500,100,0,0\n", [PLANNED], []),
+    ("signs and exponents", HEADER + "-0,+0,1e2,+5e+2,5.0E3,.3e2\n", [PLANNED], []),
+    ("end velocity out of reach", HEADER + "10,200,200,500,5000,0\n",
+     ["1,accelerate_triangular,2,0,0,0,0,0,0,0,10"], []),
+    ("negative length", HEADER + "0,0,100,500,5000,-1\n" + GOOD, [NOT_PLANNED, PLANNED], []),
+    ("limits not positive", HEADER + "0,0,0,500,5000,1\n0,0,1,-1,1,1\n0,0,1,1,0,1\n",
+     [NOT_PLANNED] * 3, []),
+    ("velocities beyond the limit", HEADER + "101,0,100,500,5000,1\n0,101,100,500,5000,1\n-1,0,1,1,1,1",
+     [NOT_PLANNED] * 3, []),
+    ("NaN and infinite", HEADER + "NaN,0,1,1,1,1\n0,0,1,nan,1,1\n0,0,1,1,1,inf\n0,-Inf,1,1,1,1\n",
+     [NOT_PLANNED] * 4, []),
+    ("a missing cell", HEADER + "0,0,100,500,5000\n" + GOOD, [NOT_PLANNED, PLANNED],
+     ["2: error: 5 cells instead of 6"]),
+    ("a cell too many", HEADER + GOOD + "\n" + GOOD + ",\n", [PLANNED, NOT_PLANNED],
+     ["3: error: 7 cells instead of 6"]),
+    ("an empty cell", HEADER + "0,0,,500,5000,1\n", [NOT_PLANNED], ["2: error: column Vm is empty"]),
+    ("no number", HEADER + "0,0,1,fast,1,1\n0,0,1,1 2,1,1\n0,0,0x10,1,1,1\n0,+-1,1,1,1,1\n",
+     [NOT_PLANNED] * 4,
+     ["2: error: 'fast' in column A is not a number", "3: error: '1 2' in column A is not a number",
+      "4: error: '0x10' in column Vm is not a number", "5: error: '+-1' in column Ve is not a number"]),
+    ("beyond a double", HEADER + "0,0,1,1,1,1e999\n", [NOT_PLANNED],
+     ["2: error: '1e999' in column L is beyond the range of numbers"]),
+    ("blank lines count", HEADER + "\n\nx,0,1,1,1,1\n", [NOT_PLANNED],
+     ["4: error: 'x' in column Vs is not a number"]),
+    ("the column's own name", "L,J,A,Vm,Ve,Vs\n30,5000,500,100,0,no\n", [NOT_PLANNED],
+     ["2: error: 'no' in column Vs is not a number"]),
+    ("a line too long", HEADER + "1" * 200000 + "\n" + GOOD, [NOT_PLANNED, PLANNED],
+     ["2: error: a line of 65536 characters or more"]),
+    ("a last line too long", HEADER + GOOD + "\n" + " " * 65536, [PLANNED, NOT_PLANNED],
+     ["3: error: a line of 65536 characters or more"]),
+    ("empty", "", None, ["1: error: no header; the first line names " + NAMES]),
+    ("no header", GOOD + "\n", None, ["1: error: unknown column '0'; the header names " + NAMES]),
+    ("a column missing", "Vs,Ve,Vm,A,L\n", None, ["1: error: no column 'J'; the header names " + NAMES]),
+    ("a column twice", "Vs,Ve,Vm,A,J,L,L\n", None, ["1: error: a second column 'L'"]),
+    ("a header in capitals", "\nVS,Ve,Vm,A,J,L\n", None,
+     ["2: error: unknown column 'VS'; the header names " + NAMES]),
+]
+
+
+def run(lineshaft, *arguments, text=b""):
+    text = text if isinstance(text, bytes) else text.encode("utf-8")
+    answer = subprocess.run([lineshaft, "plan", *arguments], input=text, capture_output=True, timeout=60)
+    return answer.returncode, answer.stdout.decode("utf-8"), answer.stderr.decode("utf-8")
+
+
+def check_answers(lineshaft):
+    for what, text, rows, mistakes in ANSWERS:
+        code, out, err = run(lineshaft, text=text)
+        wanted = "" if rows is None else "\n".join([OUTPUT_HEADER, *rows]) + "\n"
+        if out != wanted:
+            yield f"{what}: {out!r} instead of {wanted!r}"
+        said = "".join(f"stdin:{mistake}\n" for mistake in mistakes)
+        if err != said:
+            yield f"{what}: said {err!r} instead of {said!r}"
+        if code != (2 if mistakes else 0):
+            yield f"{what}: exit code {code}"
+
+
+def length(problem, times):
+    """The way that the times take from Vs, and the velocity at its end."""
+    x, v, a = 0.0, problem[0], 0.0
+    for sign, t in zip(SIGNS, times):
+        j = sign * problem[4]
+        x += t * (v + t * (a / 2 + t * j / 6))
+        v += t * (a + t * j / 2)
+        a += t * j
+    return x, v
+
+
+def many_problems(count):
+    for i in range(count):
+        yield [i % 7 * 10.0, i % 11 * 8.0, 90.0, 100.0 + i % 13 * 50, 5000.0, 0.001 * (i % 1009) * (1 + i % 97)]
+
+
+def check_many(lineshaft):
+    """Every row fits its line; what is read from a pipe in pieces is cut at newlines only."""
+    problems = list(many_problems(20000))
+    lines = [",".join(map(repr, p)) for p in problems]
+    code, out, err = run(lineshaft, text=HEADER + "\n".join(lines))
+    rows = out.splitlines()[1:]
+    if code != 0 or err or len(rows) != len(problems):
+        yield f"many problems: exit code {code}, {len(rows)} rows, said {err[:200]!r}"
+        return
+    kinds = set()
+    for problem, row in zip(problems, rows):
+        ok, kind, equation, *numbers = row.split(",")
+        *times, end = map(float, numbers)
+        kinds.add(kind)
+        x, v = length(problem, times)
+        L = problem[5]
+        if ok != "1" or not 1 <= int(equation) <= 11 or abs(x - L) > 1e-13 * max(L, 1) or abs(v - end) > 1e-11:
+            yield f"{problem} gives {row}: length {x}, end velocity {v}"
+            return
+        if any(repr(float(n)).removesuffix(".0") != n and float(repr(float(n))) != float(n) for n in numbers):
+            yield f"digits lost in {row}"
+    if len(kinds) < 14:
+        yield f"many problems are of {len(kinds)} kinds only"
+
+
+def check_files(lineshaft, folder):
+    """-o gives the bytes of the standard output, and nothing when there is nothing to plan."""
+    good, bad, out = folder / "good.csv", folder / "bad.csv", folder / "out.csv"
+    good.write_text(HEADER + GOOD + "\nx\n" + GOOD + "\n", encoding="utf-8")
+    bad.write_text("a,b\n", encoding="utf-8")
+    wanted = "\n".join([OUTPUT_HEADER, PLANNED, NOT_PLANNED, PLANNED]) + "\n"
+    code, text, err = run(lineshaft, str(good), "-o", str(out))
+    if code != 2 or text or out.read_text(encoding="utf-8") != wanted:
+        yield f"-o: exit code {code}, {text!r} on the standard output"
+    if err != f"{good}:3: error: 1 cells instead of 6\n":
+        yield f"-o: said {err!r}"
+    out.unlink()
+    code, text, err = run(lineshaft, str(bad), "-o", str(out))
+    if code != 2 or out.exists() or not err.startswith(f"{bad}:1: error: unknown column 'a'"):
+        yield f"a wrong header with -o: exit code {code}, said {err!r}"
+    if run(lineshaft, "-", text=HEADER + GOOD)[1] != "\n".join([OUTPUT_HEADER, PLANNED]) + "\n":
+        yield "- is not the standard input"
+    for name, message in ((folder / "none.csv", "cannot open"), (folder, "it is a directory")):
+        code, text, err = run(lineshaft, str(name))
+        if code != 2 or text or message not in err:
+            yield f"{name}: exit code {code}, said {err!r}"
+    code, text, err = run(lineshaft, str(good), "-o", str(folder / "none" / "out.csv"))
+    if code != 3 or not re.search("cannot open '.*out.csv'", err):
+        yield f"an output that cannot be written: exit code {code}, said {err!r}"
+
+
+def check_dialogue(lineshaft):
+    """Lines are answered as they come: a script may wait for each answer."""
+    with subprocess.Popen([lineshaft, "plan"], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        process.stdin.write((HEADER + GOOD[:9]).encode())
+        process.stdin.flush()
+        header = process.stdout.readline().decode().strip()
+        process.stdin.write((GOOD[9:] + "\n").encode())
+        process.stdin.flush()
+        row = process.stdout.readline().decode().strip()
+        process.stdin.close()
+    if (header, row) != (OUTPUT_HEADER, PLANNED) or process.returncode != 0:
+        yield f"dialogue: {header!r}, {row!r}, exit code {process.returncode}"
+
+
+def main():
+    lineshaft = str(pathlib.Path(sys.argv[1]).resolve())
+    failures = [*check_answers(lineshaft), *check_many(lineshaft), *check_dialogue(lineshaft)]
+    with tempfile.TemporaryDirectory() as folder:
+        failures += check_files(lineshaft, pathlib.Path(folder))
+    for failure in failures:
+        print(failure)
+    print(f"{len(ANSWERS)} inputs, {len(failures)} failures")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
