@@ -7,6 +7,8 @@
 #include "blocks/circle/circle_fit.hpp"
 #include "blocks/circle/circle_ratio.hpp"
 #include "blocks/circle/path_circle.hpp"
+#include "blocks/pulse/constant_jerk_line.hpp"
+#include "blocks/pulse/pto.hpp"
 
 namespace lineshaft {
 
@@ -19,6 +21,8 @@ Catalog standard_blocks() {
     blocks.add<CircleRatio>();
     blocks.add<CircleFit>();
     blocks.add<PathCircle>();
+    blocks.add<Pto>();
+    blocks.add<ConstantJerkLine>();
     return blocks;
 }
 

@@ -16,6 +16,12 @@ const Field* BlockType::find_readable(std::string_view field) const {
     return find_settable(field);
 }
 
+const TableField* BlockType::find_table(std::string_view table) const {
+    for (const TableField& t : tables)
+        if (t.name == table) return &t;
+    return nullptr;
+}
+
 const BlockType* Catalog::find(std::string_view name) const {
     const auto it = std::ranges::find(types_, name, &BlockType::name);
     return it == types_.end() ? nullptr : &*it;

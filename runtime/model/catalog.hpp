@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "runtime/model/device.hpp"
 #include "runtime/model/field.hpp"
 #include "runtime/model/scan.hpp"
 
@@ -19,16 +20,21 @@ struct BlockType {
     std::string_view name;
     std::string_view doc;
     std::span<const Field> fields;
+    std::span<const TableField> tables;  ///< a block with `tables()` has some
     std::size_t size = 0;
     std::size_t alignment = 0;
     void (*construct)(std::byte* place) = nullptr;
     void (*scan)(std::byte* block, const Scan& now) = nullptr;
+    DeviceCalls device;
+
+    bool is_device() const { return device.advance != nullptr; }
 
     /// What a program may set (a parameter or input), or what it may read (an output, else an input
     /// or parameter). An output may bear an input's name: `velocity` is set as the wanted one and
     /// read as the axis' own. Null when there is none.
     const Field* find_settable(std::string_view field) const;
     const Field* find_readable(std::string_view field) const;
+    const TableField* find_table(std::string_view name) const;
 };
 
 /// The kinds of block a program may use, by name.
@@ -39,11 +45,14 @@ class Catalog {
     template <class Block>
     Catalog& add() {
         static_assert(std::is_trivially_copyable_v<Block>);
-        types_.push_back({Block::type, Block::doc, Block::fields(), sizeof(Block), alignof(Block),
-                          [](std::byte* place) { new (place) Block{}; },
+        std::span<const TableField> tables;
+        if constexpr (requires { Block::tables(); }) tables = Block::tables();
+        types_.push_back({Block::type, Block::doc, Block::fields(), tables, sizeof(Block),
+                          alignof(Block), [](std::byte* place) { new (place) Block{}; },
                           [](std::byte* block, const Scan& now) {
                               std::launder(reinterpret_cast<Block*>(block))->scan(now);
-                          }});
+                          },
+                          device_calls<Block>()});
         return *this;
     }
 
@@ -52,6 +61,23 @@ class Catalog {
     std::vector<std::string> names() const;
 
   private:
+    template <class Block>
+    static constexpr DeviceCalls device_calls() {
+        DeviceCalls calls;
+        if constexpr (Device<Block>) {
+            calls.next_event_time = [](const std::byte* block) {
+                return std::launder(reinterpret_cast<const Block*>(block))->next_event_time();
+            };
+            calls.advance = [](std::byte* block, std::int64_t time, PulseSink* sink) {
+                std::launder(reinterpret_cast<Block*>(block))->advance(time, sink);
+            };
+            calls.publish = [](std::byte* block, std::int64_t time) {
+                std::launder(reinterpret_cast<Block*>(block))->publish(time);
+            };
+        }
+        return calls;
+    }
+
     std::vector<BlockType> types_;
 };
 

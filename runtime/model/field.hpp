@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -82,6 +83,18 @@ struct Field {
     }
 };
 
+/// A list of rows of whole numbers that a program may give a block once, before it runs:
+/// `profile: [[2 kHz, 10 kHz, 200], [10 kHz, 10 kHz, 3400]]`. Plain data: room for `capacity` rows
+/// in the block, each of as many std::int64_t as there are columns, and the number of those given.
+struct TableField {
+    std::string_view name = {};
+    std::string_view doc = {};
+    std::span<const Field> columns = {};  ///< name, unit and limits of each number in a row
+    std::size_t capacity = 0;             ///< rows
+    std::size_t size_offset = 0;          ///< of the number of rows given, std::int64_t
+    std::size_t rows_offset = 0;
+};
+
 namespace detail {
 
 template <class T>
@@ -99,18 +112,24 @@ constexpr Type type_of() {
     }
 }
 
+/// Of a member of the block.
+template <class Block, class T>
+std::size_t offset_of(T Block::*member) {
+    static const Block probe{};
+    return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&(probe.*member)) -
+                                    reinterpret_cast<const std::byte*>(&probe));
+}
+
 template <class Block, class T>
 Field field(Direction direction, std::string_view name, T Block::*member, std::string_view unit,
             std::string_view doc) {
-    static const Block probe{};
     Field f;
     f.name = name;
     f.doc = doc;
     f.unit = unit;
     f.direction = direction;
     f.type = type_of<T>();
-    f.offset = static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&(probe.*member)) -
-                                        reinterpret_cast<const std::byte*>(&probe));
+    f.offset = offset_of(member);
     return f;
 }
 
@@ -130,6 +149,32 @@ Field input(std::string_view name, T Block::*member, std::string_view unit, std:
 template <class Block, class T>
 Field output(std::string_view name, T Block::*member, std::string_view unit, std::string_view doc) {
     return detail::field(Direction::output, name, member, unit, doc);
+}
+
+/// Of a member with `std::int64_t size` and an array `rows`, whose element is a plain struct of the
+/// columns.
+template <class Block, class T>
+TableField table(std::string_view name, T Block::*member, std::span<const Field> columns,
+                 std::string_view doc) {
+    using Row = typename decltype(T::rows)::value_type;
+    static_assert(sizeof(Row) % sizeof(std::int64_t) == 0);
+    const std::size_t place = detail::offset_of(member);
+    return {.name = name,
+            .doc = doc,
+            .columns = columns,
+            .capacity = std::tuple_size_v<decltype(T::rows)>,
+            .size_offset = place + detail::offset_of(&T::size),
+            .rows_offset = place + detail::offset_of(&T::rows)};
+}
+
+/// One number of a row; limits as those of a field.
+inline Field column(std::string_view name, std::string_view unit, std::string_view doc) {
+    Field f;
+    f.name = name;
+    f.doc = doc;
+    f.unit = unit;
+    f.type = Type::integer;
+    return f;
 }
 
 }  // namespace lineshaft

@@ -129,7 +129,15 @@ with a value or with bounds; 'within' is the tolerance of a value that is a numb
 its cases would share it. Write one expectation for each thing that must hold:
     expect:
       - {at: end, slave.velocity: 15 mm/s, within: 1e-9 mm/s}
-      - {always: slave.velocity, at_least: 0 mm/s, at_most: 15.001 mm/s})"},
+      - {always: slave.velocity, at_least: 0 mm/s, at_most: 15.001 mm/s}
+A task is cyclic ('every', 'offset', 'jitter') or started by the rising edges of boolean
+signals ('on'), and then has no interval that every(...) could name:
+    tasks:
+      pto_done: {on: x.done, priority: 18, cost: 0.33 ms})"},
+    {"L0214", "a row of the wrong length",
+     R"(A list of rows, such as a pulse output's profile, has as many numbers in each row as the
+table has columns; 'lineshaft blocks pto' names them:
+    profile: [[2 kHz, 10 kHz, 200], [10 kHz, 10 kHz, 3400], [10 kHz, 2 kHz, 400]])"},
 
     {"L0301", "not a number",
      R"(A number is due: digits with an optional point and exponent, then an optional unit,
@@ -233,6 +241,9 @@ blanks need quotes in the shell:
       task: servo
       every: 1
       signals: [shaft.position, slave.velocity])"},
+    {"L0504", "--pulses for a program without a pulse channel",
+     R"(The program has no block that puts out pulses. 'pto' is one:
+    x: {type: pto, task: main, start_rate: 1 kHz, count: 500, execute: inputs.go})"},
 
     {"L0601", "a study of too many runs",
      R"(The cases, the values of a grid multiplied with each other, and 'repeat' make more

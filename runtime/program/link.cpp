@@ -89,6 +89,7 @@ class Linker {
     void set_choices(Instance& block);
     void set_block(Instance& block);
     void set_port(Instance& block, const Node& key, const Node& value);
+    void set_table(Instance& block, const TableField& table, const Node& value);
     void set_constant(Instance& block, const Field& field, const Node& value);
     std::optional<Value> interval_of(const Node& value, const Unit& unit);
     void wire(int index, const Field& field, const Node& value, const WireText& wire);
@@ -97,6 +98,8 @@ class Linker {
     void check_required(const Instance& block);
     void collect_signals();
     void collect_errors();
+    void collect_devices();
+    void connect_events();
 
     std::optional<Signal> signal(const Node& node, const std::string& name);
     std::optional<Signal> signal(const Node& node) { return signal(node, node.text); }
@@ -147,7 +150,9 @@ Linked Linker::link() {
     for (Task& task : out_.machine.tasks)
         if (task.published != task.live) std::memcpy(task.published, task.live, task.size);
     collect_errors();
+    collect_devices();
     collect_signals();
+    connect_events();
     connect_run();
     connect_stimuli();
     connect_trace();
@@ -159,6 +164,7 @@ void Linker::place_tasks() {
     for (const TaskPlan& plan : program_.tasks) {
         Task task;
         task.name = plan.name;
+        task.on_event = plan.every == 0;
         task.every = plan.every;
         task.offset = plan.offset;
         task.priority = plan.priority;
@@ -220,7 +226,7 @@ void Linker::lay_out() {
         if (!block.known()) continue;
         const Task& task = tasks[static_cast<std::size_t>(block.task)];
         block.live = task.live + block.offset;
-        block.published = task.published + block.offset;
+        block.published = block.type->is_device() ? block.live : task.published + block.offset;
         block.type->construct(block.live);
     }
 }
@@ -292,6 +298,8 @@ void Linker::set_block(Instance& block) {
 }
 
 void Linker::set_port(Instance& block, const Node& key, const Node& value) {
+    if (const TableField* table = block.type->find_table(key.text))
+        return set_table(block, *table, value);
     const Field* field = block.type->find_settable(key.text);
     if (!field && block.type->find_readable(key.text))
         return read_.fail("L0405", key,
@@ -302,6 +310,7 @@ void Linker::set_port(Instance& block, const Node& key, const Node& value) {
         std::vector<std::string> settable{"type", "task"};
         for (const Field& f : block.type->fields)
             if (f.direction != Direction::output) settable.emplace_back(f.name);
+        for (const TableField& t : block.type->tables) settable.emplace_back(t.name);
         return read_.fail("L0203", key,
                           fmt::format("'{}' ({}) has no parameter or input '{}'",
                                       block.plan->name.text, block.type->name, key.text),
@@ -319,6 +328,36 @@ void Linker::set_port(Instance& block, const Node& key, const Node& value) {
                                       key.text, block.plan->name.text, block.type->name),
                           "a parameter is constant while the program runs");
     wire(block.position, *field, value, *wire_text);
+}
+
+void Linker::set_table(Instance& block, const TableField& table, const Node& value) {
+    if (!read_.expect_sequence(value, fmt::format("'{}'", table.name))) return;
+    if (value.items.size() > table.capacity)
+        return read_.fail("L0305", value,
+                          fmt::format("'{}' has {} rows, more than its {}", table.name,
+                                      value.items.size(), table.capacity));
+    std::byte* slot = block.live + table.rows_offset;
+    for (const Node& row : value.items) {
+        if (!read_.expect_sequence(row, fmt::format("a row of '{}'", table.name))) continue;
+        if (row.items.size() != table.columns.size()) {
+            std::vector<std::string_view> names;
+            for (const Field& column : table.columns) names.push_back(column.name);
+            read_.fail("L0214", row,
+                       fmt::format("a row of '{}' has {} numbers, not {}", table.name,
+                                   table.columns.size(), row.items.size()),
+                       fmt::format("write [{}]", fmt::join(names, ", ")));
+            continue;
+        }
+        for (std::size_t i = 0; i < row.items.size(); ++i, slot += sizeof(std::int64_t)) {
+            const Field& column = table.columns[i];
+            if (!read_.expect_scalar(row.items[i], fmt::format("'{}'", column.name))) continue;
+            const auto number =
+                read_literal(read_, row.items[i], column, parsed(std::string(column.unit)));
+            if (number) store(Type::integer, slot, *number);
+        }
+    }
+    store(Type::integer, block.live + table.size_offset,
+          static_cast<std::int64_t>(value.items.size()));
 }
 
 void Linker::set_constant(Instance& block, const Field& field, const Node& value) {
@@ -341,6 +380,10 @@ std::optional<Value> Linker::interval_of(const Node& value, const Unit& unit) {
     const std::string name = value.text.substr(6, value.text.size() - 7);
     const auto& tasks = out_.machine.tasks;
     const auto it = std::ranges::find(tasks, name, &Task::name);
+    if (it != tasks.end() && it->on_event) {
+        read_.fail("L0213", value, fmt::format("'{}' is an event task: it has no interval", name));
+        return 0.0;
+    }
     if (it != tasks.end()) return convert(seconds(it->every), second, unit);
     if (!program_.tasks_known) return 0.0;
     read_.fail("L0206", value, fmt::format("unknown task '{}'", name), suggest(name, task_names_));
@@ -495,6 +538,37 @@ void Linker::collect_errors() {
         }
         flag.block = fmt::format("'{}' ({})", block.plan->name.text, block.type->name);
         out_.machine.tasks[static_cast<std::size_t>(block.task)].errors.push_back(std::move(flag));
+    }
+}
+
+void Linker::collect_devices() {
+    for (const Instance& block : blocks_)
+        if (block.known() && block.type->is_device())
+            out_.machine.devices.push_back({.calls = block.type->device,
+                                            .block = block.live,
+                                            .name = block.plan->name.text,
+                                            .task = block.task});
+    if (out_.machine.devices.empty()) return;
+    for (const ExpectPlan& plan : program_.expectations)
+        if (plan.at) out_.machine.looks.push_back(*plan.at);
+    std::ranges::sort(out_.machine.looks);
+}
+
+void Linker::connect_events() {
+    for (const TaskPlan& plan : program_.tasks) {
+        const auto it = std::ranges::find(task_names_, plan.name);
+        for (const Node& node : plan.on) {
+            const auto event = signal(node);
+            if (!event) continue;
+            if (event->type == Type::boolean)
+                out_.machine.triggers.push_back(
+                    {.signal = reinterpret_cast<const bool*>(event->slot),
+                     .task = static_cast<int>(it - task_names_.begin())});
+            else
+                read_.fail("L0401", node,
+                           fmt::format("'on' takes a boolean, '{}' is {}", event->name,
+                                       name_of(event->type)));
+        }
     }
 }
 

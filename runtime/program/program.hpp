@@ -21,10 +21,12 @@ struct Setting {
     Mark value_mark = {};  ///< likewise of the value
 };
 
-/// A cyclic activity, as written in `tasks:` of a program or of its controller file. Times in ns.
+/// A cyclic activity, or one that an event starts, as written in `tasks:` of a program or of its
+/// controller file. Times in ns.
 struct TaskPlan {
     std::string name;
     Mark mark;
+    std::vector<Node> on;  ///< boolean signals whose rising edges start it; then `every` is 0
     std::int64_t every = 0;
     std::int64_t offset = 0;
     std::int64_t priority = 1;  ///< a larger number wins, as Siemens counts

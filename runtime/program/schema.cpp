@@ -133,6 +133,21 @@ std::string description(const BlockType& type, const Field& field) {
                            : "default " + describe(value, field.type, field.names, unit));
 }
 
+Json rows(const TableField& table) {
+    Json::array_t columns;
+    for (const Field& column : table.columns) {
+        Json::array_t forms{reference("quantity"), reference("parameter")};
+        if (column.unit.empty()) forms.push_back(bare_number(column));
+        columns.push_back(described(column.doc, any_of(forms)));
+    }
+    Json row = of_type("array");
+    row["minItems"] = row["maxItems"] = columns.size();
+    row["items"] = std::move(columns);
+    Json out = list_of(std::move(row));
+    out["maxItems"] = table.capacity;
+    return described(table.doc, out);
+}
+
 Json block_type(const BlockType& type) {
     Json properties;
     properties["type"] = keyword("const", type.name);
@@ -146,6 +161,7 @@ Json block_type(const BlockType& type) {
         properties[std::string(field.name)] = described(description(type, field), any_of(forms));
         if (field.required) needed.push_back(field.name);
     }
+    for (const TableField& table : type.tables) properties[std::string(table.name)] = rows(table);
     return described(type.doc, map_of(properties, needed));
 }
 
@@ -192,6 +208,8 @@ Json task() {
     const auto time = [](std::string_view text) { return described(text, reference("time")); };
     Json properties;
     properties["every"] = time("interval");
+    properties["on"] = described("boolean signals: each rising edge starts a scan",
+                                 any_of({reference("signal"), list_of(reference("signal"))}));
     properties["offset"] = time("start of the first scan");
     properties["priority"] = described("a larger number wins", reference("count"));
     properties["jitter"] = time("each interval is drawn from every +- jitter; a time or in %");

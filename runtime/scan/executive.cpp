@@ -1,7 +1,6 @@
 #include "runtime/scan/executive.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -9,7 +8,7 @@ namespace lineshaft {
 
 namespace {
 
-constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t most_starts_at_once = 1000;
 
 template <class T>
 T read(const std::byte* slot) {
@@ -64,9 +63,10 @@ Executive::Executive(Machine& machine) : machine_(machine) {
     for (const Task& task : machine.tasks) {
         states_.push_back({.jitter = Random(machine.seed, task.name + ".jitter"),
                            .cost_jitter = Random(machine.seed, task.name + ".cost"),
-                           .due = task.offset,
+                           .due = task.on_event ? never : task.offset,
                            .scan = {}});
     }
+    for (const Trigger& trigger : machine.triggers) trigger_levels_.push_back(*trigger.signal);
     running_.reserve(machine.tasks.size());
     result_.scans.resize(machine.tasks.size());
 }
@@ -93,7 +93,9 @@ RunResult Executive::run(const std::vector<Observer*>& observers,
             return result_;
         }
     }
-    now_ = result_.time = machine_.duration;
+    advance(machine_.duration);
+    advance_devices();
+    result_.time = now_;
     if (machine_.until)
         stop(Outcome::limit, fmt::format("'{}' did not become true within {}", machine_.until->name,
                                          format_time(machine_.duration)));
@@ -105,6 +107,9 @@ std::int64_t Executive::next_event() const {
     for (const State& state : states_) next = std::min(next, state.due);
     if (next_stimulus_ < machine_.stimuli.size())
         next = std::min(next, machine_.stimuli[next_stimulus_].at);
+    if (next_look_ < machine_.looks.size()) next = std::min(next, machine_.looks[next_look_]);
+    for (const DeviceCall& device : machine_.devices)
+        next = std::min(next, device.calls.next_event_time(device.block));
     if (!running_.empty())
         next = std::min(next,
                         later(now_, states_[static_cast<std::size_t>(running_.back())].remaining));
@@ -118,10 +123,36 @@ void Executive::advance(std::int64_t time) {
 }
 
 void Executive::instant() {
+    advance_devices();
     stimulate();
+    detect_edges();
     finish_top();
     if (!stopped_) release();
     if (!stopped_) start_pending();
+}
+
+void Executive::advance_devices() {
+    for (const DeviceCall& device : machine_.devices)
+        device.calls.advance(device.block, now_, device.sink);
+    while (next_look_ < machine_.looks.size() && machine_.looks[next_look_] <= now_) ++next_look_;
+}
+
+void Executive::detect_edges() {
+    for (std::size_t i = 0; i < trigger_levels_.size() && !stopped_; ++i) {
+        const Trigger& trigger = machine_.triggers[i];
+        const bool risen = *trigger.signal && !trigger_levels_[i];
+        trigger_levels_[i] = *trigger.signal;
+        if (!risen) continue;
+        State& state = states_[static_cast<std::size_t>(trigger.task)];
+        if (state.pending && state.released < now_)
+            return stop(Outcome::overrun,
+                        fmt::format("event task '{}' overran: its event comes again at {}, before "
+                                    "the scan for that of {} could begin",
+                                    machine_.tasks[static_cast<std::size_t>(trigger.task)].name,
+                                    format_time(now_), format_time(state.released)));
+        state.pending = true;
+        state.released = now_;
+    }
 }
 
 void Executive::stimulate() {
@@ -161,19 +192,39 @@ void Executive::release() {
 }
 
 void Executive::start_pending() {
-    for (std::size_t i = 0; i < states_.size() && !stopped_; ++i) {
-        if (!states_[i].pending) continue;
-        const auto& tasks = machine_.tasks;
-        if (!running_.empty() &&
-            tasks[static_cast<std::size_t>(running_.back())].priority >= tasks[i].priority)
-            return;
-        start(static_cast<int>(i));
-        if (states_[i].remaining > 0) {
-            running_.push_back(static_cast<int>(i));
-            return;
+    for (int i = next_to_start(); i >= 0 && !stopped_; i = next_to_start()) {
+        if (repeats_without_end(i)) return;
+        start(i);
+        if (states_[static_cast<std::size_t>(i)].remaining > 0) {
+            running_.push_back(i);
+            return detect_edges();
         }
-        publish(static_cast<int>(i));
+        publish(i);
     }
+}
+
+/// -1 when none is pending that may interrupt the scan under way.
+int Executive::next_to_start() const {
+    const auto& tasks = machine_.tasks;
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+        if (!states_[i].pending) continue;
+        const bool waits =
+            !running_.empty() &&
+            tasks[static_cast<std::size_t>(running_.back())].priority >= tasks[i].priority;
+        return waits ? -1 : static_cast<int>(i);
+    }
+    return -1;
+}
+
+bool Executive::repeats_without_end(int index) {
+    const Task& task = machine_.tasks[static_cast<std::size_t>(index)];
+    State& state = states_[static_cast<std::size_t>(index)];
+    if (!task.on_event) return false;
+    state.repeats = state.scan.time == now_ ? state.repeats + 1 : 0;
+    if (state.repeats < most_starts_at_once) return false;
+    stop(Outcome::overrun, fmt::format("event task '{}' overran: {} scans at {}, and no end",
+                                       task.name, state.repeats, format_time(now_)));
+    return true;
 }
 
 void Executive::start(int index) {
@@ -196,9 +247,15 @@ void Executive::publish(int index) {
     State& state = states_[static_cast<std::size_t>(index)];
     state.active = false;
     if (task.published != task.live) std::memcpy(task.published, task.live, task.size);
+    for (const DeviceCall& device : machine_.devices) {
+        if (device.task != index) continue;
+        device.calls.publish(device.block, now_);
+        device.calls.advance(device.block, now_, device.sink);
+    }
     ++result_.scans[static_cast<std::size_t>(index)];
     for (Observer* observer : *observers_) observer->scanned(index, state.scan);
     if (!machine_.continue_on_error) check_errors(task, state.scan);
+    if (!stopped_) detect_edges();
 }
 
 void Executive::check_errors(const Task& task, const Scan& scan) {

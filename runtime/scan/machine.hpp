@@ -46,9 +46,26 @@ struct ErrorFlag {
     std::string block;                        ///< `'slave' (gear_axis)`
 };
 
+/// A block that lives between scans, see runtime/model/device.hpp. Its memory is not published with
+/// its task: what others see of it is always the live block.
+struct DeviceCall {
+    DeviceCalls calls;
+    std::byte* block = nullptr;
+    std::string name;  ///< of the block in the program
+    int task = 0;
+    PulseSink* sink = nullptr;  ///< set before a run to record its pulses
+};
+
+/// A rising edge of a published boolean releases an event task.
+struct Trigger {
+    const bool* signal = nullptr;
+    int task = 0;
+};
+
 /// A task ready to run: one flat list. Times in ns.
 struct Task {
     std::string name;
+    bool on_event = false;  ///< released by triggers; `every`, `offset` and `jitter` mean nothing
     std::int64_t every = 0, offset = 0, priority = 1, jitter = 0, cost = 0, cost_jitter = 0;
     std::vector<Call> calls;
     std::vector<Copy> copies;
@@ -85,6 +102,9 @@ struct Machine {
     std::vector<Task> tasks;  ///< in scan order of equal instants: priority, then place in the file
     std::vector<Signal> signals;
     std::vector<Stimulus> stimuli;  ///< sorted by time
+    std::vector<DeviceCall> devices;
+    std::vector<Trigger> triggers;
+    std::vector<std::int64_t> looks;  ///< sorted; instants because somebody looks at a device then
     std::optional<Signal> until;
     std::int64_t duration = 0;  ///< [ns]; with `until` the limit
     std::uint64_t seed = 1;

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "runtime/trace/csv_writer.hpp"
+#include "runtime/trace/pulse_writer.hpp"
 
 namespace lineshaft {
 
@@ -33,6 +34,8 @@ RunReport run(Loaded& loaded, const RunOptions& options) {
         recorder.emplace(*loaded.linked.trace, *csv);
         observers.push_back(&*recorder);
     }
+    std::optional<PulseWriter> pulses;
+    if (!options.pulses_path.empty()) pulses.emplace(options.pulses_path, loaded.linked.machine);
     if (!loaded.linked.expectations.empty()) observers.push_back(&judge);
     Executive executive(loaded.linked.machine);
     report.result = executive.run(observers, options.interrupt, options.progress);
@@ -42,6 +45,8 @@ RunReport run(Loaded& loaded, const RunOptions& options) {
         recorder->flush();
         report.trace_error = csv->finish(loaded.program.title, loaded.program.file->text);
     }
+    if (pulses) report.pulses_error = pulses->finish();
+    for (DeviceCall& device : loaded.linked.machine.devices) device.sink = nullptr;
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     report.wall_seconds = wall.count();
     return report;

@@ -21,7 +21,8 @@ std::optional<Loaded> load_program(const std::string& path, const LoadOptions& o
                                    const Catalog& catalog, Diagnostics& out);
 
 struct RunOptions {
-    std::string trace_path;  ///< CSV; empty: no trace is recorded
+    std::string trace_path;        ///< CSV; empty: no trace is recorded
+    std::string pulses_path = {};  ///< CSV of all pulse channels' edges; empty: none
     const std::atomic<bool>* interrupt = nullptr;
     std::function<void(std::int64_t time)> progress;  ///< called now and then [ns]
 };
@@ -31,10 +32,14 @@ struct RunReport {
     RunResult result;
     std::vector<Verdict> verdicts;  ///< one per expectation of the program
     std::string trace_error;        ///< why the trace is not there, if one was wanted
+    std::string pulses_error;       ///< likewise of the pulses
     double wall_seconds = 0;
 
     bool expectations_hold() const;
-    bool faulted() const { return result.outcome != Outcome::completed || !trace_error.empty(); }
+    bool faulted() const {
+        return result.outcome != Outcome::completed || !trace_error.empty() ||
+               !pulses_error.empty();
+    }
 };
 
 RunReport run(Loaded& loaded, const RunOptions& options);

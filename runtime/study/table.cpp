@@ -36,18 +36,27 @@ std::string setting(const StudyCase& c, const std::string& name) {
     return it == c.settings.end() ? "" : it->value;
 }
 
+/// Of a percentage: one decimal, and of small ones two digits.
+int decimals(double percentage) {
+    int count = 1;
+    for (double p = std::abs(percentage); p > 0 && p < 0.995 && count < 5; p *= 10) ++count;
+    return count;
+}
+
 /// Enough digits to compare by eye.
 std::string number(double value, bool percent = false) {
-    if (percent) return fmt::format("{:.1f} %", value * 100);
+    if (percent) return fmt::format("{:.{}f} %", value * 100, decimals(value * 100));
+    if (value == std::trunc(value) && std::abs(value) < 1e9) return fmt::format("{:.0f}", value);
     return fmt::format("{:.4g}", value);
 }
 
 std::string difference(double ours, const Bounds& bounds, bool percent) {
     if (!bounds.paper) return "";
     const double d = ours - *bounds.paper;
-    if (percent) return fmt::format("{:+.1f} points", d * 100);
+    if (percent) return fmt::format("{:+.{}f} points", d * 100, decimals(d * 100));
     if (*bounds.paper == 0) return fmt::format("{:+.4g}", d);
-    return fmt::format("{:+.2g} ({:+.1f} %)", d, d / std::abs(*bounds.paper) * 100);
+    const double share = d / std::abs(*bounds.paper) * 100;
+    return fmt::format("{:+.2g} ({:+.{}f} %)", d, share, decimals(share));
 }
 
 std::string limit_text(const Bounds& bounds, bool percent) {

@@ -53,7 +53,15 @@ nlohmann::ordered_json to_json(const BlockType& type) {
         if (!f.names.empty()) field["values"] = f.names;
         fields.push_back(std::move(field));
     }
-    return {{"type", type.name}, {"doc", type.doc}, {"fields", fields}};
+    nlohmann::ordered_json object{{"type", type.name}, {"doc", type.doc}, {"fields", fields}};
+    for (const TableField& t : type.tables) {
+        auto columns = nlohmann::ordered_json::array();
+        for (const Field& c : t.columns)
+            columns.push_back({{"name", c.name}, {"unit", c.unit}, {"doc", c.doc}});
+        object["tables"].push_back(
+            {{"name", t.name}, {"doc", t.doc}, {"rows", t.capacity}, {"columns", columns}});
+    }
+    return object;
 }
 
 void print_fields(const BlockType& type, Direction direction) {
@@ -72,6 +80,14 @@ void print_fields(const BlockType& type, Direction direction) {
         fmt::print("  {:18} {:10} {}{}\n", f.name, unit_text(f), f.doc,
                    notes.empty() ? "" : " (" + notes + ")");
         if (f.type == Type::enumeration) fmt::print("  {:18} {:10} {}\n", "", "", kind_text(f));
+    }
+}
+
+void print_tables(const BlockType& type) {
+    for (const TableField& table : type.tables) {
+        fmt::print("\nlist {}, up to {} rows: {}\n", table.name, table.capacity, table.doc);
+        for (const Field& column : table.columns)
+            fmt::print("  {:18} {:10} {}\n", column.name, column.unit, column.doc);
     }
 }
 
@@ -101,6 +117,7 @@ Exit execute(const BlocksCommand& command) {
     fmt::print("{}: {}\n", type->name, type->doc);
     for (const Direction d : {Direction::parameter, Direction::input, Direction::output})
         print_fields(*type, d);
+    print_tables(*type);
     return Exit::fine;
 }
 

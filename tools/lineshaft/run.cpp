@@ -11,7 +11,7 @@ namespace {
 
 struct RunCommand {
     CommonOptions common;
-    std::string program, trace;
+    std::string program, trace, pulses;
 };
 
 nlohmann::ordered_json json_value(const Signal& signal) {
@@ -41,7 +41,9 @@ void print_json(const Loaded& loaded, const RunReport& report) {
                                   {"signals", signals},
                                   {"expect", expect}};
     if (report.faulted())
-        object["fault"] = report.trace_error.empty() ? report.result.message : report.trace_error;
+        object["fault"] = !report.trace_error.empty()    ? report.trace_error
+                          : !report.pulses_error.empty() ? report.pulses_error
+                                                         : report.result.message;
     fmt::print("{}\n", object.dump(2));
 }
 
@@ -60,6 +62,8 @@ void print_text(const RunCommand& command, const Loaded& loaded, const RunReport
         machine_seconds / report.wall_seconds);
     if (!command.trace.empty() && report.trace_error.empty())
         fmt::print("trace: {}\n", command.trace);
+    if (!command.pulses.empty() && report.pulses_error.empty())
+        fmt::print("pulses: {}\n", command.pulses);
 }
 
 Exit exit_code(const RunReport& report) {
@@ -76,6 +80,10 @@ Exit execute(const RunCommand& command) {
         out.add("L0503", {loaded->program.file, 0, 0, 1},
                 "the program has no 'trace:' to write to " + command.trace,
                 "say under 'trace:' which task and signals to record");
+    if (loaded && !command.pulses.empty() && loaded->linked.machine.devices.empty())
+        out.add("L0504", {loaded->program.file, 0, 0, 1},
+                "the program has no pulse channel to write to " + command.pulses,
+                "'lineshaft blocks pto' describes one");
     if (!out.empty()) return report(out, command.common.json);
 
     ProgressLine line(command.common.quiet || command.common.json);
@@ -86,15 +94,17 @@ Exit execute(const RunCommand& command) {
                                seconds(time), whole, seconds(time) / elapsed);
         });
     };
-    const RunReport result =
-        run(*loaded,
-            {.trace_path = command.trace, .interrupt = &interrupt_requested, .progress = progress});
+    const RunReport result = run(*loaded, {.trace_path = command.trace,
+                                           .pulses_path = command.pulses,
+                                           .interrupt = &interrupt_requested,
+                                           .progress = progress});
     if (command.common.json)
         print_json(*loaded, result);
     else
         print_text(command, *loaded, result);
     if (!result.result.message.empty()) spdlog::error("{}", result.result.message);
     if (!result.trace_error.empty()) spdlog::error("{}", result.trace_error);
+    if (!result.pulses_error.empty()) spdlog::error("{}", result.pulses_error);
     return exit_code(result);
 }
 
@@ -105,6 +115,9 @@ void add_run(CLI::App& app, Exit& result) {
     CLI::App* sub = app.add_subcommand("run", "Run a program and judge its expectations");
     sub->add_option("program", command->program, "The program, a YAML file")->required();
     sub->add_option("--trace", command->trace, "Write the program's trace to this CSV file")
+        ->type_name("FILE");
+    sub->add_option("--pulses", command->pulses,
+                    "Write the rising edges of all pulse channels to this CSV file")
         ->type_name("FILE");
     command->common.add_to(*sub);
     sub->callback([command, &result] { result = execute(*command); });

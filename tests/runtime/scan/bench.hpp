@@ -55,6 +55,7 @@ struct TaskSpec {
     std::int64_t cost = 0;
     std::int64_t jitter = 0;
     std::int64_t cost_jitter = 0;
+    bool on_event = false;
 };
 
 class Bench {
@@ -104,6 +105,18 @@ class Bench {
              .target = reinterpret_cast<std::byte*>(&live(to).input)});
         ++target.calls.front().copies;
     }
+    /// The task is released by the rising edges of another one's published flag.
+    void trigger(const std::string& from, const std::string& to) {
+        machine.triggers.push_back({&published(from).flag, index(to)});
+    }
+    /// The task is released by the rising edges of a boolean that `set_event` sets.
+    void trigger_from_outside(const std::string& to) {
+        machine.triggers.push_back({&live(to).wanted, index(to)});
+    }
+    void set_event(const std::string& task, std::int64_t at, bool value) {
+        machine.stimuli.push_back(
+            {at * ms, reinterpret_cast<std::byte*>(&live(task).wanted), Type::boolean, value});
+    }
     void report_errors(const std::string& name) {
         task(name).errors.push_back(
             {&live(name).flag, &live(name).reason, {}, "'" + name + "_block' (probe)"});
@@ -124,6 +137,7 @@ class Bench {
         const TaskSpec& spec = specs_[i];
         Task task;
         task.name = spec.name;
+        task.on_event = spec.on_event;
         task.every = spec.every * ms;
         task.offset = spec.offset * ms;
         task.priority = spec.priority;

@@ -1,0 +1,221 @@
+#include "blocks/pulse/pto.hpp"
+
+#include <algorithm>
+
+namespace lineshaft {
+
+namespace {
+
+constexpr std::int64_t most_single = 65'535, most_multi = 100'000;  // [Hz]
+constexpr std::int64_t most_pulses = 2'147'483'647;
+constexpr double shortest_segment = 500e-6;  // [s]
+constexpr std::size_t edges_at_once = 1024;
+
+constexpr std::string_view rate_update_names[] = {"continuous", "per_pulse"};
+constexpr std::string_view refusal_names[] = {"none", "overflow", "no_segments", "not_pto"};
+
+bool bit(std::int64_t byte, int number) {
+    return (byte >> number & 1) != 0;
+}
+
+bool risen(bool now, bool& last) {
+    const bool edge = now && !last;
+    last = now;
+    return edge;
+}
+
+}  // namespace
+
+std::span<const Field> Pto::fields() {
+    using P = Pto;
+    static const Field list[] = {
+        parameter("rate_update", &P::rate_update, "", "when a new rate takes effect")
+            .one_of(rate_update_names),
+        parameter("underflow_ends", &P::underflow_ends, "",
+                  "a segment shorter than 500 us ends the train"),
+        input("enable", &P::enable, "", "false: executing ends the output"),
+        input("multi_segment", &P::multi_segment, "", "true: by the profile table"),
+        input("update_rate", &P::update_rate, "", "false: a single segment keeps the last rate"),
+        input("update_count", &P::update_count, "", "false: it keeps the last count"),
+        input("control", &P::control, "", "SMB67 in place of these four, if 0 or more"),
+        input("start_rate", &P::start_rate, "Hz", "rate of a single segment, or at its start"),
+        input("end_rate", &P::end_rate, "Hz", "multi-segment: rate at the end of the one segment"),
+        input("count", &P::count, "", "pulses"),
+        input("segments", &P::segments, "", "of the profile to run; below 0: all"),
+        input("reverse", &P::reverse, "", "direction of the next train"),
+        input("interrupt", &P::interrupt, "", "the end of a train sets `done` (ATCH)"),
+        input("execute", &P::execute, "", "rising edge: the PLS instruction"),
+        input("job", &P::job, "", "each change: the PLS instruction"),
+        input("stop", &P::stop, "", "rising edge: ends the output at once"),
+        output("busy", &P::busy, "", "a train is under way"),
+        output("queued", &P::queued, "", "another one waits"),
+        output("done", &P::done, "", "a train has ended since the last scan of this block"),
+        output("active_segment", &P::active_segment, "", "from 1, as SMB166; 0: idle"),
+        output("trains", &P::trains, "", "trains that have ended"),
+        output("pulses", &P::pulses, "", "rising edges so far"),
+        output("position", &P::position, "", "forward less reverse pulses so far"),
+        output("lost", &P::lost, "", "pulses loaded and not made, because the output was ended"),
+        output("rate", &P::rate, "Hz", "now; 0: idle"),
+        output("reversed", &P::reversed, "", "direction output"),
+        output("clamped", &P::clamped, "", "a rate or count was out of range"),
+        output("overflow", &P::overflow, "", "a train came while another one waited (SM66.6)"),
+        output("underflow", &P::underflow, "", "a segment was shorter than 500 us (SM66.6)"),
+        output("stopped", &P::stopped, "", "the output was ended by the program"),
+        output("refused", &P::refused, "", "instructions that were ignored"),
+        output("refusal", &P::refusal, "", "why the last of them was").one_of(refusal_names),
+    };
+    return list;
+}
+
+std::span<const TableField> Pto::tables() {
+    static const Field columns[] = {column("start_rate", "Hz", "rate at the segment's start"),
+                                    column("end_rate", "Hz", "rate at its end"),
+                                    column("count", "", "pulses")};
+    static const TableField list[] = {
+        table("profile", &Pto::profile, columns, "the profile table, a row a segment")};
+    return list;
+}
+
+void Pto::scan(const Scan&) {
+    done = false;
+    const bool executed = risen(execute, last_execute);
+    const bool ordered = job != last_job;
+    last_job = job;
+    command = Command::none;
+    if (executed || ordered) take_instruction();
+    if (risen(stop, last_stop)) command = Command::halt;
+}
+
+void Pto::take_instruction() {
+    const bool by_byte = control >= 0;
+    const bool multi = by_byte ? bit(control, 5) : multi_segment;
+    commanded = {.segment = {}, .multi_segment = multi, .reverse = reverse};
+    command = (by_byte ? bit(control, 7) : enable) ? Command::load : Command::halt;
+    command_refused = by_byte && !bit(control, 6) ? Refusal::not_pto : Refusal::none;
+    if (!multi) {
+        if (by_byte ? bit(control, 0) : update_rate) last_single.start_rate = start_rate;
+        if (by_byte ? bit(control, 2) : update_count) last_single.count = count;
+        last_single.end_rate = last_single.start_rate;
+        commanded.segment = last_single;
+        return;
+    }
+    commanded.segment = {start_rate, end_rate, count};
+    commanded.from_profile = profile.size > 0;
+    const std::int64_t most = std::max<std::int64_t>(profile.size, 1);
+    commanded.segments = segments < 0 ? most : segments;
+    if (commanded.segments < 1 || commanded.segments > most) command_refused = Refusal::no_segments;
+}
+
+void Pto::publish(std::int64_t time) {
+    if (command == Command::load) load(time);
+    if (command == Command::halt) halt();
+    command = Command::none;
+}
+
+void Pto::load(std::int64_t time) {
+    if (command_refused == Refusal::none && queued) command_refused = Refusal::overflow;
+    if (command_refused != Refusal::none) {
+        refusal = command_refused;
+        overflow = overflow || refusal == Refusal::overflow;
+        ++refused;
+    } else if (busy) {
+        waiting = commanded;
+        queued = true;
+    } else {
+        begin_train(commanded, {time, 0});
+    }
+}
+
+void Pto::halt() {
+    if (busy) {
+        lost += train.segment().count - train.emitted();
+        lose_from(active, active_segment);
+        stopped = true;
+    }
+    if (queued) lose_from(waiting, 0);
+    busy = queued = false;
+    active_segment = 0;
+    rate = 0;
+}
+
+void Pto::begin_train(const Train& next, PulseTime start) {
+    active = next;
+    active_segment = 0;
+    busy = true;
+    stopped = false;
+    reversed = next.reverse;
+    begin_segment(start);
+}
+
+void Pto::begin_segment(PulseTime start) {
+    train.begin(clamp(segment_of(active, active_segment), active.multi_segment), rate_update,
+                start);
+    ++active_segment;
+}
+
+PulseSegment Pto::segment_of(const Train& of, std::int64_t index) const {
+    return of.from_profile ? profile.rows[static_cast<std::size_t>(index)] : of.segment;
+}
+
+void Pto::lose_from(const Train& of, std::int64_t first_segment) {
+    for (std::int64_t i = first_segment; i < of.segments; ++i)
+        lost += clamp(segment_of(of, i), of.multi_segment).count;
+}
+
+PulseSegment Pto::clamp(const PulseSegment& wanted, bool multi) {
+    const std::int64_t most = multi ? most_multi : most_single;
+    const PulseSegment segment{std::clamp<std::int64_t>(wanted.start_rate, 1, most),
+                               std::clamp<std::int64_t>(wanted.end_rate, 1, most),
+                               std::clamp<std::int64_t>(wanted.count, 1, most_pulses)};
+    clamped = clamped || segment != wanted;
+    return segment;
+}
+
+std::int64_t Pto::next_event_time() const {
+    return busy ? train.end_not_before() : never;
+}
+
+void Pto::advance(std::int64_t time, PulseSink* sink) {
+    while (busy) {
+        emit(time, sink);
+        rate = train.rate(time);
+        if (!train.ends(time)) return;
+        end_segment();
+    }
+}
+
+void Pto::emit(std::int64_t time, PulseSink* sink) {
+    const std::int64_t before = train.emitted();
+    if (sink) {
+        std::array<std::int64_t, edges_at_once> edges;
+        for (std::size_t taken = edges.size(); taken == edges.size();) {
+            taken = train.take(time, edges);
+            sink->edges(std::span(edges).first(taken), reversed);
+        }
+    } else {
+        train.skip(time);
+    }
+    const std::int64_t made = train.emitted() - before;
+    pulses += made;
+    position += reversed ? -made : made;
+}
+
+void Pto::end_segment() {
+    const PulseSegment& s = train.segment();
+    const auto rates = static_cast<double>(s.start_rate + s.end_rate);
+    const bool too_short = 2 * static_cast<double>(s.count) < shortest_segment * rates;
+    underflow = underflow || too_short;
+    const bool cut = too_short && underflow_ends;
+    if (active_segment < active.segments && !cut) return begin_segment(train.end());
+    lose_from(active, active_segment);
+    ++trains;
+    done = done || interrupt;
+    busy = false;
+    active_segment = 0;
+    rate = 0;
+    if (!queued) return;
+    queued = false;
+    begin_train(waiting, train.end());
+}
+
+}  // namespace lineshaft

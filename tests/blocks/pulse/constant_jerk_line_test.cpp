@@ -1,0 +1,140 @@
+#include "blocks/pulse/constant_jerk_line.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/blocks/scanning.hpp"
+
+using namespace lineshaft;
+using namespace lineshaft::test;
+
+namespace {
+
+ConstantJerkLine line(double x, double y) {
+    ConstantJerkLine l;
+    l.velocity = 1.5;
+    l.pulses_per_length = 60'000;
+    l.x_displacement = x;
+    l.y_displacement = y;
+    l.start = true;
+    return l;
+}
+
+struct Sum {
+    std::int64_t x = 0, y = 0, segments_x = 0, segments_y = 0;
+};
+
+/// Channels that are never busy: the pulses that the line sends in all.
+Sum sent(ConstantJerkLine& l) {
+    Sum sum;
+    Clock clock;
+    for (int i = 0; i < 10'000; ++i) {
+        const std::int64_t x = l.x_job, y = l.y_job;
+        clock.scan(l);
+        if (l.x_job != x) sum.x += l.x_count;
+        if (l.y_job != y) sum.y += l.y_count;
+        sum.segments_x += l.x_job - x;
+        sum.segments_y += l.y_job - y;
+        if (!l.busy) break;
+    }
+    CHECK_FALSE(l.busy);
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("truncated pulses are lost, carried ones are not") {
+    ConstantJerkLine l = line(1.5, 1);
+    const Sum cut = sent(l);
+    CHECK(cut.x == 89'960);
+    CHECK(cut.y == 59'960);
+    CHECK(cut.segments_x == 80);
+    CHECK(cut.segments_y == 78);
+    CHECK(l.done);
+    ConstantJerkLine carrying = line(1.5, 1);
+    carrying.rounding = ConstantJerkLine::Rounding::carry;
+    const Sum carried = sent(carrying);
+    CHECK(carried.x >= 89'999);
+    CHECK(carried.y >= 59'999);
+    CHECK(carried.x <= 90'000);
+}
+
+TEST_CASE("the larger displacement leads, whichever axis and direction it has") {
+    ConstantJerkLine a = line(2.5, -3), b = line(3, 2.5);
+    const Sum swapped = sent(a), straight = sent(b);
+    CHECK(swapped.x == straight.y);
+    CHECK(swapped.y == straight.x);
+    CHECK(a.y_reverse);
+    CHECK_FALSE(a.x_reverse);
+    CHECK(a.gamma == 2.5 / 3);
+}
+
+TEST_CASE("an axis below its threshold stands") {
+    ConstantJerkLine l = line(1.5, 0.0009);
+    CHECK(sent(l).segments_y == 0);
+    ConstantJerkLine by_pulses = line(1.5, 0.01);
+    by_pulses.threshold_pulses = 1000;
+    CHECK(sent(by_pulses).segments_y == 0);
+    ConstantJerkLine none = line(0, 0);
+    CHECK(sent(none).segments_x == 0);
+    CHECK_FALSE(none.done);
+}
+
+TEST_CASE("limits that are not above 0 are unreasonable and nothing moves") {
+    for (double ConstantJerkLine::*limit :
+         {&ConstantJerkLine::acceleration, &ConstantJerkLine::jerk, &ConstantJerkLine::velocity,
+          &ConstantJerkLine::period}) {
+        for (const double bad : {0.0, -1.0}) {
+            ConstantJerkLine l = line(1, 1);
+            l.*limit = bad;
+            CHECK(sent(l).segments_x == 0);
+            CHECK(l.unreasonable);
+        }
+    }
+}
+
+TEST_CASE("an interpolation time of at most 4 t1 is a warning, and the line runs") {
+    ConstantJerkLine l = line(1.5, 1);
+    l.interpolation_time = 4;
+    CHECK(sent(l).x == 89'960);
+    CHECK(l.short_time);
+    ConstantJerkLine longer = line(1.5, 1);
+    longer.interpolation_time = 4.001;
+    sent(longer);
+    CHECK_FALSE(longer.short_time);
+}
+
+TEST_CASE("the next sample waits for the leading channel, or for both, or for nothing") {
+    using Chain = ConstantJerkLine::Chain;
+    const auto sends = [](Chain chain, bool x_busy, bool y_busy) {
+        ConstantJerkLine l = line(1.5, 1);
+        l.chain = chain;
+        Clock clock;
+        clock.scan(l);
+        REQUIRE(l.samples == 1);
+        l.x_busy = x_busy;
+        l.y_busy = y_busy;
+        clock.scan(l);
+        return l.samples == 2;
+    };
+    CHECK(sends(Chain::leading, false, true));
+    CHECK_FALSE(sends(Chain::leading, true, false));
+    CHECK_FALSE(sends(Chain::both, false, true));
+    CHECK(sends(Chain::both, false, false));
+    CHECK(sends(Chain::clock, true, true));
+}
+
+TEST_CASE("a line is done when both channels have ended") {
+    ConstantJerkLine l = line(1.5, 1);
+    Clock clock;
+    clock.scan(l);
+    CHECK_FALSE(l.y_interrupt);
+    CHECK(l.x_interrupt);
+    l.y_busy = true;
+    for (int i = 0; i < 100; ++i) clock.scan(l);
+    CHECK(l.busy);
+    CHECK(l.y_interrupt);
+    l.y_busy = false;
+    clock.scan(l);
+    CHECK(l.done);
+    CHECK(l.time == Approx(0.101));
+}

@@ -1,0 +1,59 @@
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "blocks/pulse/pto.hpp"
+#include "blocks/pulse/pulse_train.hpp"
+#include "runtime/trace/pulse_writer.hpp"
+
+using namespace lineshaft;
+
+namespace {
+
+constexpr std::int64_t pulses = 1'000'000;
+constexpr std::int64_t late = never / 2;
+
+/// Edges a second of one ramp, written to memory in pieces as a channel does.
+void edges(benchmark::State& state, const PulseSegment& segment, RateUpdate update) {
+    std::vector<std::int64_t> out(1024);
+    PulseTrain train;
+    for (auto _ : state) {
+        train.begin(segment, update, {});
+        while (train.take(late, out) > 0) benchmark::DoNotOptimize(out.data());
+    }
+    state.SetItemsProcessed(state.iterations() * segment.count);
+}
+
+/// Edges a second from a channel into a CSV file.
+void csv(benchmark::State& state) {
+    const std::string path =
+        (std::filesystem::temp_directory_path() / "lineshaft_pulse_bench.csv").string();
+    std::vector<std::int64_t> out(1024);
+    for (auto _ : state) {
+        Machine machine;
+        machine.devices.push_back({.calls = {}, .block = nullptr, .name = "x"});
+        PulseWriter writer(path, machine);
+        PulseTrain train;
+        train.begin({1000, 100'000, pulses}, RateUpdate::continuous, {});
+        for (std::size_t n = train.take(late, out); n > 0; n = train.take(late, out))
+            machine.devices[0].sink->edges(std::span(out).first(n), false);
+        const std::string error = writer.finish();
+        if (!error.empty()) state.SkipWithError(error.c_str());
+    }
+    state.SetItemsProcessed(state.iterations() * pulses);
+    std::filesystem::remove(path);
+}
+
+}  // namespace
+
+BENCHMARK_CAPTURE(edges, continuous_ramp, PulseSegment{1000, 100'000, pulses},
+                  RateUpdate::continuous);
+BENCHMARK_CAPTURE(edges, continuous_constant, PulseSegment{33'333, 33'333, pulses},
+                  RateUpdate::continuous);
+BENCHMARK_CAPTURE(edges, per_pulse_ramp, PulseSegment{1000, 100'000, pulses},
+                  RateUpdate::per_pulse);
+BENCHMARK(csv);
+BENCHMARK_MAIN();
