@@ -1,34 +1,24 @@
 #include "runtime/trace/csv_writer.hpp"
 
-#include <array>
 #include <bit>
-#include <charconv>
-#include <cmath>
+#include <cstring>
 #include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "runtime/trace/number_text.hpp"
 #include "runtime/version.hpp"
 
 namespace lineshaft {
 
 namespace {
 
-constexpr std::size_t longest_number = 32;
-
-char* append_integer(char* end, std::int64_t value) {
-    return std::to_chars(end, end + longest_number, value).ptr;
-}
-
-char* append_real(char* end, double value) {
-    if (!std::isfinite(value)) return end;
-    return std::to_chars(end, end + longest_number, value).ptr;
-}
+constexpr std::size_t written_at_once = 65536;
 
 char* append(char* end, Type type, std::uint64_t bits) {
-    if (type == Type::real) return append_real(end, std::bit_cast<double>(bits));
-    return append_integer(end, static_cast<std::int64_t>(bits));
+    return type == Type::real ? write_real(end, std::bit_cast<double>(bits))
+                              : write_integer(end, static_cast<std::int64_t>(bits));
 }
 
 std::string csvw_type(Type type) {
@@ -63,22 +53,42 @@ CsvWriter::CsvWriter(std::string path, const TraceSetup& setup)
     std::string header = "time,scan";
     for (const Signal& signal : signals_) header += "," + signal.name;
     file_.write(header + "\n");
-    row_.resize((2 + signals_.size()) * longest_number);
+    last_.resize(signals_.size());
+    longest_row_ = static_cast<std::ptrdiff_t>((2 + signals_.size()) * (longest_number + 1));
+    text_.resize(static_cast<std::size_t>(longest_row_) + written_at_once);
 }
 
 void CsvWriter::rows(const std::uint64_t* words, std::size_t rows) {
+    char* end = text_.data();
     for (std::size_t row = 0; row < rows; ++row) {
-        char* end = append_real(row_.data(), seconds(static_cast<std::int64_t>(*words++)));
+        if (text_.data() + text_.size() - end < longest_row_) end = write_out(end);
+        end = write_seconds(end, static_cast<std::int64_t>(*words++));
         *end++ = ',';
-        end = append_integer(end, static_cast<std::int64_t>(*words++));
-        for (const Signal& signal : signals_) {
+        end = write_integer(end, static_cast<std::int64_t>(*words++));
+        for (std::size_t i = 0; i < signals_.size(); ++i) {
             *end++ = ',';
-            end = append(end, signal.type, *words++);
+            end = append_cell(end, i, *words++);
         }
         *end++ = '\n';
-        file_.write({row_.data(), static_cast<std::size_t>(end - row_.data())});
     }
+    write_out(end);
     row_count_ += static_cast<std::int64_t>(rows);
+}
+
+char* CsvWriter::write_out(const char* end) {
+    file_.write({text_.data(), static_cast<std::size_t>(end - text_.data())});
+    return text_.data();
+}
+
+char* CsvWriter::append_cell(char* end, std::size_t column, std::uint64_t bits) {
+    Cell& last = last_[column];
+    if (last.bits != bits || last.length == 0) {
+        last.bits = bits;
+        last.length = static_cast<std::size_t>(
+            append(last.text.data(), signals_[column].type, bits) - last.text.data());
+    }
+    std::memcpy(end, last.text.data(), longest_number);
+    return end + last.length;
 }
 
 std::string CsvWriter::finish(const std::string& title, const std::string& program_text) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
+#include "runtime/trace/number_text.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "runtime/trace/recorder.hpp"
 
@@ -22,10 +24,23 @@ class CsvWriter : public TraceSink {
     std::string finish(const std::string& title, const std::string& program_text);
 
   private:
+    /// A column's last value and its text: what stands still is not formatted again.
+    struct Cell {
+        std::uint64_t bits = 0;
+        std::size_t length = 0;
+        std::array<char, longest_number> text = {};
+    };
+
+    char* append_cell(char* end, std::size_t column, std::uint64_t bits);
+    /// The text up to `end` into the file; returns where the next begins.
+    char* write_out(const char* end);
+
     OutputFile file_;
     std::string path_;
     std::vector<Signal> signals_;
-    std::string row_;  ///< room for one row
+    std::vector<Cell> last_;
+    std::string text_;
+    std::ptrdiff_t longest_row_ = 0;
     std::int64_t row_count_ = 0;
 };
 

@@ -15,7 +15,8 @@
 #include <unistd.h>
 
 #include "blocks/profile/seven_segment.hpp"
-#include "runtime/trace/csv_writer.hpp"
+#include "runtime/trace/number_text.hpp"
+#include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {
@@ -140,11 +141,9 @@ std::string read_problem(std::string_view line, const Header& header, SevenSegme
 }
 
 void append_number(std::string& text, double value) {
-    std::array<char, 32> digits;
-    char* const first = digits.data();
-    const char* const end = std::to_chars(first, first + digits.size(), value).ptr;
+    std::array<char, longest_number> digits;
     text += ',';
-    text.append(first, static_cast<std::size_t>(end - first));
+    text.append(digits.data(), write_real(digits.data(), value));
 }
 
 void append_row(std::string& text, const SevenSegment& problem) {

@@ -1,7 +1,6 @@
 #include "runtime/trace/csv_writer.hpp"
 
 #include <bit>
-#include <charconv>
 #include <limits>
 #include <sstream>
 
@@ -81,28 +80,6 @@ TEST_CASE("a trace is a CSV file of one header row and a row a scan") {
 TEST_CASE("what is no number is an empty cell") {
     CHECK(cells({not_a_number, infinite, -infinite, 1}) ==
           std::vector<std::string>{"", "", "", "1"});
-}
-
-TEST_CASE("reals are read back bit by bit, in the fewest digits") {
-    const std::vector<double> values{0.1,
-                                     1.0 / 3,
-                                     -1e300,
-                                     5e-324,
-                                     std::numeric_limits<double>::max(),
-                                     std::numeric_limits<double>::min(),
-                                     -123456789.123456789,
-                                     6.283185307179586};
-    const auto texts = cells(values);
-    REQUIRE(texts.size() == values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        double back = 0;
-        const auto [end, error] =
-            std::from_chars(texts[i].data(), texts[i].data() + texts[i].size(), back);
-        CHECK(error == std::errc());
-        CHECK(end == texts[i].data() + texts[i].size());
-        CHECK(back == values[i]);
-    }
-    CHECK(texts[0] == "0.1");
 }
 
 TEST_CASE("the sidecar tells columns, units, types, program and version") {

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace lineshaft {
+
+/// Room that every function below needs at `to`; each returns the end of what it has written.
+constexpr std::size_t longest_number = 32;
+
+char* write_integer(char* to, std::int64_t value);
+
+/// The shortest decimal number that reads back as the same double; with an exponent below 1e-4 and
+/// from 1e16 on. Nothing for what is not finite.
+char* write_real(char* to, double value);
+
+/// Integer nanoseconds as seconds, exact: `-0.00125`.
+char* write_seconds(char* to, std::int64_t nanoseconds);
+
+}  // namespace lineshaft
