@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "runtime/trace/background_sink.hpp"
 #include "runtime/trace/csv_writer.hpp"
 #include "runtime/trace/pulse_writer.hpp"
 
@@ -28,10 +29,12 @@ RunReport run(Loaded& loaded, const RunOptions& options) {
     Judge judge(loaded.linked.expectations);
     std::vector<Observer*> observers;
     std::optional<CsvWriter> csv;
+    std::optional<BackgroundSink> background;
     std::optional<Recorder> recorder;
     if (!options.trace_path.empty() && loaded.linked.trace) {
         csv.emplace(options.trace_path, *loaded.linked.trace);
-        recorder.emplace(*loaded.linked.trace, *csv);
+        background.emplace(*csv, 2 + loaded.linked.trace->signals.size());
+        recorder.emplace(*loaded.linked.trace, *background);
         observers.push_back(&*recorder);
     }
     std::optional<PulseWriter> pulses;
@@ -43,6 +46,7 @@ RunReport run(Loaded& loaded, const RunOptions& options) {
     report.verdicts = judge.verdicts();
     if (recorder) {
         recorder->flush();
+        background->finish();
         report.trace_error = csv->finish(loaded.program.title, loaded.program.file->text);
     }
     if (pulses) report.pulses_error = pulses->finish();

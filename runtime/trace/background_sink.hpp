@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "runtime/trace/recorder.hpp"
+
+namespace lineshaft {
+
+/// Hands rows to another sink in a thread of its own, in order, so that the machine runs on while
+/// they are formatted and written. At most two blocks wait; then rows() waits too.
+class BackgroundSink : public TraceSink {
+  public:
+    /// `to`, which takes rows of `row_words` words, must outlive this and is left alone by others
+    /// until finish().
+    BackgroundSink(TraceSink& to, std::size_t row_words);
+    ~BackgroundSink() override;
+
+    void rows(const std::uint64_t* words, std::size_t rows) override;
+
+    /// Returns when all rows have been taken; none may follow.
+    void finish();
+
+  private:
+    struct Block {
+        std::vector<std::uint64_t> words;
+        std::size_t rows = 0;
+    };
+
+    void work();
+
+    TraceSink& to_;
+    std::size_t row_words_;
+    std::array<Block, 2> blocks_;
+    std::size_t given_ = 0;  ///< blocks so far; the next is blocks_[given_ % 2]
+    std::size_t taken_ = 0;
+    bool finished_ = false;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::thread thread_;
+};
+
+}  // namespace lineshaft
