@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "runtime/program/linker.hpp"
+#include "runtime/program/literal.hpp"
+
+namespace lineshaft {
+
+void Linker::connect_events() {
+    for (const TaskPlan& plan : program_.tasks) {
+        const auto it = std::ranges::find(task_names_, plan.name);
+        for (const Node& node : plan.on) {
+            const auto event = signal(node);
+            if (!event) continue;
+            if (event->type == Type::boolean)
+                out_.machine.triggers.push_back(
+                    {.signal = reinterpret_cast<const bool*>(event->slot),
+                     .task = static_cast<int>(it - task_names_.begin())});
+            else
+                read_.fail("L0401", node,
+                           fmt::format("'on' takes a boolean, '{}' is {}", event->name,
+                                       name_of(event->type)));
+        }
+    }
+}
+
+void Linker::connect_run() {
+    Machine& machine = out_.machine;
+    machine.duration = program_.run.duration;
+    machine.seed = program_.run.seed;
+    machine.continue_on_error = program_.run.continue_on_error;
+    if (!program_.run.until) return;
+    machine.until = signal(*program_.run.until);
+    if (machine.until && machine.until->type != Type::boolean)
+        read_.fail("L0401", *program_.run.until,
+                   fmt::format("'until' takes a boolean, '{}' is {}", machine.until->name,
+                               name_of(machine.until->type)));
+}
+
+void Linker::connect_stimuli() {
+    for (const StimulusPlan& plan : program_.stimuli)
+        for (const auto& [key, value] : plan.set) connect_stimulus(plan.at, key, value);
+}
+
+void Linker::connect_stimulus(std::int64_t at, const Node& key, const Node& value) {
+    const auto target = signal(key);
+    if (!target) return;
+    if (wired_.contains(target->name))
+        return read_.fail("L0409", key,
+                          fmt::format("'{}' is wired and cannot be set", target->name),
+                          "wire an input of the program (inputs.name) and set that");
+    Field field;
+    field.name = target->name;
+    field.type = target->type;
+    std::byte* slot = const_cast<std::byte*>(target->slot);
+    Unit unit = parsed(target->unit);
+    if (target->task >= 0) {
+        const auto dot = target->name.find('.');
+        const Instance& block =
+            blocks_[static_cast<std::size_t>(by_name_.at(target->name.substr(0, dot)))];
+        const Field* settable = block.type->find_settable(target->name.substr(dot + 1));
+        if (!settable || settable->direction == Direction::parameter)
+            return read_.fail("L0405", key,
+                              fmt::format("'{}' is {} and cannot be set", target->name,
+                                          settable ? "a parameter" : "an output"),
+                              "a stimulus sets inputs");
+        field = *settable;
+        unit = unit_of(block, field);
+        slot = block.live + field.offset;
+    }
+    if (const auto v = read_literal(read_, value, field, unit))
+        out_.machine.stimuli.push_back({at, slot, field.type, *v});
+}
+
+void Linker::connect_trace() {
+    if (!program_.trace) return;
+    const TracePlan& plan = *program_.trace;
+    TraceSetup setup;
+    setup.every = plan.every;
+    const auto it = std::ranges::find(task_names_, plan.task.text);
+    if (it != task_names_.end())
+        setup.task = static_cast<int>(it - task_names_.begin());
+    else if (!plan.task.text.empty() && program_.tasks_known)
+        read_.fail("L0206", plan.task, fmt::format("unknown task '{}'", plan.task.text),
+                   suggest(plan.task.text, task_names_));
+    for (const Node& node : plan.signals)
+        if (auto s = signal(node)) setup.signals.push_back(std::move(*s));
+    out_.trace = std::move(setup);
+}
+
+std::optional<double> Linker::bound(const Signal& signal, const Node& node) {
+    Field field;
+    field.name = signal.name;
+    field.type = signal.type;
+    field.names = signal.names;
+    const auto value = read_literal(read_, node, field, parsed(signal.unit));
+    return value ? std::optional(as_real(*value)) : std::nullopt;
+}
+
+std::optional<double> Linker::tolerance(const Signal& signal, const Node& node, double around) {
+    static const Unit one;
+    if (signal.type == Type::boolean || signal.type == Type::enumeration) {
+        read_.fail("L0213", node,
+                   fmt::format("'within' is for numbers, '{}' is {}", signal.name,
+                               kind(signal.type, signal.names)));
+        return {};
+    }
+    const bool share = node.is_scalar() && node.text.ends_with('%');
+    const auto value = read_.real(node, share ? one : parsed(signal.unit));
+    if (!value) return {};
+    if (*value >= 0) return share ? *value * std::abs(around) : *value;
+    read_.fail("L0305", node, fmt::format("'{}' is below 0", node.text));
+    return {};
+}
+
+void Linker::connect_expectations() {
+    for (const ExpectPlan& plan : program_.expectations) {
+        const auto target = signal(plan.signal);
+        if (!target) continue;
+        Expectation e{
+            .text = {}, .signal = *target, .always = plan.always, .at = plan.at, .wanted = {}};
+        e.low = -std::numeric_limits<double>::infinity();
+        e.high = -e.low;
+        if (plan.equals) {
+            const double value = bound(*target, *plan.equals).value_or(0);
+            const double slack =
+                plan.within ? tolerance(*target, *plan.within, value).value_or(0) : 0;
+            e.low = value - slack;
+            e.high = value + slack;
+            e.wanted = plan.equals->text;
+            if (plan.within) e.wanted += " within " + plan.within->text;
+        }
+        const auto side = [&](const std::optional<Node>& node, const char* word, double& limit) {
+            if (!node) return;
+            limit = bound(*target, *node).value_or(0);
+            e.wanted += fmt::format("{}{} {}", e.wanted.empty() ? "" : ", ", word, node->text);
+        };
+        side(plan.at_least, "at least", e.low);
+        side(plan.at_most, "at most", e.high);
+        if (plan.at_least && plan.at_most && e.low > e.high)
+            read_.fail("L0213", *plan.at_least, "'at_least' is above 'at_most': this never holds");
+        const std::string when = plan.always ? "always"
+                                 : plan.at   ? "at " + format_time(*plan.at)
+                                             : "at the end";
+        e.text = fmt::format("{}: {} {}{}", when, target->name, plan.equals ? "= " : "", e.wanted);
+        out_.expectations.push_back(std::move(e));
+    }
+}
+
+}  // namespace lineshaft

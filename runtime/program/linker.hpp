@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "runtime/program/link.hpp"
+#include "runtime/program/reader.hpp"
+
+namespace lineshaft {
+
+/// A block while it is being linked.
+struct Instance {
+    const BlockPlan* plan = nullptr;
+    const BlockType* type = nullptr;  ///< null: unknown, already reported
+    int task = -1;                    ///< -1: unknown, already reported
+    int position = 0;                 ///< in the file, and so in the scan order of its task
+    std::size_t offset = 0;           ///< in its task's memory
+    std::byte* live = nullptr;
+    std::byte* published = nullptr;
+
+    bool known() const { return type && task >= 0; }
+};
+
+/// `NOT previous(a.b)` taken apart.
+struct WireText {
+    std::string signal;
+    bool negated = false;
+    bool previous = false;
+};
+
+std::optional<WireText> parse_wire(const Node& node);
+
+/// `real`, or an enumeration's names.
+std::string kind(Type type, std::span<const std::string_view> names);
+
+/// Turns a program's names into memory, see link(). Its functions stand in link.cpp (the order of
+/// work, tasks, memory), link_names.cpp (signals and units), link_blocks.cpp (parameters and
+/// constants), link_wires.cpp, and link_run.cpp (what happens to the machine and who watches).
+class Linker {
+  public:
+    Linker(const Program& program, const Catalog& catalog, Diagnostics& out)
+        : program_(program), catalog_(catalog), read_(out) {}
+
+    Linked link();
+
+  private:
+    void place_tasks();
+    void find_blocks();
+    void lay_out();
+    void set_inputs();
+    void set_choices(Instance& block);
+    void set_block(Instance& block);
+    void set_port(Instance& block, const Node& key, const Node& value);
+    void set_table(Instance& block, const TableField& table, const Node& value);
+    void set_constant(Instance& block, const Field& field, const Node& value);
+    std::optional<Value> interval_of(const Node& value, const Unit& unit);
+    void wire(int index, const Field& field, const Node& value, const WireText& wire);
+    bool check_order(int index, const Node& value, const WireText& wire, int source);
+    std::string loop(int from, int to) const;
+    void check_required(const Instance& block);
+    void collect_signals();
+    void collect_errors();
+    void collect_devices();
+    void connect_events();
+
+    std::optional<Signal> signal(const Node& node, const std::string& name);
+    std::optional<Signal> signal(const Node& node) { return signal(node, node.text); }
+    Signal field_signal(const Instance& block, const Field& field) const;
+    void unknown_port(const Node& node, const Instance& block, std::string_view port);
+    void connect_run();
+    void connect_stimuli();
+    void connect_stimulus(std::int64_t at, const Node& key, const Node& value);
+    void connect_trace();
+    void connect_expectations();
+    std::optional<double> bound(const Signal& signal, const Node& node);
+    std::optional<double> tolerance(const Signal& signal, const Node& node, double around);
+
+    Unit unit_of(const Instance& block, const Field& field);
+    const Unit& parsed(const std::string& text);
+
+    const Program& program_;
+    const Catalog& catalog_;
+    Reader read_;
+    Linked out_;
+    std::vector<Instance> blocks_;
+    std::unordered_map<std::string, int> by_name_;
+    std::unordered_map<std::string, Signal> inputs_;
+    std::vector<std::string> task_names_, block_names_, input_names_;
+    std::unordered_map<std::string, Unit> units_;
+    std::vector<std::vector<std::pair<int, Copy>>> copies_;  ///< per block
+    std::unordered_set<std::string> wired_;                  ///< `block.port` of every wire
+};
+
+}  // namespace lineshaft
