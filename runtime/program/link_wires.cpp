@@ -75,7 +75,7 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
         copies.push_back({.source = from_slot, .target = target});
         return;
     }
-    using Kind = Conversion::Kind;
+    using Kind = ConvertedCopy::Kind;
     wires.conversions.push_back({.source = from_slot,
                                  .target = target,
                                  .factor = same_unit ? 1 : given.numerator * wanted.denominator,

@@ -28,13 +28,13 @@ const Copy* copy(const Copy* wire, std::uint32_t count) {
     return wire;
 }
 
-void convert(const Conversion& wire) {
-    if (wire.kind == Conversion::Kind::negated) {
+void convert(const ConvertedCopy& wire) {
+    if (wire.kind == ConvertedCopy::Kind::negated) {
         const bool value = !read<bool>(wire.source);
         std::memcpy(wire.target, &value, sizeof value);
         return;
     }
-    const double given = wire.kind == Conversion::Kind::integer_to_real
+    const double given = wire.kind == ConvertedCopy::Kind::integer_to_real
                              ? static_cast<double>(read<std::int64_t>(wire.source))
                              : read<double>(wire.source);
     const double value = given * wire.factor / wire.divisor;
@@ -229,7 +229,7 @@ void Executive::start(int index) {
         task.cost + (task.cost_jitter > 0 ? state.cost_jitter.around_zero(task.cost_jitter) : 0);
     const Copy* word = task.wires.words.data();
     const Copy* boolean = task.wires.booleans.data();
-    const Conversion* conversion = task.wires.conversions.data();
+    const ConvertedCopy* conversion = task.wires.conversions.data();
     for (const Call& call : task.calls) {
         word = copy<8>(word, call.words);
         boolean = copy<1>(boolean, call.booleans);

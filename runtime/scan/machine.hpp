@@ -20,7 +20,7 @@ struct Copy {
 };
 
 /// A value converted on its way into an input.
-struct Conversion {
+struct ConvertedCopy {
     enum class Kind : std::uint8_t {
         negated,          ///< boolean, inverted (`NOT x.q`)
         integer_to_real,  ///< widening, then as scaled
@@ -38,7 +38,7 @@ struct Conversion {
 struct Wires {
     std::vector<Copy> words;     ///< of 8 bytes
     std::vector<Copy> booleans;  ///< of 1 byte
-    std::vector<Conversion> conversions;
+    std::vector<ConvertedCopy> conversions;
 };
 
 /// One block in a task's list. Its inputs are the next so many of each kind of the task's wires.

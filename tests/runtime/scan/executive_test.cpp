@@ -294,7 +294,7 @@ TEST_CASE("observers hear of nothing after the end of the run") {
 }
 
 TEST_CASE("inputs are converted as their wires say") {
-    using Kind = Conversion::Kind;
+    using Kind = ConvertedCopy::Kind;
     struct Ports {
         bool yes = true, inverted = true;
         std::int64_t three = 3;
