@@ -11,6 +11,10 @@ namespace lineshaft {
 
 enum class Operation : std::size_t { add, sub, mul, div, mod };
 
+inline constexpr std::string_view operation_names[] = {"add", "sub", "mul", "div", "mod"};
+inline constexpr std::string_view operation_docs[] = {"in1 + in2", "in1 - in2", "in1 * in2",
+                                                      "in1 / in2", "remainder of in1 / in2"};
+
 /// Arithmetic of two numbers, IEC 61131-3:2013, table 29. in1 and out are in `unit`; so is in2 of
 /// ADD, SUB and MOD, while MUL and DIV take a plain number there. MOD has the sign of in1, as the
 /// standard's division that drops the fraction gives it, and is exact. A divisor of 0 is an error
@@ -27,11 +31,8 @@ struct Arithmetic {
     bool error = false;
     NumberError error_id = NumberError::none;
 
-    static constexpr std::string_view names[] = {"add", "sub", "mul", "div", "mod"};
-    static constexpr std::string_view docs[] = {"in1 + in2", "in1 - in2", "in1 * in2", "in1 / in2",
-                                                "remainder of in1 / in2"};
-    static constexpr std::string_view type = names[static_cast<std::size_t>(operation)];
-    static constexpr std::string_view doc = docs[static_cast<std::size_t>(operation)];
+    static constexpr std::string_view type = operation_names[static_cast<std::size_t>(operation)];
+    static constexpr std::string_view doc = operation_docs[static_cast<std::size_t>(operation)];
     static std::span<const Field> fields();
     void scan(const Scan& now);
 };

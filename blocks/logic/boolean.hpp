@@ -10,6 +10,10 @@ namespace lineshaft {
 
 enum class BooleanKind : std::size_t { and_, or_, xor_ };
 
+inline constexpr std::string_view boolean_names[] = {"and", "or", "xor"};
+inline constexpr std::string_view boolean_docs[] = {
+    "true when all inputs are", "true when any input is", "true when an odd number of inputs is"};
+
 /// AND, OR, XOR of two to eight booleans, IEC 61131-3:2013, table 31. Inputs left out change
 /// nothing. XOR is true when an odd number of its inputs is.
 template <BooleanKind kind>
@@ -20,12 +24,8 @@ struct Boolean {
 
     bool out = false;
 
-    static constexpr std::string_view names[] = {"and", "or", "xor"};
-    static constexpr std::string_view docs[] = {"true when all inputs are",
-                                                "true when any input is",
-                                                "true when an odd number of inputs is"};
-    static constexpr std::string_view type = names[static_cast<std::size_t>(kind)];
-    static constexpr std::string_view doc = docs[static_cast<std::size_t>(kind)];
+    static constexpr std::string_view type = boolean_names[static_cast<std::size_t>(kind)];
+    static constexpr std::string_view doc = boolean_docs[static_cast<std::size_t>(kind)];
     static std::span<const Field> fields();
     void scan(const Scan& now);
 };

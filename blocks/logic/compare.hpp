@@ -11,6 +11,10 @@ namespace lineshaft {
 
 enum class Comparison : std::size_t { gt, ge, eq, le, lt, ne };
 
+inline constexpr std::string_view comparison_names[] = {"gt", "ge", "eq", "le", "lt", "ne"};
+inline constexpr std::string_view comparison_docs[] = {"in1 > in2",  "in1 >= in2", "in1 = in2",
+                                                       "in1 <= in2", "in1 < in2",  "in1 <> in2"};
+
 /// Comparison of two numbers, IEC 61131-3:2013, table 33. Exact: eq has no tolerance.
 template <Comparison comparison>
 struct Compare {
@@ -20,11 +24,8 @@ struct Compare {
     bool out = false, error = false;
     NumberError error_id = NumberError::none;
 
-    static constexpr std::string_view names[] = {"gt", "ge", "eq", "le", "lt", "ne"};
-    static constexpr std::string_view docs[] = {"in1 > in2",  "in1 >= in2", "in1 = in2",
-                                                "in1 <= in2", "in1 < in2",  "in1 <> in2"};
-    static constexpr std::string_view type = names[static_cast<std::size_t>(comparison)];
-    static constexpr std::string_view doc = docs[static_cast<std::size_t>(comparison)];
+    static constexpr std::string_view type = comparison_names[static_cast<std::size_t>(comparison)];
+    static constexpr std::string_view doc = comparison_docs[static_cast<std::size_t>(comparison)];
     static std::span<const Field> fields();
     void scan(const Scan& now);
 };

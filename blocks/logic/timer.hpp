@@ -10,6 +10,12 @@ namespace lineshaft {
 
 enum class TimerKind : std::size_t { ton, tof, tp };
 
+inline constexpr std::string_view timer_names[] = {"ton", "tof", "tp"};
+inline constexpr std::string_view timer_docs[] = {
+    "on-delay timer: q rises when in has been true for pt",
+    "off-delay timer: q falls when in has been false for pt",
+    "pulse timer: q is true for pt after a rising edge of in"};
+
 /// Timers of IEC 61131-3:2013, table 46. All times are whole ns. The clock is the start time of the
 /// task's scan, the same for all its blocks: nothing is summed up, and a second call in one scan
 /// changes nothing.
@@ -38,13 +44,8 @@ struct Timer {
     bool last_in = false;  ///< TP
     std::int64_t start = 0;
 
-    static constexpr std::string_view names[] = {"ton", "tof", "tp"};
-    static constexpr std::string_view docs[] = {
-        "on-delay timer: q rises when in has been true for pt",
-        "off-delay timer: q falls when in has been false for pt",
-        "pulse timer: q is true for pt after a rising edge of in"};
-    static constexpr std::string_view type = names[static_cast<std::size_t>(kind)];
-    static constexpr std::string_view doc = docs[static_cast<std::size_t>(kind)];
+    static constexpr std::string_view type = timer_names[static_cast<std::size_t>(kind)];
+    static constexpr std::string_view doc = timer_docs[static_cast<std::size_t>(kind)];
     static std::span<const Field> fields();
     void scan(const Scan& now);
 
