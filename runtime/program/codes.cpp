@@ -113,8 +113,8 @@ and underscores, and do not begin with a digit: 'slave_x', not 'slave-x', '2nd' 
 have a meaning. A block cannot be called 'inputs', since inputs.x names the program's
 own inputs.)"},
     {"L0211", "the file does not say what it is, or of which version",
-     R"(A program begins with 'lineshaft: 1', a study with 'lineshaft_study: 1', a controller
-with 'lineshaft_controller: 1'. The number is the version of the file's form, so that
+     R"(A program begins with 'lineshaft: 1', a study with 'lineshaft_study: 1', a fit with
+'lineshaft_fit: 1', a controller with 'lineshaft_controller: 1'. The number is the version of the file's form, so that
 a later lineshaft can still tell what an old file means. This lineshaft reads version
 1.)"},
 
@@ -255,6 +255,20 @@ max, mean, and names: a case's name stands for its first compared signal,
 'case.block.port' for a certain one. mean_relative_error and greatest_relative_error
 are taken over all rows that have a paper's value.
     formula: 1 - early / immediate)"},
+    {"L0603", "differences of different units without uncertainties",
+     R"(A fit minimises the sum of the squares of all differences between what was measured and
+what the program gives. A difference in mm and one in s cannot be added, so each is
+divided by how exact its figure is:
+    compare:
+      line.time: {paper: 8.449 s, uncertainty: 0.5 ms}
+      x.pulses: {paper: 449959, uncertainty: 1}
+Where all figures are of one unit the uncertainty may be left out: then all weigh the
+same.)"},
+    {"L0604", "fewer figures than parameters",
+     R"(As many parameters as there are measured figures can be looked for, not more: with
+fewer figures many values fit equally well. Cells that are held out do not count, for
+they only test what the others have found. Take a parameter out of 'parameters:' (its
+value then comes from the program or from 'set:'), or compare more signals or cases.)"},
 
     {"L0701", "a CSV file without columns",
      R"(The first line of a CSV file names its columns, separated by commas (or semicolons, where

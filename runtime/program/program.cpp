@@ -193,6 +193,7 @@ bool check_kind(const Reader& read, const Node& root, std::string_view kind) {
     };
     static constexpr Kind kinds[] = {{"lineshaft", "a program"},
                                      {"lineshaft_study", "a study"},
+                                     {"lineshaft_fit", "a fit"},
                                      {"lineshaft_controller", "a controller"}};
     const std::string_view wanted = std::ranges::find(kinds, kind, &Kind::key)->what;
     const std::string begin = fmt::format("{} begins with '{}: 1'", wanted, kind);

@@ -98,7 +98,7 @@ Program read_program(std::shared_ptr<const SourceFile> file, const LoadOptions& 
                      Diagnostics& out);
 
 /// L0211 and false unless `root` is a file of `kind`, one of `lineshaft`, `lineshaft_study`,
-/// `lineshaft_controller`, in version 1. What else it holds means nothing then.
+/// `lineshaft_fit`, `lineshaft_controller`, in version 1. What else it holds means nothing then.
 bool check_kind(const Reader& read, const Node& root, std::string_view kind);
 
 /// `named` relative to the folder of `from`, if it lies below the project root of `from` (the

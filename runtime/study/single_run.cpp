@@ -40,6 +40,7 @@ RunReport run(Loaded& loaded, const RunOptions& options) {
     std::optional<PulseWriter> pulses;
     if (!options.pulses_path.empty()) pulses.emplace(options.pulses_path, loaded.linked.machine);
     if (!loaded.linked.expectations.empty()) observers.push_back(&judge);
+    if (options.observer) observers.push_back(options.observer);
     Executive executive(loaded.linked.machine);
     report.result = executive.run(observers, options.interrupt, options.progress);
     judge.finish(report.result);

@@ -25,6 +25,7 @@ struct RunOptions {
     std::string pulses_path = {};  ///< CSV of all pulse channels' edges; empty: none
     const std::atomic<bool>* interrupt = nullptr;
     std::function<void(std::int64_t time)> progress;  ///< called now and then [ns]
+    Observer* observer = nullptr;                     ///< sees the run, besides the trace
 };
 
 /// What came of one run. Final values stand in the machine's signals.

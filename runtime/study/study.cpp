@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace lineshaft {
 
 bool Bounds::hold(double value) const {
@@ -12,6 +14,14 @@ bool Bounds::hold(double value) const {
     return within.empty() || std::ranges::any_of(within, [&](double distance) {
                return std::abs(value - *paper) <= distance;
            });
+}
+
+std::string describe(const StudyCase& c) {
+    if (!c.name.empty()) return c.name;
+    std::string text;
+    for (const Setting& s : c.settings)
+        text += fmt::format("{}{}={}", text.empty() ? "" : ", ", s.name, s.value);
+    return text;
 }
 
 }  // namespace lineshaft

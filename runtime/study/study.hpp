@@ -35,6 +35,9 @@ struct StudyCase {
     std::int64_t repeat = 1;
 };
 
+/// Its name, else its settings, `radius=20 mm, speed=10 mm/s`.
+std::string describe(const StudyCase& c);
+
 /// A formula over the rows' values.
 struct Claim {
     std::string text;     ///< what is claimed

@@ -41,6 +41,7 @@ class StudyReader {
         : options_(options), catalog_(catalog), read_(out) {}
 
     Study read(std::shared_ptr<const SourceFile> file);
+    Study read(std::shared_ptr<const SourceFile> file, const Node& root);
 
   private:
     void program(const Node& root);
@@ -75,27 +76,34 @@ class StudyReader {
 };
 
 Study StudyReader::read(std::shared_ptr<const SourceFile> file) {
-    study_.file = file;
+    const auto root = parse_yaml(file, read_.diagnostics());
+    if (!root || !check_kind(read_, *root, "lineshaft_study")) {
+        study_.file = std::move(file);
+        return std::move(study_);
+    }
+    return read(std::move(file), *root);
+}
+
+Study StudyReader::read(std::shared_ptr<const SourceFile> file, const Node& root) {
+    study_.file = std::move(file);
     study_.include_dirs = options_.include_dirs;
-    auto root = parse_yaml(file, read_.diagnostics());
-    if (!root || !check_kind(read_, *root, "lineshaft_study")) return std::move(study_);
-    read_.only_keys(*root, "a study",
+    read_.only_keys(root, "a study",
                     {"lineshaft_study", "title", "program", "notes", "set", "repeat", "compare",
                      "cases", "claims"});
-    if (const Node* n = root->find("title"); n && read_.expect_scalar(*n, "the title"))
+    if (const Node* n = root.find("title"); n && read_.expect_scalar(*n, "the title"))
         study_.title = n->text;
-    program(*root);
-    if (const Node* n = root->find("notes")) notes(*n);
-    if (const Node* n = root->find("set")) settings(*n, common_);
+    program(root);
+    if (const Node* n = root.find("notes")) notes(*n);
+    if (const Node* n = root.find("set")) settings(*n, common_);
     common_.insert(common_.end(), options_.settings.begin(), options_.settings.end());
-    if (const Node* n = root->find("repeat")) common_repeat_ = repeat(*n);
-    if (const Node* n = root->find("compare")) {
+    if (const Node* n = root.find("repeat")) common_repeat_ = repeat(*n);
+    if (const Node* n = root.find("compare")) {
         PendingCase common;
         comparisons(*n, common);
         common_comparisons_ = std::move(common.comparisons);
     }
-    if (const Node* n = read_.require(*root, "cases", "a study")) cases(*n);
-    if (const Node* n = root->find("claims")) claims(*n);
+    if (const Node* n = read_.require(root, "cases", "a study")) cases(*n);
+    if (const Node* n = root.find("claims")) claims(*n);
     return std::move(study_);
 }
 
@@ -377,6 +385,11 @@ bool is_program(const SourceFile& file) {
 Study read_study(std::shared_ptr<const SourceFile> file, const LoadOptions& options,
                  const Catalog& catalog, Diagnostics& out) {
     return StudyReader(options, catalog, out).read(std::move(file));
+}
+
+Study read_study(std::shared_ptr<const SourceFile> file, const Node& root,
+                 const LoadOptions& options, const Catalog& catalog, Diagnostics& out) {
+    return StudyReader(options, catalog, out).read(std::move(file), root);
 }
 
 }  // namespace lineshaft

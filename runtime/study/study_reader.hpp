@@ -14,6 +14,10 @@ constexpr std::int64_t most_runs = 1'000'000;
 Study read_study(std::shared_ptr<const SourceFile> file, const LoadOptions& options,
                  const Catalog& catalog, Diagnostics& out);
 
+/// The same of a study's map that stands in a file of another kind.
+Study read_study(std::shared_ptr<const SourceFile> file, const Node& root,
+                 const LoadOptions& options, const Catalog& catalog, Diagnostics& out);
+
 /// True for a file that calls itself a study, or a program.
 bool is_study(const SourceFile& file);
 bool is_program(const SourceFile& file);

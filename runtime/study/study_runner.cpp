@@ -24,14 +24,6 @@ struct CaseResult {
     bool done = false;
 };
 
-std::string describe(const StudyCase& c) {
-    if (!c.name.empty()) return c.name;
-    std::string text;
-    for (const Setting& s : c.settings)
-        text += fmt::format("{}{}={}", text.empty() ? "" : ", ", s.name, s.value);
-    return text;
-}
-
 CaseResult run_case(const Study& study, const StudyCase& c, const Catalog& catalog,
                     const StudyOptions& options) {
     CaseResult result;
