@@ -145,7 +145,11 @@ void ProgramReader::controller(const Node& node) {
     if (!root || !check_kind(read_, *root, "lineshaft_controller")) return;
     program_.tasks_known = true;
     read_.only_keys(*root, "a controller", {"lineshaft_controller", "title", "tasks"});
-    if (const Node* n = read_.require(*root, "tasks", "a controller")) tasks(*n);
+    if (const Node* n = read_.require(*root, "tasks", "a controller")) {
+        in_controller_ = true;
+        tasks(*n);
+        in_controller_ = false;
+    }
 }
 
 void ProgramReader::blocks(const Node& node) {
@@ -176,6 +180,7 @@ void ProgramReader::block(BlockPlan& plan, const Node& body) {
         read_.fail("L0202", plan.name, what + " has no 'task'", "say which task scans it");
     else if (read_.expect_scalar(*task, "a task's name"))
         plan.task = *task;
+    check_attached(plan.task);
     for (const auto& [key, value] : body.entries)
         if (key.text != "type" && key.text != "task") plan.ports.emplace_back(key, value);
 }

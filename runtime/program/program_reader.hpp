@@ -35,6 +35,7 @@ class ProgramReader {
     void interval(TaskPlan& plan, const Node& name, const Node& body);
     void events(TaskPlan& plan, const Node& on, const Node& body);
     void check_task(const TaskPlan& plan, const Node& name, const Node& body);
+    void check_attached(const Node& task);
     void blocks(const Node& node);
     void block(BlockPlan& plan, const Node& body);
     void inputs(const Node& node);
@@ -51,6 +52,7 @@ class ProgramReader {
     Reader read_;
     Program program_;
     ParameterValues values_;
+    bool in_controller_ = false;
 };
 
 }  // namespace lineshaft

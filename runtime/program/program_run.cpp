@@ -63,6 +63,7 @@ void ProgramReader::trace(const Node& node) {
     if (const Node* n = read_.require(node, "task", "'trace'");
         n && read_.expect_scalar(*n, "a task's name"))
         plan.task = *n;
+    check_attached(plan.task);
     if (const Node* n = node.find("every")) {
         plan.every = read_.integer(*n).value_or(1);
         if (plan.every < 1)
