@@ -269,6 +269,19 @@ same.)"},
 fewer figures many values fit equally well. Cells that are held out do not count, for
 they only test what the others have found. Take a parameter out of 'parameters:' (its
 value then comes from the program or from 'set:'), or compare more signals or cases.)"},
+    {"L0611", "chunks of a study are missing",
+     R"(The result of a study in chunks is put together only when every chunk is there.
+    lineshaft study PLAN.yaml --chunk 3/8 -o parts/part_3.csv
+    lineshaft study PLAN.yaml --merge parts -o all.csv)"},
+    {"L0612", "a chunk of another study",
+     R"(A chunk's sidecar has a hash of the plan, the program, its controllers, the settings of the
+command line and the version of lineshaft. It differs from that of the plan to be merged, or
+the chunks were made for different divisions (3/8 and 3/10). Compute the chunk again.)"},
+    {"L0613", "a damaged chunk",
+     R"(The rows of a chunk are not those that its sidecar (FILE-metadata.json) describes: the file
+was cut off, edited, or copied without it. Compute the chunk again.)"},
+    {"L0614", "results without a file",
+     R"(--chunk, --merge and --resume are about a result file: say which with -o FILE.csv.)"},
 
     {"L0701", "a CSV file without columns",
      R"(The first line of a CSV file names its columns, separated by commas (or semicolons, where

@@ -75,7 +75,7 @@ class Substitution {
 
 Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     program_.file = file;
-    auto root = parse_yaml(file, read_.diagnostics());
+    auto root = parse(file);
     if (!root || !check_kind(read_, *root, "lineshaft")) return std::move(program_);
     read_.only_keys(*root, "a program",
                     {"lineshaft", "title", "parameters", "controller", "tasks", "blocks", "inputs",
@@ -100,6 +100,11 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     if (const Node* n = root->find("trace")) trace(*n);
     if (const Node* n = root->find("expect")) expectations(*n);
     return std::move(program_);
+}
+
+std::optional<Node> ProgramReader::parse(const std::shared_ptr<const SourceFile>& file) const {
+    return options_.files ? options_.files->parse(file, read_.diagnostics())
+                          : parse_yaml(file, read_.diagnostics());
 }
 
 void ProgramReader::parameters(const Node& root) {
@@ -139,9 +144,10 @@ void ProgramReader::controller(const Node& node) {
     const auto path =
         resolve_path(node.text, program_.file->path, options_.include_dirs, node.mark, out);
     if (!path) return;
-    const auto file = read_source(*path, out, node.mark);
+    const auto file = options_.files ? options_.files->source(*path, out, node.mark)
+                                     : read_source(*path, out, node.mark);
     if (!file) return;
-    auto root = parse_yaml(file, out);
+    const auto root = parse(file);
     if (!root || !check_kind(read_, *root, "lineshaft_controller")) return;
     program_.tasks_known = true;
     read_.only_keys(*root, "a controller", {"lineshaft_controller", "title", "tasks"});

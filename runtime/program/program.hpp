@@ -9,7 +9,7 @@
 
 #include "runtime/program/diagnostic.hpp"
 #include "runtime/program/reader.hpp"
-#include "runtime/program/yaml.hpp"
+#include "runtime/program/yaml_files.hpp"
 
 namespace lineshaft {
 
@@ -91,6 +91,7 @@ struct Program {
 struct LoadOptions {
     std::vector<Setting> settings;
     std::vector<std::string> include_dirs;  ///< allowed besides the project root
+    YamlFiles* files = nullptr;  ///< where files are looked up that were read before; may be null
 };
 
 /// Checks the structure of `file` and replaces parameters. Files that it names (a controller) are

@@ -27,6 +27,7 @@ class ProgramReader {
     Program read(std::shared_ptr<const SourceFile> file);
 
   private:
+    std::optional<Node> parse(const std::shared_ptr<const SourceFile>& file) const;
     void parameters(const Node& root);
     void settings(ParameterValues& values);
     void controller(const Node& node);

@@ -319,9 +319,30 @@ Json study_case() {
     properties["set"] = reference("settings");
     properties["grid"] = described("every combination of these values is a run",
                                    named(list_of(reference("scalar"))));
+    properties["random"] = described("parameters whose values are drawn for each case",
+                                     named(reference("distribution")));
+    properties["draws"] = described("how often; each is a case", reference("count"));
+    properties["seed"] = described("of the draws, 1 unless said", of_type("integer"));
     properties["compare"] = reference("comparisons");
     properties["repeat"] = described("runs with seeds that follow each other", reference("count"));
     return map_of(properties);
+}
+
+Json distribution() {
+    const Json two = [] {
+        Json list = list_of(reference("scalar"));
+        list["minItems"] = list["maxItems"] = 2;
+        return list;
+    }();
+    Json properties;
+    properties["uniform"] = described("[least, greatest]", two);
+    properties["log_uniform"] = described("[least, greatest], both above 0", two);
+    properties["normal"] = described("[mean, standard deviation], which may be in %", two);
+    properties["integer"] = described("[least, greatest], whole numbers, both included", two);
+    properties["choice"] = described("one of these", list_of(reference("scalar")));
+    Json map = map_of(properties);
+    map["minProperties"] = map["maxProperties"] = 1;
+    return map;
 }
 
 Json claim() {
@@ -357,6 +378,7 @@ Json definitions(const Catalog& catalog) {
     out["settings"] =
         described("parameters of the program and their values", named(reference("scalar")));
     out["comparisons"] = comparisons();
+    out["distribution"] = distribution();
     out["case"] = study_case();
     out["claim"] = claim();
     out["program"] = program_file();

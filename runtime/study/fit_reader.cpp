@@ -178,8 +178,8 @@ void FitReader::join(Study&& study) {
     plan_.program = std::move(study.program);
     plan_.notes = std::move(study.notes);
     plan_.include_dirs = std::move(study.include_dirs);
-    for (std::size_t i = 0; i < study.cases.size(); ++i)
-        plan_.cells.push_back(cell(pending_[i], std::move(study.cases[i])));
+    for (std::size_t i = 0; i < pending_.size(); ++i)
+        plan_.cells.push_back(cell(pending_[i], study.make_case(static_cast<std::int64_t>(i))));
     if (!read_.diagnostics().empty()) return;
     check_units();
     check_count();

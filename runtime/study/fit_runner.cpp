@@ -71,7 +71,7 @@ class Fitter {
     std::vector<Figures> figures(const std::vector<const FitCell*>& cells,
                                  const std::vector<VectorXd>& points);
     std::vector<Figures> run_all(const std::vector<Job>& jobs);
-    Figures run_one(const Job& job) const;
+    Figures run_one(const Job& job, YamlFiles& files) const;
     void take_values(const LeastSquares& best);
     void take_rows(const LeastSquares& best);
     void tell();
@@ -202,8 +202,9 @@ std::vector<Figures> Fitter::run_all(const std::vector<Job>& jobs) {
     std::atomic<std::size_t> next = 0;
     std::mutex progress_mutex;
     const auto work = [&] {
+        YamlFiles files;
         for (std::size_t i = next++; i < jobs.size(); i = next++) {
-            results[i] = run_one(jobs[i]);
+            results[i] = run_one(jobs[i], files);
             const std::lock_guard lock(progress_mutex);
             ++progress_.runs;
             if (options_.progress) options_.progress(progress_);
@@ -217,12 +218,13 @@ std::vector<Figures> Fitter::run_all(const std::vector<Job>& jobs) {
     return results;
 }
 
-Figures Fitter::run_one(const Job& job) const {
+Figures Fitter::run_one(const Job& job, YamlFiles& files) const {
     if (stopped()) return {.values = {}, .fault = "interrupted"};
     const FitCell& cell = *job.cell;
     Diagnostics out;
-    auto loaded = load_program(
-        plan_.program, {settings_at(plan_, cell, job.point), plan_.include_dirs}, catalog_, out);
+    auto loaded = load_program(plan_.program,
+                               {settings_at(plan_, cell, job.point), plan_.include_dirs, &files},
+                               catalog_, out);
     if (!loaded) return {.values = {}, .fault = out.render()};
     Machine& machine = loaded->linked.machine;
     machine.seed += static_cast<std::uint64_t>(job.repeat);

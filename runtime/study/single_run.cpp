@@ -11,7 +11,7 @@ namespace lineshaft {
 
 std::optional<Loaded> load_program(const std::string& path, const LoadOptions& options,
                                    const Catalog& catalog, Diagnostics& out) {
-    const auto file = read_source(path, out);
+    const auto file = options.files ? options.files->source(path, out) : read_source(path, out);
     if (!file) return {};
     Loaded loaded{.program = read_program(file, options, out), .linked = {}};
     loaded.linked = link(loaded.program, catalog, out);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -15,18 +16,26 @@ namespace {
 /// Names of settings that differ between cases, in order of appearance.
 std::vector<std::string> varying(const Study& study) {
     std::vector<std::string> order;
-    std::map<std::string, std::pair<std::string, std::size_t>> seen;  // name: first value, uses
-    std::map<std::string, bool> differs;
-    for (const StudyCase& c : study.cases) {
-        for (const Setting& s : c.settings) {
-            const auto [it, is_new] = seen.emplace(s.name, std::pair(s.value, 0));
-            if (is_new) order.push_back(s.name);
-            if (it->second.first != s.value) differs[s.name] = true;
-            ++it->second.second;
-        }
+    std::map<std::string, std::set<std::string>> values;
+    std::map<std::string, std::size_t> uses;
+    const auto see = [&](const std::string& name, const std::string& value) {
+        if (std::ranges::find(order, name) == order.end()) order.push_back(name);
+        values[name].insert(value);
+    };
+    for (const CaseGroup& group : study.groups) {
+        std::set<std::string> own;
+        for (const GridAxis& axis : group.grid) own.insert(axis.name);
+        for (const RandomParameter& p : group.random) own.insert(p.name);
+        for (const Setting& s : group.settings)
+            if (own.insert(s.name).second) see(s.name, s.value);
+        for (const GridAxis& axis : group.grid)
+            for (const Setting& s : axis.values) see(s.name, s.value);
+        for (const RandomParameter& p : group.random)
+            for (const std::int64_t index : {0, 1}) see(p.name, draw(p, group.seed, index));
+        for (const std::string& name : own) ++uses[name];
     }
     std::erase_if(order, [&](const std::string& name) {
-        return !differs[name] && seen[name].second == study.cases.size();
+        return values[name].size() == 1 && uses[name] == study.groups.size();
     });
     return order;
 }
@@ -120,6 +129,9 @@ std::string study_table(const Study& study, const StudyReport& report) {
     std::string text = study.title + "\n\n" + row_table(study, report);
     if (!report.claims.empty()) text += "\n" + claim_table(report);
     for (const std::string& note : study.notes) text += "\n" + note + "\n";
+    if (report.left_out > 0)
+        text +=
+            fmt::format("\n{} more of the {} cases are not shown\n", report.left_out, report.cases);
     for (const std::string& line : report.deviations) text += "\nexpectation failed: " + line;
     for (const std::string& line : report.faults) text += "\nfault: " + line;
     if (!report.faults.empty() || !report.deviations.empty()) text += "\n";
