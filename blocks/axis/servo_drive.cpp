@@ -21,15 +21,6 @@ double normal(Random& random) {
     return std::sqrt(-2 * Sleef_cinz_logd1_u10purec(a)) * Sleef_cinz_cospid1_u05purec(2 * b);
 }
 
-/// A parameter that is a member of one of the drive's parts.
-template <class Part, class T>
-Field part(std::string_view name, Part ServoDrive::*whole, T Part::*member, std::string_view unit,
-           std::string_view doc) {
-    Field f = parameter(name, member, unit, doc);
-    f.offset += detail::offset_of(whole);
-    return f;
-}
-
 }  // namespace
 
 std::span<const Field> ServoDrive::fields() {
@@ -44,35 +35,35 @@ std::span<const Field> ServoDrive::fields() {
         parameter("velocity_feed_forward", &D::velocity_feed_forward, "",
                   "share of the set velocity; 1: all of it")
             .at_least(0),
-        part("velocity_loop", &D::loop, &VelocityLoop::kind, "", "dynamics of the velocity")
+        parameter("velocity_loop", &D::loop, &VelocityLoop::kind, "", "dynamics of the velocity")
             .one_of(loop_names),
-        part("time_constant", &D::loop, &VelocityLoop::time_constant, "s",
-             "of a first-order velocity loop")
+        parameter("time_constant", &D::loop, &VelocityLoop::time_constant, "s",
+                  "of a first-order velocity loop")
             .at_least(0),
-        part("natural_frequency", &D::loop, &VelocityLoop::natural_frequency, "rad/s",
-             "of a second-order velocity loop")
+        parameter("natural_frequency", &D::loop, &VelocityLoop::natural_frequency, "rad/s",
+                  "of a second-order velocity loop")
             .at_least(0),
-        part("damping", &D::loop, &VelocityLoop::damping, "",
-             "of a second-order velocity loop; 1: critical")
+        parameter("damping", &D::loop, &VelocityLoop::damping, "",
+                  "of a second-order velocity loop; 1: critical")
             .at_least(0),
-        part("coulomb_friction", &D::loop, &VelocityLoop::coulomb, "{unit}/s^2",
-             "force over moved mass")
+        parameter("coulomb_friction", &D::loop, &VelocityLoop::coulomb, "{unit}/s^2",
+                  "force over moved mass")
             .at_least(0),
-        part("viscous_friction", &D::loop, &VelocityLoop::viscous, "1/s",
-             "force over velocity and moved mass")
+        parameter("viscous_friction", &D::loop, &VelocityLoop::viscous, "1/s",
+                  "force over velocity and moved mass")
             .at_least(0),
-        part("backlash", &D::transmission, &Transmission::backlash, "{unit}",
-             "play between motor and table")
+        parameter("backlash", &D::transmission, &Transmission::backlash, "{unit}",
+                  "play between motor and table")
             .at_least(0),
-        part("windup", &D::transmission, &Transmission::windup, "{unit}",
-             "lag of the table in steady motion: friction over stiffness"),
-        part("breakaway_windup", &D::transmission, &Transmission::breakaway_windup, "{unit}",
-             "lag of the table in addition, after a reversal: the reversal error"),
-        part("presliding_travel", &D::transmission, &Transmission::presliding_travel, "{unit}",
-             "within which a reversal winds up")
+        parameter("windup", &D::transmission, &Transmission::windup, "{unit}",
+                  "lag of the table in steady motion: friction over stiffness"),
+        parameter("breakaway_windup", &D::transmission, &Transmission::breakaway_windup, "{unit}",
+                  "lag of the table in addition, after a reversal: the reversal error"),
+        parameter("presliding_travel", &D::transmission, &Transmission::presliding_travel, "{unit}",
+                  "within which a reversal winds up")
             .at_least(0),
-        part("breakaway_travel", &D::transmission, &Transmission::breakaway_travel, "{unit}",
-             "over which `breakaway_windup` decays")
+        parameter("breakaway_travel", &D::transmission, &Transmission::breakaway_travel, "{unit}",
+                  "over which `breakaway_windup` decays")
             .at_least(0),
         parameter("encoder", &D::encoder, "", "where it sits").one_of(encoder_names),
         parameter("resolution", &D::resolution, "{unit}", "of the encoder; 0: no steps")
