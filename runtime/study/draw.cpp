@@ -1,12 +1,12 @@
 #include "runtime/study/draw.hpp"
 
+#include <charconv>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <sleef.h>
 
-#include "runtime/scan/random.hpp"
+#include "runtime/model/random.hpp"
 
 namespace lineshaft {
 
@@ -16,24 +16,20 @@ std::string with_unit(std::string number, const Unit& unit) {
     return unit.text.empty() ? number : fmt::format("{} {}", number, unit.text);
 }
 
+double nine_digits(double value) {
+    const std::string text = fmt::format("{:.9g}", value);
+    double rounded = 0;
+    std::from_chars(text.data(), text.data() + text.size(), rounded);
+    return rounded;
+}
+
 /// Times are whole nanoseconds, as tasks and stimuli want them.
 std::string text(double value, const Unit& unit) {
     static const Unit second = *Unit::parse("s"), ns = *Unit::parse("ns");
-    const double rounded = std::stod(fmt::format("{:.9g}", value));
+    const double rounded = nine_digits(value);
     if (!unit.same_dimension(second)) return with_unit(format_number(rounded), unit);
     return with_unit(format_number(convert(std::round(convert(rounded, unit, ns)), ns, unit)),
                      unit);
-}
-
-/// In (0, 1), the middles of 2^52 equal parts.
-double share(Random& random) {
-    return (static_cast<double>(random.next() >> 12) + 0.5) * 0x1p-52;
-}
-
-/// Box and Muller 1958.
-double standard_normal(Random& random) {
-    const double radius = std::sqrt(-2 * Sleef_cinz_logd1_u10purec(share(random)));
-    return radius * Sleef_cinz_cosd1_u10purec(2 * std::numbers::pi * share(random));
 }
 
 std::uint64_t below(Random& random, std::uint64_t count) {
@@ -47,13 +43,13 @@ std::string draw(const RandomParameter& p, std::uint64_t seed, std::int64_t inde
     Random random(seed, fmt::format("{}.{}", p.name, index));
     switch (p.distribution) {
         case Distribution::uniform:
-            return text(p.a + (p.b - p.a) * share(random), p.unit);
+            return text(p.a + (p.b - p.a) * random.share(), p.unit);
         case Distribution::log_uniform:
-            return text(p.a * Sleef_cinz_expd1_u10purec(share(random) *
+            return text(p.a * Sleef_cinz_expd1_u10purec(random.share() *
                                                         Sleef_cinz_logd1_u10purec(p.b / p.a)),
                         p.unit);
         case Distribution::normal:
-            return text(p.a + p.b * standard_normal(random), p.unit);
+            return text(p.a + p.b * random.normal(), p.unit);
         case Distribution::integer: {
             const auto count = static_cast<std::uint64_t>(p.b - p.a) + 1;
             const auto offset = static_cast<std::int64_t>(below(random, count));
