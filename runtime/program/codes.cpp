@@ -133,11 +133,19 @@ its cases would share it. Write one expectation for each thing that must hold:
 A task is cyclic ('every', 'offset', 'jitter') or started by the rising edges of boolean
 signals ('on'), and then has no interval that every(...) could name:
     tasks:
-      pto_done: {on: x.done, priority: 18, cost: 0.33 ms})"},
+      pto_done: {on: x.done, priority: 18, cost: 0.33 ms}
+A trace's trigger has a signal and one condition (edge, above, below, inside or equals);
+'pre_trigger' and 'repeat' need a trigger other than the start of the run.)"},
     {"L0214", "a row of the wrong length",
      R"(A list of rows, such as a pulse output's profile, has as many numbers in each row as the
 table has columns; 'lineshaft blocks pto' names them:
     profile: [[2 kHz, 10 kHz, 200], [10 kHz, 10 kHz, 3400], [10 kHz, 2 kHz, 400]])"},
+    {"L0215", "the rows before a trigger take too much memory",
+     R"(A trace with 'pre_trigger' keeps that many rows in memory while it waits; what all traces
+of a program keep is known before the run starts, and is limited (the message says to how
+much). A row takes 8 bytes for each signal and 16 more. Keep fewer rows or fewer signals,
+or record every n-th scan only. What is recorded from the trigger on goes to the disk and
+is not limited.)"},
 
     {"L0301", "not a number",
      R"(A number is due: digits with an optional point and exponent, then an optional unit,
@@ -310,6 +318,14 @@ enumerations the number of the name, as the sidecar tells.)"},
      R"(Beside a trace NAME.csv stands NAME.csv-metadata.json with units, types and the
 program's hash, as JSON (W3C CSVW). This one is no such file. Record the trace again, or
 remove the sidecar: then all columns are plain numbers.)"},
+    {"L0708", "traces that cannot be compared",
+     R"(Two traces are compared row by row, so both must come from the same program and have the
+same columns in the same order, with the same units, and the same interval between rows.
+'lineshaft diff --any-program' compares traces of two programs, such as the one before and
+after a change.)"},
+    {"L0709", "a trace without a sidecar",
+     R"(Whether a trace NAME.csv is whole is told by NAME.csv-metadata.json beside it, which has
+its rows and the checksum of its bytes. Copy the two together.)"},
 };
 
 }  // namespace

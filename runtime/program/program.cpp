@@ -79,7 +79,7 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     if (!root || !check_kind(read_, *root, "lineshaft")) return std::move(program_);
     read_.only_keys(*root, "a program",
                     {"lineshaft", "title", "parameters", "controller", "tasks", "blocks", "inputs",
-                     "run", "stimulus", "trace", "expect"});
+                     "run", "stimulus", "trace", "traces", "expect"});
     parameters(*root);
     Substitution(values_, read_).apply(*root);
     program_.title = fs::path(file->path).stem().string();
@@ -97,7 +97,8 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
             read_.require(*root, "run", "a program", "say how long to run: run: {for: 2 s}"))
         run(*n);
     if (const Node* n = root->find("stimulus")) stimuli(*n);
-    if (const Node* n = root->find("trace")) trace(*n);
+    if (const Node* n = root->find("trace")) trace({}, *n);
+    if (const Node* n = root->find("traces")) traces(*n);
     if (const Node* n = root->find("expect")) expectations(*n);
     return std::move(program_);
 }

@@ -10,6 +10,7 @@
 #include "runtime/program/diagnostic.hpp"
 #include "runtime/program/reader.hpp"
 #include "runtime/program/yaml_files.hpp"
+#include "runtime/trace/trigger.hpp"
 
 namespace lineshaft {
 
@@ -57,10 +58,25 @@ struct StimulusPlan {
     std::vector<std::pair<Node, Node>> set;
 };
 
+/// When a trace begins: `signal` and what must hold of it.
+struct TriggerPlan {
+    TraceTrigger::Kind kind = TraceTrigger::Kind::immediate;
+    Node signal;
+    std::vector<Node> values;  ///< of above, below, equals one, of inside two
+};
+
+/// `trace:`, which has no name, or one of `traces:`. Zeros: not given.
 struct TracePlan {
+    Node name;
     Node task;
     std::int64_t every = 1;  ///< scans
     std::vector<Node> signals;
+    TriggerPlan trigger;
+    Node ring;                     ///< the value of `pre_trigger`
+    std::int64_t pre_trigger = 0;  ///< rows
+    std::int64_t samples = 0;      ///< rows
+    std::int64_t duration = 0;     ///< [ns]
+    std::int64_t repeat = 1;
 };
 
 /// One line of `expect:`, see `programs/README.md`.
@@ -82,7 +98,7 @@ struct Program {
     std::vector<BlockPlan> blocks;
     std::vector<std::pair<Node, Node>> inputs;
     std::vector<StimulusPlan> stimuli;
-    std::optional<TracePlan> trace;
+    std::vector<TracePlan> traces;
     std::vector<ExpectPlan> expectations;
     RunPlan run;
 };

@@ -257,11 +257,35 @@ Json run() {
     return map_of(properties, {"for"});
 }
 
+Json trigger() {
+    const auto with = [](std::string_view key, Json value) {
+        Json properties;
+        properties["signal"] = reference("signal");
+        properties[std::string(key)] = std::move(value);
+        return map_of(properties, {"signal", key});
+    };
+    Json bounds = list_of(reference("scalar"));
+    bounds["minItems"] = bounds["maxItems"] = 2;
+    return described(
+        "when a measurement begins; its time counts from there",
+        any_of({keyword("const", "immediate"),
+                with("edge", any_of({keyword("enum", Json::array_t{"rising", "falling"}),
+                                     reference("parameter")})),
+                with("above", reference("scalar")), with("below", reference("scalar")),
+                with("inside", bounds), with("equals", reference("scalar"))}));
+}
+
 Json trace() {
     Json properties;
     properties["task"] = reference("task_name");
     properties["every"] = described("records every n-th scan", reference("count"));
     properties["signals"] = list_of(reference("signal"));
+    properties["trigger"] = trigger();
+    properties["pre_trigger"] = described("rows kept from before the trigger", reference("count"));
+    properties["samples"] = described("rows from the trigger on, at most", reference("count"));
+    properties["for"] = described("time from the trigger on, at most", reference("time"));
+    properties["repeat"] =
+        described("measurements at most, each in a file of its own", reference("count"));
     return map_of(properties, {"task", "signals"});
 }
 
@@ -279,7 +303,9 @@ Json program_file() {
         described("values from outside, as they are at the start", named(reference("scalar")));
     properties["run"] = run();
     properties["stimulus"] = described("changes of inputs while running", list_of(stimulus()));
-    properties["trace"] = described("what --trace records", trace());
+    properties["trace"] = described("what --trace records", reference("trace"));
+    properties["traces"] = described(
+        "further traces: --trace FILE.csv writes them to FILE.NAME.csv", named(reference("trace")));
     properties["expect"] = described("what must hold", list_of(reference("expectation")));
     Json out = map_of(properties, {"lineshaft", "blocks", "run"});
     out["anyOf"] = Json::array_t{required("tasks"), required("controller")};
@@ -374,6 +400,7 @@ Json definitions(const Catalog& catalog) {
     out["block"] = block(catalog);
     for (const BlockType& type : catalog.types())
         out["block_" + std::string(type.name)] = block_type(type);
+    out["trace"] = trace();
     out["expectation"] = expectation();
     out["settings"] =
         described("parameters of the program and their values", named(reference("scalar")));

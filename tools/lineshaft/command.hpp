@@ -67,5 +67,7 @@ void add_schema(CLI::App& app, Exit& result);
 void add_explain(CLI::App& app, Exit& result);
 void add_plan(CLI::App& app, Exit& result);
 void add_fit(CLI::App& app, Exit& result);
+void add_diff(CLI::App& app, Exit& result);
+void add_verify(CLI::App& app, Exit& result);
 
 }  // namespace lineshaft
