@@ -269,6 +269,12 @@ same.)"},
 fewer figures many values fit equally well. Cells that are held out do not count, for
 they only test what the others have found. Take a parameter out of 'parameters:' (its
 value then comes from the program or from 'set:'), or compare more signals or cases.)"},
+    {"L0605", "a measured trace that cannot be compared",
+     R"(A fit takes the program's signals at the times that the trace's column 'time' gives, in
+seconds from the start of the run. So these times are not negative and rise from row to
+row. Rows where a compared column is empty are left out. If the
+measurement begins later than the run, say by how much:
+    trace: {file: measured.csv, offset: 10 ms})"},
 
     {"L0701", "a CSV file without columns",
      R"(The first line of a CSV file names its columns, separated by commas (or semicolons, where
