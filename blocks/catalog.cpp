@@ -2,6 +2,7 @@
 
 #include "blocks/axis/gear_axis.hpp"
 #include "blocks/axis/move.hpp"
+#include "blocks/axis/servo_drive.hpp"
 #include "blocks/axis/simulated_drive.hpp"
 #include "blocks/axis/virtual_axis.hpp"
 #include "blocks/circle/circle_fit.hpp"
@@ -27,6 +28,7 @@ Catalog standard_blocks() {
     blocks.add<GearAxis>();
     blocks.add<Move>();
     blocks.add<SimulatedDrive>();
+    blocks.add<ServoDrive>();
     blocks.add<CircleRatio>();
     blocks.add<CircleFit>();
     blocks.add<PathCircle>();

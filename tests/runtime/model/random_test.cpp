@@ -1,4 +1,4 @@
-#include "runtime/scan/random.hpp"
+#include "runtime/model/random.hpp"
 
 #include <array>
 #include <limits>
