@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/scan/random.hpp"
+#include "runtime/model/random.hpp"
 #include "runtime/study/fit.hpp"
 #include "runtime/study/least_squares.hpp"
 #include "runtime/study/single_run.hpp"

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "runtime/scan/random.hpp"
+#include "runtime/model/random.hpp"
 
 using namespace lineshaft;
 using Eigen::VectorXd;
