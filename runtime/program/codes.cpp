@@ -290,6 +290,12 @@ the chunks were made for different divisions (3/8 and 3/10). Compute the chunk a
 was cut off, edited, or copied without it. Compute the chunk again.)"},
     {"L0614", "results without a file",
      R"(--chunk, --merge and --resume are about a result file: say which with -o FILE.csv.)"},
+    {"L0605", "a measured trace that cannot be compared",
+     R"(A fit takes the program's signals at the times that the trace's column 'time' gives, in
+seconds from the start of the run. So these times are not negative and rise from row to
+row. Rows where a compared column is empty are left out. If the
+measurement begins later than the run, say by how much:
+    trace: {file: measured.csv, offset: 10 ms})"},
 
     {"L0701", "a CSV file without columns",
      R"(The first line of a CSV file names its columns, separated by commas (or semicolons, where

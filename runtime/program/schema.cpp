@@ -394,6 +394,65 @@ Json study_file() {
     return map_of(properties, {"lineshaft_study", "program", "cases"});
 }
 
+Json fit_parameter() {
+    Json properties;
+    properties["from"] = described("lower bound", reference("number"));
+    properties["to"] = described("upper bound", reference("number"));
+    properties["start"] =
+        described("of the first search, by default the middle", reference("number"));
+    properties["step"] = described("of the difference quotients", reference("number"));
+    return map_of(properties, {"from", "to"});
+}
+
+Json fit_comparisons() {
+    Json properties;
+    add_bounds(properties);
+    properties["uncertainty"] = described(
+        "differences are counted in it, in the signal's unit or in %", reference("number"));
+    properties["column"] =
+        described("of the trace, by default named as the signal", reference("scalar"));
+    Json map = of_type("object");
+    map["patternProperties"]["^" + signal_pattern + "$"] =
+        any_of({of_type("null"), map_of(properties)});
+    map["additionalProperties"] = false;
+    return any_of({list_of(text(signal_pattern)), map});
+}
+
+Json fit_trace() {
+    Json properties;
+    properties["file"] = described("CSV, relative to this file", reference("scalar"));
+    properties["time"] = described("its column of times, by default 'time'", reference("scalar"));
+    properties["offset"] = described("time of the run at its time 0", reference("time"));
+    return any_of({reference("scalar"), map_of(properties, {"file"})});
+}
+
+Json fit_case() {
+    Json properties;
+    properties["name"] = reference("name");
+    properties["set"] = reference("settings");
+    properties["repeat"] = described("runs with seeds that follow each other", reference("count"));
+    properties["hold_out"] = described("takes no part in the search", of_type("boolean"));
+    properties["trace"] = described("what was measured, sample by sample", fit_trace());
+    properties["compare"] = fit_comparisons();
+    return map_of(properties, {"compare"});
+}
+
+Json fit_file() {
+    Json properties;
+    properties["lineshaft_fit"] = version("fit");
+    properties["title"] = reference("scalar");
+    properties["program"] = described("the program, relative to this file", reference("scalar"));
+    properties["notes"] = any_of({reference("scalar"), list_of(reference("scalar"))});
+    properties["set"] = reference("settings");
+    properties["repeat"] = reference("count");
+    properties["parameters"] =
+        described("of the program, whose values are looked for", named(fit_parameter()));
+    properties["starts"] = described("searches from other points", reference("count"));
+    properties["seed"] = described("of their points", reference("count"));
+    properties["cases"] = list_of(fit_case());
+    return map_of(properties, {"lineshaft_fit", "program", "parameters", "cases"});
+}
+
 Json definitions(const Catalog& catalog) {
     Json out = scalars();
     out["task"] = task();
@@ -410,6 +469,7 @@ Json definitions(const Catalog& catalog) {
     out["claim"] = claim();
     out["program"] = program_file();
     out["study"] = study_file();
+    out["fit"] = fit_file();
     out["controller"] = controller_file();
     return out;
 }
@@ -426,11 +486,12 @@ Json if_key(std::string_view key, const Json& then, const Json& otherwise) {
 nlohmann::ordered_json program_schema(const Catalog& catalog) {
     Json out;
     out["$schema"] = "http://json-schema.org/draft-07/schema#";
-    out["title"] = "lineshaft: a program, a study or a controller";
+    out["title"] = "lineshaft: a program, a study, a fit or a controller";
     out["type"] = "object";
-    out.update(
-        if_key("lineshaft_study", reference("study"),
-               if_key("lineshaft_controller", reference("controller"), reference("program"))));
+    out.update(if_key(
+        "lineshaft_study", reference("study"),
+        if_key("lineshaft_fit", reference("fit"),
+               if_key("lineshaft_controller", reference("controller"), reference("program")))));
     out["definitions"] = definitions(catalog);
     return out;
 }

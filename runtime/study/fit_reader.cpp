@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <filesystem>
+#include <functional>
 
 #include <fmt/format.h>
 
 #include "runtime/program/reader.hpp"
 #include "runtime/study/fit.hpp"
 #include "runtime/study/study_reader.hpp"
+#include "runtime/trace/csv_reader.hpp"
 
 namespace lineshaft {
 
@@ -38,6 +40,20 @@ Node take(Node& map, std::string_view key) {
     return value;
 }
 
+/// By default named as the signal.
+std::string column_name(const PendingTarget& target) {
+    return target.column.is_empty() ? target.signal.text : target.column.text;
+}
+
+/// Reports what is not allowed, and takes it out, so that it is not reported once more.
+void keep_only(const Reader& read, Node& map, std::string_view what,
+               std::initializer_list<std::string_view> allowed) {
+    read.only_keys(map, what, allowed);
+    std::erase_if(map.entries, [&](const auto& entry) {
+        return std::ranges::find(allowed, entry.first.text) == allowed.end();
+    });
+}
+
 /// A plan is a study with some entries more. They are taken out of it, what is left is read as a
 /// study, and the two are put together.
 class FitReader {
@@ -56,8 +72,14 @@ class FitReader {
     void forbid_settings(const Node& map) const;
     void join(Study&& study);
     FitCell cell(const PendingCell& pending, StudyCase&& run);
-    std::optional<FitTarget> target(const PendingTarget& pending, const Comparison& comparison,
-                                    bool of_trace) const;
+    void figures(const PendingCell& pending, FitCell& cell) const;
+    std::optional<double> uncertainty(const PendingTarget& pending, const Comparison& comparison,
+                                      std::optional<double> whole) const;
+    void trace(const PendingCell& pending, FitCell& cell) const;
+    Unit unit_of(const CsvColumn& column, const std::string& wanted, const Node& place) const;
+    void samples(const PendingCell& pending, const CsvTable& table, const CsvColumn& time,
+                 FitCell& cell) const;
+    void check_times(const Node& place, const std::vector<std::int64_t>& times) const;
     void check_units() const;
     void check_count() const;
 
@@ -73,9 +95,9 @@ FitPlan FitReader::read(std::shared_ptr<const SourceFile> file) {
     plan_.file = file;
     auto root = parse_yaml(file, read_.diagnostics());
     if (!root || !check_kind(read_, *root, "lineshaft_fit")) return std::move(plan_);
-    read_.only_keys(*root, "a fit",
-                    {"lineshaft_fit", "title", "program", "notes", "set", "repeat", "parameters",
-                     "starts", "seed", "cases"});
+    keep_only(read_, *root, "a fit",
+              {"lineshaft_fit", "title", "program", "notes", "set", "repeat", "parameters",
+               "starts", "seed", "cases"});
     take(*root, "lineshaft_fit");
     starts(take(*root, "starts"), take(*root, "seed"));
     read_.require(*root, "parameters", "a fit",
@@ -145,8 +167,8 @@ void FitReader::take_cell(Node& node) {
     PendingCell pending;
     pending.place.mark = node.mark;
     if (!node.is_map()) return;
-    read_.only_keys(node, "a case of a fit",
-                    {"name", "set", "repeat", "compare", "hold_out", "trace"});
+    keep_only(read_, node, "a case of a fit",
+              {"name", "set", "repeat", "compare", "hold_out", "trace"});
     if (const Node hold_out = take(node, "hold_out"); !hold_out.is_empty())
         pending.hold_out = read_.boolean(hold_out).value_or(false);
     pending.trace = take(node, "trace");
@@ -189,32 +211,122 @@ FitCell FitReader::cell(const PendingCell& pending, StudyCase&& run) {
     FitCell made{.run = std::move(run), .hold_out = pending.hold_out};
     std::erase_if(made.run.settings,
                   [this](const Setting& s) { return parameters_.find(s.name) != nullptr; });
-    for (std::size_t k = 0; k < made.run.comparisons.size(); ++k)
-        if (auto t = target(pending.targets[k], made.run.comparisons[k], false))
-            made.targets.push_back(std::move(*t));
+    if (pending.trace.is_empty())
+        figures(pending, made);
+    else
+        trace(pending, made);
     return made;
 }
 
-std::optional<FitTarget> FitReader::target(const PendingTarget& pending,
-                                           const Comparison& comparison, bool of_trace) const {
-    FitTarget made;
-    if (!of_trace && !comparison.bounds.paper) {
-        read_.fail("L0202", pending.signal,
-                   fmt::format("'{}' has nothing to be compared with", comparison.signal),
-                   "write what was measured, {paper: VALUE}, or name its trace file in the case");
-        return {};
+void FitReader::figures(const PendingCell& pending, FitCell& cell) const {
+    for (std::size_t k = 0; k < pending.targets.size(); ++k) {
+        const PendingTarget& p = pending.targets[k];
+        const Comparison& comparison = cell.run.comparisons[k];
+        if (!p.column.is_empty())
+            read_.fail("L0202", p.column, "a column of which file? The case has no 'trace'",
+                       "name the file in the case: trace: measured.csv");
+        else if (!comparison.bounds.paper)
+            read_.fail("L0202", p.signal,
+                       fmt::format("'{}' has nothing to be compared with", comparison.signal),
+                       "write what was measured, {paper: VALUE}, or the case's trace: FILE");
+        else if (const auto u = uncertainty(p, comparison, comparison.bounds.paper))
+            cell.targets.push_back({{*comparison.bounds.paper}, *u});
     }
-    if (comparison.bounds.paper) made.given = {*comparison.bounds.paper};
-    const Node& node = pending.uncertainty;
-    if (node.is_empty()) return made;
+}
+
+/// 1 where it is not given; a percentage is of `whole`.
+std::optional<double> FitReader::uncertainty(const PendingTarget& pending,
+                                             const Comparison& comparison,
+                                             std::optional<double> whole) const {
     static const Unit one;
-    const bool share = node.is_scalar() && node.text.ends_with('%') && !of_trace;
-    const auto size = read_.real(node, share ? one : Unit::parse(comparison.unit).value());
-    if (!size) return {};
-    made.uncertainty = share ? *size * std::abs(made.given.front()) : *size;
-    if (made.uncertainty > 0) return made;
+    const Node& node = pending.uncertainty;
+    if (node.is_empty()) return 1;
+    const bool share = whole && node.is_scalar() && node.text.ends_with('%');
+    auto size = read_.real(node, share ? one : Unit::parse(comparison.unit).value());
+    if (size && share) *size *= std::abs(*whole);
+    if (!size || *size > 0) return size;
     read_.fail("L0305", node, fmt::format("an uncertainty of '{}' is not above 0", node.text));
     return {};
+}
+
+/// `trace: FILE`, or `trace: {file: FILE, time: COLUMN, offset: 10 ms}`.
+void FitReader::trace(const PendingCell& pending, FitCell& cell) const {
+    Diagnostics& out = read_.diagnostics();
+    const Node& node = pending.trace;
+    if (node.is_map()) read_.only_keys(node, "a trace", {"file", "time", "offset"});
+    const Node* name = node.is_map() ? read_.require(node, "file", "a trace") : &node;
+    if (!name || !read_.expect_scalar(*name, "the name of a trace")) return;
+    const auto path =
+        resolve_path(name->text, plan_.file->path, plan_.include_dirs, name->mark, out);
+    if (!path) return;
+    if (!std::filesystem::exists(*path))
+        return read_.fail("L0001", *name, fmt::format("there is no file '{}'", *path));
+    const Node* time = node.find("time");
+    const std::string time_name = time ? time->text : "time";
+    CsvOptions csv{.columns = {time_name}};
+    for (const PendingTarget& p : pending.targets) csv.columns.push_back(column_name(p));
+    const auto table = read_csv(*path, out, csv);
+    if (!table) return;
+    if (const CsvColumn* column = table->require(time_name, out, time ? time->mark : name->mark))
+        samples(pending, *table, *column, cell);
+}
+
+/// What the file says, else `wanted`; both measure the same.
+Unit FitReader::unit_of(const CsvColumn& column, const std::string& wanted,
+                        const Node& place) const {
+    const Unit due = Unit::parse(wanted).value();
+    if (column.unit.empty()) return due;
+    const auto found = Unit::parse(column.unit);
+    if (found && found->same_dimension(due)) return *found;
+    read_.fail("L0303", place,
+               fmt::format("column '{}' is in {}, not in {}", column.name, column.unit,
+                           wanted.empty() ? "plain numbers" : wanted));
+    return due;
+}
+
+void FitReader::samples(const PendingCell& pending, const CsvTable& table, const CsvColumn& time,
+                        FitCell& cell) const {
+    Diagnostics& out = read_.diagnostics();
+    std::vector<const CsvColumn*> columns;
+    std::vector<Unit> units;
+    for (std::size_t k = 0; k < pending.targets.size(); ++k) {
+        const PendingTarget& p = pending.targets[k];
+        const Comparison& comparison = cell.run.comparisons[k];
+        if (comparison.bounds.paper || comparison.bounds.judged())
+            read_.fail("L0213", p.signal, "a signal of a trace is compared sample by sample",
+                       "leave out paper, within, at_least and at_most");
+        const Node& place = p.column.is_empty() ? p.signal : p.column;
+        const CsvColumn* column = table.require(column_name(p), out, place.mark);
+        if (!column) continue;
+        columns.push_back(column);
+        units.push_back(unit_of(*column, comparison.unit, place));
+        cell.targets.push_back({{}, uncertainty(p, comparison, {}).value_or(1)});
+    }
+    const Unit seconds = unit_of(time, "s", pending.trace);
+    if (!out.empty()) return;
+    const Node* offset = pending.trace.find("offset");
+    const std::int64_t shift = offset ? read_.time(*offset).value_or(0) : 0;
+    for (std::size_t row = 0; row < table.rows; ++row) {
+        const auto missing = [row](const CsvColumn* c) { return c->is_missing(row); };
+        if (time.is_missing(row) || std::ranges::any_of(columns, missing)) continue;
+        const double at = convert(time.values[row], seconds, Unit::parse("ns").value());
+        cell.times.push_back(static_cast<std::int64_t>(std::round(at)) + shift);
+        for (std::size_t k = 0; k < columns.size(); ++k)
+            cell.targets[k].given.push_back(
+                convert(columns[k]->values[row], units[k],
+                        Unit::parse(cell.run.comparisons[k].unit).value()));
+    }
+    check_times(pending.trace, cell.times);
+}
+
+void FitReader::check_times(const Node& place, const std::vector<std::int64_t>& times) const {
+    const char* help = "time counts from the start of the run; offset: TIME moves the trace";
+    if (times.empty())
+        read_.fail("L0605", place, "the trace has no row with all of the columns");
+    else if (times.front() < 0)
+        read_.fail("L0605", place, "the trace begins before the run", help);
+    else if (std::ranges::adjacent_find(times, std::greater_equal<>{}) != times.end())
+        read_.fail("L0605", place, "the times of the trace do not rise from row to row");
 }
 
 /// Differences in mm and in s cannot be added.
