@@ -47,7 +47,8 @@ RunReport run(Loaded& loaded, const RunOptions& options) {
     if (recorder) {
         recorder->flush();
         background->finish();
-        report.trace_error = csv->finish(loaded.program.title, loaded.program.file->text);
+        report.trace_error =
+            csv->finish(loaded.program.title, loaded.program.file->text, verdicts_json(judge));
     }
     if (pulses) report.pulses_error = pulses->finish();
     for (DeviceCall& device : loaded.linked.machine.devices) device.sink = nullptr;

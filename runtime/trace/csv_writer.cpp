@@ -91,19 +91,21 @@ char* CsvWriter::append_cell(char* end, std::size_t column, std::uint64_t bits) 
     return end + last.length;
 }
 
-std::string CsvWriter::finish(const std::string& title, const std::string& program_text) {
+std::string CsvWriter::finish(const std::string& title, const std::string& program_text,
+                              const nlohmann::ordered_json& expectations) {
     if (!file_.commit() || !file_.is_regular()) return file_.error();
     nlohmann::ordered_json columns = nlohmann::ordered_json::array();
     columns.push_back({{"titles", "time"}, {"datatype", "double"}, {"unit", "s"}});
     columns.push_back({{"titles", "scan"}, {"datatype", "integer"}});
     for (const Signal& signal : signals_) columns.push_back(csvw_column(signal));
-    const nlohmann::ordered_json metadata{{"@context", "http://www.w3.org/ns/csvw"},
-                                          {"url", std::filesystem::path(path_).filename().string()},
-                                          {"dc:title", title},
-                                          {"lineshaft:version", version()},
-                                          {"lineshaft:program", text_hash(program_text)},
-                                          {"lineshaft:rows", row_count_},
-                                          {"tableSchema", {{"columns", columns}}}};
+    nlohmann::ordered_json metadata{{"@context", "http://www.w3.org/ns/csvw"},
+                                    {"url", std::filesystem::path(path_).filename().string()},
+                                    {"dc:title", title},
+                                    {"lineshaft:version", version()},
+                                    {"lineshaft:program", text_hash(program_text)},
+                                    {"lineshaft:rows", row_count_},
+                                    {"tableSchema", {{"columns", columns}}}};
+    if (!expectations.empty()) metadata["lineshaft:expectations"] = expectations;
     OutputFile sidecar(path_ + "-metadata.json");
     sidecar.write(metadata.dump(2) + "\n");
     sidecar.commit();

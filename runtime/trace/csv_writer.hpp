@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "runtime/trace/number_text.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "runtime/trace/recorder.hpp"
@@ -20,8 +22,10 @@ class CsvWriter : public TraceSink {
     void rows(const std::uint64_t* words, std::size_t rows) override;
 
     /// Closes the file and writes the CSVW sidecar `PATH-metadata.json` with types, units, program
-    /// and its hash beside it. Empty when all is well, else what went wrong.
-    std::string finish(const std::string& title, const std::string& program_text);
+    /// and its hash, and what came of its expectations (see verdicts_json) beside it. Empty when
+    /// all is well, else what went wrong.
+    std::string finish(const std::string& title, const std::string& program_text,
+                       const nlohmann::ordered_json& expectations = {});
 
   private:
     /// A column's last value and its text: what stands still is not formatted again.
