@@ -30,7 +30,7 @@ constexpr unsigned char page_bytes[] = {
 struct ReportCommand {
     std::vector<std::string> inputs, signals, path;
     std::vector<double> circle;
-    std::string output, title;
+    std::string output, title, condition;
     bool quiet = false;
 };
 
@@ -88,6 +88,14 @@ Json paths_json(const ReportCommand& command, const std::vector<ReportRun>& runs
     return list;
 }
 
+/// What `--while` names.
+Json condition_json(const ReportCommand& command, const std::vector<ReportRun>& runs,
+                    Diagnostics& out) {
+    if (command.condition.empty() || runs.empty()) return nullptr;
+    runs.front().table.require(command.condition, out);
+    return command.condition;
+}
+
 std::string title(const ReportCommand& command, const Json& report) {
     if (!command.title.empty()) return command.title;
     for (const char* key : {"runs", "studies"})
@@ -126,6 +134,7 @@ Json make_report(const ReportCommand& command, Diagnostics& out) {
                 {"runs", Json::array()},
                 {"studies", Json::array()},
                 {"paths", paths_json(command, runs, out)},
+                {"while", condition_json(command, runs, out)},
                 {"circle", nullptr}};
     for (const std::string& path : command.inputs)
         if (is_study_file(path)) report["studies"].push_back(read_study_results(path, out));
@@ -184,6 +193,9 @@ void add_report(CLI::App& app, Exit& result) {
         ->type_name("X,Y,RADIUS")
         ->delimiter(',')
         ->expected(3);
+    sub->add_option("--while", command->condition,
+                    "Take a path for the circle only while this signal is true: g.moving")
+        ->type_name("SIGNAL");
     sub->add_option("--title", command->title, "Headline; else the program's title");
     sub->add_flag("--quiet", command->quiet, "Print messages only");
     sub->footer(help);

@@ -142,6 +142,7 @@ async function figure(page, title) {
 
 /** What the page says of the path is what circle_fit found in the run. */
 async function testPath(page) {
+  await page.waitForSelector(".figures td");
   const runs = ["early", "immediate"].map((method) => JSON.parse(execFileSync(lineshaft,
     ["run", "programs/paper/wei2025_circle.yaml", "--set", `method=${method}`, "--json"], { cwd: project })));
   const means = await figure(page, "mean");
@@ -185,7 +186,7 @@ async function testStudy(browser) {
 async function testCircle(browser) {
   circle("early.csv", "method=early");
   circle("immediate.csv", "method=immediate");
-  const address = report("circle.html", file("early.csv"), file("immediate.csv"), "--circle", "0,0,20");
+  const address = report("circle.html", file("early.csv"), file("immediate.csv"), "--circle", "0,0,20", "--while", "g.moving");
   const page = await open(browser, address);
   await testCurves(page);
   await page.screenshot({ path: file("circle.png") });

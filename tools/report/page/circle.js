@@ -31,16 +31,23 @@ export function fitCircle(xs, ys, use = () => true) {
   return { x: mx + a, y: my + b, radius: Math.sqrt(z / n + a * a + b * b) };
 }
 
-export const deviation = (circle, x, y) => Math.hypot(x - circle.x, y - circle.y) - circle.radius;
+/** Distance of a point from the circle, above 0 outside; Math.hypot takes several times as long. */
+export function deviation(circle, x, y) {
+  const [u, v] = [x - circle.x, y - circle.y];
+  return Math.sqrt(u * u + v * v) - circle.radius;
+}
 
 /** Samples farther from the circle than this share of its radius do not belong to it. */
 export const band = 0.05;
 
-/** The deviation from the circle, sample by sample; not a number where a sample lies elsewhere. */
-export function deviations(circle, xs, ys) {
-  return xs.map((x, i) => {
-    const value = deviation(circle, x, ys[i]);
-    return Math.abs(value) <= band * circle.radius ? value : NaN;
+/**
+ * The deviation from the circle, sample by sample; not a number where a sample lies elsewhere, or
+ * where `condition`, if there is one, is not true.
+ */
+export function deviations(circle, { x, y, condition }) {
+  return x.map((value, i) => {
+    const by = condition && condition[i] !== 1 ? NaN : deviation(circle, value, y[i]);
+    return Math.abs(by) <= band * circle.radius ? by : NaN;
   });
 }
 
@@ -48,7 +55,9 @@ export function deviations(circle, xs, ys) {
  * The circle that most of a path lies on, whatever the rest of the path is: a fit, repeated without
  * what lies farther from it than most. Null when the path is no circle.
  */
-export function findCircle(xs, ys) {
+export function findCircle(path) {
+  const every = Math.ceil(path.x.length / 5000);
+  const [xs, ys] = [path.x, path.y].map((values) => values.filter((_, i) => i % every === 0));
   let circle = fitCircle(xs, ys);
   for (let round = 0; circle && round < 20; ++round) {
     const sizes = xs.map((x, i) => Math.abs(deviation(circle, x, ys[i])));
@@ -57,7 +66,7 @@ export function findCircle(xs, ys) {
     circle = fitCircle(xs, ys, (i) => sizes[i] <= limit);
   }
   if (!circle) return null;
-  const on = deviations(circle, xs, ys).filter((value) => !Number.isNaN(value)).length;
+  const on = deviations(circle, { x: xs, y: ys }).filter((value) => !Number.isNaN(value)).length;
   return on > xs.length / 2 ? circle : null;
 }
 
@@ -68,11 +77,10 @@ export function nominal({ x, y, radius }) {
   return { x: round(x), y: round(y), radius: round(radius) };
 }
 
-/** Offset of the fitted centre, mean and greatest |deviation| of the samples on the circle. */
-export function figures(circle, xs, ys, among) {
-  const on = deviations(circle, xs, ys);
-  const use = (i) => !Number.isNaN(on[i]) && among(i);
-  const fitted = fitCircle(xs, ys, use);
+/** Of the samples [first, end): offset of the fitted centre, mean and greatest |deviation|. */
+export function figures(circle, track, on, [first, end]) {
+  const use = (i) => i >= first && i < end && !Number.isNaN(on[i]);
+  const fitted = fitCircle(track.x, track.y, use);
   let [count, sum, worst] = [0, 0, -1];
   on.forEach((value, i) => {
     if (!use(i)) return;
@@ -82,5 +90,5 @@ export function figures(circle, xs, ys, among) {
   });
   if (!fitted || count === 0) return null;
   const offset = Math.hypot(fitted.x - circle.x, fitted.y - circle.y);
-  return { fitted, offset, mean: sum / count, worst: { x: xs[worst], y: ys[worst], value: on[worst] } };
+  return { fitted, offset, mean: sum / count, worst: { x: track.x[worst], y: track.y[worst], value: on[worst] } };
 }

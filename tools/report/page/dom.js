@@ -21,6 +21,15 @@ export function nextFrame(task) {
   };
 }
 
+/** Calls `task` once nobody has asked for it for a moment: for what may come after the curves. */
+export function afterwards(task) {
+  let waiting = 0;
+  return () => {
+    clearTimeout(waiting);
+    waiting = setTimeout(task, 150);
+  };
+}
+
 /** A colour of page.css, in the theme that is shown. */
 export const colour = (name) =>
   getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();

@@ -1,18 +1,21 @@
-const digits = new Intl.NumberFormat("en", { maximumSignificantDigits: 8, useGrouping: false });
+const format = (digits) =>
+  new Intl.NumberFormat("en", { maximumSignificantDigits: digits, useGrouping: false });
+const exact = format(9);
+const rounded = format(6);
 
-/** A number as a person reads it, to eight digits. */
-export function number(value) {
+/** A number as a person reads it, to six digits. */
+export function number(value, formatted = rounded) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-4 || size >= 1e9)) return value.toExponential(4).replace("-", "−");
-  return digits.format(value).replace("-", "−");
+  if (size !== 0 && (size < 1e-4 || size >= 1e9)) return value.toExponential(3).replace("-", "−");
+  return formatted.format(value).replace("-", "−");
 }
 
 /** A time in the unit that suits it. */
 export function duration(seconds) {
   const size = Math.abs(seconds);
-  if (size === 0 || size >= 1) return `${number(seconds)} s`;
-  return size >= 1e-3 ? `${number(seconds * 1e3)} ms` : `${number(seconds * 1e6)} µs`;
+  if (size === 0 || size >= 1) return `${number(seconds, exact)} s`;
+  return size >= 1e-3 ? `${number(seconds * 1e3, exact)} ms` : `${number(seconds * 1e6, exact)} µs`;
 }
 
 /** What one sample of a signal says. */

@@ -33,7 +33,7 @@ export class Legend {
   #row({ run, signal, lane }) {
     const made = row("", "", "", "", "");
     made.cells[0].append(swatch(lane, run.index), signal.name);
-    made.cells[0].title = `${signal.name} of ${run.file}`;
+    made.cells[0].title = `${signal.name} of ${run.label}`;
     return made;
   }
 

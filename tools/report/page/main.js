@@ -14,7 +14,14 @@ const byId = (id) => document.getElementById(id);
 async function unpackRun(run, index) {
   const [times, ...values] = await Promise.all([run.time, ...run.signals.map(({ data }) => data)].map(unpack));
   const signals = run.signals.map((signal, k) => ({ ...signal, values: values[k] }));
-  return { ...run, index, times, signals };
+  return { ...run, index, times: times.map((nanoseconds) => nanoseconds / 1e9), signals };
+}
+
+/** File names instead of paths, where they tell the runs apart. */
+function shortenLabels(runs) {
+  const names = runs.map(({ label }) => label.split("/").pop());
+  if (new Set(names).size < runs.length) return;
+  runs.forEach((run, k) => { run.label = names[k]; });
 }
 
 function describeRuns(runs) {
@@ -50,7 +57,7 @@ function showRuns(parent, report, runs) {
   const view = new View(Math.min(...runs.map(({ times }) => times[0])), Math.max(...ends));
   for (const run of runs)
     if (run.expectations.length > 0) parent.append(expectationList(run, view));
-  const paths = report.paths.map((pair) => new Path(parent, pair, runs, view, report.circle));
+  const paths = report.paths.map((pair) => new Path(parent, pair, runs, view, report));
   const plots = paths.flatMap((path) => deviationPlot(parent, path, view));
   plots.push(...groups(runs).map((group) => new Plot(parent, group, view)));
   new ResizeObserver(nextFrame(() => [...paths, ...plots].forEach((p) => p.resize()))).observe(parent);
@@ -80,6 +87,7 @@ async function start() {
   let view = null;
   followTheme(byId("theme"), () => view?.tell("theme"));
   const runs = await Promise.all(report.runs.map(unpackRun));
+  shortenLabels(runs);
   byId("runs").append(...describeRuns(runs));
   main.replaceChildren();
   for (const study of report.studies) showStudy(main, study);

@@ -1,5 +1,5 @@
 import { deviation, deviations, figures, findCircle, nominal } from "#page/circle";
-import { colour, dashes, element, nextFrame, palette } from "#page/dom";
+import { afterwards, colour, dashes, element, nextFrame, palette } from "#page/dom";
 import { number, withUnit } from "#page/format";
 import { lastAtOrBefore, seen } from "#page/samples";
 
@@ -8,8 +8,8 @@ const wanted = 500;
 /** The greatest of 1, 2, 5, 10, ... up to `wanted` that keeps a magnified path off the centre. */
 function magnification(circle, tracks) {
   let worst = 0;
-  for (const { x, y } of tracks)
-    for (const value of deviations(circle, x, y)) if (Math.abs(value) > worst) worst = Math.abs(value);
+  for (const track of tracks)
+    for (const value of track.deviations) if (Math.abs(value) > worst) worst = Math.abs(value);
   const steps = [500, 200, 100, 50, 20, 10, 5, 2];
   return steps.find((step) => step <= wanted && step * worst < 0.8 * circle.radius) ?? 1;
 }
@@ -26,15 +26,16 @@ function ticks(from, to, count) {
 
 /** Paths of positions in the plane, equal axes, beside a circle and with the deviation magnified. */
 export class Path {
-  constructor(parent, pair, runs, view, given) {
+  constructor(parent, pair, runs, view, { circle: given, while: condition }) {
     this.view = view;
     this.pair = pair;
     this.tracks = runs.map((run) => {
       const values = (name) => run.signals.find((signal) => signal.name === name).values;
-      return { run, x: values(pair.x), y: values(pair.y) };
+      return { run, x: values(pair.x), y: values(pair.y), condition: condition && values(condition) };
     });
     this.unit = runs[0].signals.find(({ name }) => name === pair.x).unit;
-    this.circle = given ?? this.#guess();
+    this.circle = given ? { ...given } : this.#guess();
+    this.#measure();
     this.magnify = this.circle ? magnification(this.circle, this.tracks) : 1;
     this.canvas = element("canvas", { className: "path" });
     this.figures = element("table", { className: "figures" });
@@ -42,17 +43,16 @@ export class Path {
                           element("div", { className: "chart square" }, this.canvas),
                           element("div", { className: "side" }, this.#controls(), this.figures)));
     this.redraw = nextFrame(() => this.#draw());
+    this.writeLater = afterwards(() => this.#write());
     view.listen((change) => this.#changed(change));
     this.refresh();
   }
 
   /** The deviation of each run's path from the circle as signals of a plot over time. */
   deviationCurves() {
-    return this.tracks.map(({ run, x, y }) => ({
-      run,
-      signal: { name: `deviation of ${this.pair.x}, ${this.pair.y}`, unit: this.unit, type: "real",
-                values: deviations(this.circle, x, y) },
-    }));
+    const name = "deviation δ";
+    return this.tracks.map(({ run, deviations: values }) =>
+      ({ run, signal: { name, unit: this.unit, type: "real", values } }));
   }
 
   /** `listener` is called when the circle has been changed. */
@@ -60,8 +60,13 @@ export class Path {
     this.circleListener = listener;
   }
 
+  #measure() {
+    if (!this.circle) return;
+    for (const track of this.tracks) track.deviations = deviations(this.circle, track);
+  }
+
   refresh() {
-    this.#write();
+    this.writeLater();
     this.redraw();
   }
 
@@ -70,13 +75,13 @@ export class Path {
   }
 
   #guess() {
-    const found = findCircle(this.tracks[0].x, this.tracks[0].y);
+    const found = findCircle(this.tracks[0]);
     return found && nominal(found);
   }
 
   #changed(change) {
     if (change === "hover") return;
-    if (change === "range") this.#write();
+    if (change === "range") this.writeLater();
     this.redraw();
   }
 
@@ -84,6 +89,7 @@ export class Path {
     const field = (label, value, set) => {
       const input = element("input", { type: "number", step: "any", value, onchange: () => {
         if (Number.isFinite(input.valueAsNumber)) set(input.valueAsNumber);
+        this.#measure();
         this.refresh();
         this.circleListener?.();
       } });
@@ -101,9 +107,9 @@ export class Path {
 
   #write() {
     if (!this.circle) return;
-    const rows = this.tracks.map(({ run, x, y }) => {
-      const [first, end] = seen(run.times, this.view.range);
-      const f = figures(this.circle, x, y, (i) => i >= first && i < end);
+    const rows = this.tracks.map((track) => {
+      const { run } = track;
+      const f = figures(this.circle, track, track.deviations, seen(run.times, this.view.range));
       if (!f) return [run.label, "–", "–", "–", "–"];
       const at = `${number(+f.worst.x.toPrecision(4))}, ${number(+f.worst.y.toPrecision(4))}`;
       return [run.label, ...[f.mean, f.worst.value, f.offset].map((v) => number(+v.toPrecision(4))), at];
@@ -138,13 +144,12 @@ export class Path {
   }
 
   /** Calls `use(x, y, joined)` for about `count` drawn points of what is in view. */
-  #points({ run, x, y }, count, use) {
+  #points({ run, x, y, deviations: on }, count, use) {
     const [first, end] = seen(run.times, this.view.range);
     const step = Math.max(1, Math.floor((end - first) / count));
-    const on = (i) => !this.circle || Math.abs(deviation(this.circle, x[i], y[i])) <= 0.05 * this.circle.radius;
     let joined = false;
     for (let i = first; i < end; i += step) {
-      const drawn = !Number.isNaN(x[i]) && !Number.isNaN(y[i]) && (this.magnify === 1 || on(i));
+      const drawn = !Number.isNaN(x[i]) && !Number.isNaN(y[i]) && (this.magnify === 1 || !Number.isNaN(on[i]));
       if (drawn) use(...this.#magnified(x[i], y[i]), joined);
       joined = drawn;
     }
@@ -243,6 +248,7 @@ export class Path {
       const at = lastAtOrBefore(run.times, this.view.cursors[index]);
       if (at < 0) return;
       const [px, py] = this.#magnified(x[at], y[at]);
+      ctx.textAlign = "left";
       ctx.fillStyle = colour(`cursor-${name}`);
       ctx.beginPath();
       ctx.arc(map.x(px), map.y(py), 5, 0, 2 * Math.PI);

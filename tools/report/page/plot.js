@@ -6,6 +6,7 @@ import { seen, slicedTimes, slicedValues, slices } from "#page/samples";
 
 const axisWidth = 84;
 const laneHeight = 34;
+const axisHeight = 62;
 const font = "12px system-ui, sans-serif";
 const slicesAcross = 1200; // two points each: more than a plot has pixels on most screens
 
@@ -60,7 +61,7 @@ export class Plot {
   }
 
   #height() {
-    if (this.isStrips) return this.lanes * laneHeight + 40;
+    if (this.isStrips) return this.lanes * laneHeight + axisHeight;
     return this.group.type === "enumeration" ? 170 : 240;
   }
 
@@ -173,6 +174,7 @@ export class Plot {
     const { ctx } = u;
     ctx.save();
     ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
+    ctx.textAlign = "left";
     ctx.textBaseline = "top";
     ctx.fillStyle = colour("text");
     for (const { signal, lane } of this.curves)
