@@ -9,20 +9,21 @@ async function inflate(base64) {
 /** The whole numbers behind byte planes, lowest byte first: 0, 1, 2, 3 stand for 0, -1, 1, -2. */
 export function joinPlanes(planes, width, count) {
   const values = new Float64Array(count);
-  const plane = (k) => (k < width ? planes.subarray(k * count, (k + 1) * count) : undefined);
-  const [p0, p1, p2, p3, p4, p5, p6] = [0, 1, 2, 3, 4, 5, 6].map(plane);
+  const none = new Uint8Array(count);
+  const plane = (k) => (k < width ? planes.subarray(k * count, (k + 1) * count) : none);
+  const [p0, p1, p2] = [plane(0), plane(1), plane(2)];
   for (let i = 0; i < count; ++i) {
-    let low = p0 ? p0[i] : 0;
-    if (p1) low |= p1[i] << 8;
-    if (p2) low |= p2[i] << 16;
-    let magnitude = low >>> 1;
-    if (p3) magnitude += p3[i] * 2 ** 23;
-    if (p4) magnitude += p4[i] * 2 ** 31;
-    if (p5) magnitude += p5[i] * 2 ** 39;
-    if (p6) magnitude += p6[i] * 2 ** 47;
-    values[i] = low & 1 ? -magnitude - 1 : magnitude;
+    const low = p0[i] | (p1[i] << 8) | (p2[i] << 16);
+    values[i] = (low >>> 1) ^ -(low & 1);
   }
+  for (let k = 3; k < width; ++k) addPlane(values, plane(k), p0, 2 ** (8 * k - 1));
   return values;
+}
+
+/** Adds a higher plane, which is zero nearly everywhere; the lowest bit of all is the sign. */
+function addPlane(values, plane, lowest, factor) {
+  for (let i = 0; i < plane.length; ++i)
+    if (plane[i] !== 0) values[i] += (lowest[i] & 1 ? -factor : factor) * plane[i];
 }
 
 /** Sums up in place, once for each seed: the last seed begins the last sum to be undone. */

@@ -1,13 +1,14 @@
 const format = (digits) =>
   new Intl.NumberFormat("en", { maximumSignificantDigits: digits, useGrouping: false });
-const exact = format(9);
+/** Nine digits. */
+export const exact = format(9);
 const rounded = format(6);
 
 /** A number as a person reads it, to six digits. */
 export function number(value, formatted = rounded) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-4 || size >= 1e9)) return value.toExponential(3).replace("-", "−");
+  if (size !== 0 && (size < 1e-4 || size >= 1e12)) return value.toExponential(3).replace("-", "−");
   return formatted.format(value).replace("-", "−");
 }
 

@@ -1,7 +1,9 @@
 import { element } from "#page/dom";
-import { number, withUnit } from "#page/format";
+import { exact, number, withUnit } from "#page/format";
 
-const short = (value) => (value === null ? "" : number(+value.toPrecision(4)));
+/** Four digits; whole numbers as they are. */
+const short = (value) =>
+  value === null ? "" : number(Number.isInteger(value) ? value : +value.toPrecision(4), exact);
 
 /** The settings that differ between the rows of a study. */
 function varying(rows) {
@@ -30,7 +32,7 @@ function difference(row) {
   const by = row.ours - row.paper;
   if (row.unit === "%" || row.paper === 0) return `${by > 0 ? "+" : ""}${short(by)}`;
   const share = (by / Math.abs(row.paper)) * 100;
-  return `${share > 0 ? "+" : ""}${number(+share.toFixed(1))} %`;
+  return `${share > 0 ? "+" : ""}${number(+share.toPrecision(2))} %`;
 }
 
 /** One scale for all rows of a signal, zero included. */
