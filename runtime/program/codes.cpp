@@ -332,6 +332,27 @@ after a change.)"},
     {"L0709", "a trace without a sidecar",
      R"(Whether a trace NAME.csv is whole is told by NAME.csv-metadata.json beside it, which has
 its rows and the checksum of its bytes. Copy the two together.)"},
+    {"L0721", "a trace without rows",
+     R"(The file has a header, but no row: nothing was recorded. Perhaps the run ended before the
+traced task's first scan, or before the trace's trigger.)"},
+    {"L0722", "a trace whose time does not rise",
+     R"(The rows of a trace stand in the order of their column 'time', and each has a time. This
+file has been sorted by something else, or put together from several traces.)"},
+    {"L0723", "a sidecar of another trace",
+     R"(The sidecar NAME.csv-metadata.json beside a trace describes its columns; this one
+describes others. Copy a trace together with its own sidecar, or remove the sidecar.)"},
+    {"L0724", "traces of different signals",
+     R"(A report lays several traces over each other signal by signal, so all of them must have
+the same ones: they are runs of one program, perhaps with other --set values. Pick the
+signals they share:
+    lineshaft report a.csv b.csv --signals x.position,y.position -o both.html)"},
+    {"L0725", "traces of different interval",
+     R"(The rows of the two traces lie at different distances in time, so that sample cannot be
+compared with sample. Record both with the same task and 'every'.)"},
+    {"L0726", "no results of a study",
+     R"(A .json file given to 'lineshaft report' is what a study printed:
+    lineshaft study programs/paper/wei2025_table1.yaml --json >table1.json
+    lineshaft report table1.json -o table1.html)"},
 };
 
 }  // namespace

@@ -18,7 +18,8 @@ struct Tracing {
           files(options.trace_path, setup, program.title, program.file->text, options.csv_style),
           recorder(setup, files) {}
 
-    TraceReport finish() {
+    TraceReport finish(const Judge& judge) {
+        files.set_expectations(verdicts_json(judge));
         recorder.finish();
         if (recorder.measurements() == 0) {
             files.begin();
@@ -66,7 +67,7 @@ RunReport run(Loaded& loaded, const RunOptions& options) {
     judge.finish(report.result);
     report.verdicts = judge.verdicts();
     for (Tracing& trace : traces) {
-        report.traces.push_back(trace.finish());
+        report.traces.push_back(trace.finish(judge));
         if (report.trace_error.empty()) report.trace_error = trace.files.error();
     }
     if (pulses) report.pulses_error = pulses->finish();

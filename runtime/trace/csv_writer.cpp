@@ -111,7 +111,8 @@ char* CsvWriter::append_cell(char* end, std::size_t column, std::uint64_t bits) 
     return end + last.length;
 }
 
-std::string CsvWriter::finish(const std::string& program_title, const std::string& program_text) {
+std::string CsvWriter::finish(const std::string& program_title, const std::string& program_text,
+                              const nlohmann::ordered_json& expectations) {
     if (!file_.commit() || !file_.is_regular()) return file_.error();
     nlohmann::ordered_json columns = nlohmann::ordered_json::array();
     for (const Signal& s : {Signal{.name = "time", .type = Type::real, .unit = "s", .names = {}},
@@ -126,6 +127,7 @@ std::string CsvWriter::finish(const std::string& program_title, const std::strin
                                     {"lineshaft:rows", row_count_},
                                     {"lineshaft:crc32", checksum_.text()}};
     if (style_.excel_de) metadata["dialect"] = {{"delimiter", ";"}};
+    if (!expectations.empty()) metadata["lineshaft:expectations"] = expectations;
     metadata["tableSchema"] = {{"columns", columns}};
     OutputFile sidecar(sidecar_path(path_));
     sidecar.write(metadata.dump(2) + "\n");

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "runtime/trace/checksum.hpp"
 #include "runtime/trace/number_text.hpp"
 #include "runtime/trace/output_file.hpp"
@@ -34,9 +36,11 @@ class CsvWriter : public TraceSink {
 
     void rows(const std::uint64_t* words, std::size_t rows) override;
 
-    /// Closes the file and writes the CSVW sidecar `PATH-metadata.json` with types, units, program,
-    /// its hash, rows and a checksum beside it. Empty when all is well, else what went wrong.
-    std::string finish(const std::string& program_title, const std::string& program_text);
+    /// Closes the file and writes the CSVW sidecar `PATH-metadata.json` beside it: types, units,
+    /// program and its hash, rows, a checksum, and what came of its expectations (see
+    /// verdicts_json). Empty when all is well, else what went wrong.
+    std::string finish(const std::string& program_title, const std::string& program_text,
+                       const nlohmann::ordered_json& expectations = {});
 
   private:
     /// A column's last value and its text: what stands still is not formatted again.

@@ -18,6 +18,9 @@ class TraceFiles : public TraceSink {
     TraceFiles(const std::string& out, const TraceSetup& setup, std::string title,
                std::string program_text, const CsvStyle& style);
 
+    /// What came of the program's expectations, for the files that end after the run.
+    void set_expectations(nlohmann::ordered_json verdicts) { expectations_ = std::move(verdicts); }
+
     void begin() override;
     void rows(const std::uint64_t* words, std::size_t rows) override;
     void end() override;
@@ -34,6 +37,7 @@ class TraceFiles : public TraceSink {
     const TraceSetup& setup_;
     std::string title_, program_text_;
     CsvStyle style_;
+    nlohmann::ordered_json expectations_;
     std::optional<CsvWriter> csv_;
     std::optional<BackgroundSink> background_;
     std::vector<std::string> paths_;
