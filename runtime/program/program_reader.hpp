@@ -19,7 +19,8 @@ struct ParameterValue {
 using ParameterValues = std::map<std::string, ParameterValue>;
 
 /// Makes a Program of a file, see read_program(). Its functions stand in program.cpp (the file,
-/// parameters, blocks), program_tasks.cpp and program_run.cpp (what happens, trace, expectations).
+/// parameters, blocks), program_tasks.cpp, program_outside.cpp (stimuli, forces, retained signals)
+/// and program_run.cpp (trace, expectations).
 class ProgramReader {
   public:
     ProgramReader(const LoadOptions& options, Diagnostics& out) : options_(options), read_(out) {}
@@ -37,11 +38,18 @@ class ProgramReader {
     void events(TaskPlan& plan, const Node& on, const Node& body);
     void check_task(const TaskPlan& plan, const Node& name, const Node& body);
     void check_attached(const Node& task);
+    void overruns(TaskPlan& plan, const Node& on, const Node& body);
+    void no_interval(const Node& body, std::string_view key);
     void blocks(const Node& node);
     void block(BlockPlan& plan, const Node& body);
     void inputs(const Node& node);
+    void outputs(const Node& node);
+    void retain(const Node& node);
+    void forces(const Node& node);
+    void force(const std::string& text);
     void run(const Node& node);
     void stimuli(const Node& node);
+    void stimulus(const Node& item);
     void trace(const Node& node);
     void traced(const Node& signals, TracePlan& plan);
     void expectations(const Node& node);
