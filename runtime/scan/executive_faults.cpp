@@ -42,12 +42,12 @@ void Executive::check_deadlines() {
 void Executive::due_again(int index) {
     const State& state = this->state(index);
     const char* again = task(index).on_event ? "its event comes again" : "due again";
-    time_error(index,
-               state.active
-                   ? fmt::format("{} at {}, before scan {}, begun at {}, has ended", again,
-                                 format_time(now_), state.scan.index, format_time(state.scan.time))
-                   : fmt::format("{} at {}, before scan {}, due at {}, could begin", again,
-                                 format_time(now_), state.index, format_time(state.released)));
+    time_error(index, state.pending
+                          ? fmt::format("{} at {}, before scan {}, due at {}, could begin", again,
+                                        format_time(now_), state.index, format_time(state.released))
+                          : fmt::format("{} at {}, before scan {}, begun at {}, has ended", again,
+                                        format_time(now_), state.scan.index,
+                                        format_time(state.scan.time)));
 }
 
 void Executive::time_error(int index, std::string what) {

@@ -1,10 +1,16 @@
 #include "runtime/study/single_run.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
+#include <fmt/format.h>
+
+#include "runtime/restart/checkpoint.hpp"
+#include "runtime/restart/retain.hpp"
 #include "runtime/trace/background_sink.hpp"
 #include "runtime/trace/csv_writer.hpp"
+#include "runtime/trace/event_writer.hpp"
 #include "runtime/trace/pulse_writer.hpp"
 
 namespace lineshaft {
@@ -23,38 +29,165 @@ bool RunReport::expectations_hold() const {
     return std::ranges::all_of(verdicts, &Verdict::ok);
 }
 
-RunReport run(Loaded& loaded, const RunOptions& options) {
+namespace {
+
+/// One run: its observers and files from the start to the end.
+class SingleRun {
+  public:
+    SingleRun(Loaded& loaded, const RunOptions& options)
+        : loaded_(loaded), options_(options), machine_(loaded.linked.machine) {}
+
+    RunReport run();
+
+  private:
+    bool begin();
+    bool restart();
+    bool open_files();
+    bool resume();
+    void tell_restart();
+    void save(std::int64_t time);
+    void finish();
+    bool has_trace() const { return !options_.trace_path.empty() && loaded_.linked.trace; }
+
+    Loaded& loaded_;
+    const RunOptions& options_;
+    Machine& machine_;
+    RunReport report_;
+    Judge judge_{loaded_.linked.expectations};
+    std::string program_;  ///< fingerprint; empty when there are no checkpoints
+    std::string state_;    ///< of a checkpoint
+    int retained_ = 0;
+    std::optional<StateReader> begun_;
+    std::optional<CsvWriter> csv_;
+    std::optional<EventWriter> events_;
+    std::optional<BackgroundSink> background_;
+    std::optional<Recorder> recorder_;
+    std::optional<PulseWriter> pulses_;
+    std::optional<Executive> executive_;
+    std::vector<Observer*> observers_;
+};
+
+RunReport SingleRun::run() {
     const auto start = std::chrono::steady_clock::now();
-    RunReport report;
-    Judge judge(loaded.linked.expectations);
-    std::vector<Observer*> observers;
-    std::optional<CsvWriter> csv;
-    std::optional<BackgroundSink> background;
-    std::optional<Recorder> recorder;
-    if (!options.trace_path.empty() && loaded.linked.trace) {
-        csv.emplace(options.trace_path, *loaded.linked.trace);
-        background.emplace(*csv, 2 + loaded.linked.trace->signals.size());
-        recorder.emplace(*loaded.linked.trace, *background);
-        observers.push_back(&*recorder);
+    if (begin()) {
+        report_.result = executive_->run(observers_, options_.interrupt, options_.progress);
+        judge_.finish(report_.result);
+        report_.verdicts = judge_.verdicts();
+        finish();
     }
-    std::optional<PulseWriter> pulses;
-    if (!options.pulses_path.empty()) pulses.emplace(options.pulses_path, loaded.linked.machine);
-    if (!loaded.linked.expectations.empty()) observers.push_back(&judge);
-    if (options.observer) observers.push_back(options.observer);
-    Executive executive(loaded.linked.machine);
-    report.result = executive.run(observers, options.interrupt, options.progress);
-    judge.finish(report.result);
-    report.verdicts = judge.verdicts();
-    if (recorder) {
-        recorder->flush();
-        background->finish();
-        report.trace_error = csv->finish(loaded.program.title, loaded.program.file->text);
-    }
-    if (pulses) report.pulses_error = pulses->finish();
-    for (DeviceCall& device : loaded.linked.machine.devices) device.sink = nullptr;
+    for (DeviceCall& device : machine_.devices) device.sink = nullptr;
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-    report.wall_seconds = wall.count();
-    return report;
+    report_.wall_seconds = wall.count();
+    return std::move(report_);
+}
+
+bool SingleRun::begin() {
+    if (!restart() || !open_files()) return false;
+    executive_.emplace(machine_);
+    if (events_) executive_->report_to(*events_);
+    if (begun_ && !resume()) return false;
+    tell_restart();
+    if (options_.checkpoint_every > 0)
+        executive_->checkpoint(options_.checkpoint_every,
+                               [this](std::int64_t time) { save(time); });
+    return true;
+}
+
+bool SingleRun::restart() {
+    if (options_.checkpoint_every > 0 || options_.restart == Restart::hot)
+        program_ = fingerprint(loaded_.program, machine_);
+    if (options_.restart == Restart::warm && !options_.retain_path.empty())
+        retained_ = read_retained(options_.retain_path, machine_, report_.refused);
+    if (options_.restart == Restart::hot) {
+        state_ = read_checkpoint(options_.checkpoint_path, program_, report_.refused).value_or("");
+        begun_.emplace(state_);
+    }
+    return report_.refused.empty();
+}
+
+/// What a file of the checkpoint holds comes first in it, then the machine and its observers.
+bool SingleRun::open_files() {
+    std::array<bool, 2> files = {has_trace(), !options_.pulses_path.empty()}, before = files;
+    if (begun_) begun_->get(before);
+    if (files != before) {
+        report_.refused.add("L0506", {},
+                            "the checkpoint was made with other files than this run has",
+                            "give the same --trace and --pulses as before");
+        return false;
+    }
+    const auto open = [&](auto& writer, auto&&... arguments) {
+        if (begun_)
+            writer.emplace(arguments..., *begun_);
+        else
+            writer.emplace(arguments...);
+        if (begun_ && !writer->error().empty())
+            report_.refused.add("L0506", {}, writer->error(),
+                                "run the program from its start: without --resume");
+    };
+    if (has_trace()) {
+        const TraceSetup& setup = *loaded_.linked.trace;
+        open(csv_, options_.trace_path, setup);
+        open(events_, events_path(options_.trace_path), machine_);
+        background_.emplace(*csv_, 2 + setup.signals.size());
+        recorder_.emplace(setup, *background_);
+        observers_.push_back(&*recorder_);
+    }
+    if (!options_.pulses_path.empty()) open(pulses_, options_.pulses_path, machine_);
+    if (!loaded_.linked.expectations.empty()) observers_.push_back(&judge_);
+    if (options_.observer) observers_.push_back(options_.observer);
+    return report_.refused.empty();
+}
+
+bool SingleRun::resume() {
+    executive_->restore(*begun_);
+    for (Observer* observer : observers_) observer->restore(*begun_);
+    if (begun_->at_end()) return true;
+    report_.refused.add("L0506", {}, "the checkpoint does not fit the program",
+                        "run the program from its start: without --resume");
+    return false;
+}
+
+void SingleRun::tell_restart() {
+    if (!events_ || options_.restart == Restart::hot) return;
+    const bool warm = options_.restart == Restart::warm && !options_.retain_path.empty();
+    events_->happened({.kind = EventKind::restart,
+                       .text = warm ? fmt::format("warm restart, {} retained values", retained_)
+                                    : "cold restart"});
+}
+
+void SingleRun::save(std::int64_t time) {
+    StateWriter out;
+    out.put(std::array<bool, 2>{has_trace(), pulses_.has_value()});
+    if (recorder_) {
+        recorder_->flush();
+        background_->drain();
+        csv_->save(out);
+        events_->save(out);
+    }
+    if (pulses_) pulses_->save(out);
+    executive_->save(out);
+    for (const Observer* observer : observers_) observer->save(out);
+    report_.restart_error = write_checkpoint(options_.checkpoint_path, program_, time, out.bytes());
+}
+
+void SingleRun::finish() {
+    if (recorder_) {
+        recorder_->flush();
+        background_->finish();
+        report_.trace_error = csv_->finish(loaded_.program.title, loaded_.program.file->text);
+        const std::string error = events_->finish();
+        if (report_.trace_error.empty()) report_.trace_error = error;
+    }
+    if (pulses_) report_.pulses_error = pulses_->finish();
+    if (options_.retain_path.empty()) return;
+    const std::string error = write_retained(options_.retain_path, machine_);
+    if (!error.empty()) report_.restart_error = error;
+}
+
+}  // namespace
+
+RunReport run(Loaded& loaded, const RunOptions& options) {
+    return SingleRun(loaded, options).run();
 }
 
 }  // namespace lineshaft

@@ -53,6 +53,21 @@ CsvWriter::CsvWriter(std::string path, const TraceSetup& setup)
     std::string header = "time,scan";
     for (const Signal& signal : signals_) header += "," + signal.name;
     file_.write(header + "\n");
+    make_room();
+}
+
+CsvWriter::CsvWriter(std::string path, const TraceSetup& setup, StateReader& begun)
+    : file_(path, begun), path_(std::move(path)), signals_(setup.signals) {
+    begun.get(row_count_);
+    make_room();
+}
+
+void CsvWriter::save(StateWriter& out) {
+    file_.save(out);
+    out.put(row_count_);
+}
+
+void CsvWriter::make_room() {
     last_.resize(signals_.size());
     longest_row_ = static_cast<std::ptrdiff_t>((2 + signals_.size()) * (longest_number + 1));
     text_.resize(static_cast<std::size_t>(longest_row_) + written_at_once);

@@ -16,6 +16,11 @@ namespace lineshaft {
 class CsvWriter : public TraceSink {
   public:
     CsvWriter(std::string path, const TraceSetup& setup);
+    /// Goes on where save() was called.
+    CsvWriter(std::string path, const TraceSetup& setup, StateReader& begun);
+
+    void save(StateWriter& out);
+    const std::string& error() const { return file_.error(); }
 
     void rows(const std::uint64_t* words, std::size_t rows) override;
 
@@ -31,6 +36,7 @@ class CsvWriter : public TraceSink {
         std::array<char, longest_number> text = {};
     };
 
+    void make_room();
     char* append_cell(char* end, std::size_t column, std::uint64_t bits);
     /// The text up to `end` into the file; returns where the next begins.
     char* write_out(const char* end);

@@ -32,6 +32,8 @@ class Recorder : public Observer {
     void scanned(int task, const Scan& scan) override;
     void settled(std::int64_t, std::int64_t) override {}
     void flush();
+    void save(StateWriter& out) const override { out.put(recorded_); }
+    void restore(StateReader& in) override { in.get(recorded_); }
 
     std::int64_t recorded() const { return recorded_; }
 
