@@ -254,6 +254,34 @@ max, mean, and names: a case's name stands for its first compared signal,
 'case.block.port' for a certain one. mean_relative_error and greatest_relative_error
 are taken over all rows that have a paper's value.
     formula: 1 - early / immediate)"},
+
+    {"L0701", "a CSV file without columns",
+     R"(The first line of a CSV file names its columns, separated by commas (or semicolons, where
+the decimal point is a comma); numbers begin in the second line. The file is empty, begins
+with numbers, or a column has no name.)"},
+    {"L0702", "no such column",
+     R"(The CSV file has no column of this name. Columns are named as in the first line of the
+file, in a trace also as the signals are in the program: shaft.position. A unit in
+brackets behind the name may be left out.)"},
+    {"L0703", "two columns of one name",
+     R"(Columns are found by their names, so two cannot bear the same one. Rename one of them in
+the first line of the file.)"},
+    {"L0704", "a row of another length than the header",
+     R"(Every row of a CSV file has as many cells as the first line has names; a missing value
+is an empty cell. Often a decimal comma took a number apart: then semicolons must stand
+between the cells.)"},
+    {"L0705", "no number in a column of numbers",
+     R"(The cells of the columns that are read are numbers; where there is no value the cell is
+empty. Words such as nan, inf or true are not numbers. In a trace booleans are 0 and 1,
+enumerations the number of the name, as the sidecar tells.)"},
+    {"L0706", "a CSV file that is not whole",
+     R"(The file is cut in its last row, or has not the rows that its sidecar
+(NAME.csv-metadata.json) tells of. What a broken run left behind is named NAME.csv.part.
+'lineshaft verify NAME.csv' says more.)"},
+    {"L0707", "a sidecar that cannot be understood",
+     R"(Beside a trace NAME.csv stands NAME.csv-metadata.json with units, types and the
+program's hash, as JSON (W3C CSVW). This one is no such file. Record the trace again, or
+remove the sidecar: then all columns are plain numbers.)"},
 };
 
 }  // namespace

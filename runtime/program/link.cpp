@@ -21,19 +21,11 @@ Linked Linker::link() {
     find_blocks();
     lay_out();
     set_inputs();
-    copies_.resize(blocks_.size());
+    wires_.resize(blocks_.size());
     for (Instance& block : blocks_) set_choices(block);
     for (Instance& block : blocks_) set_block(block);
-    for (const Instance& block : blocks_) {
-        if (!block.known()) continue;
-        Task& task = out_.machine.tasks[static_cast<std::size_t>(block.task)];
-        const auto& copies = copies_[static_cast<std::size_t>(block.position)];
-        task.calls.push_back({.scan = block.type->scan,
-                              .block = block.live,
-                              .first_copy = static_cast<std::uint32_t>(task.copies.size()),
-                              .copies = static_cast<std::uint32_t>(copies.size())});
-        for (const auto& [source, copy] : copies) task.copies.push_back(copy);
-    }
+    for (const Instance& block : blocks_)
+        if (block.known()) append_call(block);
     for (Task& task : out_.machine.tasks)
         if (task.published != task.live) std::memcpy(task.published, task.live, task.size);
     collect_errors();
@@ -116,6 +108,22 @@ void Linker::lay_out() {
         block.published = block.type->is_device() ? block.live : task.published + block.offset;
         block.type->construct(block.live);
     }
+}
+
+void Linker::append_call(const Instance& block) {
+    Task& task = out_.machine.tasks[static_cast<std::size_t>(block.task)];
+    const Wires& wires = wires_[static_cast<std::size_t>(block.position)];
+    task.calls.push_back({.scan = block.type->scan,
+                          .block = block.live,
+                          .words = static_cast<std::uint32_t>(wires.words.size()),
+                          .booleans = static_cast<std::uint32_t>(wires.booleans.size()),
+                          .conversions = static_cast<std::uint32_t>(wires.conversions.size())});
+    const auto append = [](auto& to, const auto& from) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
+    append(task.wires.words, wires.words);
+    append(task.wires.booleans, wires.booleans);
+    append(task.wires.conversions, wires.conversions);
 }
 
 void Linker::set_inputs() {

@@ -43,11 +43,11 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
     }
     if (!check_order(index, value, text, source_index)) return;
 
-    Copy copy{.source = source->slot, .target = block.live + field.offset};
+    const std::byte* from_slot = source->slot;
     const bool same_task = source_index >= 0 && source->task == block.task;
     if (same_task) {
         const Instance& from = blocks_[static_cast<std::size_t>(source_index)];
-        copy.source = from.live + (source->slot - from.published);
+        from_slot = from.live + (source->slot - from.published);
     }
     if (text.negated && source->type != Type::boolean)
         return read_.fail(
@@ -67,19 +67,22 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
                           fmt::format("'{}' is in {}, '{}' takes {}", text.signal,
                                       given.text.empty() ? "plain numbers" : given.text, field.name,
                                       wanted.text.empty() ? "plain numbers" : wanted.text));
-    if (text.negated)
-        copy.kind = Copy::Kind::negated;
-    else if (field.type == Type::boolean)
-        copy.kind = Copy::Kind::boolean;
-    else if (widens)
-        copy.kind = Copy::Kind::integer_to_real;
-    else if (field.type == Type::real && given.text != wanted.text)
-        copy.kind = Copy::Kind::scaled;
-    if (given.text != wanted.text) {
-        copy.factor = given.numerator * wanted.denominator;
-        copy.divisor = given.denominator * wanted.numerator;
+    std::byte* target = block.live + field.offset;
+    Wires& wires = wires_[static_cast<std::size_t>(index)];
+    const bool same_unit = given.text == wanted.text;
+    if (!text.negated && !widens && same_unit) {
+        auto& copies = field.type == Type::boolean ? wires.booleans : wires.words;
+        copies.push_back({.source = from_slot, .target = target});
+        return;
     }
-    copies_[static_cast<std::size_t>(index)].emplace_back(source_index, copy);
+    using Kind = ConvertedCopy::Kind;
+    wires.conversions.push_back({.source = from_slot,
+                                 .target = target,
+                                 .factor = same_unit ? 1 : given.numerator * wanted.denominator,
+                                 .divisor = same_unit ? 1 : given.denominator * wanted.numerator,
+                                 .kind = text.negated ? Kind::negated
+                                         : widens     ? Kind::integer_to_real
+                                                      : Kind::scaled});
 }
 
 /// In one task a wire carries this scan's value from an earlier block, and only with `previous()`

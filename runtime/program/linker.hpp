@@ -66,6 +66,7 @@ class Linker {
     bool check_order(int index, const Node& value, const WireText& wire, int source);
     std::string loop(int from, int to) const;
     void check_required(const Instance& block);
+    void append_call(const Instance& block);
     void collect_signals();
     void collect_errors();
     void collect_devices();
@@ -95,8 +96,8 @@ class Linker {
     std::unordered_map<std::string, Signal> inputs_;
     std::vector<std::string> task_names_, block_names_, input_names_;
     std::unordered_map<std::string, Unit> units_;
-    std::vector<std::vector<std::pair<int, Copy>>> copies_;  ///< per block
-    std::unordered_set<std::string> wired_;                  ///< `block.port` of every wire
+    std::vector<Wires> wires_;               ///< per block
+    std::unordered_set<std::string> wired_;  ///< `block.port` of every wire
 };
 
 }  // namespace lineshaft

@@ -22,31 +22,23 @@ std::int64_t later(std::int64_t time, std::int64_t by) {
     return by > 0 && time > never - by ? never : time + by;
 }
 
-void move(const Copy& copy) {
-    switch (copy.kind) {
-        case Copy::Kind::word:
-            std::memcpy(copy.target, copy.source, 8);
-            break;
-        case Copy::Kind::boolean:
-            std::memcpy(copy.target, copy.source, 1);
-            break;
-        case Copy::Kind::negated: {
-            const bool value = !read<bool>(copy.source);
-            std::memcpy(copy.target, &value, 1);
-            break;
-        }
-        case Copy::Kind::integer_to_real: {
-            const auto whole = static_cast<double>(read<std::int64_t>(copy.source));
-            const double value = whole * copy.factor / copy.divisor;
-            std::memcpy(copy.target, &value, 8);
-            break;
-        }
-        case Copy::Kind::scaled: {
-            const double value = read<double>(copy.source) * copy.factor / copy.divisor;
-            std::memcpy(copy.target, &value, 8);
-            break;
-        }
+template <std::size_t size>
+const Copy* copy(const Copy* wire, std::uint32_t count) {
+    for (; count > 0; --count, ++wire) std::memcpy(wire->target, wire->source, size);
+    return wire;
+}
+
+void convert(const ConvertedCopy& wire) {
+    if (wire.kind == ConvertedCopy::Kind::negated) {
+        const bool value = !read<bool>(wire.source);
+        std::memcpy(wire.target, &value, sizeof value);
+        return;
     }
+    const double given = wire.kind == ConvertedCopy::Kind::integer_to_real
+                             ? static_cast<double>(read<std::int64_t>(wire.source))
+                             : read<double>(wire.source);
+    const double value = given * wire.factor / wire.divisor;
+    std::memcpy(wire.target, &value, sizeof value);
 }
 
 }  // namespace
@@ -235,9 +227,13 @@ void Executive::start(int index) {
     state.scan = {.time = now_, .interval = task.every, .index = state.index++};
     state.remaining =
         task.cost + (task.cost_jitter > 0 ? state.cost_jitter.around_zero(task.cost_jitter) : 0);
-    const Copy* copy = task.copies.data();
+    const Copy* word = task.wires.words.data();
+    const Copy* boolean = task.wires.booleans.data();
+    const ConvertedCopy* conversion = task.wires.conversions.data();
     for (const Call& call : task.calls) {
-        for (std::uint32_t n = call.copies; n > 0; --n) move(*copy++);
+        word = copy<8>(word, call.words);
+        boolean = copy<1>(boolean, call.booleans);
+        for (std::uint32_t n = call.conversions; n > 0; --n) convert(*conversion++);
         call.scan(call.block, state.scan);
     }
 }

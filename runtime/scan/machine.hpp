@@ -13,11 +13,15 @@
 
 namespace lineshaft {
 
-/// One value moved into an input before its block is called.
+/// A value moved as it is into an input before its block is called.
 struct Copy {
+    const std::byte* source = nullptr;
+    std::byte* target = nullptr;
+};
+
+/// A value converted on its way into an input.
+struct ConvertedCopy {
     enum class Kind : std::uint8_t {
-        word,             ///< 8 bytes
-        boolean,          ///< 1 byte
         negated,          ///< boolean, inverted (`NOT x.q`)
         integer_to_real,  ///< widening, then as scaled
         scaled,           ///< real from another unit of the dimension: times factor, over divisor
@@ -27,15 +31,23 @@ struct Copy {
     std::byte* target = nullptr;
     double factor = 1;
     double divisor = 1;
-    Kind kind = Kind::word;
+    Kind kind = Kind::scaled;
 };
 
-/// One block in a task's list: its inputs are copies[first_copy .. first_copy + copies).
+/// What feeds one block's inputs, or all of a task's blocks, one after the other.
+struct Wires {
+    std::vector<Copy> words;     ///< of 8 bytes
+    std::vector<Copy> booleans;  ///< of 1 byte
+    std::vector<ConvertedCopy> conversions;
+};
+
+/// One block in a task's list. Its inputs are the next so many of each kind of the task's wires.
 struct Call {
     void (*scan)(std::byte* block, const Scan& now) = nullptr;
     std::byte* block = nullptr;
-    std::uint32_t first_copy = 0;
-    std::uint32_t copies = 0;
+    std::uint32_t words = 0;
+    std::uint32_t booleans = 0;
+    std::uint32_t conversions = 0;
 };
 
 /// A block's `error` output, looked at after each scan of its task.
@@ -68,7 +80,7 @@ struct Task {
     bool on_event = false;  ///< released by triggers; `every`, `offset` and `jitter` mean nothing
     std::int64_t every = 0, offset = 0, priority = 1, jitter = 0, cost = 0, cost_jitter = 0;
     std::vector<Call> calls;
-    std::vector<Copy> copies;
+    Wires wires;
     std::vector<ErrorFlag> errors;
     std::byte* live = nullptr;       ///< the task's blocks
     std::byte* published = nullptr;  ///< what others see of them: the same place when cost is 0

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runtime/study/study.hpp"
+#include "runtime/study/study_runner.hpp"
 
 namespace lineshaft {
 

@@ -1,7 +1,8 @@
 #include <fmt/core.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/study/study.hpp"
+#include "runtime/program/link.hpp"
+#include "runtime/study/study_reader.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {

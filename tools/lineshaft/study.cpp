@@ -1,11 +1,11 @@
-#include "runtime/study/study.hpp"
-
 #include <thread>
 
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/study/study_reader.hpp"
+#include "runtime/study/study_runner.hpp"
 #include "runtime/study/table.hpp"
 #include "tools/lineshaft/command.hpp"
 

@@ -100,10 +100,10 @@ class Bench {
     /// The task's input reads another one's published output.
     void wire(const std::string& from, const std::string& to) {
         Task& target = task(to);
-        target.copies.push_back(
+        target.wires.words.push_back(
             {.source = reinterpret_cast<const std::byte*>(&published(from).output),
              .target = reinterpret_cast<std::byte*>(&live(to).input)});
-        ++target.calls.front().copies;
+        ++target.calls.front().words;
     }
     /// The task is released by the rising edges of another one's published flag.
     void trigger(const std::string& from, const std::string& to) {

@@ -294,7 +294,7 @@ TEST_CASE("observers hear of nothing after the end of the run") {
 }
 
 TEST_CASE("inputs are converted as their wires say") {
-    using Kind = Copy::Kind;
+    using Kind = ConvertedCopy::Kind;
     struct Ports {
         bool yes = true, inverted = true;
         std::int64_t three = 3;
@@ -302,12 +302,16 @@ TEST_CASE("inputs are converted as their wires say") {
     } ports;
     Bench bench({{.name = "a"}});
     const auto at = [](auto& member) { return reinterpret_cast<std::byte*>(&member); };
-    bench.task("a").copies = {{at(ports.yes), at(bench.live("a").wanted), 1, 1, Kind::boolean},
-                              {at(ports.yes), at(ports.inverted), 1, 1, Kind::negated},
-                              {at(ports.three), at(ports.real), 1, 1, Kind::integer_to_real},
-                              {at(ports.three), at(bench.live("a").input), 1, 1, Kind::word},
-                              {at(ports.millimetres), at(ports.centimetres), 1, 10, Kind::scaled}};
-    bench.task("a").calls.front().copies = 5;
+    Task& task = bench.task("a");
+    task.wires = {
+        .words = {{at(ports.three), at(bench.live("a").input)}},
+        .booleans = {{at(ports.yes), at(bench.live("a").wanted)}},
+        .conversions = {{at(ports.yes), at(ports.inverted), 1, 1, Kind::negated},
+                        {at(ports.three), at(ports.real), 1, 1, Kind::integer_to_real},
+                        {at(ports.millimetres), at(ports.centimetres), 1, 10, Kind::scaled}}};
+    Call& call = task.calls.front();
+    call.words = call.booleans = 1;
+    call.conversions = 3;
     bench.machine.duration = 0;
     bench.run();
     CHECK(bench.live("a").wanted);

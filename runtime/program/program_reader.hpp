@@ -1,0 +1,56 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "runtime/program/program.hpp"
+
+namespace lineshaft {
+
+inline constexpr const char* task_help = "add tasks such as tasks: {servo: {every: 2 ms}}";
+
+/// A parameter's text in force, and where a study sets it.
+struct ParameterValue {
+    Node node;
+    Mark set_at;
+};
+
+using ParameterValues = std::map<std::string, ParameterValue>;
+
+/// Makes a Program of a file, see read_program(). Its functions stand in program.cpp (the file,
+/// parameters, blocks), program_tasks.cpp and program_run.cpp (what happens, trace, expectations).
+class ProgramReader {
+  public:
+    ProgramReader(const LoadOptions& options, Diagnostics& out) : options_(options), read_(out) {}
+
+    Program read(std::shared_ptr<const SourceFile> file);
+
+  private:
+    void parameters(const Node& root);
+    void settings(ParameterValues& values);
+    void controller(const Node& node);
+    void tasks(const Node& node);
+    void task(const Node& name, const Node& body);
+    void interval(TaskPlan& plan, const Node& name, const Node& body);
+    void events(TaskPlan& plan, const Node& on, const Node& body);
+    void check_task(const TaskPlan& plan, const Node& name, const Node& body);
+    void blocks(const Node& node);
+    void block(BlockPlan& plan, const Node& body);
+    void inputs(const Node& node);
+    void run(const Node& node);
+    void stimuli(const Node& node);
+    void trace(const Node& node);
+    void traced(const Node& signals, TracePlan& plan);
+    void expectations(const Node& node);
+    void expectation(const Node& item);
+    void bounds(const Node& map, ExpectPlan& plan);
+    void at(const Node& node, ExpectPlan& plan);
+
+    const LoadOptions& options_;
+    Reader read_;
+    Program program_;
+    ParameterValues values_;
+};
+
+}  // namespace lineshaft
