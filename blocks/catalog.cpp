@@ -7,6 +7,15 @@
 #include "blocks/circle/circle_fit.hpp"
 #include "blocks/circle/circle_ratio.hpp"
 #include "blocks/circle/path_circle.hpp"
+#include "blocks/logic/arithmetic.hpp"
+#include "blocks/logic/bistable.hpp"
+#include "blocks/logic/boolean.hpp"
+#include "blocks/logic/compare.hpp"
+#include "blocks/logic/counter.hpp"
+#include "blocks/logic/edge.hpp"
+#include "blocks/logic/select.hpp"
+#include "blocks/logic/signal.hpp"
+#include "blocks/logic/timer.hpp"
 #include "blocks/pulse/constant_jerk_line.hpp"
 #include "blocks/pulse/pto.hpp"
 
@@ -23,6 +32,43 @@ Catalog standard_blocks() {
     blocks.add<PathCircle>();
     blocks.add<Pto>();
     blocks.add<ConstantJerkLine>();
+    blocks.add<Ton>();
+    blocks.add<Tof>();
+    blocks.add<Tp>();
+    blocks.add<Ctu>();
+    blocks.add<Ctd>();
+    blocks.add<Ctud>();
+    blocks.add<RTrig>();
+    blocks.add<FTrig>();
+    blocks.add<Sr>();
+    blocks.add<Rs>();
+    blocks.add<And>();
+    blocks.add<Or>();
+    blocks.add<Xor>();
+    blocks.add<Not>();
+    blocks.add<Gt>();
+    blocks.add<Ge>();
+    blocks.add<Eq>();
+    blocks.add<Le>();
+    blocks.add<Lt>();
+    blocks.add<Ne>();
+    blocks.add<Hysteresis>();
+    blocks.add<Sel>();
+    blocks.add<Mux>();
+    blocks.add<Limit>();
+    blocks.add<Min>();
+    blocks.add<Max>();
+    blocks.add<MoveValue>();
+    blocks.add<Add>();
+    blocks.add<Sub>();
+    blocks.add<Mul>();
+    blocks.add<Div>();
+    blocks.add<Mod>();
+    blocks.add<Abs>();
+    blocks.add<LrealToLint>();
+    blocks.add<LrealToTime>();
+    blocks.add<Scale>();
+    blocks.add<FilterPt1>();
     return blocks;
 }
 

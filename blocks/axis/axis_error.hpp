@@ -1,9 +1,9 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <string_view>
 
+#include "blocks/inputs.hpp"
 #include "blocks/profile/velocity_ramp.hpp"
 
 namespace lineshaft {
@@ -29,17 +29,5 @@ constexpr AxisError axis_error(PlanResult result) {
 enum class AxisUnit : std::int64_t { mm, rad, deg };
 
 inline constexpr std::string_view axis_unit_names[] = {"mm", "rad", "deg"};
-
-template <class... T>
-bool all_finite(T... values) {
-    return (std::isfinite(values) && ...);
-}
-
-/// True once per rising edge of `now`; `last` remembers.
-inline bool rising_edge(bool now, bool& last) {
-    const bool edge = now && !last;
-    last = now;
-    return edge;
-}
 
 }  // namespace lineshaft

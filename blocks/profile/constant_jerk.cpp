@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lineshaft {
 
@@ -9,14 +10,23 @@ namespace {
 
 constexpr int most = 1'000'000;  // samples of a phase
 
+/// Rounding of a quotient or a sum of `samples`.
+template <class Real>
+Real slack(Real samples) {
+    return 16 * std::numeric_limits<Real>::epsilon() * samples;
+}
+
 }  // namespace
 
 template <class Real>
-bool ConstantJerk<Real>::begin(const ConstantJerkLimits<Real>& limits, Real distance) {
+bool ConstantJerk<Real>::begin(const ConstantJerkLimits<Real>& limits, Real distance,
+                               ConstantJerkPhases phases) {
+    const bool whole = phases == ConstantJerkPhases::whole;
     const Real T = period_ = limits.period;
-    const Real t1 = limits.acceleration / limits.jerk;
+    Real t1 = limits.acceleration / limits.jerk;
+    if (whole) t1 = std::ceil(t1 / T - slack(t1 / T)) * T;
     Real amax = std::min(limits.acceleration, limits.velocity / t1);
-    Real beta = amax < limits.acceleration ? amax / t1 : limits.jerk;
+    Real beta = whole || amax < limits.acceleration ? amax / t1 : limits.jerk;
     Real t2 = std::max(limits.velocity / amax - t1, Real(0));
     Real t4 = 0;
     const Real s1 = 2 * amax * t1 * t1;
@@ -35,13 +45,31 @@ bool ConstantJerk<Real>::begin(const ConstantJerkLimits<Real>& limits, Real dist
     }
     const Real k1 = t1 / T, k2 = t2 / T;
     samples_ = {0, k1, k2, k1, t4 / T, k1, k2, k1};
-    acceleration_step_ = amax * T;
-    jerk_step_ = Real(0.5) * beta * T * T;
+    const Real scale = whole ? fill_whole_samples(limits, amax, distance) : Real(1);
+    acceleration_step_ = scale * amax * T;
+    jerk_step_ = scale * Real(0.5) * beta * T * T;
     velocity_ = 0;
     const bool good = std::ranges::all_of(samples_, [](Real k) { return k >= 0 && k <= most; });
     phase_ = good ? 1 : 8;
     k_ = 1;
     return good;
+}
+
+/// Returns the share of the acceleration with which they come to the distance.
+template <class Real>
+Real ConstantJerk<Real>::fill_whole_samples(const ConstantJerkLimits<Real>& limits,
+                                            Real acceleration, Real distance) {
+    const bool cruises = kind_ == ConstantJerkKind::full;
+    const Real k1 = std::round(samples_[1]);
+    const Real k2 =
+        cruises ? std::ceil(samples_[2] - slack(k1 + samples_[2])) : std::round(samples_[2]);
+    const Real by_acceleration = acceleration * period_ * (k1 + k2);
+    const Real cruise =
+        period_ * (cruises ? std::min(by_acceleration, limits.velocity) : by_acceleration);
+    const Real missing = distance / cruise - (2 * k1 + k2);
+    const Real k4 = std::max(std::ceil(missing - slack(distance / cruise)), Real(0));
+    samples_ = {0, k1, k2, k1, k4, k1, k2, k1};
+    return distance / (by_acceleration * period_ * (2 * k1 + k2 + k4));
 }
 
 template <class Real>

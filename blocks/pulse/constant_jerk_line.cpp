@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::string_view width_names[] = {"32", "64"};
 constexpr std::string_view rounding_names[] = {"truncate", "nearest", "carry"};
+constexpr std::string_view rates_names[] = {"velocity", "fit"};
+constexpr std::string_view phases_names[] = {"cut", "whole"};
 constexpr std::string_view chain_names[] = {"leading", "both", "clock"};
 constexpr std::string_view kind_names[] = {"none", "no_constant_acceleration", "no_cruise", "full"};
 constexpr std::string_view error_names[] = {"none", "not_finite"};
@@ -25,13 +27,24 @@ Real as(double value) {
     return static_cast<Real>(std::clamp(value, -most, most));
 }
 
+/// The field of a channel's member.
+Field of(ConstantJerkLine::Channel ConstantJerkLine::*channel, Field field) {
+    field.offset += detail::offset_of(channel);
+    return field;
+}
+
 }  // namespace
 
 std::span<const Field> ConstantJerkLine::fields() {
     using L = ConstantJerkLine;
+    using C = ConstantJerkLine::Channel;
     static const Field list[] = {
         parameter("real", &L::real, "", "bits of the arithmetic").one_of(width_names),
         parameter("rounding", &L::rounding, "", "of a sample's pulses").one_of(rounding_names),
+        parameter("rates", &L::rates, "", "of a sample: the axis' own, or such that it fits")
+            .one_of(rates_names),
+        parameter("phases", &L::phases, "", "a part of a sample is cut, or made whole")
+            .one_of(phases_names),
         parameter("chain", &L::chain, "", "whose completion sends the next sample")
             .one_of(chain_names),
         parameter("period", &L::period, "s", "sampling period"),
@@ -43,23 +56,23 @@ std::span<const Field> ConstantJerkLine::fields() {
         input("jerk", &L::jerk, "cm/s^3", "of the leading axis"),
         input("velocity", &L::velocity, "cm/s", "limit of the leading axis"),
         input("interpolation_time", &L::interpolation_time, "s", "time allowed; 0: not said"),
-        input("x", &L::x_displacement, "cm", "displacement, signed"),
-        input("y", &L::y_displacement, "cm", "displacement, signed"),
         input("start", &L::start, "", "rising edge: begin a line"),
-        input("x_busy", &L::x_busy, "", "channel X is under way").must_be_set(),
-        input("y_busy", &L::y_busy, "", "channel Y is under way").must_be_set(),
-        output("x_job", &L::x_job, "", "changes with each segment for channel X"),
-        output("x_start_rate", &L::x_start_rate, "Hz", "of the segment"),
-        output("x_end_rate", &L::x_end_rate, "Hz", "of the segment"),
-        output("x_count", &L::x_count, "", "of the segment"),
-        output("x_reverse", &L::x_reverse, "", "direction"),
-        output("x_interrupt", &L::x_interrupt, "", "the channel's completion is wanted"),
-        output("y_job", &L::y_job, "", "changes with each segment for channel Y"),
-        output("y_start_rate", &L::y_start_rate, "Hz", "of the segment"),
-        output("y_end_rate", &L::y_end_rate, "Hz", "of the segment"),
-        output("y_count", &L::y_count, "", "of the segment"),
-        output("y_reverse", &L::y_reverse, "", "direction"),
-        output("y_interrupt", &L::y_interrupt, "", "the channel's completion is wanted"),
+        of(&L::x, input("x", &C::displacement, "cm", "displacement, signed")),
+        of(&L::y, input("y", &C::displacement, "cm", "displacement, signed")),
+        of(&L::x, input("x_busy", &C::busy, "", "channel X is under way").must_be_set()),
+        of(&L::y, input("y_busy", &C::busy, "", "channel Y is under way").must_be_set()),
+        of(&L::x, output("x_job", &C::job, "", "changes with each segment for channel X")),
+        of(&L::x, output("x_start_rate", &C::start_rate, "Hz", "of the segment")),
+        of(&L::x, output("x_end_rate", &C::end_rate, "Hz", "of the segment")),
+        of(&L::x, output("x_count", &C::count, "", "of the segment")),
+        of(&L::x, output("x_reverse", &C::reverse, "", "direction")),
+        of(&L::x, output("x_interrupt", &C::interrupt, "", "the channel's completion is wanted")),
+        of(&L::y, output("y_job", &C::job, "", "changes with each segment for channel Y")),
+        of(&L::y, output("y_start_rate", &C::start_rate, "Hz", "of the segment")),
+        of(&L::y, output("y_end_rate", &C::end_rate, "Hz", "of the segment")),
+        of(&L::y, output("y_count", &C::count, "", "of the segment")),
+        of(&L::y, output("y_reverse", &C::reverse, "", "direction")),
+        of(&L::y, output("y_interrupt", &C::interrupt, "", "the channel's completion is wanted")),
         output("busy", &L::busy, "", "a line is under way"),
         output("done", &L::done, "", "the line has ended"),
         output("unreasonable", &L::unreasonable, "", "a limit is not above 0: no motion"),
@@ -76,7 +89,7 @@ std::span<const Field> ConstantJerkLine::fields() {
 
 bool ConstantJerkLine::finite() const {
     for (const double value :
-         {acceleration, jerk, velocity, interpolation_time, x_displacement, y_displacement})
+         {acceleration, jerk, velocity, interpolation_time, x.displacement, y.displacement})
         if (!std::isfinite(value)) return false;
     return true;
 }
@@ -89,7 +102,6 @@ void ConstantJerkLine::scan(const Scan& now) {
     last_start = start;
     if (edge && !busy) begin(now);
     if (busy) run(now);
-    publish();
 }
 
 double ConstantJerkLine::effective(double displacement) const {
@@ -104,7 +116,7 @@ void ConstantJerkLine::begin(const Scan& now) {
         !(acceleration > 0 && jerk > 0 && velocity > 0 && period > 0) || interpolation_time < 0;
     short_time =
         !unreasonable && interpolation_time > 0 && interpolation_time <= 4 * acceleration / jerk;
-    const double way_x = effective(x_displacement), way_y = effective(y_displacement);
+    const double way_x = effective(x.displacement), way_y = effective(y.displacement);
     const double way = std::max(way_x, way_y);
     done = false;
     samples = 0;
@@ -112,8 +124,12 @@ void ConstantJerkLine::begin(const Scan& now) {
     if (unreasonable || way == 0) return;
     x_leads = way_x >= way_y;
     gamma = std::min(way_x, way_y) / way;
-    x = {.job = x.job, .reverse = x_displacement < 0, .share = x_leads ? 1 : gamma};
-    y = {.job = y.job, .reverse = y_displacement < 0, .share = x_leads ? gamma : 1};
+    x.share = x_leads ? 1 : gamma;
+    y.share = x_leads ? gamma : 1;
+    for (Channel* channel : {&x, &y}) {
+        channel->reverse = channel->displacement < 0;
+        channel->fraction = 0;
+    }
     unreasonable = !(real == Width::real_32 ? plan(narrow, way) : plan(wide, way));
     if (unreasonable) return;
     busy = sending = true;
@@ -124,7 +140,7 @@ template <class Real>
 bool ConstantJerkLine::plan(ConstantJerk<Real>& profile, double way) {
     const bool good = profile.begin(
         {as<Real>(acceleration), as<Real>(jerk), as<Real>(velocity), as<Real>(period)},
-        as<Real>(way));
+        as<Real>(way), phases);
     kind = profile.kind();
     return good;
 }
@@ -132,15 +148,15 @@ bool ConstantJerkLine::plan(ConstantJerk<Real>& profile, double way) {
 void ConstantJerkLine::run(const Scan& now) {
     if (sending && (now.time == started || may_send())) send();
     time = seconds(now.time - started);
-    if (sending || x_busy || y_busy) return attach();
+    if (sending || x.busy || y.busy) return attach();
     busy = false;
     done = true;
 }
 
 bool ConstantJerkLine::may_send() const {
     if (chain == Chain::clock) return true;
-    if (chain == Chain::both) return !x_busy && !y_busy;
-    return x_leads ? !x_busy : !y_busy;
+    if (chain == Chain::both) return !x.busy && !y.busy;
+    return x_leads ? !x.busy : !y.busy;
 }
 
 void ConstantJerkLine::send() {
@@ -169,38 +185,41 @@ bool ConstantJerkLine::pulses(Channel& channel, const ConstantJerkSample<Real>& 
     if (channel.share == 0) return false;
     const auto scale = as<Real>(pulses_per_length);
     const auto share = as<Real>(channel.share);
-    double wanted = static_cast<double>(sample.distance * share * scale);
-    if (rounding == Rounding::carry) wanted += channel.fraction;
-    if (rounding == Rounding::nearest) wanted += 0.5;
-    const std::int64_t count = whole(wanted);
-    if (rounding == Rounding::carry) channel.fraction = wanted - static_cast<double>(count);
+    const std::int64_t count =
+        count_of(channel, static_cast<double>(sample.distance * share * scale));
     if (count == 0) return false;
     channel.count = count;
-    channel.start_rate = whole(static_cast<double>(sample.start_velocity * share * scale));
-    channel.end_rate = whole(static_cast<double>(sample.end_velocity * share * scale));
+    set_rates(channel, sample.start_velocity * share * scale, sample.end_velocity * share * scale);
     ++channel.job;
     return true;
+}
+
+std::int64_t ConstantJerkLine::count_of(Channel& channel, double wanted) const {
+    if (rounding == Rounding::truncate) return whole(wanted);
+    if (rounding == Rounding::carry) wanted += channel.fraction;
+    const std::int64_t count = whole(wanted + 0.5);
+    channel.fraction = wanted - static_cast<double>(count);
+    return count;
+}
+
+template <class Real>
+void ConstantJerkLine::set_rates(Channel& channel, Real start_rate, Real end_rate) const {
+    if (rates == Rates::fit) {
+        const auto T = as<Real>(period);
+        const Real mean = static_cast<Real>(channel.count) / T;
+        const Real half = std::clamp((end_rate - start_rate) / 2, -mean / 2, mean / 2);
+        const Real spare = half > 0 ? half * mean / ((mean * mean - half * half) * T) : Real(0);
+        start_rate = std::ceil(mean + spare - half);
+        end_rate = std::ceil(mean + spare + half);
+    }
+    channel.start_rate = whole(static_cast<double>(start_rate));
+    channel.end_rate = whole(static_cast<double>(end_rate));
 }
 
 void ConstantJerkLine::attach() {
     const bool only_leading = chain == Chain::leading && sending;
     x.interrupt = !only_leading || x_leads;
     y.interrupt = !only_leading || !x_leads;
-}
-
-void ConstantJerkLine::publish() {
-    x_job = x.job;
-    x_start_rate = x.start_rate;
-    x_end_rate = x.end_rate;
-    x_count = x.count;
-    x_reverse = x.reverse;
-    x_interrupt = x.interrupt;
-    y_job = y.job;
-    y_start_rate = y.start_rate;
-    y_end_rate = y.end_rate;
-    y_count = y.count;
-    y_reverse = y.reverse;
-    y_interrupt = y.interrupt;
 }
 
 }  // namespace lineshaft

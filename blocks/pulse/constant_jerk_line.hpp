@@ -18,13 +18,31 @@ namespace lineshaft {
 /// comes back as previous(x.busy). `chain` says when the next sample is sent: when the leading
 /// channel is idle, when both are, or in every scan (a timed interrupt). The leading one's
 /// completion is the interrupt (`x_interrupt` to x.interrupt, event task `on: [inputs.start,
-/// x.done, y.done]`); the other's is only asked for when the line waits for it. A channel still
-/// busy takes the segment into its queue. A sample whose pulses come to 0 starts none. `done` when
-/// both channels have ended; `time` is from `start` until then.
+/// x.done, y.done]`); the other's is only asked for when the line waits for it. With `both` that is
+/// two interrupts a sample, each at the task's cost, also the first, which only finds the other
+/// channel busy. A channel still busy takes the segment into its queue. A sample whose pulses come
+/// to 0 starts none.
 ///
-/// Pulses of a sample: distance * pulses_per_length, truncated (as measured), to the nearest, or
-/// with the fraction carried into the axis' next sample. Rates are truncated.
-/// `real: 32` reckons as the controller's REAL, `64` in double.
+/// `done` when both channels have ended; `time` is from the start of the scan that saw `start`, so
+/// the cost of computing the first sample is in it, to the start of the scan that finds them idle.
+///
+/// Pulses of a sample: distance * pulses_per_length; `truncate` (as measured), to the `nearest`, or
+/// `carry`: to the nearest with what that rounded off in the axis' samples before, so that an axis
+/// is never more than half a pulse from its way at a sample's end, and none is lost.
+///
+/// Rates of a sample: `velocity` takes those of the axis at its two ends, truncated, as the paper
+/// does; the first is then 0, which the channel clamps to 1 Hz. `fit` takes rates that put out the
+/// count Q within the period T, whether or not a pulse keeps the rate it begins with:
+///
+///     m = Q / T, h = half the change of the rate, but at most m / 2 either way
+///     c = h m / ((m^2 - h^2) T) if h > 0, else 0
+///     f0 = m + c - h, f1 = m + c + h, rounded up
+///
+/// c makes up for pulses that keep their rate on a rising ramp: they lag by ln(f1 / f0) / 2 pulses
+/// in all, which c T exceeds. Before the period ends the channel is idle, for less than a
+/// pulse at the lower of the two rates.
+///
+/// `real: 32` reckons as the controller's REAL, `64` in double. `phases`: see ConstantJerk.
 ///
 /// A displacement below `threshold_distance` or `threshold_pulses` does not move its axis. Limits
 /// that are zero or negative set `unreasonable`, and nothing moves; an `interpolation_time` not
@@ -32,30 +50,35 @@ namespace lineshaft {
 struct ConstantJerkLine {
     enum class Width : std::int64_t { real_32, real_64 };
     enum class Rounding : std::int64_t { truncate, nearest, carry };
+    enum class Rates : std::int64_t { velocity, fit };
     enum class Chain : std::int64_t { leading, both, clock };
     enum class Error : std::int64_t { none, not_finite };
 
     Width real = Width::real_64;
     Rounding rounding = Rounding::truncate;
+    Rates rates = Rates::velocity;
+    ConstantJerkPhases phases = ConstantJerkPhases::cut;
     Chain chain = Chain::leading;
     double period = 0.05, pulses_per_length = 1;
     double threshold_distance = 0.001;
     std::int64_t threshold_pulses = 0;
 
     double acceleration = 1, jerk = 1, velocity = 1, interpolation_time = 0;
-    double x_displacement = 0, y_displacement = 0;
-    bool start = false, x_busy = false, y_busy = false;
+    bool start = false;
 
-    /// What goes to one channel.
+    /// What comes from one channel's side and goes to it: `x_count` in a program is x.count.
     struct Channel {
-        std::int64_t job = 0, start_rate = 1, end_rate = 1, count = 1;
+        double displacement = 0;
+        bool busy = false;
+
         bool reverse = false, interrupt = true;
+        std::int64_t job = 0, start_rate = 1, end_rate = 1, count = 1;
+
         double share = 0;     ///< of the leading axis' way: 1, gamma or 0
         double fraction = 0;  ///< pulses carried
     };
-    std::int64_t x_job = 0, x_start_rate = 1, x_end_rate = 1, x_count = 1;
-    std::int64_t y_job = 0, y_start_rate = 1, y_end_rate = 1, y_count = 1;
-    bool x_reverse = false, y_reverse = false, x_interrupt = true, y_interrupt = true;
+    Channel x, y;
+
     bool busy = false, done = false, unreasonable = false, short_time = false;
     ConstantJerkKind kind = ConstantJerkKind::none;
     double gamma = 0, time = 0;
@@ -63,7 +86,6 @@ struct ConstantJerkLine {
     bool error = false;
     Error error_id = Error::none;
 
-    Channel x, y;
     bool x_leads = true, last_start = false, sending = false;
     std::int64_t started = 0;
     ConstantJerk<float> narrow;
@@ -87,8 +109,10 @@ struct ConstantJerkLine {
     void send(ConstantJerk<Real>& profile);
     template <class Real>
     bool pulses(Channel& channel, const ConstantJerkSample<Real>& sample);
+    std::int64_t count_of(Channel& channel, double wanted) const;
+    template <class Real>
+    void set_rates(Channel& channel, Real start_rate, Real end_rate) const;
     void attach();
-    void publish();
 };
 
 }  // namespace lineshaft

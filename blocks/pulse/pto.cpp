@@ -56,6 +56,7 @@ std::span<const Field> Pto::fields() {
         output("position", &P::position, "", "forward less reverse pulses so far"),
         output("lost", &P::lost, "", "pulses loaded and not made, because the output was ended"),
         output("rate", &P::rate, "Hz", "now; 0: idle"),
+        output("end_time", &P::end_time, "s", "virtual time at which the last train has ended"),
         output("reversed", &P::reversed, "", "direction output"),
         output("clamped", &P::clamped, "", "a rate or count was out of range"),
         output("overflow", &P::overflow, "", "a train came while another one waited (SM66.6)"),
@@ -209,6 +210,7 @@ void Pto::end_segment() {
     if (active_segment < active.segments && !cut) return begin_segment(train.end());
     lose_from(active, active_segment);
     ++trains;
+    end_time = seconds(train.end().rounded());
     done = done || interrupt;
     busy = false;
     active_segment = 0;

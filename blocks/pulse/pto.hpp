@@ -57,7 +57,7 @@ struct Pto {
     bool busy = false, queued = false, done = false;
     std::int64_t active_segment = 0;  // counts from 1, as SMB166; 0: idle
     std::int64_t trains = 0, pulses = 0, position = 0, lost = 0;
-    double rate = 0;
+    double rate = 0, end_time = 0;
     bool reversed = false;
     bool clamped = false, overflow = false, underflow = false, stopped = false;
     std::int64_t refused = 0;

@@ -183,8 +183,9 @@ whole in that unit.)"},
     {"L0401", "a wire between different types",
      R"(An input takes a value of its own type: boolean, integer, real or a certain
 enumeration. Only an integer may feed a real. Nothing else is converted in silence, as
-in IEC 61131-3. 'until:' takes a boolean. 'lineshaft blocks TYPE' shows the type of
-each port.)"},
+in IEC 61131-3; the block 'lreal_to_lint' rounds a real to an integer, 'lreal_to_time'
+makes seconds the time that a timer's 'pt' takes. 'until:' takes a boolean.
+'lineshaft blocks TYPE' shows the type of each port.)"},
     {"L0402", "a wire between different dimensions",
      R"(The output is in a unit that the input cannot take: a position in mm does not fit a
 velocity in mm/s. Units of one dimension are converted on the wire (rev to rad);

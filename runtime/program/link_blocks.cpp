@@ -103,7 +103,7 @@ void Linker::set_table(Instance& block, const TableField& table, const Node& val
 
 void Linker::set_constant(Instance& block, const Field& field, const Node& value) {
     const Unit unit = unit_of(block, field);
-    std::optional<Value> constant = interval_of(value, unit);
+    std::optional<Value> constant = interval_of(value, field, unit);
     if (!constant && field.direction == Direction::input && resembles_wire(value))
         return read_.fail("L0208", value,
                           fmt::format("'{}' is neither a constant nor a wire", value.text),
@@ -112,8 +112,9 @@ void Linker::set_constant(Instance& block, const Field& field, const Node& value
     if (constant) store(field.type, block.live + field.offset, *constant);
 }
 
-/// `every(servo)`: the interval of a task, for blocks that reckon with a clock.
-std::optional<Value> Linker::interval_of(const Node& value, const Unit& unit) {
+/// `every(servo)`: the interval of a task, for blocks that reckon with a clock. Times that are
+/// integers are in ns.
+std::optional<Value> Linker::interval_of(const Node& value, const Field& field, const Unit& unit) {
     static const Unit second = *Unit::parse("s");
     if (!value.text.starts_with("every(") || !value.text.ends_with(')') ||
         !unit.same_dimension(second))
@@ -125,6 +126,7 @@ std::optional<Value> Linker::interval_of(const Node& value, const Unit& unit) {
         read_.fail("L0213", value, fmt::format("'{}' is an event task: it has no interval", name));
         return 0.0;
     }
+    if (it != tasks.end() && field.type == Type::integer) return it->every;
     if (it != tasks.end()) return convert(seconds(it->every), second, unit);
     if (!program_.tasks_known) return 0.0;
     read_.fail("L0206", value, fmt::format("unknown task '{}'", name), suggest(name, task_names_));

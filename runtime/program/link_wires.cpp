@@ -54,11 +54,13 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
             "L0408", value,
             fmt::format("NOT is for booleans, '{}' is {}", text.signal, name_of(source->type)));
     const bool widens = source->type == Type::integer && field.type == Type::real;
+    const bool narrows = source->type == Type::real && field.type == Type::integer;
     if ((source->type != field.type && !widens) || !std::ranges::equal(source->names, field.names))
         return read_.fail(
             "L0401", value,
             fmt::format("'{}' is {}, '{}' takes {}", text.signal, kind(source->type, source->names),
-                        field.name, kind(field.type, field.names)));
+                        field.name, kind(field.type, field.names)),
+            narrows ? "a block converts it: see 'lineshaft explain L0401'" : "");
     const Unit wanted = unit_of(block, field);
     const Unit& given = parsed(source->unit);
     const bool whole = field.type == Type::integer && given.text != wanted.text;

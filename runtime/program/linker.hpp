@@ -61,7 +61,7 @@ class Linker {
     void set_port(Instance& block, const Node& key, const Node& value);
     void set_table(Instance& block, const TableField& table, const Node& value);
     void set_constant(Instance& block, const Field& field, const Node& value);
-    std::optional<Value> interval_of(const Node& value, const Unit& unit);
+    std::optional<Value> interval_of(const Node& value, const Field& field, const Unit& unit);
     void wire(int index, const Field& field, const Node& value, const WireText& wire);
     bool check_order(int index, const Node& value, const WireText& wire, int source);
     std::string loop(int from, int to) const;

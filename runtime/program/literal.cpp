@@ -13,8 +13,10 @@ std::optional<Value> read_name(const Reader& read, const Node& node, const Field
     if (!read.expect_scalar(node, "a name")) return {};
     const auto it = std::ranges::find(field.names, node.text);
     if (it != field.names.end()) return Value(static_cast<std::int64_t>(it - field.names.begin()));
+    std::vector<std::string> names(field.names.begin(), field.names.end());
+    std::erase(names, "");
     read.fail("L0306", node, fmt::format("'{}' is no value of '{}'", node.text, field.name),
-              suggest(node.text, {field.names.begin(), field.names.end()}));
+              suggest(node.text, names));
     return {};
 }
 

@@ -34,9 +34,17 @@ std::string unit_text(const Field& field) {
     return text;
 }
 
-std::string kind_text(const Field& field) {
-    if (field.type == Type::enumeration) return fmt::format("{}", fmt::join(field.names, " | "));
-    return std::string(name_of(field.type));
+/// `immediate | early`; the empty name, a unit's of plain numbers, as it is written in YAML.
+std::string names_text(const Field& field) {
+    std::string text;
+    for (const std::string_view name : field.names)
+        text += fmt::format("{}{}", text.empty() ? "" : " | ", name.empty() ? "\"\"" : name);
+    return text;
+}
+
+std::string default_text(const Field& field, const Value& value) {
+    const std::string text = describe(value, field.type, field.names, "");
+    return text.empty() ? "\"\"" : text;
 }
 
 nlohmann::ordered_json to_json(const BlockType& type) {
@@ -73,13 +81,12 @@ void print_fields(const BlockType& type, Direction direction) {
         first = false;
         std::string notes;
         if (direction != Direction::output)
-            notes = f.required ? "must be set"
-                               : "default " + describe(fresh.value(f), f.type, f.names, "");
+            notes = f.required ? "must be set" : "default " + default_text(f, fresh.value(f));
         if (const std::string limits = describe_limits(f, ""); !limits.empty())
             notes += ", " + limits;
         fmt::print("  {:18} {:10} {}{}\n", f.name, unit_text(f), f.doc,
                    notes.empty() ? "" : " (" + notes + ")");
-        if (f.type == Type::enumeration) fmt::print("  {:18} {:10} {}\n", "", "", kind_text(f));
+        if (f.type == Type::enumeration) fmt::print("  {:18} {:10} {}\n", "", "", names_text(f));
     }
 }
 

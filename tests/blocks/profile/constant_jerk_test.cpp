@@ -5,6 +5,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "runtime/scan/random.hpp"
+
 using namespace lineshaft;
 
 namespace {
@@ -15,9 +17,10 @@ struct Course {
     double distance = 0;
 };
 
-Course course(const ConstantJerkLimits<double>& limits, double distance) {
+Course course(const ConstantJerkLimits<double>& limits, double distance,
+              ConstantJerkPhases phases = ConstantJerkPhases::cut) {
     ConstantJerk<double> profile;
-    REQUIRE(profile.begin(limits, distance));
+    REQUIRE(profile.begin(limits, distance, phases));
     Course result;
     result.kind = profile.kind();
     for (ConstantJerkSample<double> s; profile.next(s);) {
@@ -53,6 +56,49 @@ TEST_CASE("without cruise a part of a sample is cut") {
     CHECK(c.kind == ConstantJerkKind::no_cruise);
     CHECK(c.samples.size() == 92);
     CHECK(c.distance == Approx(2.99).epsilon(1e-12));
+}
+
+TEST_CASE("whole phases fill the distance with a sample of cruise in place of the part") {
+    const Course c = course(limits, 3, ConstantJerkPhases::whole);
+    CHECK(c.samples.size() == 93);
+    CHECK(c.distance == Approx(3).epsilon(1e-14));
+    CHECK(course(limits, 1.5, ConstantJerkPhases::whole).samples.size() == 80);
+    CHECK(course(limits, 7.5, ConstantJerkPhases::whole).samples.size() == 150);
+}
+
+TEST_CASE("whole phases cover any distance within the limits, at most two samples late") {
+    Random random(8, "whole phases");
+    const auto pick = [&](double low, double high) {
+        return low + (high - low) * static_cast<double>(random.next() % 10'000) / 10'000;
+    };
+    for (int i = 0; i < 5000; ++i) {
+        const double T = pick(0.01, 0.1);
+        const double samples = 1 + std::floor(pick(0, 30)), a = pick(0.1, 5);
+        const double j = a / (samples * T * (i % 2 == 0 ? 1 : pick(0.5, 1)));
+        const ConstantJerkLimits<double> any{a, j, pick(0.01, 10), T};
+        const double distance = pick(0.001, 20);
+        INFO("a " << a << ", j " << j << ", v " << any.velocity << ", T " << T << ", " << distance);
+        const Course c = course(any, distance, ConstantJerkPhases::whole);
+        REQUIRE(c.distance == Approx(distance).epsilon(1e-11));
+        double acceleration = 0;
+        for (const ConstantJerkSample<double>& s : c.samples) {
+            REQUIRE(s.end_velocity <= any.velocity * (1 + 1e-9));
+            const double mean = (s.end_velocity - s.start_velocity) / T;
+            REQUIRE(std::abs(mean) <= a * (1 + 1e-9));
+            REQUIRE(std::abs(mean - acceleration) <= j * T * (1 + 1e-9));
+            acceleration = mean;
+        }
+        if (i % 2 != 0 || any.velocity < a * a / j) continue;
+        const double t1 = a / j, t2 = any.velocity / a - t1;
+        const double longest = any.velocity * (2 * t1 + t2);
+        const double t2_short = (std::sqrt(t1 * t1 + 4 * distance / a) - 3 * t1) / 2;
+        const double ideal = distance >= longest          ? t1 * 2 + t2 + distance / any.velocity
+                             : distance > 2 * a * t1 * t1 ? 4 * t1 + 2 * t2_short
+                                                          : 4 * t1;
+        const double excess = static_cast<double>(c.samples.size()) - ideal / T;
+        REQUIRE(excess > -1e-6);
+        REQUIRE(excess < 2);
+    }
 }
 
 TEST_CASE("velocity runs from rest to rest within its limits") {

@@ -1,0 +1,117 @@
+#include "blocks/logic/counter.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "blocks/inputs.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+constexpr std::string_view type_names[] = {"int", "dint", "lint"};
+
+struct Range {
+    std::int64_t least, most;
+};
+
+template <class T>
+constexpr Range range_of() {
+    return {std::numeric_limits<T>::min(), std::numeric_limits<T>::max()};
+}
+
+constexpr Range range(CounterType type) {
+    constexpr Range ranges[] = {range_of<std::int16_t>(), range_of<std::int32_t>(),
+                                range_of<std::int64_t>()};
+    return ranges[static_cast<std::size_t>(type)];
+}
+
+void count_up(std::int64_t& cv, CounterType type) {
+    if (cv < range(type).most) ++cv;
+}
+
+void count_down(std::int64_t& cv, CounterType type) {
+    if (cv > range(type).least) --cv;
+}
+
+std::int64_t preset(std::int64_t pv, CounterType type) {
+    return std::clamp(pv, range(type).least, range(type).most);
+}
+
+constexpr std::string_view data_type_doc = "type of cv: its limits";
+
+}  // namespace
+
+std::span<const Field> Ctu::fields() {
+    static const Field table[] = {
+        parameter("data_type", &Ctu::data_type, "", data_type_doc).one_of(type_names),
+        input("cu", &Ctu::cu, "", "counts up at each rising edge").must_be_set(),
+        input("r", &Ctu::r, "", "sets cv to 0; wins over cu"),
+        input("pv", &Ctu::pv, "", "preset value").must_be_set(),
+        output("q", &Ctu::q, "", "cv has reached pv"),
+        output("cv", &Ctu::cv, "", "counter value"),
+    };
+    return table;
+}
+
+void Ctu::scan(const Scan&) {
+    const bool up = rising_edge(cu, last_cu);
+    if (r)
+        cv = 0;
+    else if (up)
+        count_up(cv, data_type);
+    q = cv >= pv;
+}
+
+std::span<const Field> Ctd::fields() {
+    static const Field table[] = {
+        parameter("data_type", &Ctd::data_type, "", data_type_doc).one_of(type_names),
+        input("cd", &Ctd::cd, "", "counts down at each rising edge").must_be_set(),
+        input("ld", &Ctd::ld, "", "sets cv to pv; wins over cd"),
+        input("pv", &Ctd::pv, "", "preset value").must_be_set(),
+        output("q", &Ctd::q, "", "cv has reached 0"),
+        output("cv", &Ctd::cv, "", "counter value"),
+    };
+    return table;
+}
+
+void Ctd::scan(const Scan&) {
+    const bool down = rising_edge(cd, last_cd);
+    if (ld)
+        cv = preset(pv, data_type);
+    else if (down)
+        count_down(cv, data_type);
+    q = cv <= 0;
+}
+
+std::span<const Field> Ctud::fields() {
+    static const Field table[] = {
+        parameter("data_type", &Ctud::data_type, "", data_type_doc).one_of(type_names),
+        input("cu", &Ctud::cu, "", "counts up at each rising edge"),
+        input("cd", &Ctud::cd, "", "counts down at each rising edge"),
+        input("r", &Ctud::r, "", "sets cv to 0; wins over all others"),
+        input("ld", &Ctud::ld, "", "sets cv to pv; wins over cu and cd"),
+        input("pv", &Ctud::pv, "", "preset value").must_be_set(),
+        output("qu", &Ctud::qu, "", "cv has reached pv"),
+        output("qd", &Ctud::qd, "", "cv has reached 0"),
+        output("cv", &Ctud::cv, "", "counter value"),
+    };
+    return table;
+}
+
+void Ctud::scan(const Scan&) {
+    const bool up = rising_edge(cu, last_cu);
+    const bool down = rising_edge(cd, last_cd);
+    if (r)
+        cv = 0;
+    else if (ld)
+        cv = preset(pv, data_type);
+    else if (up && !down)
+        count_up(cv, data_type);
+    else if (down && !up)
+        count_down(cv, data_type);
+    qu = cv >= pv;
+    qd = cv <= 0;
+}
+
+}  // namespace lineshaft

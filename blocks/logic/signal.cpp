@@ -1,0 +1,65 @@
+#include "blocks/logic/signal.hpp"
+
+#include <sleef.h>
+
+namespace lineshaft {
+
+std::span<const Field> Scale::fields() {
+    using S = Scale;
+    static const Field table[] = {
+        parameter("in_unit", &S::in_unit, "", "unit of `in`; left out: plain numbers")
+            .one_of(number_unit_names),
+        parameter("unit", &S::unit, "", "unit of `out`; left out: plain numbers")
+            .one_of(number_unit_names),
+        input("in", &S::in, "{in_unit}", "the number").must_be_set(),
+        input("in_low", &S::in_low, "{in_unit}", "gives out_low"),
+        input("in_high", &S::in_high, "{in_unit}", "gives out_high").must_be_set(),
+        input("out_low", &S::out_low, "{unit}", "out at in_low"),
+        input("out_high", &S::out_high, "{unit}", "out at in_high").must_be_set(),
+        output("out", &S::out, "{unit}", "the number in the new range"),
+        output("error", &S::error, "", number_error_doc),
+        output("error_id", &S::error_id, "", "why").one_of(number_error_names),
+    };
+    return table;
+}
+
+void Scale::scan(const Scan&) {
+    NumberError wrong = finite_error(in, in_low, in_high, out_low, out_high);
+    const double range = in_high - in_low;
+    if (wrong == NumberError::none && range == 0) wrong = NumberError::wrong_limits;
+    if (wrong == NumberError::none && !all_finite(range)) wrong = NumberError::overflow;
+    settle(*this,
+           wrong == NumberError::none ? out_low + (in - in_low) / range * (out_high - out_low) : 0,
+           wrong);
+}
+
+std::span<const Field> FilterPt1::fields() {
+    using F = FilterPt1;
+    static const Field table[] = {
+        parameter("unit", &F::unit, "", number_unit_doc).one_of(number_unit_names),
+        input("in", &F::in, "{unit}", "the number").must_be_set(),
+        input("time_constant", &F::time_constant, "s", "T: a step is passed on to 63 % after it")
+            .at_least(0)
+            .must_be_set(),
+        output("out", &F::out, "{unit}", "the number smoothed"),
+        output("error", &F::error, "", number_error_doc),
+        output("error_id", &F::error_id, "", "why").one_of(number_error_names),
+    };
+    return table;
+}
+
+void FilterPt1::scan(const Scan& now) {
+    NumberError wrong = finite_error(in, time_constant);
+    if (wrong == NumberError::none && time_constant < 0) wrong = NumberError::wrong_limits;
+    if (!started || time_constant == 0) {
+        settle(*this, in, wrong);
+    } else {
+        const double dt = seconds(now.time - last_time);
+        settle(*this, out - (in - out) * Sleef_cinz_expm1d1_u10purec(-dt / time_constant), wrong);
+    }
+    if (error) return;
+    started = true;
+    last_time = now.time;
+}
+
+}  // namespace lineshaft
