@@ -2,11 +2,16 @@
 
 #include "blocks/axis/gear_axis.hpp"
 #include "blocks/axis/move.hpp"
+#include "blocks/axis/servo_drive.hpp"
 #include "blocks/axis/simulated_drive.hpp"
 #include "blocks/axis/virtual_axis.hpp"
 #include "blocks/circle/circle_fit.hpp"
 #include "blocks/circle/circle_ratio.hpp"
 #include "blocks/circle/path_circle.hpp"
+#include "blocks/contour/contour_comparison.hpp"
+#include "blocks/contour/contour_error.hpp"
+#include "blocks/contour/cross_coupling.hpp"
+#include "blocks/contour/path_rectangle.hpp"
 #include "blocks/logic/arithmetic.hpp"
 #include "blocks/logic/bistable.hpp"
 #include "blocks/logic/boolean.hpp"
@@ -27,9 +32,14 @@ Catalog standard_blocks() {
     blocks.add<GearAxis>();
     blocks.add<Move>();
     blocks.add<SimulatedDrive>();
+    blocks.add<ServoDrive>();
     blocks.add<CircleRatio>();
     blocks.add<CircleFit>();
     blocks.add<PathCircle>();
+    blocks.add<PathRectangle>();
+    blocks.add<ContourError>();
+    blocks.add<ContourComparison>();
+    blocks.add<CrossCoupling>();
     blocks.add<Pto>();
     blocks.add<ConstantJerkLine>();
     blocks.add<Ton>();

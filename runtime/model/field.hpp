@@ -133,12 +133,27 @@ Field field(Direction direction, std::string_view name, T Block::*member, std::s
     return f;
 }
 
+/// Of a member of one of the block's parts.
+template <class Block, class Part, class T>
+Field field(Direction direction, std::string_view name, Part Block::*part, T Part::*member,
+            std::string_view unit, std::string_view doc) {
+    Field f = field(direction, name, member, unit, doc);
+    f.offset += offset_of(part);
+    return f;
+}
+
 }  // namespace detail
 
 template <class Block, class T>
 Field parameter(std::string_view name, T Block::*member, std::string_view unit,
                 std::string_view doc) {
     return detail::field(Direction::parameter, name, member, unit, doc);
+}
+
+template <class Block, class Part, class T>
+Field parameter(std::string_view name, Part Block::*part, T Part::*member, std::string_view unit,
+                std::string_view doc) {
+    return detail::field(Direction::parameter, name, part, member, unit, doc);
 }
 
 template <class Block, class T>
@@ -149,6 +164,12 @@ Field input(std::string_view name, T Block::*member, std::string_view unit, std:
 template <class Block, class T>
 Field output(std::string_view name, T Block::*member, std::string_view unit, std::string_view doc) {
     return detail::field(Direction::output, name, member, unit, doc);
+}
+
+template <class Block, class Part, class T>
+Field output(std::string_view name, Part Block::*part, T Part::*member, std::string_view unit,
+             std::string_view doc) {
+    return detail::field(Direction::output, name, part, member, unit, doc);
 }
 
 /// Of a member with `std::int64_t size` and an array `rows`, whose element is a plain struct of the

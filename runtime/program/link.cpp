@@ -34,7 +34,7 @@ Linked Linker::link() {
     connect_events();
     connect_run();
     connect_stimuli();
-    connect_trace();
+    connect_traces();
     connect_expectations();
     return std::move(out_);
 }
@@ -107,6 +107,9 @@ void Linker::lay_out() {
         block.live = task.live + block.offset;
         block.published = block.type->is_device() ? block.live : task.published + block.offset;
         block.type->construct(block.live);
+        const Field* seed = block.type->find_settable("seed");
+        if (seed && seed->direction == Direction::parameter && seed->type == Type::integer)
+            out_.machine.block_seeds.push_back({block.live + seed->offset, block.plan->name.text});
     }
 }
 

@@ -41,6 +41,12 @@ void convert(const ConvertedCopy& wire) {
     std::memcpy(wire.target, &value, sizeof value);
 }
 
+void sow(const BlockSeed& seed, std::uint64_t run_seed) {
+    if (std::get<std::int64_t>(load(Type::integer, seed.place)) != 0) return;
+    const std::uint64_t drawn = Random(run_seed, seed.block + ".seed").next();
+    store(Type::integer, seed.place, static_cast<std::int64_t>(drawn >> 1));
+}
+
 }  // namespace
 
 std::string format_time(std::int64_t nanoseconds) {
@@ -52,6 +58,7 @@ std::string format_time(std::int64_t nanoseconds) {
 }
 
 Executive::Executive(Machine& machine) : machine_(machine) {
+    for (const BlockSeed& seed : machine.block_seeds) sow(seed, machine.seed);
     for (const Task& task : machine.tasks) {
         states_.push_back({.jitter = Random(machine.seed, task.name + ".jitter"),
                            .cost_jitter = Random(machine.seed, task.name + ".cost"),

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "runtime/scan/machine.hpp"
-#include "runtime/scan/random.hpp"
+#include "runtime/model/random.hpp"
 
 namespace lineshaft {
 

@@ -100,6 +100,13 @@ struct Signal {
     std::string describe(const Value& v) const { return lineshaft::describe(v, type, names, unit); }
 };
 
+/// The parameter `seed` of a block: where it is 0, the block's own number is drawn from the run's
+/// seed and the block's name.
+struct BlockSeed {
+    std::byte* place = nullptr;  ///< std::int64_t
+    std::string block;           ///< its name in the program
+};
+
 /// A value written from outside at a time, before the tasks due then run.
 struct Stimulus {
     std::int64_t at = 0;
@@ -116,6 +123,7 @@ struct Machine {
     std::vector<Stimulus> stimuli;  ///< sorted by time
     std::vector<DeviceCall> devices;
     std::vector<Trigger> triggers;
+    std::vector<BlockSeed> block_seeds;
     std::vector<std::int64_t> looks;  ///< sorted; instants because somebody looks at a device then
     std::optional<Signal> until;
     std::int64_t duration = 0;  ///< [ns]; with `until` the limit

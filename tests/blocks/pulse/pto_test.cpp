@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "runtime/scan/random.hpp"
+#include "runtime/model/random.hpp"
 #include "tests/blocks/pulse/decoder.hpp"
 
 using namespace lineshaft;

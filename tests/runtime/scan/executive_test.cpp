@@ -180,6 +180,23 @@ TEST_CASE("one seed gives one sequence of jitter, another seed another") {
     CHECK(times(7, "a") != times(7, "b"));
 }
 
+TEST_CASE("a block's seed is drawn from the run's and its name, unless it has one") {
+    const auto drawn = [](std::uint64_t seed, const std::string& block, std::int64_t given) {
+        Bench bench({{.name = "a"}});
+        bench.machine.seed = seed;
+        bench.machine.duration = 0;
+        bench.live("a").input = given;
+        bench.machine.block_seeds = {{reinterpret_cast<std::byte*>(&bench.live("a").input), block}};
+        bench.run();
+        return bench.live("a").input;
+    };
+    CHECK(drawn(7, "x", 0) > 0);
+    CHECK(drawn(7, "x", 0) == drawn(7, "x", 0));
+    CHECK(drawn(7, "x", 0) != drawn(8, "x", 0));
+    CHECK(drawn(7, "x", 0) != drawn(7, "y", 0));
+    CHECK(drawn(7, "x", 5) == 5);
+}
+
 TEST_CASE("a cost with jitter wanders about the cost") {
     Bench bench({{.name = "a", .every = 20, .cost = 10, .cost_jitter = 5}});
     bench.machine.duration = 4000 * ms;

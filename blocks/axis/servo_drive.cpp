@@ -1,0 +1,146 @@
+#include "blocks/axis/servo_drive.hpp"
+
+#include <cmath>
+
+namespace lineshaft {
+
+namespace {
+
+constexpr std::string_view loop_names[] = {"ideal", "first_order", "second_order"};
+constexpr std::string_view encoder_names[] = {"motor", "table"};
+constexpr std::string_view error_names[] = {"none", "not_finite", "no_position_loop",
+                                            "no_velocity_loop", "no_time_constant"};
+
+}  // namespace
+
+std::span<const Field> ServoDrive::fields() {
+    using D = ServoDrive;
+    static const Field table[] = {
+        parameter("unit", &D::unit, "", "unit of the axis").one_of(axis_unit_names),
+        parameter("delay", &D::delay, "", "clocks that a set-point travels to the drive")
+            .at_least(0)
+            .at_most(longest_delay),
+        parameter("kv", &D::kv, "1/s", "gain of the position loop; 0: motor at its set-point")
+            .at_least(0),
+        parameter("velocity_feed_forward", &D::velocity_feed_forward, "",
+                  "share of the set velocity; 1: all of it")
+            .at_least(0),
+        parameter("velocity_loop", &D::loop, &VelocityLoop::kind, "", "dynamics of the velocity")
+            .one_of(loop_names),
+        parameter("time_constant", &D::loop, &VelocityLoop::time_constant, "s",
+                  "of a first-order velocity loop")
+            .at_least(0),
+        parameter("natural_frequency", &D::loop, &VelocityLoop::natural_frequency, "rad/s",
+                  "of a second-order velocity loop")
+            .at_least(0),
+        parameter("damping", &D::loop, &VelocityLoop::damping, "",
+                  "of a second-order velocity loop; 1: critical")
+            .at_least(0),
+        parameter("coulomb_friction", &D::loop, &VelocityLoop::coulomb, "{unit}/s^2",
+                  "force over moved mass")
+            .at_least(0),
+        parameter("viscous_friction", &D::loop, &VelocityLoop::viscous, "1/s",
+                  "force over velocity and moved mass")
+            .at_least(0),
+        parameter("backlash", &D::transmission, &Transmission::backlash, "{unit}",
+                  "play between motor and table")
+            .at_least(0),
+        parameter("windup", &D::transmission, &Transmission::windup, "{unit}",
+                  "lag of the table in steady motion: friction over stiffness"),
+        parameter("breakaway_windup", &D::transmission, &Transmission::breakaway_windup, "{unit}",
+                  "lag of the table in addition, after a reversal: the reversal error"),
+        parameter("presliding_travel", &D::transmission, &Transmission::presliding_travel, "{unit}",
+                  "within which a reversal winds up")
+            .at_least(0),
+        parameter("breakaway_travel", &D::transmission, &Transmission::breakaway_travel, "{unit}",
+                  "over which `breakaway_windup` decays")
+            .at_least(0),
+        parameter("encoder", &D::encoder, "", "where it sits").one_of(encoder_names),
+        parameter("resolution", &D::resolution, "{unit}", "of the encoder; 0: no steps")
+            .at_least(0),
+        parameter("noise", &D::noise, "{unit}", "of the encoder, standard deviation").at_least(0),
+        parameter("seed", &D::seed, "",
+                  "of the noise; 0: drawn from the run's seed and the block's name")
+            .at_least(0),
+        input("set_position", &D::set_position, "{unit}", "set-point of the axis").must_be_set(),
+        input("set_velocity", &D::set_velocity, "{unit}/s", "of the set-point"),
+        output("position", &D::position, "{unit}", "actual position, read from the encoder"),
+        output("velocity", &D::velocity, "{unit}/s", "of the motor"),
+        output("motor_position", &D::motor_position, "{unit}", "where the motor is"),
+        output("table_position", &D::table_position, "{unit}", "where the table is"),
+        output("following_error", &D::following_error, "{unit}",
+               "set-point in the drive - actual position"),
+        output("error", &D::error, "", "the drive cannot follow; outputs are held"),
+        output("error_id", &D::error_id, "", "why").one_of(error_names),
+    };
+    return table;
+}
+
+void ServoDrive::scan(const Scan& now) {
+    error_id = check();
+    if (error_id == ServoError::none) {
+        if (first_scan) start();
+        const double elapsed = first_scan ? 0 : seconds(now.time - last_time);
+        first_scan = false;
+        error_id = move(transported(), elapsed);
+    }
+    last_time = now.time;
+    error = error_id != ServoError::none;
+}
+
+ServoError ServoDrive::check() const {
+    using Kind = VelocityLoop::Kind;
+    if (!all_finite(set_position, set_velocity)) return ServoError::not_finite;
+    if (kv == 0 && (loop.kind != Kind::ideal || velocity_feed_forward > 0))
+        return ServoError::no_position_loop;
+    if (loop.kind == Kind::ideal && (loop.coulomb > 0 || loop.viscous > 0))
+        return ServoError::no_velocity_loop;
+    if ((loop.kind == Kind::first_order && loop.time_constant == 0) ||
+        (loop.kind == Kind::second_order && loop.natural_frequency == 0))
+        return ServoError::no_time_constant;
+    return ServoError::none;
+}
+
+void ServoDrive::start() {
+    transport.fill({set_position, 0});
+    motor.position = gear.driven = set_position;
+    random = Random(static_cast<std::uint64_t>(seed), "noise");
+}
+
+/// The set-point that reaches the drive now.
+ServoDrive::SetPoint ServoDrive::transported() {
+    constexpr auto size = static_cast<std::int64_t>(longest_delay + 1);
+    newest = (newest + 1) % size;
+    transport[static_cast<std::size_t>(newest)] = {set_position, set_velocity};
+    return transport[static_cast<std::size_t>((newest + size - delay) % size)];
+}
+
+/// What no double can hold is not set.
+ServoError ServoDrive::move(const SetPoint& wanted, double elapsed) {
+    const VelocityLoop::State next = kv > 0
+                                         ? loop.advance(motor, demand, elapsed)
+                                         : VelocityLoop::State{wanted.position, wanted.velocity, 0};
+    const Transmission::State next_gear = transmission.advance(gear, next.position);
+    const double table = transmission.table(next_gear);
+    const double reading = read_encoder(encoder == Encoder::motor ? next.position : table);
+    const double distance = wanted.position - reading;
+    const double next_demand = kv * distance + velocity_feed_forward * wanted.velocity;
+    if (!all_finite(next.position, next.velocity, next.integral, table, reading, next_demand))
+        return ServoError::not_finite;
+    motor = next;
+    gear = next_gear;
+    demand = next_demand;
+    motor_position = next.position;
+    velocity = next.velocity;
+    table_position = table;
+    position = reading;
+    following_error = distance;
+    return ServoError::none;
+}
+
+double ServoDrive::read_encoder(double true_position) {
+    const double seen = noise > 0 ? true_position + noise * random.normal() : true_position;
+    return resolution > 0 ? resolution * std::round(seen / resolution) : seen;
+}
+
+}  // namespace lineshaft

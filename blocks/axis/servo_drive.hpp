@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "blocks/axis/axis_error.hpp"
+#include "blocks/axis/transmission.hpp"
+#include "blocks/axis/velocity_loop.hpp"
+#include "runtime/model/field.hpp"
+#include "runtime/model/random.hpp"
+#include "runtime/model/scan.hpp"
+
+namespace lineshaft {
+
+/// Why a servo drive set `error`. It holds its outputs, and goes on when the inputs are good again.
+enum class ServoError : std::int64_t {
+    none,
+    not_finite,        ///< an input is NaN or infinite, or the motion leaves the range of numbers
+    no_position_loop,  ///< velocity loop or feed-forward without `kv`: the axis would drift away
+    no_velocity_loop,  ///< friction without a velocity loop that it could act on
+    no_time_constant,  ///< a velocity loop without its `time_constant` or `natural_frequency`
+};
+
+/// A drive with its motor, mechanics and encoder, from the set-point of one clock to the actual
+/// position of the next. Everything is off by default; the axis is then in simulation, as Siemens'
+/// technology objects have it: the actual position is the set-point that was there at the scan.
+///
+///     set-point       r(k) = set_position(k - delay), rv likewise             transport, in clocks
+///     position loop   u = kv (r - position) + velocity_feed_forward * rv      held for a clock
+///     velocity loop   u -> velocity of the motor, with Coulomb and viscous friction:
+///                     see velocity_loop.hpp; without kv the motor is at r at once
+///     transmission    motor -> table, with backlash and windup: see transmission.hpp
+///     encoder         position = resolution * round((m + noise) / resolution), m of motor or
+///                     table, noise normal with the standard deviation `noise`
+///
+/// In steady motion at velocity V the first-order loop follows at a distance of
+///     ((1 - velocity_feed_forward + d T) V + c T sign(V)) / kv
+/// and friction holds an axis at rest within c T / kv. The drive starts at rest on its first
+/// set-point. Elapsed time is that between the scans, also when the task's clock wanders.
+struct ServoDrive {
+    enum class Encoder : std::int64_t { motor, table };
+    static constexpr std::int64_t longest_delay = 64;  ///< [clocks]
+
+    AxisUnit unit = AxisUnit::mm;
+    std::int64_t delay = 0;
+    double kv = 0, velocity_feed_forward = 0;
+    VelocityLoop loop;
+    Transmission transmission;
+    Encoder encoder = Encoder::motor;
+    double resolution = 0, noise = 0;
+    std::int64_t seed = 0;
+
+    double set_position = 0, set_velocity = 0;
+
+    double position = 0, velocity = 0;
+    double motor_position = 0, table_position = 0;
+    double following_error = 0;
+    bool error = false;
+    ServoError error_id = ServoError::none;
+
+    struct SetPoint {
+        double position = 0, velocity = 0;
+    };
+    std::array<SetPoint, longest_delay + 1> transport{};  ///< a ring
+    std::int64_t newest = 0;
+    bool first_scan = true;
+    std::int64_t last_time = 0;
+    double demand = 0;  ///< u [u/s], since the last scan
+    VelocityLoop::State motor;
+    Transmission::State gear;
+    Random random{0, "noise"};
+
+    static constexpr std::string_view type = "servo_drive";
+    static constexpr std::string_view doc =
+        "drive, motor, mechanics and encoder of an axis; by default in simulation";
+    static std::span<const Field> fields();
+    void scan(const Scan& now);
+
+  private:
+    ServoError check() const;
+    void start();
+    SetPoint transported();
+    ServoError move(const SetPoint& wanted, double elapsed);
+    double read_encoder(double true_position);
+};
+
+}  // namespace lineshaft

@@ -1,0 +1,119 @@
+#include "blocks/contour/baseline.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <unsupported/Eigen/Polynomials>
+
+namespace lineshaft {
+
+namespace {
+
+double length(double x, double y) {
+    return std::sqrt(x * x + y * y);
+}
+
+double segment_distance(Point a, Point b, Point p) {
+    const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
+    const double along = (p.x - a.x) * dx + (p.y - a.y) * dy;
+    const double t = squared > 0 ? std::clamp(along / squared, 0.0, 1.0) : 0;
+    return length(p.x - a.x - t * dx, p.y - a.y - t * dy);
+}
+
+/// Calls `use` with each real root of g[0] + g[1] t + .. + g[Degree] t^Degree, by the eigenvalues
+/// of its companion matrix. A leading term too small to matter for t = 0 .. 1 is left out.
+template <int Degree, class Use>
+void real_roots(const std::array<double, 6>& g, const Use& use) {
+    if constexpr (Degree > 0) {
+        double greatest = 0;
+        for (int i = 0; i <= Degree; ++i)
+            greatest = std::max(greatest, std::abs(g[static_cast<std::size_t>(i)]));
+        if (!(std::abs(g[Degree]) > 1e-13 * greatest)) return real_roots<Degree - 1>(g, use);
+        if constexpr (Degree == 1) {
+            use(-g[0] / g[1]);
+        } else {
+            const Eigen::Map<const Eigen::Matrix<double, Degree + 1, 1>> coefficients(g.data());
+            const Eigen::PolynomialSolver<double, Degree> solver(coefficients);
+            for (const std::complex<double>& root : solver.roots())
+                if (std::abs(root.imag()) < 1e-4) use(root.real());
+        }
+    }
+}
+
+double span_distance(const SplineSpan& span, Point p) {
+    const auto& c = span.c;
+    const auto deviation = [&](double t) {
+        const Point s = span.at(t);
+        return length(s.x - p.x, s.y - p.y);
+    };
+    std::array<double, 6> g{};  // of (s - p) s'
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Point s{c[i].x - (i == 0 ? p.x : 0), c[i].y - (i == 0 ? p.y : 0)};
+        for (std::size_t k = 1; k < 4; ++k)
+            g[i + k - 1] += static_cast<double>(k) * (s.x * c[k].x + s.y * c[k].y);
+    }
+    double least = std::min(deviation(0), deviation(1));
+    real_roots<5>(g, [&](double t) {
+        if (t > 0 && t < 1) least = std::min(least, deviation(t));
+    });
+    return least;
+}
+
+}  // namespace
+
+double polyline_distance(std::span<const Point> points, std::size_t nearest, Point p) {
+    double least = length(p.x - points[nearest].x, p.y - points[nearest].y);
+    if (nearest > 0)
+        least = std::min(least, segment_distance(points[nearest - 1], points[nearest], p));
+    if (nearest + 1 < points.size())
+        least = std::min(least, segment_distance(points[nearest], points[nearest + 1], p));
+    return least;
+}
+
+Point SplineSpan::at(double t) const {
+    return {c[0].x + t * (c[1].x + t * (c[2].x + t * c[3].x)),
+            c[0].y + t * (c[1].y + t * (c[2].y + t * c[3].y))};
+}
+
+/// h[i-1] m[i-1] + 2 (h[i-1] + h[i]) m[i] + h[i] m[i+1] = 6 (slope[i] - slope[i-1]), m = s''.
+/// Until the last loop, c[1].x of a span is its h, c[2] the m at its beginning, c[3].x its pivot.
+void natural_spline(std::span<const Point> points, std::span<SplineSpan> spans) {
+    const std::size_t n = spans.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const Point a = points[i], b = points[i + 1];
+        spans[i] = {{a, {length(b.x - a.x, b.y - a.y), 0}, {}, {}}};
+    }
+    for (std::size_t i = 1; i < n; ++i) {
+        const Point a = points[i - 1], b = points[i], d = points[i + 1];
+        auto& [c0, c1, m, pivot] = spans[i].c;
+        const auto& [p0, p1, last_m, last_pivot] = spans[i - 1].c;
+        const double before = p1.x, after = c1.x, w = i > 1 ? before / last_pivot.x : 0;
+        pivot.x = 2 * (before + after) - w * before;
+        m.x = 6 * ((d.x - b.x) / after - (b.x - a.x) / before) - w * last_m.x;
+        m.y = 6 * ((d.y - b.y) / after - (b.y - a.y) / before) - w * last_m.y;
+    }
+    Point next{};
+    for (std::size_t i = n; i-- > 1;) {
+        auto& [c0, c1, m, pivot] = spans[i].c;
+        next = m = {(m.x - c1.x * next.x) / pivot.x, (m.y - c1.x * next.y) / pivot.x};
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        auto& [c0, c1, c2, c3] = spans[i].c;
+        const Point end = points[i + 1], m0 = c2, m1 = i + 1 < n ? spans[i + 1].c[2] : Point{};
+        const double h2 = c1.x * c1.x;
+        c1 = {end.x - c0.x - (2 * m0.x + m1.x) * h2 / 6, end.y - c0.y - (2 * m0.y + m1.y) * h2 / 6};
+        c2 = {m0.x * h2 / 2, m0.y * h2 / 2};
+        c3 = {(m1.x - m0.x) * h2 / 6, (m1.y - m0.y) * h2 / 6};
+    }
+}
+
+double spline_distance(std::span<const SplineSpan> spans, std::size_t nearest, Point p) {
+    double least = std::numeric_limits<double>::infinity();
+    if (nearest > 0) least = span_distance(spans[nearest - 1], p);
+    if (nearest < spans.size()) least = std::min(least, span_distance(spans[nearest], p));
+    return least;
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,37 @@
+#include "runtime/model/random.hpp"
+
+#include <cmath>
+
+#include <sleef.h>
+
+namespace lineshaft {
+
+Random::Random(std::uint64_t seed, std::string_view name) : state_(0xcbf29ce484222325) {
+    for (const char c : name) state_ = (state_ ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+    state_ ^= seed * 0x9e3779b97f4a7c15;
+}
+
+std::uint64_t Random::next() {
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+    return z ^ (z >> 31);
+}
+
+std::int64_t Random::around_zero(std::int64_t spread) {
+    __extension__ using Wide = unsigned __int128;
+    const Wide range = static_cast<Wide>(spread) * 2 + 1;
+    const Wide scaled = (next() * range) >> 64;
+    return static_cast<std::int64_t>(scaled - static_cast<Wide>(spread));
+}
+
+double Random::share() {
+    return (static_cast<double>(next() >> 12) + 0.5) * 0x1p-52;
+}
+
+double Random::normal() {
+    const double radius = std::sqrt(-2 * Sleef_cinz_logd1_u10purec(share()));
+    return radius * Sleef_cinz_cospid1_u05purec(2 * share());
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace lineshaft {
+
+/// Seeded generator of one named use ("main.jitter"), so that adding a use elsewhere does not
+/// change its draws. SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
+class Random {
+  public:
+    Random(std::uint64_t seed, std::string_view name);
+
+    std::uint64_t next();
+
+    /// Whole number in [-spread, spread], each equally likely (to 2^-64 of the range).
+    std::int64_t around_zero(std::int64_t spread);
+
+    /// In (0, 1): the middle of one of 2^52 equal parts.
+    double share();
+
+    /// Of the standard normal distribution (Box and Muller 1958).
+    double normal();
+
+  private:
+    std::uint64_t state_;
+};
+
+}  // namespace lineshaft
