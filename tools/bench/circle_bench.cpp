@@ -40,15 +40,15 @@ void executive(benchmark::State& state, bool traced) {
     for (auto _ : state) {
         state.PauseTiming();
         Loaded loaded = load_circle();
-        MemoryTrace memory(*loaded.linked.trace);
+        MemoryTrace memory(loaded.linked.traces.front());
         memory.words.reserve(20'000 * memory.row_words);
-        Recorder recorder(*loaded.linked.trace, memory);
+        Recorder recorder(loaded.linked.traces.front(), memory);
         std::vector<Observer*> observers;
         if (traced) observers.push_back(&recorder);
         Executive executive(loaded.linked.machine);
         state.ResumeTiming();
         const RunResult result = executive.run(observers);
-        recorder.flush();
+        recorder.finish();
         benchmark::DoNotOptimize(memory.words.data());
         clocks = result.scans.front();
     }

@@ -37,12 +37,12 @@ struct RecordedCircle {
     RecordedCircle() {
         Recorder recorder(setup, trace);
         Executive(loaded.linked.machine).run({&recorder});
-        recorder.flush();
+        recorder.finish();
     }
     std::size_t rows() const { return trace.rows(); }
 
     Loaded loaded = load_circle();
-    TraceSetup setup = *loaded.linked.trace;
+    TraceSetup setup = loaded.linked.traces.front();
     MemoryTrace trace{setup};
     std::size_t row_words = trace.row_words;
     const std::vector<std::uint64_t>& words = trace.words;
