@@ -21,17 +21,25 @@ const Copy* copy(const Copy* wire, std::uint32_t count) {
     return wire;
 }
 
-void convert(const ConvertedCopy& wire) {
-    if (wire.kind == ConvertedCopy::Kind::negated) {
-        const bool value = !read<bool>(wire.source);
-        std::memcpy(wire.target, &value, sizeof value);
-        return;
-    }
-    const double given = wire.kind == ConvertedCopy::Kind::integer_to_real
-                             ? static_cast<double>(read<std::int64_t>(wire.source))
-                             : read<double>(wire.source);
-    const double value = given * wire.factor / wire.divisor;
+template <class T>
+void store(const ConvertedCopy& wire, T value) {
     std::memcpy(wire.target, &value, sizeof value);
+}
+
+void convert(const ConvertedCopy& wire) {
+    using Kind = ConvertedCopy::Kind;
+    const auto widened = [&] { return static_cast<double>(read<std::int64_t>(wire.source)); };
+    const auto scaled = [&](double value) { return value * wire.factor / wire.divisor; };
+    switch (wire.kind) {
+        case Kind::negated:
+            return store(wire, !read<bool>(wire.source));
+        case Kind::widened:
+            return store(wire, widened());
+        case Kind::scaled:
+            return store(wire, scaled(read<double>(wire.source)));
+        case Kind::widened_and_scaled:
+            return store(wire, scaled(widened()));
+    }
 }
 
 void sow(const BlockSeed& seed, std::uint64_t run_seed) {
