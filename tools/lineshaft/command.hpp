@@ -66,5 +66,6 @@ void add_blocks(CLI::App& app, Exit& result);
 void add_schema(CLI::App& app, Exit& result);
 void add_explain(CLI::App& app, Exit& result);
 void add_plan(CLI::App& app, Exit& result);
+void add_contour(CLI::App& app, Exit& result);
 
 }  // namespace lineshaft
