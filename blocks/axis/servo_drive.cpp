@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include <sleef.h>
-
 namespace lineshaft {
 
 namespace {
@@ -12,14 +10,6 @@ constexpr std::string_view loop_names[] = {"ideal", "first_order", "second_order
 constexpr std::string_view encoder_names[] = {"motor", "table"};
 constexpr std::string_view error_names[] = {"none", "not_finite", "no_position_loop",
                                             "no_velocity_loop", "no_time_constant"};
-
-/// Standard normal number (Box and Muller 1958).
-double normal(Random& random) {
-    constexpr double unit = 0x1p-53;
-    const double a = static_cast<double>((random.next() >> 11) + 1) * unit;
-    const double b = static_cast<double>(random.next() >> 11) * unit;
-    return std::sqrt(-2 * Sleef_cinz_logd1_u10purec(a)) * Sleef_cinz_cospid1_u05purec(2 * b);
-}
 
 }  // namespace
 
@@ -149,7 +139,7 @@ ServoError ServoDrive::move(const SetPoint& wanted, double elapsed) {
 }
 
 double ServoDrive::read_encoder(double true_position) {
-    const double seen = noise > 0 ? true_position + noise * normal(random) : true_position;
+    const double seen = noise > 0 ? true_position + noise * random.normal() : true_position;
     return resolution > 0 ? resolution * std::round(seen / resolution) : seen;
 }
 

@@ -1,5 +1,9 @@
 #include "runtime/model/random.hpp"
 
+#include <cmath>
+
+#include <sleef.h>
+
 namespace lineshaft {
 
 Random::Random(std::uint64_t seed, std::string_view name) : state_(0xcbf29ce484222325) {
@@ -19,6 +23,15 @@ std::int64_t Random::around_zero(std::int64_t spread) {
     const Wide range = static_cast<Wide>(spread) * 2 + 1;
     const Wide scaled = (next() * range) >> 64;
     return static_cast<std::int64_t>(scaled - static_cast<Wide>(spread));
+}
+
+double Random::share() {
+    return (static_cast<double>(next() >> 12) + 0.5) * 0x1p-52;
+}
+
+double Random::normal() {
+    const double radius = std::sqrt(-2 * Sleef_cinz_logd1_u10purec(share()));
+    return radius * Sleef_cinz_cospid1_u05purec(2 * share());
 }
 
 }  // namespace lineshaft

@@ -16,6 +16,12 @@ class Random {
     /// Whole number in [-spread, spread], each equally likely (to 2^-64 of the range).
     std::int64_t around_zero(std::int64_t spread);
 
+    /// In (0, 1): the middle of one of 2^52 equal parts.
+    double share();
+
+    /// Of the standard normal distribution (Box and Muller 1958).
+    double normal();
+
   private:
     std::uint64_t state_;
 };

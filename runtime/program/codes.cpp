@@ -113,8 +113,8 @@ and underscores, and do not begin with a digit: 'slave_x', not 'slave-x', '2nd' 
 have a meaning. A block cannot be called 'inputs', since inputs.x names the program's
 own inputs.)"},
     {"L0211", "the file does not say what it is, or of which version",
-     R"(A program begins with 'lineshaft: 1', a study with 'lineshaft_study: 1', a controller
-with 'lineshaft_controller: 1'. The number is the version of the file's form, so that
+     R"(A program begins with 'lineshaft: 1', a study with 'lineshaft_study: 1', a fit with
+'lineshaft_fit: 1', a controller with 'lineshaft_controller: 1'. The number is the version of the file's form, so that
 a later lineshaft can still tell what an old file means. This lineshaft reads version
 1.)"},
 
@@ -133,11 +133,19 @@ its cases would share it. Write one expectation for each thing that must hold:
 A task is cyclic ('every', 'offset', 'jitter') or started by the rising edges of boolean
 signals ('on'), and then has no interval that every(...) could name:
     tasks:
-      pto_done: {on: x.done, priority: 18, cost: 0.33 ms})"},
+      pto_done: {on: x.done, priority: 18, cost: 0.33 ms}
+A trace's trigger has a signal and one condition (edge, above, below, inside or equals);
+'pre_trigger' and 'repeat' need a trigger other than the start of the run.)"},
     {"L0214", "a row of the wrong length",
      R"(A list of rows, such as a pulse output's profile, has as many numbers in each row as the
 table has columns; 'lineshaft blocks pto' names them:
     profile: [[2 kHz, 10 kHz, 200], [10 kHz, 10 kHz, 3400], [10 kHz, 2 kHz, 400]])"},
+    {"L0215", "the rows before a trigger take too much memory",
+     R"(A trace with 'pre_trigger' keeps that many rows in memory while it waits; what all traces
+of a program keep is known before the run starts, and is limited (the message says to how
+much). A row takes 8 bytes for each signal and 16 more. Keep fewer rows or fewer signals,
+or record every n-th scan only. What is recorded from the trigger on goes to the disk and
+is not limited.)"},
 
     {"L0301", "not a number",
      R"(A number is due: digits with an optional point and exponent, then an optional unit,
@@ -255,6 +263,39 @@ max, mean, and names: a case's name stands for its first compared signal,
 'case.block.port' for a certain one. mean_relative_error and greatest_relative_error
 are taken over all rows that have a paper's value.
     formula: 1 - early / immediate)"},
+    {"L0603", "differences of different units without uncertainties",
+     R"(A fit minimises the sum of the squares of all differences between what was measured and
+what the program gives. A difference in mm and one in s cannot be added, so each is
+divided by how exact its figure is:
+    compare:
+      line.time: {paper: 8.449 s, uncertainty: 0.5 ms}
+      x.pulses: {paper: 449959, uncertainty: 1}
+Where all figures are of one unit the uncertainty may be left out: then all weigh the
+same.)"},
+    {"L0604", "fewer figures than parameters",
+     R"(As many parameters as there are measured figures can be looked for, not more: with
+fewer figures many values fit equally well. Cells that are held out do not count, for
+they only test what the others have found. Take a parameter out of 'parameters:' (its
+value then comes from the program or from 'set:'), or compare more signals or cases.)"},
+    {"L0611", "chunks of a study are missing",
+     R"(The result of a study in chunks is put together only when every chunk is there.
+    lineshaft study PLAN.yaml --chunk 3/8 -o parts/part_3.csv
+    lineshaft study PLAN.yaml --merge parts -o all.csv)"},
+    {"L0612", "a chunk of another study",
+     R"(A chunk's sidecar has a hash of the plan, the program, its controllers, the settings of the
+command line and the version of lineshaft. It differs from that of the plan to be merged, or
+the chunks were made for different divisions (3/8 and 3/10). Compute the chunk again.)"},
+    {"L0613", "a damaged chunk",
+     R"(The rows of a chunk are not those that its sidecar (FILE-metadata.json) describes: the file
+was cut off, edited, or copied without it. Compute the chunk again.)"},
+    {"L0614", "results without a file",
+     R"(--chunk, --merge and --resume are about a result file: say which with -o FILE.csv.)"},
+    {"L0605", "a measured trace that cannot be compared",
+     R"(A fit takes the program's signals at the times that the trace's column 'time' gives, in
+seconds from the start of the run. So these times are not negative and rise from row to
+row. Rows where a compared column is empty are left out. If the
+measurement begins later than the run, say by how much:
+    trace: {file: measured.csv, offset: 10 ms})"},
 
     {"L0701", "a CSV file without columns",
      R"(The first line of a CSV file names its columns, separated by commas (or semicolons, where
@@ -283,6 +324,35 @@ enumerations the number of the name, as the sidecar tells.)"},
      R"(Beside a trace NAME.csv stands NAME.csv-metadata.json with units, types and the
 program's hash, as JSON (W3C CSVW). This one is no such file. Record the trace again, or
 remove the sidecar: then all columns are plain numbers.)"},
+    {"L0708", "traces that cannot be compared",
+     R"(Two traces are compared row by row, so both must come from the same program and have the
+same columns in the same order, with the same units, and the same interval between rows.
+'lineshaft diff --any-program' compares traces of two programs, such as the one before and
+after a change.)"},
+    {"L0709", "a trace without a sidecar",
+     R"(Whether a trace NAME.csv is whole is told by NAME.csv-metadata.json beside it, which has
+its rows and the checksum of its bytes. Copy the two together.)"},
+    {"L0721", "a trace without rows",
+     R"(The file has a header, but no row: nothing was recorded. Perhaps the run ended before the
+traced task's first scan, or before the trace's trigger.)"},
+    {"L0722", "a trace whose time does not rise",
+     R"(The rows of a trace stand in the order of their column 'time', and each has a time. This
+file has been sorted by something else, or put together from several traces.)"},
+    {"L0723", "a sidecar of another trace",
+     R"(The sidecar NAME.csv-metadata.json beside a trace describes its columns; this one
+describes others. Copy a trace together with its own sidecar, or remove the sidecar.)"},
+    {"L0724", "traces of different signals",
+     R"(A report lays several traces over each other signal by signal, so all of them must have
+the same ones: they are runs of one program, perhaps with other --set values. Pick the
+signals they share:
+    lineshaft report a.csv b.csv --signals x.position,y.position -o both.html)"},
+    {"L0725", "traces of different interval",
+     R"(The rows of the two traces lie at different distances in time, so that sample cannot be
+compared with sample. Record both with the same task and 'every'.)"},
+    {"L0726", "no results of a study",
+     R"(A .json file given to 'lineshaft report' is what a study printed:
+    lineshaft study programs/paper/wei2025_table1.yaml --json >table1.json
+    lineshaft report table1.json -o table1.html)"},
 };
 
 }  // namespace

@@ -34,7 +34,7 @@ Linked Linker::link() {
     connect_events();
     connect_run();
     connect_stimuli();
-    connect_trace();
+    connect_traces();
     connect_expectations();
     return std::move(out_);
 }

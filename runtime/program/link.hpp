@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "runtime/model/catalog.hpp"
@@ -14,7 +13,7 @@ namespace lineshaft {
 /// A program that can run.
 struct Linked {
     Machine machine;
-    std::optional<TraceSetup> trace;
+    std::vector<TraceSetup> traces;
     std::vector<Expectation> expectations;
 };
 

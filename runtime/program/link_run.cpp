@@ -75,22 +75,6 @@ void Linker::connect_stimulus(std::int64_t at, const Node& key, const Node& valu
         out_.machine.stimuli.push_back({at, slot, field.type, *v});
 }
 
-void Linker::connect_trace() {
-    if (!program_.trace) return;
-    const TracePlan& plan = *program_.trace;
-    TraceSetup setup;
-    setup.every = plan.every;
-    const auto it = std::ranges::find(task_names_, plan.task.text);
-    if (it != task_names_.end())
-        setup.task = static_cast<int>(it - task_names_.begin());
-    else if (!plan.task.text.empty() && program_.tasks_known)
-        read_.fail("L0206", plan.task, fmt::format("unknown task '{}'", plan.task.text),
-                   suggest(plan.task.text, task_names_));
-    for (const Node& node : plan.signals)
-        if (auto s = signal(node)) setup.signals.push_back(std::move(*s));
-    out_.trace = std::move(setup);
-}
-
 std::optional<double> Linker::bound(const Signal& signal, const Node& node) {
     Field field;
     field.name = signal.name;

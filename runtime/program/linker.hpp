@@ -43,7 +43,8 @@ std::string kind(Type type, std::span<const std::string_view> names);
 
 /// Turns a program's names into memory, see link(). Its functions stand in link.cpp (the order of
 /// work, tasks, memory), link_names.cpp (signals and units), link_blocks.cpp (parameters and
-/// constants), link_wires.cpp, and link_run.cpp (what happens to the machine and who watches).
+/// constants), link_wires.cpp, link_run.cpp (what happens to the machine and what is expected)
+/// and link_trace.cpp.
 class Linker {
   public:
     Linker(const Program& program, const Catalog& catalog, Diagnostics& out)
@@ -79,7 +80,9 @@ class Linker {
     void connect_run();
     void connect_stimuli();
     void connect_stimulus(std::int64_t at, const Node& key, const Node& value);
-    void connect_trace();
+    void connect_traces();
+    TraceSetup connect_trace(const TracePlan& plan);
+    TraceTrigger connect_trigger(const TriggerPlan& plan);
     void connect_expectations();
     std::optional<double> bound(const Signal& signal, const Node& node);
     std::optional<double> tolerance(const Signal& signal, const Node& node, double around);

@@ -75,11 +75,11 @@ class Substitution {
 
 Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     program_.file = file;
-    auto root = parse_yaml(file, read_.diagnostics());
+    auto root = parse(file);
     if (!root || !check_kind(read_, *root, "lineshaft")) return std::move(program_);
     read_.only_keys(*root, "a program",
                     {"lineshaft", "title", "parameters", "controller", "tasks", "blocks", "inputs",
-                     "run", "stimulus", "trace", "expect"});
+                     "run", "stimulus", "trace", "traces", "expect"});
     parameters(*root);
     Substitution(values_, read_).apply(*root);
     program_.title = fs::path(file->path).stem().string();
@@ -97,9 +97,15 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
             read_.require(*root, "run", "a program", "say how long to run: run: {for: 2 s}"))
         run(*n);
     if (const Node* n = root->find("stimulus")) stimuli(*n);
-    if (const Node* n = root->find("trace")) trace(*n);
+    if (const Node* n = root->find("trace")) trace({}, *n);
+    if (const Node* n = root->find("traces")) traces(*n);
     if (const Node* n = root->find("expect")) expectations(*n);
     return std::move(program_);
+}
+
+std::optional<Node> ProgramReader::parse(const std::shared_ptr<const SourceFile>& file) const {
+    return options_.files ? options_.files->parse(file, read_.diagnostics())
+                          : parse_yaml(file, read_.diagnostics());
 }
 
 void ProgramReader::parameters(const Node& root) {
@@ -139,13 +145,18 @@ void ProgramReader::controller(const Node& node) {
     const auto path =
         resolve_path(node.text, program_.file->path, options_.include_dirs, node.mark, out);
     if (!path) return;
-    const auto file = read_source(*path, out, node.mark);
+    const auto file = options_.files ? options_.files->source(*path, out, node.mark)
+                                     : read_source(*path, out, node.mark);
     if (!file) return;
-    auto root = parse_yaml(file, out);
+    const auto root = parse(file);
     if (!root || !check_kind(read_, *root, "lineshaft_controller")) return;
     program_.tasks_known = true;
     read_.only_keys(*root, "a controller", {"lineshaft_controller", "title", "tasks"});
-    if (const Node* n = read_.require(*root, "tasks", "a controller")) tasks(*n);
+    if (const Node* n = read_.require(*root, "tasks", "a controller")) {
+        in_controller_ = true;
+        tasks(*n);
+        in_controller_ = false;
+    }
 }
 
 void ProgramReader::blocks(const Node& node) {
@@ -176,6 +187,7 @@ void ProgramReader::block(BlockPlan& plan, const Node& body) {
         read_.fail("L0202", plan.name, what + " has no 'task'", "say which task scans it");
     else if (read_.expect_scalar(*task, "a task's name"))
         plan.task = *task;
+    check_attached(plan.task);
     for (const auto& [key, value] : body.entries)
         if (key.text != "type" && key.text != "task") plan.ports.emplace_back(key, value);
 }
@@ -193,6 +205,7 @@ bool check_kind(const Reader& read, const Node& root, std::string_view kind) {
     };
     static constexpr Kind kinds[] = {{"lineshaft", "a program"},
                                      {"lineshaft_study", "a study"},
+                                     {"lineshaft_fit", "a fit"},
                                      {"lineshaft_controller", "a controller"}};
     const std::string_view wanted = std::ranges::find(kinds, kind, &Kind::key)->what;
     const std::string begin = fmt::format("{} begins with '{}: 1'", wanted, kind);

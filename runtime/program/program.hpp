@@ -9,7 +9,8 @@
 
 #include "runtime/program/diagnostic.hpp"
 #include "runtime/program/reader.hpp"
-#include "runtime/program/yaml.hpp"
+#include "runtime/program/yaml_files.hpp"
+#include "runtime/trace/trigger.hpp"
 
 namespace lineshaft {
 
@@ -26,7 +27,8 @@ struct Setting {
 struct TaskPlan {
     std::string name;
     Mark mark;
-    std::vector<Node> on;  ///< boolean signals whose rising edges start it; then `every` is 0
+    std::vector<Node> on;     ///< boolean signals whose rising edges start it; then `every` is 0
+    bool unattached = false;  ///< the controller leaves it to the program to say what starts it
     std::int64_t every = 0;
     std::int64_t offset = 0;
     std::int64_t priority = 1;  ///< a larger number wins, as Siemens counts
@@ -56,10 +58,25 @@ struct StimulusPlan {
     std::vector<std::pair<Node, Node>> set;
 };
 
+/// When a trace begins: `signal` and what must hold of it.
+struct TriggerPlan {
+    TraceTrigger::Kind kind = TraceTrigger::Kind::immediate;
+    Node signal;
+    std::vector<Node> values;  ///< of above, below, equals one, of inside two
+};
+
+/// `trace:`, which has no name, or one of `traces:`. Zeros: not given.
 struct TracePlan {
+    Node name;
     Node task;
     std::int64_t every = 1;  ///< scans
     std::vector<Node> signals;
+    TriggerPlan trigger;
+    Node ring;                     ///< the value of `pre_trigger`
+    std::int64_t pre_trigger = 0;  ///< rows
+    std::int64_t samples = 0;      ///< rows
+    std::int64_t duration = 0;     ///< [ns]
+    std::int64_t repeat = 1;
 };
 
 /// One line of `expect:`, see `programs/README.md`.
@@ -81,7 +98,7 @@ struct Program {
     std::vector<BlockPlan> blocks;
     std::vector<std::pair<Node, Node>> inputs;
     std::vector<StimulusPlan> stimuli;
-    std::optional<TracePlan> trace;
+    std::vector<TracePlan> traces;
     std::vector<ExpectPlan> expectations;
     RunPlan run;
 };
@@ -90,6 +107,7 @@ struct Program {
 struct LoadOptions {
     std::vector<Setting> settings;
     std::vector<std::string> include_dirs;  ///< allowed besides the project root
+    YamlFiles* files = nullptr;  ///< where files are looked up that were read before; may be null
 };
 
 /// Checks the structure of `file` and replaces parameters. Files that it names (a controller) are
@@ -98,7 +116,7 @@ Program read_program(std::shared_ptr<const SourceFile> file, const LoadOptions& 
                      Diagnostics& out);
 
 /// L0211 and false unless `root` is a file of `kind`, one of `lineshaft`, `lineshaft_study`,
-/// `lineshaft_controller`, in version 1. What else it holds means nothing then.
+/// `lineshaft_fit`, `lineshaft_controller`, in version 1. What else it holds means nothing then.
 bool check_kind(const Reader& read, const Node& root, std::string_view kind);
 
 /// `named` relative to the folder of `from`, if it lies below the project root of `from` (the

@@ -19,7 +19,8 @@ struct ParameterValue {
 using ParameterValues = std::map<std::string, ParameterValue>;
 
 /// Makes a Program of a file, see read_program(). Its functions stand in program.cpp (the file,
-/// parameters, blocks), program_tasks.cpp and program_run.cpp (what happens, trace, expectations).
+/// parameters, blocks), program_tasks.cpp, program_run.cpp (what happens,
+/// expectations) and program_trace.cpp.
 class ProgramReader {
   public:
     ProgramReader(const LoadOptions& options, Diagnostics& out) : options_(options), read_(out) {}
@@ -27,6 +28,7 @@ class ProgramReader {
     Program read(std::shared_ptr<const SourceFile> file);
 
   private:
+    std::optional<Node> parse(const std::shared_ptr<const SourceFile>& file) const;
     void parameters(const Node& root);
     void settings(ParameterValues& values);
     void controller(const Node& node);
@@ -35,13 +37,20 @@ class ProgramReader {
     void interval(TaskPlan& plan, const Node& name, const Node& body);
     void events(TaskPlan& plan, const Node& on, const Node& body);
     void check_task(const TaskPlan& plan, const Node& name, const Node& body);
+    void check_attached(const Node& task);
     void blocks(const Node& node);
     void block(BlockPlan& plan, const Node& body);
     void inputs(const Node& node);
     void run(const Node& node);
     void stimuli(const Node& node);
-    void trace(const Node& node);
+    void traces(const Node& node);
+    void trace(const Node& name, const Node& node);
     void traced(const Node& signals, TracePlan& plan);
+    void trigger(const Node& node, TriggerPlan& plan);
+    void edge(const Node& node, TriggerPlan& plan);
+    void check_trace(const Node& node, const TracePlan& plan);
+    std::optional<std::int64_t> count(const Node& map, const char* key, std::int64_t least,
+                                      const char* help = "");
     void expectations(const Node& node);
     void expectation(const Node& item);
     void bounds(const Node& map, ExpectPlan& plan);
@@ -51,6 +60,7 @@ class ProgramReader {
     Reader read_;
     Program program_;
     ParameterValues values_;
+    bool in_controller_ = false;
 };
 
 }  // namespace lineshaft

@@ -56,35 +56,6 @@ void ProgramReader::stimuli(const Node& node) {
     std::ranges::stable_sort(program_.stimuli, {}, &StimulusPlan::at);
 }
 
-void ProgramReader::trace(const Node& node) {
-    if (!read_.expect_map(node, "'trace'")) return;
-    read_.only_keys(node, "'trace'", {"task", "every", "signals"});
-    TracePlan plan;
-    if (const Node* n = read_.require(node, "task", "'trace'");
-        n && read_.expect_scalar(*n, "a task's name"))
-        plan.task = *n;
-    if (const Node* n = node.find("every")) {
-        plan.every = read_.integer(*n).value_or(1);
-        if (plan.every < 1)
-            read_.fail("L0305", *n, fmt::format("'{}' is below 1", n->text),
-                       "1 records every scan, 10 every tenth");
-    }
-    const Node* signals = read_.require(node, "signals", "'trace'");
-    if (signals && read_.expect_sequence(*signals, "'signals'")) traced(*signals, plan);
-    program_.trace = std::move(plan);
-}
-
-void ProgramReader::traced(const Node& signals, TracePlan& plan) {
-    if (signals.items.empty()) read_.fail("L0202", signals, "'signals' has no signal");
-    for (const Node& signal : signals.items) {
-        if (!read_.expect_scalar(signal, "a signal")) continue;
-        const auto same = [&](const Node& other) { return other.text == signal.text; };
-        if (std::ranges::any_of(plan.signals, same))
-            read_.fail("L0212", signal, fmt::format("'{}' is in this trace already", signal.text));
-        plan.signals.push_back(signal);
-    }
-}
-
 void ProgramReader::expectations(const Node& node) {
     if (!read_.expect_sequence(node, "'expect'")) return;
     for (const Node& item : node.items)

@@ -24,6 +24,7 @@ void ProgramReader::task(const Node& name, const Node& body) {
     auto plan = std::ranges::find(program_.tasks, name.text, &TaskPlan::name);
     if (plan == program_.tasks.end())
         plan = program_.tasks.insert(plan, {.name = name.text, .mark = name.mark, .on = {}});
+    plan->unattached = in_controller_ && !body.find("on") && !body.find("every");
     if (const Node* on = body.find("on"))
         events(*plan, *on, body);
     else
@@ -53,9 +54,18 @@ void ProgramReader::check_task(const TaskPlan& plan, const Node& name, const Nod
              "the cost of task '{}' is above its interval: it never ends in time");
 }
 
+void ProgramReader::check_attached(const Node& task) {
+    const auto plan = std::ranges::find(program_.tasks, task.text, &TaskPlan::name);
+    if (plan == program_.tasks.end() || !plan->unattached) return;
+    read_.fail(
+        "L0202", task,
+        fmt::format("the controller's task '{}' never runs: nothing starts it", task.text),
+        fmt::format("attach it to an event: tasks: {{{}: {{on: inputs.start}}}}", task.text));
+}
+
 void ProgramReader::interval(TaskPlan& plan, const Node& name, const Node& body) {
     const Node* every = body.find("every");
-    if (!every && plan.every == 0 && plan.on.empty())
+    if (!every && plan.every == 0 && plan.on.empty() && !plan.unattached)
         read_.fail("L0202", name, fmt::format("task '{}' has no 'every' and no 'on'", name.text),
                    "write its interval, such as every: 2 ms, or the event that starts it, such as "
                    "on: inputs.start");

@@ -257,11 +257,35 @@ Json run() {
     return map_of(properties, {"for"});
 }
 
+Json trigger() {
+    const auto with = [](std::string_view key, Json value) {
+        Json properties;
+        properties["signal"] = reference("signal");
+        properties[std::string(key)] = std::move(value);
+        return map_of(properties, {"signal", key});
+    };
+    Json bounds = list_of(reference("scalar"));
+    bounds["minItems"] = bounds["maxItems"] = 2;
+    return described(
+        "when a measurement begins; its time counts from there",
+        any_of({keyword("const", "immediate"),
+                with("edge", any_of({keyword("enum", Json::array_t{"rising", "falling"}),
+                                     reference("parameter")})),
+                with("above", reference("scalar")), with("below", reference("scalar")),
+                with("inside", bounds), with("equals", reference("scalar"))}));
+}
+
 Json trace() {
     Json properties;
     properties["task"] = reference("task_name");
     properties["every"] = described("records every n-th scan", reference("count"));
     properties["signals"] = list_of(reference("signal"));
+    properties["trigger"] = trigger();
+    properties["pre_trigger"] = described("rows kept from before the trigger", reference("count"));
+    properties["samples"] = described("rows from the trigger on, at most", reference("count"));
+    properties["for"] = described("time from the trigger on, at most", reference("time"));
+    properties["repeat"] =
+        described("measurements at most, each in a file of its own", reference("count"));
     return map_of(properties, {"task", "signals"});
 }
 
@@ -279,7 +303,9 @@ Json program_file() {
         described("values from outside, as they are at the start", named(reference("scalar")));
     properties["run"] = run();
     properties["stimulus"] = described("changes of inputs while running", list_of(stimulus()));
-    properties["trace"] = described("what --trace records", trace());
+    properties["trace"] = described("what --trace records", reference("trace"));
+    properties["traces"] = described(
+        "further traces: --trace FILE.csv writes them to FILE.NAME.csv", named(reference("trace")));
     properties["expect"] = described("what must hold", list_of(reference("expectation")));
     Json out = map_of(properties, {"lineshaft", "blocks", "run"});
     out["anyOf"] = Json::array_t{required("tasks"), required("controller")};
@@ -319,9 +345,30 @@ Json study_case() {
     properties["set"] = reference("settings");
     properties["grid"] = described("every combination of these values is a run",
                                    named(list_of(reference("scalar"))));
+    properties["random"] = described("parameters whose values are drawn for each case",
+                                     named(reference("distribution")));
+    properties["draws"] = described("how often; each is a case", reference("count"));
+    properties["seed"] = described("of the draws, 1 unless said", of_type("integer"));
     properties["compare"] = reference("comparisons");
     properties["repeat"] = described("runs with seeds that follow each other", reference("count"));
     return map_of(properties);
+}
+
+Json distribution() {
+    const Json two = [] {
+        Json list = list_of(reference("scalar"));
+        list["minItems"] = list["maxItems"] = 2;
+        return list;
+    }();
+    Json properties;
+    properties["uniform"] = described("[least, greatest]", two);
+    properties["log_uniform"] = described("[least, greatest], both above 0", two);
+    properties["normal"] = described("[mean, standard deviation], which may be in %", two);
+    properties["integer"] = described("[least, greatest], whole numbers, both included", two);
+    properties["choice"] = described("one of these", list_of(reference("scalar")));
+    Json map = map_of(properties);
+    map["minProperties"] = map["maxProperties"] = 1;
+    return map;
 }
 
 Json claim() {
@@ -347,20 +394,82 @@ Json study_file() {
     return map_of(properties, {"lineshaft_study", "program", "cases"});
 }
 
+Json fit_parameter() {
+    Json properties;
+    properties["from"] = described("lower bound", reference("number"));
+    properties["to"] = described("upper bound", reference("number"));
+    properties["start"] =
+        described("of the first search, by default the middle", reference("number"));
+    properties["step"] = described("of the difference quotients", reference("number"));
+    return map_of(properties, {"from", "to"});
+}
+
+Json fit_comparisons() {
+    Json properties;
+    add_bounds(properties);
+    properties["uncertainty"] = described(
+        "differences are counted in it, in the signal's unit or in %", reference("number"));
+    properties["column"] =
+        described("of the trace, by default named as the signal", reference("scalar"));
+    Json map = of_type("object");
+    map["patternProperties"]["^" + signal_pattern + "$"] =
+        any_of({of_type("null"), map_of(properties)});
+    map["additionalProperties"] = false;
+    return any_of({list_of(text(signal_pattern)), map});
+}
+
+Json fit_trace() {
+    Json properties;
+    properties["file"] = described("CSV, relative to this file", reference("scalar"));
+    properties["time"] = described("its column of times, by default 'time'", reference("scalar"));
+    properties["offset"] = described("time of the run at its time 0", reference("time"));
+    return any_of({reference("scalar"), map_of(properties, {"file"})});
+}
+
+Json fit_case() {
+    Json properties;
+    properties["name"] = reference("name");
+    properties["set"] = reference("settings");
+    properties["repeat"] = described("runs with seeds that follow each other", reference("count"));
+    properties["hold_out"] = described("takes no part in the search", of_type("boolean"));
+    properties["trace"] = described("what was measured, sample by sample", fit_trace());
+    properties["compare"] = fit_comparisons();
+    return map_of(properties, {"compare"});
+}
+
+Json fit_file() {
+    Json properties;
+    properties["lineshaft_fit"] = version("fit");
+    properties["title"] = reference("scalar");
+    properties["program"] = described("the program, relative to this file", reference("scalar"));
+    properties["notes"] = any_of({reference("scalar"), list_of(reference("scalar"))});
+    properties["set"] = reference("settings");
+    properties["repeat"] = reference("count");
+    properties["parameters"] =
+        described("of the program, whose values are looked for", named(fit_parameter()));
+    properties["starts"] = described("searches from other points", reference("count"));
+    properties["seed"] = described("of their points", reference("count"));
+    properties["cases"] = list_of(fit_case());
+    return map_of(properties, {"lineshaft_fit", "program", "parameters", "cases"});
+}
+
 Json definitions(const Catalog& catalog) {
     Json out = scalars();
     out["task"] = task();
     out["block"] = block(catalog);
     for (const BlockType& type : catalog.types())
         out["block_" + std::string(type.name)] = block_type(type);
+    out["trace"] = trace();
     out["expectation"] = expectation();
     out["settings"] =
         described("parameters of the program and their values", named(reference("scalar")));
     out["comparisons"] = comparisons();
+    out["distribution"] = distribution();
     out["case"] = study_case();
     out["claim"] = claim();
     out["program"] = program_file();
     out["study"] = study_file();
+    out["fit"] = fit_file();
     out["controller"] = controller_file();
     return out;
 }
@@ -377,11 +486,12 @@ Json if_key(std::string_view key, const Json& then, const Json& otherwise) {
 nlohmann::ordered_json program_schema(const Catalog& catalog) {
     Json out;
     out["$schema"] = "http://json-schema.org/draft-07/schema#";
-    out["title"] = "lineshaft: a program, a study or a controller";
+    out["title"] = "lineshaft: a program, a study, a fit or a controller";
     out["type"] = "object";
-    out.update(
-        if_key("lineshaft_study", reference("study"),
-               if_key("lineshaft_controller", reference("controller"), reference("program"))));
+    out.update(if_key(
+        "lineshaft_study", reference("study"),
+        if_key("lineshaft_fit", reference("fit"),
+               if_key("lineshaft_controller", reference("controller"), reference("program")))));
     out["definitions"] = definitions(catalog);
     return out;
 }

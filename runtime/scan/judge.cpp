@@ -1,8 +1,10 @@
 #include "runtime/scan/judge.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace lineshaft {
 
@@ -65,6 +67,22 @@ void Judge::finish(const RunResult& result) {
 
 bool Judge::ok() const {
     return std::ranges::all_of(verdicts_, &Verdict::ok);
+}
+
+nlohmann::ordered_json verdicts_json(const Judge& judge) {
+    auto list = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < judge.expectations().size(); ++i) {
+        const Expectation& e = judge.expectations()[i];
+        const Verdict& verdict = judge.verdicts()[i];
+        nlohmann::ordered_json object{
+            {"text", e.text}, {"signal", e.signal.name}, {"always", e.always}, {"ok", verdict.ok}};
+        if (e.at) object["at"] = seconds(*e.at);
+        if (std::isfinite(e.low)) object["low"] = e.low;
+        if (std::isfinite(e.high)) object["high"] = e.high;
+        if (!verdict.ok) object["deviation"] = verdict.deviation;
+        list.push_back(std::move(object));
+    }
+    return list;
 }
 
 }  // namespace lineshaft

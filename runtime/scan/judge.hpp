@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "runtime/scan/executive.hpp"
 
 namespace lineshaft {
@@ -50,5 +52,10 @@ class Judge : public Observer {
     std::vector<std::size_t> always_;
     std::size_t next_timed_ = 0;
 };
+
+/// For a trace's sidecar: `[{"text", "signal", "always", "ok"}...]`, with "at" [s] where an instant
+/// is meant (the end has none), "low" and "high" where there are bounds, "deviation" where it
+/// failed.
+nlohmann::ordered_json verdicts_json(const Judge& judge);
 
 }  // namespace lineshaft

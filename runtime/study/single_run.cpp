@@ -2,16 +2,42 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 
-#include "runtime/trace/background_sink.hpp"
-#include "runtime/trace/csv_writer.hpp"
 #include "runtime/trace/pulse_writer.hpp"
+#include "runtime/trace/trace_files.hpp"
 
 namespace lineshaft {
 
+namespace {
+
+/// One trace while it is recorded.
+struct Tracing {
+    Tracing(const TraceSetup& setup, const Program& program, const RunOptions& options)
+        : name(setup.name),
+          files(options.trace_path, setup, program.title, program.file->text, options.csv_style),
+          recorder(setup, files) {}
+
+    TraceReport finish(const Judge& judge) {
+        files.set_expectations(verdicts_json(judge));
+        recorder.finish();
+        if (recorder.measurements() == 0) {
+            files.begin();
+            files.end();
+        }
+        return {name, files.paths(), recorder.measurements(), recorder.recorded()};
+    }
+
+    std::string name;
+    TraceFiles files;
+    Recorder recorder;
+};
+
+}  // namespace
+
 std::optional<Loaded> load_program(const std::string& path, const LoadOptions& options,
                                    const Catalog& catalog, Diagnostics& out) {
-    const auto file = read_source(path, out);
+    const auto file = options.files ? options.files->source(path, out) : read_source(path, out);
     if (!file) return {};
     Loaded loaded{.program = read_program(file, options, out), .linked = {}};
     loaded.linked = link(loaded.program, catalog, out);
@@ -28,26 +54,21 @@ RunReport run(Loaded& loaded, const RunOptions& options) {
     RunReport report;
     Judge judge(loaded.linked.expectations);
     std::vector<Observer*> observers;
-    std::optional<CsvWriter> csv;
-    std::optional<BackgroundSink> background;
-    std::optional<Recorder> recorder;
-    if (!options.trace_path.empty() && loaded.linked.trace) {
-        csv.emplace(options.trace_path, *loaded.linked.trace);
-        background.emplace(*csv, 2 + loaded.linked.trace->signals.size());
-        recorder.emplace(*loaded.linked.trace, *background);
-        observers.push_back(&*recorder);
-    }
+    std::deque<Tracing> traces;
+    if (!options.trace_path.empty())
+        for (const TraceSetup& setup : loaded.linked.traces)
+            observers.push_back(&traces.emplace_back(setup, loaded.program, options).recorder);
     std::optional<PulseWriter> pulses;
     if (!options.pulses_path.empty()) pulses.emplace(options.pulses_path, loaded.linked.machine);
     if (!loaded.linked.expectations.empty()) observers.push_back(&judge);
+    if (options.observer) observers.push_back(options.observer);
     Executive executive(loaded.linked.machine);
     report.result = executive.run(observers, options.interrupt, options.progress);
     judge.finish(report.result);
     report.verdicts = judge.verdicts();
-    if (recorder) {
-        recorder->flush();
-        background->finish();
-        report.trace_error = csv->finish(loaded.program.title, loaded.program.file->text);
+    for (Tracing& trace : traces) {
+        report.traces.push_back(trace.finish(judge));
+        if (report.trace_error.empty()) report.trace_error = trace.files.error();
     }
     if (pulses) report.pulses_error = pulses->finish();
     for (DeviceCall& device : loaded.linked.machine.devices) device.sink = nullptr;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/program/link.hpp"
+#include "runtime/trace/csv_writer.hpp"
 
 namespace lineshaft {
 
@@ -21,18 +22,29 @@ std::optional<Loaded> load_program(const std::string& path, const LoadOptions& o
                                    const Catalog& catalog, Diagnostics& out);
 
 struct RunOptions {
-    std::string trace_path;        ///< CSV; empty: no trace is recorded
+    std::string trace_path;        ///< CSV, see TraceFiles; empty: no trace is recorded
     std::string pulses_path = {};  ///< CSV of all pulse channels' edges; empty: none
+    CsvStyle csv_style = {};
     const std::atomic<bool>* interrupt = nullptr;
     std::function<void(std::int64_t time)> progress;  ///< called now and then [ns]
+    Observer* observer = nullptr;                     ///< sees the run, besides the trace
+};
+
+/// What came of one trace.
+struct TraceReport {
+    std::string name;                ///< as in TraceSetup
+    std::vector<std::string> paths;  ///< one a measurement; without any an empty one
+    std::int64_t measurements = 0;   ///< 0: the trigger did not come
+    std::int64_t rows = 0;           ///< of all measurements
 };
 
 /// What came of one run. Final values stand in the machine's signals.
 struct RunReport {
     RunResult result;
-    std::vector<Verdict> verdicts;  ///< one per expectation of the program
-    std::string trace_error;        ///< why the trace is not there, if one was wanted
-    std::string pulses_error;       ///< likewise of the pulses
+    std::vector<Verdict> verdicts;    ///< one per expectation of the program
+    std::vector<TraceReport> traces;  ///< that were recorded
+    std::string trace_error;          ///< why the trace is not there, if one was wanted
+    std::string pulses_error;         ///< likewise of the pulses
     double wall_seconds = 0;
 
     bool expectations_hold() const;

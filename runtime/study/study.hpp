@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "runtime/program/program.hpp"
+#include "runtime/study/draw.hpp"
 
 namespace lineshaft {
 
@@ -29,10 +31,37 @@ struct Comparison {
 
 /// One run, or `repeat` runs with seeds that follow each other.
 struct StudyCase {
+    std::int64_t number = 1;        ///< in the study, from 1
     std::string name;               ///< for claims; may be empty
     std::vector<Setting> settings;  ///< as written, what all cases have in common first
     std::vector<Comparison> comparisons;
     std::int64_t repeat = 1;
+};
+
+/// `early_20_5`, or `method=early, radius=20 mm`.
+std::string describe(const StudyCase& c);
+
+/// A parameter of a grid and its values.
+struct GridAxis {
+    std::string name;
+    Mark mark;
+    std::vector<Setting> values;  ///< all of this name
+};
+
+/// One item of a study's `cases:`. Every combination of the grid's values, the last axis fastest,
+/// each with all draws, which are the same ones for every combination.
+struct CaseGroup {
+    Mark mark;
+    std::string name;               ///< of its only case; may be empty
+    std::vector<Setting> settings;  ///< as written, what all cases have in common first
+    std::vector<GridAxis> grid;
+    std::vector<RandomParameter> random;
+    std::int64_t draws = 1;
+    std::uint64_t seed = 1;
+    std::vector<Comparison> comparisons;
+    std::int64_t repeat = 1;
+    std::int64_t first = 0;  ///< index of its first case in the study, from 0
+    std::int64_t count = 1;  ///< of its cases
 };
 
 /// A formula over the rows' values.
@@ -49,9 +78,15 @@ struct Study {
     std::string title;
     std::string program;  ///< path
     std::vector<std::string> notes;
-    std::vector<StudyCase> cases;
+    std::vector<CaseGroup> groups;
     std::vector<Claim> claims;
     std::vector<std::string> include_dirs;
+    std::string identity;  ///< hash of all that decides the results: this file, the settings of the
+                           ///< command line, the program, its controllers, lineshaft's version
+
+    std::int64_t case_count() const;
+    /// A case is made when it is wanted: a study of a million cases is no larger than its file.
+    StudyCase make_case(std::int64_t index) const;
 };
 
 }  // namespace lineshaft

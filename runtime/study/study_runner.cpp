@@ -1,166 +1,193 @@
 #include "runtime/study/study_runner.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
+#include <condition_variable>
 #include <limits>
-#include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include <fmt/format.h>
 
-#include "runtime/study/formula.hpp"
 #include "runtime/study/single_run.hpp"
 
 namespace lineshaft {
 
 namespace {
 
-struct CaseResult {
-    std::vector<std::vector<double>> values;  ///< per repeat, per comparison
-    std::vector<std::string> faults, deviations;
-    double machine_seconds = 0;
-    bool done = false;
+constexpr std::int64_t waiting_per_job = 32;
+
+/// One thread's: the program's files are parsed once.
+class CaseRunner {
+  public:
+    CaseRunner(const Study& study, const Catalog& catalog, const std::atomic<bool>* interrupt)
+        : study_(study), catalog_(catalog), interrupt_(interrupt) {}
+
+    /// Empty when interrupted.
+    std::optional<CaseResult> run(std::int64_t index);
+
+  private:
+    bool run_once(std::int64_t repeat, CaseResult& result);
+    bool measure(const Machine& machine, CaseResult& result);
+
+    const Study& study_;
+    const Catalog& catalog_;
+    const std::atomic<bool>* interrupt_;
+    YamlFiles files_;
+    std::vector<double> sums_;
+    bool interrupted_ = false;
 };
 
-std::string describe(const StudyCase& c) {
-    if (!c.name.empty()) return c.name;
-    std::string text;
-    for (const Setting& s : c.settings)
-        text += fmt::format("{}{}={}", text.empty() ? "" : ", ", s.name, s.value);
-    return text;
-}
-
-CaseResult run_case(const Study& study, const StudyCase& c, const Catalog& catalog,
-                    const StudyOptions& options) {
+std::optional<CaseResult> CaseRunner::run(std::int64_t index) {
     CaseResult result;
-    for (std::int64_t repeat = 0; repeat < c.repeat; ++repeat) {
-        Diagnostics unexpected;
-        auto loaded =
-            load_program(study.program, {c.settings, study.include_dirs}, catalog, unexpected);
-        if (!loaded) {
-            result.faults.push_back(unexpected.render());
-            return result;
-        }
-        Machine& machine = loaded->linked.machine;
-        machine.seed += static_cast<std::uint64_t>(repeat);
-        const RunReport report =
-            run(*loaded, {.trace_path = {}, .interrupt = options.interrupt, .progress = {}});
-        if (report.faulted())
-            result.faults.push_back(fmt::format("{}: {}", describe(c), report.result.message));
-        if (report.result.outcome == Outcome::interrupted) return result;
-        for (const Verdict& verdict : report.verdicts)
-            if (!verdict.ok)
-                result.deviations.push_back(fmt::format("{}: {}", describe(c), verdict.deviation));
-        result.machine_seconds += seconds(report.result.time);
-        std::vector<double> values;
-        for (const Comparison& comparison : c.comparisons)
-            values.push_back(as_real(machine.find(comparison.signal)->value()));
-        result.values.push_back(std::move(values));
-    }
-    result.done = true;
+    auto of = std::make_shared<StudyCase>(study_.make_case(index));
+    result.of = of;
+    const double infinity = std::numeric_limits<double>::infinity();
+    result.values.assign(of->comparisons.size(),
+                         Measured{.least = infinity, .greatest = -infinity});
+    sums_.assign(of->comparisons.size(), 0);
+    bool whole = true;
+    for (std::int64_t repeat = 0; whole && repeat < of->repeat; ++repeat)
+        whole = run_once(repeat, result);
+    if (interrupted_) return {};
+    if (!whole) result.values.clear();
+    for (std::size_t k = 0; k < result.values.size(); ++k)
+        result.values[k].ours = sums_[k] / static_cast<double>(of->repeat);
     return result;
 }
 
-std::vector<CaseResult> run_cases(const Study& study, const Catalog& catalog,
-                                  const StudyOptions& options) {
-    std::vector<CaseResult> results(study.cases.size());
-    std::atomic<std::size_t> next = 0;
-    std::mutex progress_mutex;
-    std::size_t done = 0;
-    const auto work = [&] {
-        for (std::size_t i = next++; i < results.size(); i = next++) {
-            if (options.interrupt && *options.interrupt) return;
-            results[i] = run_case(study, study.cases[i], catalog, options);
-            const std::lock_guard lock(progress_mutex);
-            if (options.progress) options.progress(++done, results.size());
+bool CaseRunner::run_once(std::int64_t repeat, CaseResult& result) {
+    Diagnostics out;
+    auto loaded = load_program(study_.program, {result.of->settings, study_.include_dirs, &files_},
+                               catalog_, out);
+    if (!loaded) {
+        const Diagnostic& first = out.list().front();
+        result.faults.push_back(fmt::format("{} [{}]", first.message, first.code));
+        return false;
+    }
+    Machine& machine = loaded->linked.machine;
+    machine.seed += static_cast<std::uint64_t>(repeat);
+    const RunReport report =
+        lineshaft::run(*loaded, {.trace_path = {}, .interrupt = interrupt_, .progress = {}});
+    interrupted_ = report.result.outcome == Outcome::interrupted;
+    if (interrupted_) return false;
+    result.machine_seconds += seconds(report.result.time);
+    if (report.faulted()) result.faults.push_back(report.result.message);
+    for (const Verdict& verdict : report.verdicts)
+        if (!verdict.ok) result.deviations.push_back(verdict.deviation);
+    return !report.faulted() && measure(machine, result);
+}
+
+bool CaseRunner::measure(const Machine& machine, CaseResult& result) {
+    const auto& comparisons = result.of->comparisons;
+    for (std::size_t k = 0; k < comparisons.size(); ++k) {
+        const Signal* signal = machine.find(comparisons[k].signal);
+        if (!signal || signal->unit != comparisons[k].unit) {
+            result.faults.push_back(fmt::format(
+                "'{}' is not in {} here, as it is in the first case beside it: write this case as "
+                "an item of its own",
+                comparisons[k].signal, comparisons[k].unit));
+            return false;
         }
-    };
-    std::vector<std::jthread> threads;
-    for (unsigned i = 1; i < options.jobs; ++i) threads.emplace_back(work);
-    work();
-    threads.clear();
-    return results;
-}
-
-StudyRow make_row(const StudyCase& c, const CaseResult& result, std::size_t index) {
-    StudyRow row{.of = &c, .comparison = &c.comparisons[index]};
-    row.least = std::numeric_limits<double>::infinity();
-    row.greatest = -row.least;
-    double sum = 0;
-    for (const auto& values : result.values) {
-        sum += values[index];
-        row.least = std::min(row.least, values[index]);
-        row.greatest = std::max(row.greatest, values[index]);
+        const double value = as_real(signal->value());
+        Measured& measured = result.values[k];
+        sums_[k] += value;
+        measured.least = std::min(measured.least, value);
+        measured.greatest = std::max(measured.greatest, value);
     }
-    row.ours = sum / static_cast<double>(result.values.size());
-    row.ok = row.comparison->bounds.hold(row.ours);
-    return row;
+    return true;
 }
 
-/// Names of a formula: each case's signals, and the errors relative to the paper over all rows.
-std::map<std::string, double, std::less<>> names_for_claims(const std::vector<StudyRow>& rows) {
-    std::map<std::string, double, std::less<>> names;
-    double sum = 0, greatest = 0;
-    int compared = 0;
-    for (const StudyRow& row : rows) {
-        const auto& paper = row.comparison->bounds.paper;
-        if (paper && *paper != 0) {
-            const double error = std::abs(row.ours - *paper) / std::abs(*paper);
-            sum += error;
-            greatest = std::max(greatest, error);
-            ++compared;
+/// Gives out cases, and brings their results into order.
+class Queue {
+  public:
+    Queue(CaseRange range, const CaseOptions& options,
+          const std::function<bool(const CaseResult&)>& take)
+        : last_(range.last),
+          window_(waiting_per_job * options.jobs),
+          options_(options),
+          take_(take),
+          next_(range.first),
+          expected_(range.first) {}
+
+    /// Empty: there is nothing more to do.
+    std::optional<std::int64_t> next() {
+        std::unique_lock lock(mutex_);
+        while (true) {
+            changed_.wait(lock, [this] { return over() || next_ < expected_ + window_; });
+            if (over()) return {};
+            const std::int64_t index = next_++;
+            if (!take_known(index)) return index;
         }
-        if (row.of->name.empty()) continue;
-        names.emplace(row.of->name, row.ours);
-        names.emplace(row.of->name + "." + row.comparison->signal, row.ours);
     }
-    if (compared == 0) return names;
-    names["mean_relative_error"] = sum / compared;
-    names["greatest_relative_error"] = greatest;
-    return names;
-}
 
-/// A claim over a case that did not run to its end is left out; the fault stands in the report.
-void judge_claims(const Study& study, StudyReport& report) {
-    const auto names = names_for_claims(report.rows);
-    for (const Claim& claim : study.claims) {
-        const auto result = evaluate(claim.formula, [&](std::string_view name) {
-            const auto it = names.find(name);
-            return it == names.end() ? std::nullopt : std::optional(it->second);
-        });
-        if (result.error.empty())
-            report.claims.push_back({&claim, result.value, claim.bounds.hold(result.value)});
+    /// Empty: interrupted.
+    void put(std::int64_t index, std::optional<CaseResult> result) {
+        const std::lock_guard lock(mutex_);
+        if (!result) stopped_ = true;
+        if (result) insert(index, std::move(*result));
+        changed_.notify_all();
     }
-}
+
+    std::map<std::int64_t, CaseResult> waiting() { return std::move(ready_); }
+
+  private:
+    bool over() const {
+        return stopped_ || next_ >= last_ || (options_.interrupt && *options_.interrupt);
+    }
+
+    bool take_known(std::int64_t index) {
+        if (!options_.known) return false;
+        auto node = options_.known->extract(index);
+        if (!node) return false;
+        insert(index, std::move(node.mapped()));
+        return true;
+    }
+
+    void insert(std::int64_t index, CaseResult result) {
+        ready_.emplace(index, std::move(result));
+        for (auto it = ready_.begin(); !stopped_ && it != ready_.end() && it->first == expected_;
+             it = ready_.erase(it), ++expected_)
+            stopped_ = !take_(it->second);
+    }
+
+    const std::int64_t last_, window_;
+    const CaseOptions& options_;
+    const std::function<bool(const CaseResult&)>& take_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::map<std::int64_t, CaseResult> ready_;
+    std::int64_t next_, expected_;
+    bool stopped_ = false;
+};
 
 }  // namespace
 
-bool StudyReport::ok() const {
-    return faults.empty() && deviations.empty() && !interrupted &&
-           std::ranges::all_of(rows, &StudyRow::ok) && std::ranges::all_of(claims, &ClaimRow::ok);
+bool CaseResult::holds(std::size_t comparison) const {
+    return values.empty() || of->comparisons[comparison].bounds.hold(values[comparison].ours);
 }
 
-StudyReport run(const Study& study, const Catalog& catalog, const StudyOptions& options) {
-    const auto start = std::chrono::steady_clock::now();
-    StudyReport report;
-    const auto results = run_cases(study, catalog, options);
-    for (std::size_t i = 0; i < results.size(); ++i) {
-        const CaseResult& result = results[i];
-        report.machine_seconds += result.machine_seconds;
-        report.faults.insert(report.faults.end(), result.faults.begin(), result.faults.end());
-        report.deviations.insert(report.deviations.end(), result.deviations.begin(),
-                                 result.deviations.end());
-        if (!result.done) continue;
-        for (std::size_t k = 0; k < study.cases[i].comparisons.size(); ++k)
-            report.rows.push_back(make_row(study.cases[i], result, k));
-    }
-    report.interrupted = options.interrupt && *options.interrupt;
-    if (!report.interrupted) judge_claims(study, report);
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-    report.wall_seconds = wall.count();
-    return report;
+bool CaseResult::ok() const {
+    if (!faults.empty() || !deviations.empty()) return false;
+    for (std::size_t k = 0; k < values.size(); ++k)
+        if (!holds(k)) return false;
+    return true;
+}
+
+std::map<std::int64_t, CaseResult> run_cases(const Study& study, const Catalog& catalog,
+                                             CaseRange range, const CaseOptions& options,
+                                             const std::function<bool(const CaseResult&)>& take) {
+    Queue queue(range, options, take);
+    const auto work = [&] {
+        CaseRunner runner(study, catalog, options.interrupt);
+        while (const auto index = queue.next()) queue.put(*index, runner.run(*index));
+    };
+    std::vector<std::jthread> threads;
+    for (std::int64_t i = 1; i < std::min<std::int64_t>(options.jobs, range.count()); ++i)
+        threads.emplace_back(work);
+    work();
+    threads.clear();
+    return queue.waiting();
 }
 
 }  // namespace lineshaft

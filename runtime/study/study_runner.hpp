@@ -1,7 +1,10 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,38 +13,45 @@
 
 namespace lineshaft {
 
-struct StudyRow {
-    const StudyCase* of = nullptr;
-    const Comparison* comparison = nullptr;
+/// What a compared signal came to at the end of a case.
+struct Measured {
     double ours = 0;  ///< mean over the repeats
     double least = 0, greatest = 0;
-    bool ok = true;
 };
 
-struct ClaimRow {
-    const Claim* claim = nullptr;
-    double ours = 0;
-    bool ok = true;
-};
-
-struct StudyReport {
-    std::vector<StudyRow> rows;
-    std::vector<ClaimRow> claims;
-    std::vector<std::string> faults;      ///< cases that did not run to their end, and why
+struct CaseResult {
+    std::shared_ptr<const StudyCase> of;
+    std::vector<Measured> values;         ///< one a comparison; empty: it did not run to its end
+    std::vector<std::string> faults;      ///< why it did not
     std::vector<std::string> deviations;  ///< expectations of the program that failed
-    double machine_seconds = 0, wall_seconds = 0;
-    bool interrupted = false;
+    double machine_seconds = 0;           ///< over all repeats
 
+    /// Within its bounds; true for a case that did not run.
+    bool holds(std::size_t comparison) const;
     bool ok() const;
 };
 
-struct StudyOptions {
-    unsigned jobs = 1;  ///< whole runs side by side
-    const std::atomic<bool>* interrupt = nullptr;
-    std::function<void(std::size_t done, std::size_t all)> progress;  ///< one thread at a time
+/// Part of a study's cases, from 0.
+struct CaseRange {
+    std::int64_t first = 0, last = 0;  ///< `last` is one past the end
+
+    std::int64_t count() const { return last - first; }
 };
 
-/// Runs every case; the result does not depend on the number of jobs.
-StudyReport run(const Study& study, const Catalog& catalog, const StudyOptions& options);
+struct CaseOptions {
+    unsigned jobs = 1;  ///< whole runs side by side
+    const std::atomic<bool>* interrupt = nullptr;
+    /// Cases that need not run again, by index. They are taken out.
+    std::map<std::int64_t, CaseResult>* known = nullptr;
+};
+
+/// Runs the cases of a range; `take` gets their results in order, one thread at a time, and stops
+/// the study by false. No more than a few dozen results wait for an earlier one, however long that
+/// takes, so memory does not grow with the number of cases. Results that still wait when the study
+/// is stopped or interrupted are left in what is returned. Neither values nor order depend on the
+/// number of jobs.
+std::map<std::int64_t, CaseResult> run_cases(const Study& study, const Catalog& catalog,
+                                             CaseRange range, const CaseOptions& options,
+                                             const std::function<bool(const CaseResult&)>& take);
 
 }  // namespace lineshaft

@@ -3,30 +3,39 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
+
+#include "runtime/study/text_table.hpp"
 
 namespace lineshaft {
 
 namespace {
 
-using Cells = std::vector<std::string>;
-
 /// Names of settings that differ between cases, in order of appearance.
 std::vector<std::string> varying(const Study& study) {
     std::vector<std::string> order;
-    std::map<std::string, std::pair<std::string, std::size_t>> seen;  // name: first value, uses
-    std::map<std::string, bool> differs;
-    for (const StudyCase& c : study.cases) {
-        for (const Setting& s : c.settings) {
-            const auto [it, is_new] = seen.emplace(s.name, std::pair(s.value, 0));
-            if (is_new) order.push_back(s.name);
-            if (it->second.first != s.value) differs[s.name] = true;
-            ++it->second.second;
-        }
+    std::map<std::string, std::set<std::string>> values;
+    std::map<std::string, std::size_t> uses;
+    const auto see = [&](const std::string& name, const std::string& value) {
+        if (std::ranges::find(order, name) == order.end()) order.push_back(name);
+        values[name].insert(value);
+    };
+    for (const CaseGroup& group : study.groups) {
+        std::set<std::string> own;
+        for (const GridAxis& axis : group.grid) own.insert(axis.name);
+        for (const RandomParameter& p : group.random) own.insert(p.name);
+        for (const Setting& s : group.settings)
+            if (own.insert(s.name).second) see(s.name, s.value);
+        for (const GridAxis& axis : group.grid)
+            for (const Setting& s : axis.values) see(s.name, s.value);
+        for (const RandomParameter& p : group.random)
+            for (const std::int64_t index : {0, 1}) see(p.name, draw(p, group.seed, index));
+        for (const std::string& name : own) ++uses[name];
     }
     std::erase_if(order, [&](const std::string& name) {
-        return !differs[name] && seen[name].second == study.cases.size();
+        return values[name].size() == 1 && uses[name] == study.groups.size();
     });
     return order;
 }
@@ -34,20 +43,6 @@ std::vector<std::string> varying(const Study& study) {
 std::string setting(const StudyCase& c, const std::string& name) {
     const auto it = std::ranges::find(c.settings, name, &Setting::name);
     return it == c.settings.end() ? "" : it->value;
-}
-
-/// Of a percentage: one decimal, and of small ones two digits.
-int decimals(double percentage) {
-    int count = 1;
-    for (double p = std::abs(percentage); p > 0 && p < 0.995 && count < 5; p *= 10) ++count;
-    return count;
-}
-
-/// Enough digits to compare by eye.
-std::string number(double value, bool percent = false) {
-    if (percent) return fmt::format("{:.{}f} %", value * 100, decimals(value * 100));
-    if (value == std::trunc(value) && std::abs(value) < 1e9) return fmt::format("{:.0f}", value);
-    return fmt::format("{:.4g}", value);
 }
 
 std::string difference(double ours, const Bounds& bounds, bool percent) {
@@ -61,10 +56,10 @@ std::string difference(double ours, const Bounds& bounds, bool percent) {
 
 std::string limit_text(const Bounds& bounds, bool percent) {
     std::string text;
-    if (bounds.at_least) text = ">= " + number(*bounds.at_least, percent);
+    if (bounds.at_least) text = ">= " + short_number(*bounds.at_least, percent);
     if (bounds.at_most) {
         if (!text.empty()) text += ", ";
-        text += "<= " + number(*bounds.at_most, percent);
+        text += "<= " + short_number(*bounds.at_most, percent);
     }
     return text;
 }
@@ -75,24 +70,7 @@ std::string verdict(const Bounds& bounds, bool ok) {
 }
 
 std::string paper(const Bounds& bounds, bool percent) {
-    return bounds.paper ? number(*bounds.paper, percent) : "";
-}
-
-std::string align(const std::vector<Cells>& rows) {
-    std::vector<std::size_t> widths;
-    for (const Cells& row : rows) {
-        widths.resize(std::max(widths.size(), row.size()));
-        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-    }
-    std::string text;
-    for (const Cells& row : rows) {
-        std::string line;
-        for (std::size_t i = 0; i < row.size(); ++i)
-            if (widths[i] > 0) line += fmt::format("{:<{}}  ", row[i], widths[i]);
-        line.erase(line.find_last_not_of(' ') + 1);
-        text += line + "\n";
-    }
-    return text;
+    return bounds.paper ? short_number(*bounds.paper, percent) : "";
 }
 
 bool has_limit(const Bounds& bounds) {
@@ -113,7 +91,7 @@ std::string row_table(const Study& study, const StudyReport& report) {
         for (const std::string& name : names) cells.push_back(setting(*row.of, name));
         cells.push_back(row.comparison->signal);
         cells.push_back(paper(bounds, false));
-        cells.push_back(number(row.ours) +
+        cells.push_back(short_number(row.ours) +
                         (row.comparison->unit.empty() ? "" : " " + row.comparison->unit));
         cells.push_back(difference(row.ours, bounds, false));
         cells.push_back(limit_text(bounds, false));
@@ -129,7 +107,7 @@ std::string claim_table(const StudyReport& report) {
     std::vector<Cells> rows{{"claim", "paper", "ours", "difference", any_limit ? "limit" : ""}};
     for (const ClaimRow& row : report.claims) {
         const Claim& c = *row.claim;
-        rows.push_back({c.text, paper(c.bounds, c.percent), number(row.ours, c.percent),
+        rows.push_back({c.text, paper(c.bounds, c.percent), short_number(row.ours, c.percent),
                         difference(row.ours, c.bounds, c.percent), limit_text(c.bounds, c.percent),
                         verdict(c.bounds, row.ok)});
     }
@@ -151,6 +129,9 @@ std::string study_table(const Study& study, const StudyReport& report) {
     std::string text = study.title + "\n\n" + row_table(study, report);
     if (!report.claims.empty()) text += "\n" + claim_table(report);
     for (const std::string& note : study.notes) text += "\n" + note + "\n";
+    if (report.left_out > 0)
+        text +=
+            fmt::format("\n{} more of the {} cases are not shown\n", report.left_out, report.cases);
     for (const std::string& line : report.deviations) text += "\nexpectation failed: " + line;
     for (const std::string& line : report.faults) text += "\nfault: " + line;
     if (!report.faults.empty() || !report.deviations.empty()) text += "\n";
@@ -160,8 +141,8 @@ std::string study_table(const Study& study, const StudyReport& report) {
 std::string first_failure(const StudyReport& report) {
     const auto text = [](const std::string& what, double ours, const Bounds& bounds, bool percent) {
         return fmt::format(
-            "{} is {}; paper {}, limit {}", what, number(ours, percent),
-            bounds.paper ? number(*bounds.paper, percent) : "none",
+            "{} is {}; paper {}, limit {}", what, short_number(ours, percent),
+            bounds.paper ? short_number(*bounds.paper, percent) : "none",
             bounds.at_least || bounds.at_most ? limit_text(bounds, percent) : "none");
     };
     for (const StudyRow& row : report.rows) {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runtime/study/study_runner.hpp"
+#include "runtime/study/report.hpp"
 
 namespace lineshaft {
 

@@ -72,6 +72,7 @@ std::optional<CsvMetadata> read_metadata(const std::string& csv_path, Diagnostic
                          .version = text_at(json, "lineshaft:version"),
                          .program = text_at(json, "lineshaft:program"),
                          .rows = {},
+                         .crc32 = text_at(json, "lineshaft:crc32"),
                          .columns = {}};
     if (const auto rows = json.find("lineshaft:rows");
         rows != json.end() && rows->is_number_integer())

@@ -24,6 +24,7 @@ struct CsvMetadata {
     std::string version;               ///< of the lineshaft that wrote it
     std::string program;               ///< text_hash of the program's text
     std::optional<std::int64_t> rows;  ///< without the header
+    std::string crc32;                 ///< Checksum of all bytes of the CSV file
     std::vector<Column> columns;
 
     /// By title; null when there is none.

@@ -1,5 +1,6 @@
 #include "runtime/trace/csv_writer.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <filesystem>
@@ -7,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "runtime/trace/csv_metadata.hpp"
 #include "runtime/trace/number_text.hpp"
 #include "runtime/version.hpp"
 
@@ -32,8 +34,9 @@ std::string csvw_type(Type type) {
     }
 }
 
-nlohmann::ordered_json csvw_column(const Signal& signal) {
-    nlohmann::ordered_json column{{"titles", signal.name}, {"datatype", csvw_type(signal.type)}};
+nlohmann::ordered_json csvw_column(const Signal& signal, const std::string& title) {
+    nlohmann::ordered_json column{{"titles", title}, {"datatype", csvw_type(signal.type)}};
+    if (title != signal.name) column["lineshaft:signal"] = signal.name;
     if (signal.type == Type::boolean) column["datatype"] = {{"base", "boolean"}, {"format", "1|0"}};
     if (!signal.unit.empty()) column["unit"] = signal.unit;
     if (!signal.names.empty()) column["values"] = signal.names;
@@ -48,11 +51,15 @@ std::string text_hash(std::string_view text) {
     return fmt::format("{:016x}", hash);
 }
 
-CsvWriter::CsvWriter(std::string path, const TraceSetup& setup)
-    : file_(path), path_(std::move(path)), signals_(setup.signals) {
-    std::string header = "time,scan";
-    for (const Signal& signal : signals_) header += "," + signal.name;
-    file_.write(header + "\n");
+CsvWriter::CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& style)
+    : file_(path),
+      path_(std::move(path)),
+      signals_(setup.signals),
+      style_(style),
+      separator_(style.excel_de ? ';' : ',') {
+    std::string header = title("time", "s") + separator_ + "scan";
+    for (const Signal& signal : signals_) header += separator_ + title(signal.name, signal.unit);
+    write(header + "\n");
     last_.resize(signals_.size());
     longest_row_ = static_cast<std::ptrdiff_t>((2 + signals_.size()) * (longest_number + 1));
     text_.resize(static_cast<std::size_t>(longest_row_) + written_at_once);
@@ -63,10 +70,10 @@ void CsvWriter::rows(const std::uint64_t* words, std::size_t rows) {
     for (std::size_t row = 0; row < rows; ++row) {
         if (text_.data() + text_.size() - end < longest_row_) end = write_out(end);
         end = write_seconds(end, static_cast<std::int64_t>(*words++));
-        *end++ = ',';
+        *end++ = separator_;
         end = write_integer(end, static_cast<std::int64_t>(*words++));
         for (std::size_t i = 0; i < signals_.size(); ++i) {
-            *end++ = ',';
+            *end++ = separator_;
             end = append_cell(end, i, *words++);
         }
         *end++ = '\n';
@@ -75,8 +82,21 @@ void CsvWriter::rows(const std::uint64_t* words, std::size_t rows) {
     row_count_ += static_cast<std::int64_t>(rows);
 }
 
-char* CsvWriter::write_out(const char* end) {
-    file_.write({text_.data(), static_cast<std::size_t>(end - text_.data())});
+std::string CsvWriter::title(std::string_view name, std::string_view unit) const {
+    std::string text(name);
+    const char dot = style_.names == CsvStyle::Names::slash ? '/' : '_';
+    if (style_.names != CsvStyle::Names::dot) std::ranges::replace(text, '.', dot);
+    return style_.units && !unit.empty() ? fmt::format("{} [{}]", text, unit) : text;
+}
+
+void CsvWriter::write(std::string_view text) {
+    checksum_.add(text);
+    file_.write(text);
+}
+
+char* CsvWriter::write_out(char* end) {
+    if (style_.excel_de) std::replace(text_.data(), end, '.', ',');
+    write({text_.data(), static_cast<std::size_t>(end - text_.data())});
     return text_.data();
 }
 
@@ -91,20 +111,25 @@ char* CsvWriter::append_cell(char* end, std::size_t column, std::uint64_t bits) 
     return end + last.length;
 }
 
-std::string CsvWriter::finish(const std::string& title, const std::string& program_text) {
+std::string CsvWriter::finish(const std::string& program_title, const std::string& program_text,
+                              const nlohmann::ordered_json& expectations) {
     if (!file_.commit() || !file_.is_regular()) return file_.error();
     nlohmann::ordered_json columns = nlohmann::ordered_json::array();
-    columns.push_back({{"titles", "time"}, {"datatype", "double"}, {"unit", "s"}});
-    columns.push_back({{"titles", "scan"}, {"datatype", "integer"}});
-    for (const Signal& signal : signals_) columns.push_back(csvw_column(signal));
-    const nlohmann::ordered_json metadata{{"@context", "http://www.w3.org/ns/csvw"},
-                                          {"url", std::filesystem::path(path_).filename().string()},
-                                          {"dc:title", title},
-                                          {"lineshaft:version", version()},
-                                          {"lineshaft:program", text_hash(program_text)},
-                                          {"lineshaft:rows", row_count_},
-                                          {"tableSchema", {{"columns", columns}}}};
-    OutputFile sidecar(path_ + "-metadata.json");
+    for (const Signal& s : {Signal{.name = "time", .type = Type::real, .unit = "s", .names = {}},
+                            Signal{.name = "scan", .type = Type::integer, .unit = {}, .names = {}}})
+        columns.push_back(csvw_column(s, title(s.name, s.unit)));
+    for (const Signal& s : signals_) columns.push_back(csvw_column(s, title(s.name, s.unit)));
+    nlohmann::ordered_json metadata{{"@context", "http://www.w3.org/ns/csvw"},
+                                    {"url", std::filesystem::path(path_).filename().string()},
+                                    {"dc:title", program_title},
+                                    {"lineshaft:version", version()},
+                                    {"lineshaft:program", text_hash(program_text)},
+                                    {"lineshaft:rows", row_count_},
+                                    {"lineshaft:crc32", checksum_.text()}};
+    if (style_.excel_de) metadata["dialect"] = {{"delimiter", ";"}};
+    if (!expectations.empty()) metadata["lineshaft:expectations"] = expectations;
+    metadata["tableSchema"] = {{"columns", columns}};
+    OutputFile sidecar(sidecar_path(path_));
     sidecar.write(metadata.dump(2) + "\n");
     sidecar.commit();
     return sidecar.error();

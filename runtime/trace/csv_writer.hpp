@@ -4,24 +4,43 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "runtime/trace/checksum.hpp"
 #include "runtime/trace/number_text.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "runtime/trace/recorder.hpp"
 
 namespace lineshaft {
 
+/// How a CSV file is written.
+struct CsvStyle {
+    enum class Names : std::uint8_t {
+        dot,    ///< `shaft.position`, as in the program
+        slash,  ///< `shaft/position`: PlotJuggler makes a tree of it
+        snake,  ///< `shaft_position`: a name in most languages
+    };
+
+    Names names = Names::dot;
+    bool units = false;  ///< in the header: `shaft.position [mm]`
+    bool excel_de =
+        false;  ///< semicolons between cells and decimal commas, as a German Excel reads
+};
+
 /// Writes rows as RFC 4180 CSV: one header row, then `time` [s], `scan`, and a column a signal;
 /// comma, newline, shortest round-trip numbers, booleans 0/1, enumerations as integers,
 /// not-a-number and infinite values as an empty cell.
 class CsvWriter : public TraceSink {
   public:
-    CsvWriter(std::string path, const TraceSetup& setup);
+    CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& style = {});
 
     void rows(const std::uint64_t* words, std::size_t rows) override;
 
-    /// Closes the file and writes the CSVW sidecar `PATH-metadata.json` with types, units, program
-    /// and its hash beside it. Empty when all is well, else what went wrong.
-    std::string finish(const std::string& title, const std::string& program_text);
+    /// Closes the file and writes the CSVW sidecar `PATH-metadata.json` beside it: types, units,
+    /// program and its hash, rows, a checksum, and what came of its expectations (see
+    /// verdicts_json). Empty when all is well, else what went wrong.
+    std::string finish(const std::string& program_title, const std::string& program_text,
+                       const nlohmann::ordered_json& expectations = {});
 
   private:
     /// A column's last value and its text: what stands still is not formatted again.
@@ -31,17 +50,22 @@ class CsvWriter : public TraceSink {
         std::array<char, longest_number> text = {};
     };
 
+    std::string title(std::string_view name, std::string_view unit) const;
+    void write(std::string_view text);
     char* append_cell(char* end, std::size_t column, std::uint64_t bits);
     /// The text up to `end` into the file; returns where the next begins.
-    char* write_out(const char* end);
+    char* write_out(char* end);
 
     OutputFile file_;
     std::string path_;
     std::vector<Signal> signals_;
+    CsvStyle style_;
+    char separator_;
     std::vector<Cell> last_;
     std::string text_;
     std::ptrdiff_t longest_row_ = 0;
     std::int64_t row_count_ = 0;
+    Checksum checksum_;  ///< of all that was written
 };
 
 /// FNV-1a, 64 bits, as 16 hexadecimal digits: tells whether two traces come from the same program

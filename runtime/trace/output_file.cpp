@@ -24,7 +24,8 @@ void flush_folder(const std::string& path) {
 
 }  // namespace
 
-OutputFile::OutputFile(std::string path) : path_(std::move(path)), part_(path_ + ".part") {
+OutputFile::OutputFile(std::string path, std::int64_t keep)
+    : path_(std::move(path)), part_(path_ + ".part") {
     std::error_code unknown;  // opening tells it
     const fs::file_status status = fs::status(path_, unknown);
     if (fs::is_directory(status)) {
@@ -32,7 +33,8 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)), part_(path_ +
         return;
     }
     regular_ = !fs::exists(status) || fs::is_regular_file(status);
-    file_ = std::fopen(regular_ ? part_.c_str() : path_.c_str(), "wb");
+    const bool kept = keep == 0 || ::truncate(part_.c_str(), keep) == 0;
+    if (kept) file_ = std::fopen(regular_ ? part_.c_str() : path_.c_str(), keep > 0 ? "ab" : "wb");
     if (!file_) fail("open");
 }
 
@@ -43,6 +45,10 @@ OutputFile::~OutputFile() {
 void OutputFile::write(std::string_view text) {
     if (!error_.empty()) return;
     if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail("write");
+}
+
+void OutputFile::flush() {
+    if (error_.empty() && std::fflush(file_) != 0) fail("write");
 }
 
 bool OutputFile::commit() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <string_view>
@@ -11,12 +12,15 @@ namespace lineshaft {
 /// What exists and is no regular file (a device, a pipe) is written to as it is.
 class OutputFile {
   public:
-    explicit OutputFile(std::string path);
+    /// Goes on after the first `keep` bytes of what stays in `NAME.part`.
+    explicit OutputFile(std::string path, std::int64_t keep = 0);
     ~OutputFile();
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
 
     void write(std::string_view text);
+    /// Hands what was written to the operating system, so that it stays if this program is killed.
+    void flush();
     /// False when any step failed: see error().
     bool commit();
 

@@ -1,5 +1,6 @@
 #include "runtime/trace/recorder.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace lineshaft {
@@ -7,29 +8,116 @@ namespace lineshaft {
 namespace {
 
 constexpr std::size_t rows_per_block = 1024;
+constexpr std::uint64_t blocks = 3;  // one under way, two that wait in a BackgroundSink
 
 }  // namespace
 
+std::uint64_t TraceSetup::memory() const {
+    constexpr auto most = std::uint64_t{1} << 63;
+    const std::uint64_t row = sizeof(std::uint64_t) * row_words();
+    const std::uint64_t rows = static_cast<std::uint64_t>(pre_trigger) + blocks * rows_per_block;
+    return rows > most / row ? most : rows * row;
+}
+
 Recorder::Recorder(TraceSetup setup, TraceSink& sink)
-    : setup_(std::move(setup)), sink_(sink), words_((2 + setup_.signals.size()) * rows_per_block) {}
+    : setup_(std::move(setup)),
+      sink_(sink),
+      watch_(setup_.trigger),
+      row_words_(setup_.row_words()),
+      words_(row_words_ * rows_per_block),
+      ring_(row_words_ * static_cast<std::size_t>(setup_.pre_trigger)) {
+    if (setup_.trigger.kind == TraceTrigger::Kind::immediate) begin(0);
+}
+
+void Recorder::begin(std::int64_t time) {
+    recording_ = true;
+    origin_ = time;
+    rows_ = 0;
+    ++measurements_;
+    sink_.begin();
+    give_ring();
+}
+
+void Recorder::end() {
+    flush();
+    recording_ = false;
+    sink_.end();
+}
+
+void Recorder::finish() {
+    if (recording_) end();
+}
 
 void Recorder::scanned(int task, const Scan& scan) {
-    if (task != setup_.task || scan.index % setup_.every != 0) return;
-    std::uint64_t* word = words_.data() + used_;
-    *word++ = static_cast<std::uint64_t>(scan.time);
+    if (task != setup_.task) return;
+    if (setup_.trigger.kind != TraceTrigger::Kind::immediate) look(scan);
+    if (recording_ && is_over(scan.time)) end();
+    if (scan.index % setup_.every != 0) return;
+    if (recording_)
+        record(scan);
+    else if (setup_.pre_trigger > 0)
+        keep(scan);
+}
+
+void Recorder::look(const Scan& scan) {
+    if (!watch_.fires() || measurements_ == setup_.repeat) return;
+    if (recording_ && !is_over(scan.time)) return;
+    if (recording_) end();
+    if (on_trigger) on_trigger(scan);
+    begin(scan.time);
+}
+
+bool Recorder::is_over(std::int64_t time) const {
+    return setup_.duration > 0 && time - origin_ > setup_.duration;
+}
+
+void Recorder::record(const Scan& scan) {
+    copy_row(scan, origin_, words_.data() + used_);
+    used_ += row_words_;
+    ++rows_;
+    if (used_ == words_.size()) flush();
+    if (rows_ == setup_.samples) end();
+}
+
+void Recorder::copy_row(const Scan& scan, std::int64_t origin, std::uint64_t* word) const {
+    *word++ = static_cast<std::uint64_t>(scan.time - origin);
     *word++ = static_cast<std::uint64_t>(scan.index);
     for (const Signal& signal : setup_.signals) {
         std::uint64_t bits = 0;
         std::memcpy(&bits, signal.slot, size_of(signal.type));
         *word++ = bits;
     }
-    used_ += 2 + setup_.signals.size();
-    ++recorded_;
-    if (used_ == words_.size()) flush();
+}
+
+void Recorder::keep(const Scan& scan) {
+    copy_row(scan, 0, ring_.data() + ring_next_);
+    ring_next_ += row_words_;
+    if (ring_next_ == ring_.size()) ring_next_ = 0;
+    if (ring_rows_ < setup_.pre_trigger) ++ring_rows_;
+}
+
+/// The oldest rows first.
+void Recorder::give_ring() {
+    const auto rows = static_cast<std::size_t>(ring_rows_);
+    for (std::size_t row = 0; row < rows; ++row)
+        ring_[row * row_words_] -= static_cast<std::uint64_t>(origin_);
+    const std::size_t oldest = ring_rows_ == setup_.pre_trigger ? ring_next_ / row_words_ : 0;
+    give_ring(oldest, rows);
+    give_ring(0, oldest);
+    recorded_ += ring_rows_;
+    ring_rows_ = 0;
+    ring_next_ = 0;
+}
+
+void Recorder::give_ring(std::size_t row, std::size_t end) {
+    for (; row < end; row += rows_per_block)
+        sink_.rows(ring_.data() + row * row_words_, std::min(rows_per_block, end - row));
 }
 
 void Recorder::flush() {
-    if (used_ > 0) sink_.rows(words_.data(), used_ / (2 + setup_.signals.size()));
+    const std::size_t rows = used_ / row_words_;
+    if (rows > 0) sink_.rows(words_.data(), rows);
+    recorded_ += static_cast<std::int64_t>(rows);
     used_ = 0;
 }
 

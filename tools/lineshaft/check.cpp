@@ -2,6 +2,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/program/link.hpp"
+#include "runtime/study/fit.hpp"
 #include "runtime/study/study_reader.hpp"
 #include "tools/lineshaft/command.hpp"
 
@@ -20,6 +21,8 @@ void check(const std::string& path, const LoadOptions& options, Diagnostics& out
     const Catalog catalog = standard_blocks();
     if (is_study(*file))
         read_study(file, options, catalog, out);
+    else if (is_fit(*file))
+        read_fit(file, options, catalog, out);
     else
         link(read_program(file, options, out), catalog, out);
 }

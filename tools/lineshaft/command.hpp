@@ -66,6 +66,12 @@ void add_blocks(CLI::App& app, Exit& result);
 void add_schema(CLI::App& app, Exit& result);
 void add_explain(CLI::App& app, Exit& result);
 void add_plan(CLI::App& app, Exit& result);
+void add_fit(CLI::App& app, Exit& result);
+void add_diff(CLI::App& app, Exit& result);
+void add_verify(CLI::App& app, Exit& result);
 void add_contour(CLI::App& app, Exit& result);
+void add_report(CLI::App& app, Exit& result);
+void add_show(CLI::App& app, Exit& result);
+void add_plot(CLI::App& app, Exit& result);
 
 }  // namespace lineshaft

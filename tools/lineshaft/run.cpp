@@ -12,6 +12,7 @@ namespace {
 struct RunCommand {
     CommonOptions common;
     std::string program, trace, pulses;
+    CsvStyle style;
 };
 
 nlohmann::ordered_json json_value(const Signal& signal) {
@@ -40,6 +41,11 @@ void print_json(const Loaded& loaded, const RunReport& report) {
                                   {"scans", scans},
                                   {"signals", signals},
                                   {"expect", expect}};
+    for (const TraceReport& trace : report.traces)
+        object["traces"].push_back({{"name", trace.name},
+                                    {"files", trace.paths},
+                                    {"measurements", trace.measurements},
+                                    {"rows", trace.rows}});
     if (report.faulted())
         object["fault"] = !report.trace_error.empty()    ? report.trace_error
                           : !report.pulses_error.empty() ? report.pulses_error
@@ -60,8 +66,9 @@ void print_text(const RunCommand& command, const Loaded& loaded, const RunReport
         "{}: machine time {:.3f} s, wall time {:.3f} s, {:.0f} times faster than the clock\n",
         loaded.program.title, machine_seconds, report.wall_seconds,
         machine_seconds / report.wall_seconds);
-    if (!command.trace.empty() && report.trace_error.empty())
-        fmt::print("trace: {}\n", command.trace);
+    if (report.trace_error.empty())
+        for (const TraceReport& trace : report.traces)
+            for (const std::string& path : trace.paths) fmt::print("trace: {}\n", path);
     if (!command.pulses.empty() && report.pulses_error.empty())
         fmt::print("pulses: {}\n", command.pulses);
 }
@@ -72,11 +79,25 @@ Exit exit_code(const RunReport& report) {
     return report.expectations_hold() ? Exit::fine : Exit::failed;
 }
 
+void add_style(CLI::App& sub, CsvStyle& style) {
+    static const std::map<std::string, CsvStyle::Names> names{{"dot", CsvStyle::Names::dot},
+                                                              {"slash", CsvStyle::Names::slash},
+                                                              {"snake", CsvStyle::Names::snake}};
+    static const std::map<std::string, bool> dialects{{"rfc4180", false}, {"excel-de", true}};
+    sub.add_option("--names", style.names,
+                   "Column names: dot (shaft.position), slash (PlotJuggler's tree) or snake")
+        ->transform(CLI::CheckedTransformer(names).description("dot|slash|snake"));
+    sub.add_flag("--units", style.units, "Units in the header: shaft.position [mm]");
+    sub.add_option("--dialect", style.excel_de,
+                   "rfc4180, or excel-de: semicolons and decimal commas")
+        ->transform(CLI::CheckedTransformer(dialects).description("rfc4180|excel-de"));
+}
+
 Exit execute(const RunCommand& command) {
     Diagnostics out;
     const LoadOptions options = command.common.load_options(out);
     auto loaded = load_program(command.program, options, standard_blocks(), out);
-    if (loaded && !command.trace.empty() && !loaded->linked.trace)
+    if (loaded && !command.trace.empty() && loaded->linked.traces.empty())
         out.add("L0503", {loaded->program.file, 0, 0, 1},
                 "the program has no 'trace:' to write to " + command.trace,
                 "say under 'trace:' which task and signals to record");
@@ -96,12 +117,17 @@ Exit execute(const RunCommand& command) {
     };
     const RunReport result = run(*loaded, {.trace_path = command.trace,
                                            .pulses_path = command.pulses,
+                                           .csv_style = command.style,
                                            .interrupt = &interrupt_requested,
                                            .progress = progress});
     if (command.common.json)
         print_json(*loaded, result);
     else
         print_text(command, *loaded, result);
+    for (const TraceReport& trace : result.traces)
+        if (trace.measurements == 0)
+            spdlog::warn("the trigger of trace '{}' did not come: {} has no rows",
+                         trace.name.empty() ? "trace" : trace.name, trace.paths.front());
     if (!result.result.message.empty()) spdlog::error("{}", result.result.message);
     if (!result.trace_error.empty()) spdlog::error("{}", result.trace_error);
     if (!result.pulses_error.empty()) spdlog::error("{}", result.pulses_error);
@@ -114,8 +140,11 @@ void add_run(CLI::App& app, Exit& result) {
     auto command = std::make_shared<RunCommand>();
     CLI::App* sub = app.add_subcommand("run", "Run a program and judge its expectations");
     sub->add_option("program", command->program, "The program, a YAML file")->required();
-    sub->add_option("--trace", command->trace, "Write the program's trace to this CSV file")
-        ->type_name("FILE");
+    sub->add_option("--trace", command->trace,
+                    "Write the program's trace to this CSV file; the trace NAME of its 'traces:' "
+                    "to FILE.NAME.csv")
+        ->type_name("FILE.csv");
+    add_style(*sub, command->style);
     sub->add_option("--pulses", command->pulses,
                     "Write the rising edges of all pulse channels to this CSV file")
         ->type_name("FILE");

@@ -7,9 +7,9 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/study/junit.hpp"
+#include "runtime/study/report.hpp"
 #include "runtime/study/single_run.hpp"
 #include "runtime/study/study_reader.hpp"
-#include "runtime/study/study_runner.hpp"
 #include "runtime/study/table.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "blocks/logic/arithmetic.hpp"
-#include "runtime/scan/random.hpp"
+#include "runtime/model/random.hpp"
 #include "tests/blocks/logic/scan_table.hpp"
 
 using namespace lineshaft;

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "runtime/scan/random.hpp"
+#include "runtime/model/random.hpp"
 #include "tests/blocks/logic/scan_table.hpp"
 #include "tests/blocks/scanning.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "runtime/scan/random.hpp"
+#include "runtime/model/random.hpp"
 
 using namespace lineshaft;
 

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "blocks/pulse/pulse_train.hpp"
-#include "runtime/scan/random.hpp"
+#include "runtime/model/random.hpp"
 #include "tests/blocks/scanning.hpp"
 
 using namespace lineshaft;

@@ -92,7 +92,8 @@ expect:
     CHECK(program.run.continue_on_error);
     REQUIRE(program.stimuli.size() == 2);
     CHECK(program.stimuli[0].at == 1'000'000);
-    CHECK(program.trace->every == 10);
+    REQUIRE(program.traces.size() == 1);
+    CHECK(program.traces[0].every == 10);
     REQUIRE(program.expectations.size() == 3);
     CHECK(program.expectations[0].within->text == "1");
     CHECK(program.expectations[1].at == 5'000'000);

@@ -8,8 +8,8 @@
 #include <catch2/catch.hpp>
 
 #include "blocks/catalog.hpp"
+#include "runtime/study/report.hpp"
 #include "runtime/study/study_reader.hpp"
-#include "runtime/study/study_runner.hpp"
 #include "tests/folder.hpp"
 
 using namespace lineshaft;

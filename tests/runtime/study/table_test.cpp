@@ -11,13 +11,20 @@ namespace {
 /// Two cases that differ in speed, a bound that holds and one that fails, and two claims.
 struct Example {
     Study study;
+    std::vector<std::shared_ptr<StudyCase>> cases;
     StudyReport report;
 
     Example() {
         study.title = "An example";
         study.notes = {"A note."};
-        study.cases.push_back(one_case("5 mm/s", 2));
-        study.cases.push_back(one_case("10 mm/s", 4));
+        cases = {one_case("5 mm/s", 2), one_case("10 mm/s", 4)};
+        for (const auto& c : cases)
+            study.groups.push_back({.mark = {},
+                                    .name = {},
+                                    .settings = c->settings,
+                                    .grid = {},
+                                    .random = {},
+                                    .comparisons = c->comparisons});
         Claim reduction{.text = "falls by", .formula = "1 - a / b", .percent = true, .bounds = {}};
         reduction.bounds.paper = 0.5;
         reduction.bounds.within = {0.05};
@@ -27,17 +34,20 @@ struct Example {
         report.claims = {{&study.claims[0], 0.65, false}, {&study.claims[1], 0.35, true}};
     }
 
-    static StudyCase one_case(const char* speed, double paper) {
+    static std::shared_ptr<StudyCase> one_case(const char* speed, double paper) {
         Comparison comparison{.signal = "fit.offset", .unit = "mm", .bounds = {}};
         comparison.bounds.paper = paper;
         comparison.bounds.within = {0.5};
-        return {.name = {},
-                .settings = {{"method", "early"}, {"speed", speed}},
-                .comparisons = {comparison}};
+        return std::make_shared<StudyCase>(
+            StudyCase{.name = {},
+                      .settings = {{"method", "early"}, {"speed", speed}},
+                      .comparisons = {comparison}});
     }
     void add_row(std::size_t index, double ours, bool ok) {
-        const StudyCase& c = study.cases[index];
-        report.rows.push_back({&c, &c.comparisons[0], ours, ours - 1, ours + 1, ok});
+        const auto& c = cases[index];
+        report.rows.push_back({c, &c->comparisons[0], ours, ours - 1, ours + 1, ok});
+        ++report.cases;
+        if (!ok) ++report.failed;
     }
 };
 
@@ -61,8 +71,8 @@ TEST_CASE("a study's table has what varies, the paper's value, ours, the differe
 
 TEST_CASE("limits have a column when there are any") {
     Example e;
-    e.study.cases[0].comparisons[0].bounds.at_most = 3;
-    e.study.cases[1].comparisons[0].bounds.at_least = 0.5;
+    e.cases[0]->comparisons[0].bounds.at_most = 3;
+    e.cases[1]->comparisons[0].bounds.at_least = 0.5;
     const std::string table = study_table(e.study, e.report);
     CHECK_THAT(table, Catch::Contains("limit"));
     CHECK_THAT(table, Catch::Contains("<= 3    ok"));
@@ -116,7 +126,7 @@ TEST_CASE("the JSON object has rows and claims with the same keys") {
 
 TEST_CASE("repeated cases show their spread, values that are no numbers are null") {
     Example e;
-    e.study.cases[0].repeat = 4;
+    e.cases[0]->repeat = 4;
     e.report.rows[1].ours = std::numeric_limits<double>::quiet_NaN();
     e.report.faults = {"a fault"};
     const auto json = study_json(e.study, e.report);

@@ -1,0 +1,106 @@
+#include "runtime/trace/compare.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "runtime/model/units.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+/// Doubles in their order as integers, 0 and -0 the same.
+std::int64_t ordinal(double value) {
+    const auto bits = std::bit_cast<std::int64_t>(value);
+    return bits < 0 ? std::numeric_limits<std::int64_t>::min() - bits : bits;
+}
+
+bool deviates(const CsvColumn& a, const CsvColumn& b, std::size_t row, double tolerance) {
+    if (a.is_missing(row) || b.is_missing(row)) return a.is_missing(row) != b.is_missing(row);
+    if (a.type == Type::integer && tolerance == 0) return a.integers[row] != b.integers[row];
+    return std::abs(a.values[row] - b.values[row]) > tolerance;
+}
+
+std::string names_of(const CsvTable& table) {
+    std::string text;
+    for (const CsvColumn& column : table.columns) text += (text.empty() ? "" : ", ") + column.name;
+    return text;
+}
+
+/// Between the first two rows [s].
+std::optional<double> interval(const CsvTable& table) {
+    const CsvColumn* time = table.find("time");
+    if (!time || table.rows < 2) return {};
+    return std::round((time->values[1] - time->values[0]) * 1e9) / 1e9;
+}
+
+void check_columns(const CsvTable& a, const CsvTable& b, const auto& fail) {
+    const auto name = [](const CsvColumn& column) { return column.name; };
+    if (!std::ranges::equal(a.columns, b.columns, {}, name, name))
+        return fail("the columns differ", fmt::format("{} has: {}", a.header->path, names_of(a)));
+    for (std::size_t i = 0; i < a.columns.size(); ++i) {
+        const CsvColumn &x = a.columns[i], &y = b.columns[i];
+        if (x.unit != y.unit)
+            fail(fmt::format("column '{}' is in '{}' and in '{}'", x.name, y.unit, x.unit), "");
+        if (x.type != y.type || x.names != y.names)
+            fail(fmt::format("column '{}' is {} and {}", x.name, name_of(y.type), name_of(x.type)),
+                 "");
+    }
+}
+
+}  // namespace
+
+double Tolerances::of(const CsvColumn& column) const {
+    const auto it = columns.find(column.name);
+    if (it != columns.end()) return it->second;
+    return column.type == Type::real ? all : 0;
+}
+
+std::uint64_t ulp_distance(double a, double b) {
+    const std::int64_t x = ordinal(a), y = ordinal(b);
+    return x > y ? static_cast<std::uint64_t>(x) - static_cast<std::uint64_t>(y)
+                 : static_cast<std::uint64_t>(y) - static_cast<std::uint64_t>(x);
+}
+
+void check_comparable(const CsvTable& a, const CsvTable& b, bool same_program, Diagnostics& out) {
+    const auto fail = [&](const std::string& what, const std::string& help) {
+        out.add("L0708", {b.header, 0, 0, 1},
+                fmt::format("cannot be compared with '{}': {}", a.header->path, what), help);
+    };
+    check_columns(a, b, fail);
+    if (same_program && a.metadata && b.metadata && a.metadata->program != b.metadata->program)
+        fail("it comes from another program", "--any-program compares all the same");
+    const auto x = interval(a), y = interval(b);
+    if (x && y && *x != *y)
+        fail(fmt::format("its interval is {} s, not {} s", format_number(*y), format_number(*x)),
+             "record both with the same task and 'every'");
+}
+
+Comparison compare(const CsvTable& a, const CsvTable& b, const Tolerances& tolerances) {
+    Comparison result;
+    result.compared = std::min(a.rows, b.rows);
+    std::vector<double> tolerance;
+    for (const CsvColumn& column : a.columns) tolerance.push_back(tolerances.of(column));
+    double greatest = 0;
+    for (std::size_t row = 0; row < result.compared; ++row) {
+        const std::size_t before = result.cells;
+        for (std::size_t i = 0; i < a.columns.size(); ++i) {
+            const CsvColumn &x = a.columns[i], &y = b.columns[i];
+            if (!deviates(x, y, row, tolerance[i])) continue;
+            ++result.cells;
+            if (!result.first) result.first = {row, i};
+            const double distance = std::abs(x.values[row] - y.values[row]);
+            if (x.type != Type::real || !(distance > greatest)) continue;
+            greatest = distance;
+            result.greatest = {row, i};
+        }
+        if (result.cells != before) ++result.rows;
+    }
+    return result;
+}
+
+}  // namespace lineshaft

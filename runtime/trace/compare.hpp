@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/trace/csv_reader.hpp"
+
+namespace lineshaft {
+
+/// How far two values may lie apart, in the unit of their column.
+struct Tolerances {
+    double all = 0;                         ///< for real columns without one of their own
+    std::map<std::string, double> columns;  ///< by name
+    double of(const CsvColumn& column) const;
+};
+
+/// A cell in which two traces differ by more than the tolerance.
+struct Deviation {
+    std::size_t row = 0;
+    std::size_t column = 0;  ///< of either table
+};
+
+struct Comparison {
+    std::optional<Deviation> first;     ///< by row, then column
+    std::optional<Deviation> greatest;  ///< by the plain distance, among reals
+    std::size_t cells = 0;              ///< that deviate
+    std::size_t rows = 0;               ///< that hold such cells
+    std::size_t compared = 0;           ///< rows that both have
+
+    bool same(const CsvTable& a, const CsvTable& b) const { return !first && a.rows == b.rows; }
+};
+
+/// L0708 unless both have the same columns in the same order with the same units and types, the
+/// same interval, and the same program (asked only when `same_program`): else there is nothing to
+/// compare.
+void check_comparable(const CsvTable& a, const CsvTable& b, bool same_program, Diagnostics& out);
+
+/// Compares two comparable tables cell by cell, as far as both have rows. A missing value equals a
+/// missing one only.
+Comparison compare(const CsvTable& a, const CsvTable& b, const Tolerances& tolerances);
+
+/// How many doubles lie between two finite ones, and one more; 0 for equal ones, and for 0 and -0.
+std::uint64_t ulp_distance(double a, double b);
+
+}  // namespace lineshaft

@@ -1,0 +1,149 @@
+#include "runtime/trace/packing.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include <zlib.h>
+
+namespace lineshaft {
+
+namespace {
+
+constexpr double largest_whole = 0x1p49;  // its differences of third order fit a page's numbers
+constexpr int fine_bits = 40, coarse_bits = 24;
+constexpr std::size_t highest_order = 3;
+constexpr double noise_bits = 24;  // a sample
+
+using Whole = std::vector<std::int64_t>;
+
+std::uint64_t zigzag(std::int64_t value) {
+    return (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63);
+}
+
+bool is_whole(double value) {
+    return !std::isfinite(value) || (std::trunc(value) == value && std::abs(value) < largest_whole);
+}
+
+/// `bits` below the power of two above the largest sample.
+double step(std::span<const double> samples, int bits) {
+    double largest = 0;
+    for (const double value : samples)
+        if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    return std::ldexp(1, std::max(exponent - bits, std::numeric_limits<double>::min_exponent));
+}
+
+/// Missing samples repeat the one before them, which costs nothing.
+Whole whole_numbers(std::span<const double> samples, double scale) {
+    Whole whole(samples.size());
+    std::int64_t last = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (std::isfinite(samples[i])) last = std::llround(samples[i] / scale);
+        whole[i] = last;
+    }
+    return whole;
+}
+
+/// values[i] - values[i - 1] from `first` on.
+void difference(Whole& values, std::size_t first) {
+    for (std::size_t i = values.size(); i-- > first;) values[i] -= values[i - 1];
+}
+
+double bits_per_sample(const Whole& values) {
+    std::int64_t bits = 0;
+    for (const std::int64_t value : values) bits += std::bit_width(zigzag(value));
+    return static_cast<double>(bits) / static_cast<double>(std::max<std::size_t>(values.size(), 1));
+}
+
+struct Differences {
+    Whole values;  ///< from index `seeds.size() - 1` on
+    std::vector<std::int64_t> seeds;
+    double bits = 0;
+};
+
+/// Of the order that takes the fewest bits.
+Differences smallest_differences(Whole values) {
+    Differences best{.values = values, .seeds = {}, .bits = bits_per_sample(values)};
+    std::vector<std::int64_t> seeds;
+    for (std::size_t order = 1; order <= highest_order && order <= values.size(); ++order) {
+        seeds.push_back(values[order - 1]);
+        difference(values, order);
+        const double bits = bits_per_sample(values);
+        if (bits < best.bits) best = {values, seeds, bits};
+    }
+    for (std::size_t i = 0; i < best.seeds.size(); ++i) best.values[i] = 0;
+    return best;
+}
+
+std::string byte_planes(const Whole& values, std::size_t& width) {
+    std::uint64_t all = 0;
+    for (const std::int64_t value : values) all |= zigzag(value);
+    width = (static_cast<std::size_t>(std::bit_width(all)) + 7) / 8;
+    std::string planes(width * values.size(), '\0');
+    for (std::size_t plane = 0; plane < width; ++plane)
+        for (std::size_t i = 0; i < values.size(); ++i)
+            planes[plane * values.size() + i] =
+                static_cast<char>(zigzag(values[i]) >> (8 * plane) & 0xff);
+    return planes;
+}
+
+std::string deflated(const std::string& bytes) {
+    uLongf size = compressBound(bytes.size());
+    std::string out(size, '\0');
+    compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+              reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_COMPRESSION);
+    out.resize(size);
+    return out;
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> missing_stretches(
+    std::span<const double> samples) {
+    std::vector<std::pair<std::size_t, std::size_t>> found;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (std::isfinite(samples[i])) continue;
+        if (!found.empty() && found.back().first + found.back().second == i)
+            ++found.back().second;
+        else
+            found.emplace_back(i, 1);
+    }
+    return found;
+}
+
+}  // namespace
+
+PackedSamples pack(std::span<const double> samples) {
+    PackedSamples packed;
+    packed.count = samples.size();
+    packed.missing = missing_stretches(samples);
+    const bool whole = std::ranges::all_of(samples, is_whole);
+    if (!whole) packed.scale = step(samples, fine_bits);
+    Differences best = smallest_differences(whole_numbers(samples, packed.scale));
+    if (!whole && best.bits > noise_bits) {
+        packed.scale = step(samples, coarse_bits);
+        best = smallest_differences(whole_numbers(samples, packed.scale));
+    }
+    packed.seeds = best.seeds;
+    packed.planes = deflated(byte_planes(best.values, packed.width));
+    return packed;
+}
+
+std::string base64(std::string_view bytes) {
+    constexpr std::string_view letters =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t taken = std::min<std::size_t>(bytes.size() - i, 3);
+        std::uint32_t word = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            word = word << 8 | (k < taken ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k)
+            text += k <= taken ? letters[word >> (18 - 6 * k) & 63] : '=';
+    }
+    return text;
+}
+
+}  // namespace lineshaft

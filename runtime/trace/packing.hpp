@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace lineshaft {
+
+/// The samples of one column made small for a page: whole numbers times a scale, their differences
+/// of the order that makes them smallest, zigzag (0, -1, 1, -2 become 0, 1, 2, 3), the bytes of one
+/// significance side by side, deflated. tools/report/page/decode.js undoes it.
+struct PackedSamples {
+    std::size_t count = 0;
+    double scale = 1;                 ///< value = whole number times scale
+    std::size_t width = 0;            ///< byte planes, of `count` bytes each, the lowest first
+    std::vector<std::int64_t> seeds;  ///< the first of the samples, of their differences, ...
+    std::vector<std::pair<std::size_t, std::size_t>> missing;  ///< first and count of each stretch
+    std::string planes;                                        ///< zlib format
+};
+
+/// Whole numbers below 2^49 stay as they are. Others are rounded to a step of 2^-40 of the power of
+/// two above the largest of them; to 2^-24 of it, as a float has it, if they are noise that would
+/// take more than three bytes a sample. What is not finite counts as missing.
+PackedSamples pack(std::span<const double> samples);
+
+/// RFC 4648, with padding.
+std::string base64(std::string_view bytes);
+
+}  // namespace lineshaft

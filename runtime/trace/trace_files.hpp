@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/trace/background_sink.hpp"
+#include "runtime/trace/csv_writer.hpp"
+
+namespace lineshaft {
+
+/// Writes each measurement of a trace to a CSV file of its own, see CsvWriter: the trace `name` of
+/// `out.csv` goes to `out.name.csv`, one that may repeat to `out.name.1.csv`, `out.name.2.csv`, ...
+class TraceFiles : public TraceSink {
+  public:
+    /// `setup` must outlive this. `out` is what the user named, the file of the trace without a
+    /// name.
+    TraceFiles(const std::string& out, const TraceSetup& setup, std::string title,
+               std::string program_text, const CsvStyle& style);
+
+    /// What came of the program's expectations, for the files that end after the run.
+    void set_expectations(nlohmann::ordered_json verdicts) { expectations_ = std::move(verdicts); }
+
+    void begin() override;
+    void rows(const std::uint64_t* words, std::size_t rows) override;
+    void end() override;
+
+    /// What has been written.
+    const std::vector<std::string>& paths() const { return paths_; }
+    /// Of the first file that went wrong; empty when all is well.
+    const std::string& error() const { return error_; }
+
+  private:
+    std::string next_path() const;
+
+    std::string stem_, extension_;
+    const TraceSetup& setup_;
+    std::string title_, program_text_;
+    CsvStyle style_;
+    nlohmann::ordered_json expectations_;
+    std::optional<CsvWriter> csv_;
+    std::optional<BackgroundSink> background_;
+    std::vector<std::string> paths_;
+    std::string error_;
+};
+
+}  // namespace lineshaft

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+
+#include "runtime/scan/machine.hpp"
+
+namespace lineshaft {
+
+/// What begins a trace's measurement: the first scan in which the condition holds while it did not
+/// in the scan before. A condition that holds in the very first scan begins it at once; an edge
+/// needs a scan before it.
+struct TraceTrigger {
+    enum class Kind : std::uint8_t {
+        immediate,  ///< the start of the run
+        rising,     ///< of a boolean
+        falling,
+        above,   ///< value > low
+        below,   ///< value < high
+        inside,  ///< low <= value <= high
+        equals,  ///< value = low
+    };
+
+    Kind kind = Kind::immediate;
+    Signal signal = {};
+    double low = 0;
+    double high = 0;
+
+    /// Of the signal's present value.
+    bool condition_holds() const;
+};
+
+/// Watches a trigger from scan to scan.
+class TriggerWatch {
+  public:
+    explicit TriggerWatch(const TraceTrigger& trigger);
+
+    /// True in the scan in which the trigger comes.
+    bool fires();
+
+  private:
+    const TraceTrigger& trigger_;
+    bool held_;  ///< in the scan before
+};
+
+}  // namespace lineshaft

@@ -1,0 +1,102 @@
+#include "runtime/trace/packing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <catch2/catch.hpp>
+#include <zlib.h>
+
+using namespace lineshaft;
+
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+/// As tools/report/page/decode.js does it.
+std::vector<double> unpack(const PackedSamples& packed) {
+    std::string planes(packed.width * packed.count, '\0');
+    uLongf size = planes.size();
+    uncompress(reinterpret_cast<Bytef*>(planes.data()), &size,
+               reinterpret_cast<const Bytef*>(packed.planes.data()), packed.planes.size());
+    std::vector<std::int64_t> values(packed.count);
+    for (std::size_t i = 0; i < packed.count; ++i) {
+        std::uint64_t bits = 0;
+        for (std::size_t plane = packed.width; plane-- > 0;)
+            bits = bits << 8 | static_cast<unsigned char>(planes[plane * packed.count + i]);
+        values[i] = static_cast<std::int64_t>(bits >> 1) ^ -static_cast<std::int64_t>(bits & 1);
+    }
+    for (std::size_t order = packed.seeds.size(); order-- > 0;) {
+        values[order] = packed.seeds[order];
+        for (std::size_t i = order + 1; i < values.size(); ++i) values[i] += values[i - 1];
+    }
+    std::vector<double> samples(packed.count);
+    for (std::size_t i = 0; i < packed.count; ++i)
+        samples[i] = static_cast<double>(values[i]) * packed.scale;
+    for (const auto& [first, count] : packed.missing)
+        std::fill_n(samples.begin() + static_cast<std::ptrdiff_t>(first), count, missing);
+    return samples;
+}
+
+double greatest_error(const std::vector<double>& samples) {
+    const std::vector<double> back = unpack(pack(samples));
+    REQUIRE(back.size() == samples.size());
+    double worst = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        REQUIRE(std::isnan(back[i]) == !std::isfinite(samples[i]));
+        if (!std::isnan(back[i])) worst = std::max(worst, std::abs(back[i] - samples[i]));
+    }
+    return worst;
+}
+
+}  // namespace
+
+TEST_CASE("whole numbers come back exactly", "[packing]") {
+    CHECK(greatest_error({}) == 0);
+    CHECK(greatest_error({7}) == 0);
+    CHECK(greatest_error({0, 1, 0, 0, 1}) == 0);
+    CHECK(greatest_error({-3, 0x1p49 - 1, 1 - 0x1p49, 12, 0}) == 0);
+    std::mt19937_64 random(1);
+    std::vector<double> samples(1000);
+    for (double& sample : samples) sample = std::floor(std::ldexp(random(), -16)) - 0x1p47;
+    CHECK(greatest_error(samples) == 0);
+}
+
+TEST_CASE("reals come back to 2^-41 of the power of two above the largest", "[packing]") {
+    std::vector<double> samples(5000);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        samples[i] = 20 * std::sin(1e-3 * static_cast<double>(i));
+    CHECK(greatest_error(samples) <= 32 * 0x1p-41);
+    CHECK(greatest_error({0.1, 1e-300, -0.3}) <= 0.5 * 0x1p-41);
+    CHECK(greatest_error({1.5e300, -1e300, 3}) <= 1e300 * 0x1p-35);
+    CHECK(greatest_error({5e-324, 1e-310}) <= 1e-300);
+}
+
+TEST_CASE("missing samples stay missing", "[packing]") {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    CHECK(greatest_error({missing, missing, 1, 2, missing, 3, infinite}) == 0);
+    CHECK(greatest_error({missing}) == 0);
+    CHECK(pack(std::vector<double>{missing, missing, 0.5, missing}).missing ==
+          std::vector<std::pair<std::size_t, std::size_t>>{{0, 2}, {3, 1}});
+}
+
+TEST_CASE("a straight line takes next to nothing, noise no more than a float", "[packing]") {
+    std::vector<double> line(100000), noise(100000);
+    std::mt19937_64 random(1);
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        line[i] = 0.0125 * static_cast<double>(i);
+        noise[i] = std::ldexp(random(), -64);
+    }
+    CHECK(pack(line).planes.size() < line.size() / 4);
+    CHECK(pack(noise).planes.size() < noise.size() * 4);
+    CHECK(greatest_error(noise) <= 0x1p-25);
+}
+
+TEST_CASE("base64 as RFC 4648 has it", "[packing]") {
+    CHECK(base64("") == "");
+    CHECK(base64("f") == "Zg==");
+    CHECK(base64("fo") == "Zm8=");
+    CHECK(base64("foobar") == "Zm9vYmFy");
+    CHECK(base64("\xff\xfe\xfd") == "//79");
+}

@@ -1,0 +1,226 @@
+#!/usr/bin/env python3
+"""The result files of studies: the same bytes with any number of threads, in any chunks, and after kills.
+
+study.py LINESHAFT
+"""
+import csv
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+PROGRAM = """lineshaft: 1
+parameters: {speed: 10 mm/s, time: 1 s, jitter: 4 ms, every: 10 ms, top: 100 mm, seen: 0 mm}
+tasks: {main: {every: $every, jitter: $jitter}}
+blocks:
+  axis: {type: virtual_axis, task: main, immediate: true, velocity: $speed}
+run: {for: $time}
+expect:
+  - {always: axis.position, at_most: $top}
+"""
+# 306 cases: 2 with a name, a grid of 2 x 3 with 40 draws, 60 draws, and a grid of 2 x 2 whose last case is a fault by
+# the combination of its values. 'slow' takes longer than those after it.
+PLAN = """lineshaft_study: 1
+title: All kinds of cases
+program: program.yaml
+compare: {axis.position: {at_most: 50 mm}}
+cases:
+  - {name: first, set: {speed: 7 mm/s}, repeat: 3}
+  - {name: slow, set: {time: 2000 s, speed: 0.01 mm/s}}
+  - grid: {time: [1 s, 100 ms], speed: [1 mm/s, 2 cm/s, 90 mm/s]}
+    random: {jitter: {log_uniform: [1 us, 5 ms]}, top: {choice: [80 mm, 100 mm]}}
+    draws: 40
+    seed: 3
+  - random: {speed: {normal: [10 mm/s, 20 %]}, time: {uniform: [10 ms, 2000 ms]}, seen: {integer: [0 mm, 9 mm]}}
+    draws: 60
+    repeat: 2
+  - grid: {every: [10 ms, 5 ms], jitter: [0 ms, 8 ms]}
+claims:
+  - {claim: ratio, formula: first / slow}
+"""
+
+
+class Checks:
+    def __init__(self, lineshaft, folder):
+        self.lineshaft, self.folder = lineshaft, folder
+        (folder / "program.yaml").write_text(PROGRAM)
+        (folder / "plan.yaml").write_text(PLAN)
+
+    def run(self, *arguments, expect, **options):
+        result = subprocess.run([self.lineshaft, "study", "plan.yaml", "--quiet", *arguments], cwd=self.folder,
+                                capture_output=True, text=True, timeout=300, **options)
+        assert result.returncode == expect, (arguments, result.returncode, result.stdout[-500:], result.stderr)
+        return result
+
+    def bytes(self, name):
+        return (self.folder / name).read_bytes()
+
+    def sidecar(self, name):
+        return json.loads(self.bytes(name + "-metadata.json"))
+
+
+def threads(c):
+    c.run("-j", "1", "-o", "one.csv", expect=1)
+    c.run("-j", "2", "-o", "two.csv", expect=1)
+    c.run("-j", "7", "-o", "seven.csv", expect=1)
+    assert c.bytes("one.csv") == c.bytes("two.csv") == c.bytes("seven.csv")
+    assert {k: v for k, v in c.sidecar("one.csv").items() if k != "url"} == \
+        {k: v for k, v in c.sidecar("two.csv").items() if k != "url"}
+    assert not list(c.folder.glob("*.part*"))
+
+
+def contents(c):
+    with open(c.folder / "one.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 306, len(rows)
+    assert [int(row["case"]) for row in rows] == list(range(1, 307))
+    assert rows[0]["name"] == "first" and rows[0]["speed"] == "7" and rows[0]["outcome"] == "ok"
+    assert float(rows[0]["axis.position.least"]) < float(rows[0]["axis.position"]) < \
+        float(rows[0]["axis.position.greatest"])
+    units = {column["titles"]: column.get("unit") for column in c.sidecar("one.csv")["tableSchema"]["columns"]}
+    assert units["speed"] == "mm/s" and units["time"] == "s" and units["jitter"] == "us" and units["machine_time"] == "s", units
+    grid = rows[2:242]
+    assert [row["speed"] for row in grid[::40]] == ["1", "20", "90"] * 2
+    assert [row["jitter"] for row in grid[:40]] == [row["jitter"] for row in grid[40:80]], "draws differ in the grid"
+    assert all(1 <= float(row["jitter"]) <= 5000 for row in grid) and len({row["jitter"] for row in grid}) == 40
+    failed = [row for row in rows if row["outcome"] == "failed"]
+    assert failed and all(float(row["axis.position.greatest"]) > 50 for row in failed)
+    assert any("at most 80 mm" in row["message"] for row in failed), failed[0]
+    assert all(row["axis.position"] for row in rows[:-1])
+    fault = rows[-1]
+    assert fault["outcome"] == "fault" and fault["axis.position"] == "" and "jitter" in fault["message"], fault
+    speeds = [float(row["speed"]) for row in rows[242:302]]
+    assert 9 < sum(speeds) / 60 < 11 and 1 < max(abs(s - 10) for s in speeds) < 10
+    assert {row["seen"] for row in rows[242:302]} <= {str(i) for i in range(10)}
+
+
+def chunks(c):
+    whole = c.run("-o", "one.csv", expect=1).stdout
+    for of in (1, 3, 7):
+        (c.folder / f"parts_{of}").mkdir()
+        for i in range(of, 0, -1):
+            c.run("--chunk", f"{i}/{of}", "-o", f"parts_{of}/part_{i}.csv", "-j", str(1 + i % 2),
+                  expect=1 if any_failed(c, i, of) else 0)
+        merged = c.run("--merge", f"parts_{of}", "-o", "merged.csv", expect=1)
+        assert c.bytes("merged.csv") == c.bytes("one.csv"), of
+        assert merged.stdout == whole, "the merged table differs"
+    c.run("--chunk", "1/400", "-o", "empty.csv", expect=0)
+    assert c.bytes("empty.csv").count(b"\n") == 1, "more chunks than cases leave some without a row"
+
+
+def any_failed(c, i, of):
+    rows = c.bytes("one.csv").decode().splitlines()[1:]
+    n = len(rows)
+    return any(",failed," in row or ",fault," in row for row in rows[n * (i - 1) // of:n * i // of])
+
+
+def broken_merges(c):
+    part = c.folder / "parts_3" / "part_2.csv"
+    kept, sidecar = part.read_bytes(), Path(str(part) + "-metadata.json")
+    part.rename(c.folder / "away")
+    result = c.run("--merge", "parts_3", "-o", "m.csv", expect=2)
+    assert "L0611" in result.stderr and "one is missing: 2" in result.stderr and "--chunk 2/3" in result.stderr
+    part.write_bytes(kept[:-40])
+    assert "L0613" in c.run("--merge", "parts_3", "-o", "m.csv", expect=2).stderr
+    part.write_bytes(kept.replace(b",ok,", b",OK,", 1))
+    assert "L0613" in c.run("--merge", "parts_3", "-o", "m.csv", expect=2).stderr
+    part.write_bytes(kept)
+    text = sidecar.read_text()
+    foreign = json.loads(text)
+    foreign["lineshaft:study"] = "0" * 16
+    sidecar.write_text(json.dumps(foreign))
+    assert "L0612" in c.run("--merge", "parts_3", "-o", "m.csv", expect=2).stderr
+    sidecar.write_text(text)
+    c.run("--merge", "parts_3", "-o", "m.csv", expect=1)
+    program = (c.folder / "program.yaml").read_text()
+    (c.folder / "program.yaml").write_text(program + "# changed\n")
+    result = c.run("--merge", "parts_3", "-o", "m.csv", expect=2)
+    assert result.stderr.count("L0612") == 3, result.stderr
+    (c.folder / "program.yaml").write_text(program)
+    (c.folder / "none").mkdir()
+    assert "no chunk in" in c.run("--merge", "none", "-o", "none.csv", expect=2).stderr
+    assert not list(c.folder.glob("none.csv*"))
+
+
+def kills(c):
+    for kill in (signal.SIGKILL, signal.SIGINT, signal.SIGTERM):
+        part = c.folder / "killed.csv.part"
+        rounds = 0
+        while True:
+            process = subprocess.Popen([c.lineshaft, "study", "plan.yaml", "--quiet", "--resume", "-j", "2", "-o",
+                                        "killed.csv"], cwd=c.folder, stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL)
+            before = part.stat().st_size if part.exists() else 0
+            while process.poll() is None and not (part.exists() and part.stat().st_size > before + 2000):
+                time.sleep(0.002)
+            if process.poll() is not None:
+                break
+            process.send_signal(kill)
+            code = process.wait()
+            if code == 1:  # it was quicker
+                break
+            assert code in (-kill, 130), code
+            rounds += 1
+        assert process.returncode == 1, process.returncode
+        assert rounds >= 1, "never interrupted"
+        assert c.bytes("killed.csv") == c.bytes("one.csv"), kill
+        assert not part.exists()
+        again = c.run("--resume", "-o", "killed.csv", expect=1)
+        assert again.stdout == c.run("-o", "one.csv", expect=1).stdout
+        (c.folder / "killed.csv").unlink()
+
+
+def torn_rows(c):
+    """A row that was cut off in writing is computed again."""
+    c.run("-o", "torn.csv", expect=1)
+    whole = c.bytes("torn.csv")
+    metadata = c.sidecar("torn.csv")
+    for name in ("torn.csv", "torn.csv-metadata.json"):
+        (c.folder / name).unlink()
+    (c.folder / "torn.csv.part").write_bytes(whole[:len(whole) // 2])
+    (c.folder / "torn.csv.part-metadata.json").write_text(json.dumps(metadata))
+    c.run("--resume", "-o", "torn.csv", expect=1)
+    assert c.bytes("torn.csv") == whole
+    metadata["lineshaft:study"] = "f" * 16
+    (c.folder / "torn.csv").unlink()
+    (c.folder / "torn.csv.part").write_bytes(whole[:1000])
+    (c.folder / "torn.csv.part-metadata.json").write_text(json.dumps(metadata))
+    assert "another study" in c.run("--resume", "-o", "torn.csv", expect=3).stderr
+    assert c.bytes("torn.csv.part") == whole[:1000], "a foreign file was touched"
+
+
+def full_disks(c):
+    assert "No space left" in c.run("-o", "/dev/full", expect=3).stderr
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))
+    result = c.run("-o", "full.csv", "-j", "2", expect=3, preexec_fn=limit)
+    assert "cannot write 'full.csv'" in result.stderr and not (c.folder / "full.csv").exists()
+    c.run("-o", "full.csv", "--resume", expect=1)
+    assert c.bytes("full.csv") == c.bytes("one.csv")
+
+
+def command_lines(c):
+    for arguments in (["--chunk", "0/3"], ["--chunk", "4/3"], ["--chunk", "1/3x"]):
+        assert "is no chunk" in c.run(*arguments, "-o", "x.csv", expect=2).stderr
+    for arguments in (["--resume"], ["--chunk", "1/3"], ["--merge", "."]):
+        assert "L0614" in c.run(*arguments, expect=2).stderr
+    c.run("--merge", ".", "--chunk", "1/2", "-o", "x.csv", expect=2)
+    assert "cannot read 'nowhere'" in c.run("--merge", "nowhere", "-o", "x.csv", expect=2).stderr
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        c = Checks(os.path.abspath(sys.argv[1]), Path(folder))
+        for check in (threads, contents, chunks, broken_merges, kills, torn_rows, full_disks, command_lines):
+            check(c)
+            print("ok ", check.__name__, flush=True)
+
+
+if __name__ == "__main__":
+    main()

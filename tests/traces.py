@@ -1,0 +1,208 @@
+#!/usr/bin/python3
+"""Trace files as other tools read them, and `lineshaft verify` and `lineshaft diff`.
+
+usage: traces.py LINESHAFT
+"""
+
+import csv
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import zlib
+
+PROGRAM = """lineshaft: 1
+title: A gear
+tasks: {servo: {every: 2 ms}}
+blocks:
+  shaft: {type: virtual_axis, task: servo, velocity: 10 mm/s}
+  slave:
+    type: gear_axis
+    task: servo
+    master_position: shaft.position
+    master_velocity: shaft.velocity
+    ratio: inputs.ratio
+inputs: {ratio: 1.5}
+stimulus: [{at: 1 s, set: {inputs.ratio: 2.0}}]
+run: {for: 2 s}
+trace: {task: servo, signals: [shaft.position, slave.velocity, slave.in_gear, inputs.ratio]}
+traces:
+  change:
+    task: servo
+    signals: [slave.velocity]
+    trigger: {signal: slave.in_gear, edge: falling}
+    pre_trigger: 3
+    samples: 4
+  late: {task: servo, signals: [slave.velocity], trigger: {signal: slave.velocity, above: 99 mm/s}}
+  often:
+    task: servo
+    signals: [shaft.position]
+    trigger: {signal: slave.velocity, inside: [16 mm/s, 0.0165 m/s]}
+    for: 2 ms
+    repeat: 5
+"""
+NUMBER = re.compile(r"-?(\d+(\.\d+)?)(e[-+]\d+)?")
+
+
+def lineshaft(*arguments):
+    answer = subprocess.run([COMMAND, *arguments], cwd=FOLDER, capture_output=True, text=True, timeout=60)
+    return answer.returncode, answer.stdout, answer.stderr
+
+
+def rows_of(name, **dialect):
+    with open(FOLDER / name, newline="", encoding="utf-8") as file:
+        return list(csv.reader(file, **dialect))
+
+
+def check_rules(name, separator=",", point="."):
+    """PlotJuggler: the names stand in line 1, no comments, as many cells in every row, numbers only."""
+    text = (FOLDER / name).read_bytes().decode("ascii")
+    if "\r" in text or "#" in text or not text.endswith("\n"):
+        yield f"{name}: carriage returns, comments or a cut end"
+    header, *rows = [line.split(separator) for line in text.splitlines()]
+    if header[:2] not in (["time", "scan"], ["time [s]", "scan"]) or len(set(header)) != len(header):
+        yield f"{name}: header {header}"
+    for row in rows:
+        if len(row) != len(header) or not all(NUMBER.fullmatch(cell.replace(point, ".")) for cell in row):
+            yield f"{name}: row {row}"
+            return
+
+
+def check_tools(name):
+    """The same cells in Python's csv, in column, and in gnuplot where it is installed."""
+    rows = rows_of(name)
+    if len({len(row) for row in rows}) != 1:
+        yield f"{name}: Python's csv sees rows of different lengths"
+    text = (FOLDER / name).read_text(encoding="utf-8")
+    table = subprocess.run(["column", "-s,", "-t"], input=text, capture_output=True, text=True, check=True)
+    if [line.split() for line in table.stdout.splitlines()] != rows:
+        yield f"{name}: column sees other cells"
+    if not shutil.which("gnuplot"):
+        return
+    script = (f"set datafile separator comma; set key autotitle columnhead; "
+              f"stats '{FOLDER / name}' using 1:3 nooutput; print STATS_records, STATS_max_y")
+    said = subprocess.run(["gnuplot", "-e", script], capture_output=True, text=True, check=True).stderr.splitlines()[-1].split()
+    most = max(float(row[2]) for row in rows[1:])
+    if int(said[0]) != len(rows) - 1 or abs(float(said[1]) - most) > 1e-9 * abs(most):
+        yield f"{name}: gnuplot sees {said}"
+
+
+def check_conditions():
+    change = rows_of("run.change.csv")
+    if [row[0] for row in change[1:]] != ["-0.006", "-0.004", "-0.002", "0", "0.002", "0.004", "0.006"]:
+        yield f"times around the trigger: {change}"
+    trigger = next(i for i, row in enumerate(rows_of("run.csv")) if i > 1 and row[4] == "0")
+    if change[4][1] != rows_of("run.csv")[trigger][1]:
+        yield f"the trigger came in scan {change[4][1]}"
+    if rows_of("run.late.csv") != [["time", "scan", "slave.velocity"]]:
+        yield "a trigger that never comes leaves rows"
+    if len(rows_of("run.often.1.csv")) != 3 or (FOLDER / "run.often.2.csv").exists():
+        yield "the repeated trace has the wrong measurements"
+    whole = {row[1]: row[3] for row in rows_of("run.csv")}
+    if any(whole[row[1]] != row[2] for row in change[1:]):
+        yield "two traces of one run differ"
+
+
+def check_styles():
+    headers = {
+        ("--names", "slash"): "time,scan,shaft/position,slave/velocity,slave/in_gear,inputs/ratio",
+        ("--names", "snake"): "time,scan,shaft_position,slave_velocity,slave_in_gear,inputs_ratio",
+        ("--units",): "time [s],scan,shaft.position [mm],slave.velocity [mm/s],slave.in_gear,inputs.ratio",
+    }
+    plain = rows_of("run.csv")[1:]
+    for options, header in headers.items():
+        lineshaft("run", "p.yaml", "--quiet", "--trace", "style.csv", *options)
+        if (FOLDER / "style.csv").read_text().split("\n")[0] != header or rows_of("style.csv")[1:] != plain:
+            yield f"{options}: {rows_of('style.csv')[0]}"
+        code, out, err = lineshaft("diff", "run.csv", "style.csv")
+        if code != 0:
+            yield f"{options}: read back as another trace: {out}{err}"
+    lineshaft("run", "p.yaml", "--quiet", "--trace", "excel.csv", "--dialect", "excel-de", "--units")
+    yield from check_rules("excel.csv", ";", ",")
+    if [[c.replace(",", ".") for c in row] for row in rows_of("excel.csv", delimiter=";")[1:]] != plain:
+        yield "excel-de has other numbers"
+    code, out, err = lineshaft("diff", "run.csv", "excel.csv")
+    if code != 0:
+        yield f"excel-de: read back as another trace: {out}{err}"
+
+
+def check_verify():
+    good = (FOLDER / "run.csv").read_bytes()
+    told = json.loads((FOLDER / "run.csv-metadata.json").read_text())["lineshaft:crc32"]
+    if told != f"{zlib.crc32(good):08x}":
+        yield "the sidecar's CRC-32 is not zlib's"
+    code, out, err = lineshaft("verify", "run.csv", "run.change.csv", "run.late.csv", "excel.csv")
+    if code != 0 or out.count("ok  ") != 4:
+        yield f"verify: {code} {out}{err}"
+    shutil.copy(FOLDER / "run.csv-metadata.json", FOLDER / "bad.csv-metadata.json")
+    lines = good.splitlines(keepends=True)
+    changed = bytearray(good)
+    changed[changed.rindex(b"2") if b"2" in changed else 0] ^= 1
+    damages = {
+        "a row lost": b"".join(lines[:50] + lines[51:]),
+        "a cut row": good[:-4],
+        "a lost newline": good[:-1],
+        "a digit changed": bytes(changed),
+        "rows exchanged": b"".join(lines[:50] + [lines[51], lines[50]] + lines[52:]),
+        "a row twice": b"".join(lines[:50] + lines[49:]),
+        "nothing left": b"",
+    }
+    for what, data in damages.items():
+        (FOLDER / "bad.csv").write_bytes(data)
+        code, out, err = lineshaft("verify", "bad.csv")
+        if code != 1 or out or "bad.csv" not in err:
+            yield f"verify after {what}: {code} {out}{err}"
+    if lineshaft("verify", "none.csv")[0] != 2:
+        yield "verify of no file"
+
+
+def check_diff():
+    code, out, err = lineshaft("diff", "run.csv", "run.csv")
+    if (code, out, err) != (0, "same: 1001 rows of 6 columns\n", ""):
+        yield f"diff of the same: {code} {out}{err}"
+    lines = (FOLDER / "run.csv").read_text().splitlines(keepends=True)
+    cells = lines[101].split(",")
+    cells[3] = "15.000000000000002"
+    (FOLDER / "other.csv").write_text("".join(lines[:101] + [",".join(cells)] + lines[102:]))
+    (FOLDER / "other.csv-metadata.json").unlink(missing_ok=True)
+    (FOLDER / "a.csv").write_text("".join(lines))
+    code, out, err = lineshaft("diff", "a.csv", "other.csv")
+    if code != 1 or "row 101, scan 100, at 0.2 s, slave.velocity" not in out or "1 ulp" not in out:
+        yield f"diff by an ulp: {code} {out}{err}"
+    if len(re.findall(r"^( >|  ) +\d", out, re.M)) != 7:
+        yield f"diff has no window of 3 rows around: {out}"
+    for tolerance, wanted in (("1e-14", 0), ("1e-16", 1), ("slave.velocity=1e-14", 0), ("shaft.position=1", 1)):
+        if lineshaft("diff", "a.csv", "other.csv", "--tolerance", tolerance)[0] != wanted:
+            yield f"diff --tolerance {tolerance} is not {wanted}"
+    found = json.loads(lineshaft("diff", "a.csv", "other.csv", "--json")[1])
+    if found["same"] or found["first"]["ulp"] != 1 or found["first"]["column"] != "slave.velocity":
+        yield f"diff --json: {found}"
+    (FOLDER / "other.csv").write_text("".join(lines[:500]))
+    code, out, err = lineshaft("diff", "a.csv", "other.csv")
+    if code != 1 or "1001 and 499 rows" not in out:
+        yield f"diff of a shorter one: {code} {out}{err}"
+
+
+def main():
+    (FOLDER / "p.yaml").write_text(PROGRAM)
+    code, out, err = lineshaft("run", "p.yaml", "--trace", "run.csv")
+    failures = [] if code == 0 else [f"run: {code} {out}{err}"]
+    if "the trigger of trace 'late' did not come" not in err:
+        failures.append(f"a trigger that did not come is not told: {err}")
+    for name in ("run.csv", "run.change.csv", "run.often.1.csv"):
+        failures += [*check_rules(name), *check_tools(name)]
+    failures += [*check_conditions(), *check_styles(), *check_verify(), *check_diff()]
+    for failure in failures:
+        print(failure)
+    print(f"{len(failures)} failures")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    COMMAND = str(pathlib.Path(sys.argv[1]).resolve())
+    with tempfile.TemporaryDirectory() as folder:
+        FOLDER = pathlib.Path(folder)
+        sys.exit(main())

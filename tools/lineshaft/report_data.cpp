@@ -1,0 +1,200 @@
+#include "tools/lineshaft/report_data.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "runtime/model/units.hpp"
+#include "runtime/program/yaml.hpp"
+#include "runtime/trace/packing.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Mark header_of(const CsvTable& table) {
+    return {table.header, 1, 1, 1};
+}
+
+bool is_expectation(const Json& object) {
+    const auto is = [&](const char* key, auto check) {
+        return object.contains(key) && (object[key].*check)();
+    };
+    const auto number_or_none = [&](const char* key) {
+        return !object.contains(key) || object[key].is_number();
+    };
+    return object.is_object() && is("text", &Json::is_string) && is("signal", &Json::is_string) &&
+           is("ok", &Json::is_boolean) && is("always", &Json::is_boolean) && number_or_none("at") &&
+           number_or_none("low") && number_or_none("high");
+}
+
+/// What the run's sidecar says of its expectations; read_csv has complained about a bad sidecar.
+Json read_expectations(const std::string& csv_path) {
+    Json list = Json::array();
+    Diagnostics ignored;
+    if (!std::filesystem::exists(sidecar_path(csv_path))) return list;
+    const auto file = read_source(sidecar_path(csv_path), ignored);
+    if (!file) return list;
+    const Json sidecar = Json::parse(file->text, nullptr, false);
+    if (!sidecar.is_object() || !sidecar.contains("lineshaft:expectations")) return list;
+    for (const Json& e : sidecar["lineshaft:expectations"])
+        if (is_expectation(e)) list.push_back(e);
+    return list;
+}
+
+bool check_sidecar(const CsvTable& table, Diagnostics& out) {
+    if (!table.metadata) return true;
+    for (const CsvColumn& column : table.columns)
+        if (!table.metadata->find(column.title)) {
+            out.add("L0723", header_of(table),
+                    fmt::format("the sidecar of this file knows no column '{}'", column.title),
+                    "it belongs to another trace");
+            return false;
+        }
+    return true;
+}
+
+bool check_time(const CsvTable& table, const CsvColumn& time, Diagnostics& out) {
+    if (table.rows == 0) {
+        out.add("L0721", header_of(table), "the trace has no rows", "there is nothing to draw");
+        return false;
+    }
+    for (std::size_t row = 0; row < table.rows; ++row) {
+        if (!time.is_missing(row) && (row == 0 || time.values[row] >= time.values[row - 1]))
+            continue;
+        out.add("L0722", header_of(table),
+                fmt::format("the time {} in row {}", time.is_missing(row) ? "is missing" : "falls",
+                            row + 1),
+                "rows stand in the order of time");
+        return false;
+    }
+    return true;
+}
+
+/// Mean time between two rows [s]; 0 when the rows are not evenly spaced.
+double interval(const ReportRun& run) {
+    const auto& times = run.time->values;
+    if (times.size() < 2) return 0;
+    const double mean = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+    for (std::size_t i = 1; i < times.size(); ++i)
+        if (std::abs(times[i] - times[i - 1] - mean) > 0.1 * mean) return 0;
+    return mean;
+}
+
+std::vector<std::string> names(const ReportRun& run) {
+    std::vector<std::string> list;
+    for (const CsvColumn* signal : run.signals) list.push_back(signal->name);
+    return list;
+}
+
+bool is_length(const CsvColumn& column) {
+    const auto unit = Unit::parse(column.unit);
+    return column.type == Type::real && unit && unit->same_dimension(*Unit::parse("mm"));
+}
+
+/// `x_drive.position` -> `y_drive.position`, where x stands for itself; empty where none does.
+std::string with_y(std::string name) {
+    bool any = false;
+    const auto letter = [&](std::size_t i) {
+        return i < name.size() && std::isalnum(static_cast<unsigned char>(name[i])) != 0;
+    };
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        if (name[i] != 'x' || (i > 0 && letter(i - 1)) || letter(i + 1)) continue;
+        name[i] = 'y';
+        any = true;
+    }
+    return any ? name : std::string();
+}
+
+Json packed_json(std::span<const double> samples) {
+    const PackedSamples packed = pack(samples);
+    return {{"count", packed.count},     {"scale", packed.scale},
+            {"width", packed.width},     {"seeds", packed.seeds},
+            {"missing", packed.missing}, {"planes", base64(packed.planes)}};
+}
+
+/// Times of a trace are whole nanoseconds; as such they pack to nothing and come back exactly.
+Json packed_times(const CsvColumn& time) {
+    std::vector<double> nanoseconds(time.values.size());
+    std::ranges::transform(time.values, nanoseconds.begin(),
+                           [](double t) { return std::round(t * 1e9); });
+    return packed_json(nanoseconds);
+}
+
+}  // namespace
+
+std::optional<ReportRun> read_run(const std::string& path, const std::vector<std::string>& wanted,
+                                  Diagnostics& out) {
+    CsvOptions options{.columns = wanted};
+    if (!wanted.empty()) options.columns.emplace_back("time");
+    auto table = read_csv(path, out, options);
+    if (!table || !check_sidecar(*table, out)) return {};
+    ReportRun run{.table = std::move(*table), .path = path, .signals = {}};
+    run.time = run.table.require("time", out);
+    if (!run.time || !check_time(run.table, *run.time, out)) return {};
+    for (const CsvColumn& column : run.table.columns)
+        if (&column != run.time && column.name != "scan") run.signals.push_back(&column);
+    run.expectations = read_expectations(path);
+    return run;
+}
+
+void check_overlay(const ReportRun& first, const ReportRun& second, Diagnostics& out) {
+    const auto ours = names(first), theirs = names(second);
+    const auto lacks = [&](const ReportRun& run, const std::vector<std::string>& its,
+                           const ReportRun& other, const std::vector<std::string>& others) {
+        const auto missing = std::ranges::find_if(others, [&](const std::string& name) {
+            return std::ranges::find(its, name) == its.end();
+        });
+        if (missing == others.end()) return false;
+        out.add("L0724", header_of(run.table),
+                fmt::format("no column '{}', which {} has", *missing, other.path),
+                "only runs of the same signals can be laid over each other; --signals picks some");
+        return true;
+    };
+    if (lacks(second, theirs, first, ours) || lacks(first, ours, second, theirs)) return;
+    const double a = interval(first), b = interval(second);
+    if (a == 0 || b == 0 || std::abs(a - b) <= 0.05 * std::min(a, b)) return;
+    out.add(
+        "L0725", header_of(second.table),
+        fmt::format("a row each {:.6g} ms, but each {:.6g} ms in {}", b * 1e3, a * 1e3, first.path),
+        "record both at the same interval");
+}
+
+std::vector<PathPair> find_paths(const ReportRun& run) {
+    std::vector<PathPair> pairs;
+    for (const CsvColumn* x : run.signals) {
+        if (!is_length(*x)) continue;
+        const std::string y = with_y(x->name);
+        for (const CsvColumn* signal : run.signals)
+            if (signal->name == y && signal->unit == x->unit && is_length(*signal))
+                pairs.push_back({x->name, y});
+    }
+    return pairs;
+}
+
+nlohmann::ordered_json to_json(const ReportRun& run) {
+    Json signals = Json::array();
+    for (const CsvColumn* column : run.signals) {
+        Json signal{{"name", column->name},
+                    {"unit", column->unit},
+                    {"type", name_of(column->type)},
+                    {"data", packed_json(column->values)}};
+        if (!column->names.empty()) signal["names"] = column->names;
+        signals.push_back(std::move(signal));
+    }
+    const auto& metadata = run.table.metadata;
+    return {{"label", run.path},
+            {"title", metadata ? metadata->title : ""},
+            {"version", metadata ? metadata->version : ""},
+            {"program", metadata ? metadata->program : ""},
+            {"rows", run.table.rows},
+            {"time", packed_times(*run.time)},
+            {"signals", signals},
+            {"expectations", run.expectations}};
+}
+
+}  // namespace lineshaft

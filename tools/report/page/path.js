@@ -1,0 +1,259 @@
+import { deviation, deviations, figures, findCircle, nominal } from "#page/circle";
+import { afterwards, colour, dashes, element, nextFrame, palette } from "#page/dom";
+import { number, withUnit } from "#page/format";
+import { lastAtOrBefore, seen } from "#page/samples";
+
+const wanted = 500;
+
+/** The greatest of 1, 2, 5, 10, ... up to `wanted` that keeps a magnified path off the centre. */
+function magnification(circle, tracks) {
+  let worst = 0;
+  for (const track of tracks)
+    for (const value of track.deviations) if (Math.abs(value) > worst) worst = Math.abs(value);
+  const steps = [500, 200, 100, 50, 20, 10, 5, 2];
+  return steps.find((step) => step <= wanted && step * worst < 0.8 * circle.radius) ?? 1;
+}
+
+/** Round numbers about `count` to the range. */
+function ticks(from, to, count) {
+  const rough = (to - from) / count;
+  const decade = 10 ** Math.floor(Math.log10(rough));
+  const step = decade * [1, 2, 5, 10].find((factor) => factor * decade >= rough);
+  const result = [];
+  for (let k = Math.ceil(from / step); k * step <= to; ++k) result.push(k * step);
+  return result;
+}
+
+/** Paths of positions in the plane, equal axes, beside a circle and with the deviation magnified. */
+export class Path {
+  constructor(parent, pair, runs, view, { circle: given, while: condition }) {
+    this.view = view;
+    this.pair = pair;
+    this.tracks = runs.map((run) => {
+      const values = (name) => run.signals.find((signal) => signal.name === name).values;
+      return { run, x: values(pair.x), y: values(pair.y), condition: condition && values(condition) };
+    });
+    this.unit = runs[0].signals.find(({ name }) => name === pair.x).unit;
+    this.circle = given ? { ...given } : this.#guess();
+    this.#measure();
+    this.magnify = this.circle ? magnification(this.circle, this.tracks) : 1;
+    this.canvas = element("canvas", { className: "path" });
+    this.figures = element("table", { className: "figures" });
+    parent.append(element("section", { className: "plot" },
+                          element("div", { className: "chart square" }, this.canvas),
+                          element("div", { className: "side" }, this.#controls(), this.figures)));
+    this.redraw = nextFrame(() => this.#draw());
+    this.writeLater = afterwards(() => this.#write());
+    view.listen((change) => this.#changed(change));
+    this.refresh();
+  }
+
+  /** The deviation of each run's path from the circle as signals of a plot over time. */
+  deviationCurves() {
+    const name = "deviation δ";
+    return this.tracks.map(({ run, deviations: values }) =>
+      ({ run, signal: { name, unit: this.unit, type: "real", values } }));
+  }
+
+  /** `listener` is called when the circle has been changed. */
+  onCircle(listener) {
+    this.circleListener = listener;
+  }
+
+  #measure() {
+    if (!this.circle) return;
+    for (const track of this.tracks) track.deviations = deviations(this.circle, track);
+  }
+
+  refresh() {
+    this.writeLater();
+    this.redraw();
+  }
+
+  resize() {
+    this.redraw();
+  }
+
+  #guess() {
+    const found = findCircle(this.tracks[0]);
+    return found && nominal(found);
+  }
+
+  #changed(change) {
+    if (change === "hover") return;
+    if (change === "range") this.writeLater();
+    this.redraw();
+  }
+
+  #controls() {
+    const field = (label, value, set) => {
+      const input = element("input", { type: "number", step: "any", value, onchange: () => {
+        if (Number.isFinite(input.valueAsNumber)) set(input.valueAsNumber);
+        this.#measure();
+        this.refresh();
+        this.circleListener?.();
+      } });
+      return element("label", {}, label, input);
+    };
+    const title = element("h2", {}, `Path of ${this.pair.x}, ${this.pair.y}`);
+    if (!this.circle) return element("div", {}, title, element("p", {}, "The path is no circle."));
+    const { circle } = this;
+    return element("div", { className: "controls" }, title,
+      field("deviation ×", this.magnify, (value) => { this.magnify = value; }),
+      field(`centre x [${this.unit}]`, circle.x, (value) => { circle.x = value; }),
+      field(`centre y [${this.unit}]`, circle.y, (value) => { circle.y = value; }),
+      field(`radius [${this.unit}]`, circle.radius, (value) => { if (value > 0) circle.radius = value; }));
+  }
+
+  #write() {
+    if (!this.circle) return;
+    const rows = this.tracks.map((track) => {
+      const { run } = track;
+      const f = figures(this.circle, track, track.deviations, seen(run.times, this.view.range));
+      if (!f) return [run.label, "–", "–", "–", "–"];
+      const at = `${number(+f.worst.x.toPrecision(4))}, ${number(+f.worst.y.toPrecision(4))}`;
+      return [run.label, ...[f.mean, f.worst.value, f.offset].map((v) => number(+v.toPrecision(4))), at];
+    });
+    const heads = ["", "mean |δ|", "greatest δ", "centre offset", "greatest at"];
+    const lines = heads.map((head, k) =>
+      element("tr", {}, element("th", {}, k === 0 ? "in view" : withUnit(head, `[${this.unit}]`)),
+              ...rows.map((cells) => element("td", {}, cells[k]))));
+    this.figures.replaceChildren(element("tbody", {}, ...lines));
+  }
+
+  /** Where a sample is drawn: its distance from the circle magnified if it belongs to it. */
+  #magnified(x, y) {
+    const { circle, magnify } = this;
+    if (!circle || magnify === 1) return [x, y];
+    const distance = Math.hypot(x - circle.x, y - circle.y);
+    const radius = Math.max(circle.radius + magnify * deviation(circle, x, y), 0);
+    const factor = radius / distance;
+    return [circle.x + (x - circle.x) * factor, circle.y + (y - circle.y) * factor];
+  }
+
+  #extent() {
+    const [xs, ys] = [[], []];
+    if (this.circle) {
+      const reach = this.circle.radius * 1.02;
+      xs.push(this.circle.x - reach, this.circle.x + reach);
+      ys.push(this.circle.y - reach, this.circle.y + reach);
+    }
+    for (const track of this.tracks)
+      this.#points(track, 2000, (x, y) => { xs.push(x); ys.push(y); });
+    return { x: [Math.min(...xs), Math.max(...xs)], y: [Math.min(...ys), Math.max(...ys)] };
+  }
+
+  /** Calls `use(x, y, joined)` for about `count` drawn points of what is in view. */
+  #points({ run, x, y, deviations: on }, count, use) {
+    const [first, end] = seen(run.times, this.view.range);
+    const step = Math.max(1, Math.floor((end - first) / count));
+    let joined = false;
+    for (let i = first; i < end; i += step) {
+      const drawn = !Number.isNaN(x[i]) && !Number.isNaN(y[i]) && (this.magnify === 1 || !Number.isNaN(on[i]));
+      if (drawn) use(...this.#magnified(x[i], y[i]), joined);
+      joined = drawn;
+    }
+  }
+
+  #draw() {
+    const width = this.canvas.clientWidth;
+    if (width === 0) return;
+    const pixel = devicePixelRatio;
+    this.canvas.width = width * pixel;
+    this.canvas.height = this.canvas.clientHeight * pixel;
+    const ctx = this.canvas.getContext("2d");
+    ctx.scale(pixel, pixel);
+    const map = this.#map(width, this.canvas.clientHeight);
+    this.#drawAxes(ctx, map);
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(map.left, map.top, map.width, map.height);
+    ctx.clip();
+    if (this.circle) this.#drawCircle(ctx, map);
+    this.tracks.forEach((track, index) => this.#drawTrack(ctx, map, track, index));
+    this.#drawCursors(ctx, map);
+    ctx.restore();
+  }
+
+  /** Equal axes: one scale for both directions, the path in the middle. */
+  #map(width, height) {
+    const box = { left: 64, top: 10, width: width - 74, height: height - 56 };
+    const { x, y } = this.#extent();
+    const scale = 0.94 * Math.min(box.width / (x[1] - x[0] || 1), box.height / (y[1] - y[0] || 1));
+    const middle = [(x[0] + x[1]) / 2, (y[0] + y[1]) / 2];
+    return { ...box,
+             x: (value) => box.left + box.width / 2 + (value - middle[0]) * scale,
+             y: (value) => box.top + box.height / 2 - (value - middle[1]) * scale,
+             scale,
+             xs: [middle[0] - box.width / 2 / scale, middle[0] + box.width / 2 / scale],
+             ys: [middle[1] - box.height / 2 / scale, middle[1] + box.height / 2 / scale] };
+  }
+
+  #drawAxes(ctx, map) {
+    ctx.font = "12px system-ui, sans-serif";
+    ctx.fillStyle = colour("muted");
+    ctx.strokeStyle = colour("grid");
+    ctx.textAlign = "center";
+    const line = (x1, y1, x2, y2) => {
+      ctx.beginPath();
+      ctx.moveTo(x1, y1);
+      ctx.lineTo(x2, y2);
+      ctx.stroke();
+    };
+    const bottom = map.top + map.height;
+    for (const tick of ticks(...map.xs, 7)) {
+      line(map.x(tick), map.top, map.x(tick), bottom);
+      ctx.fillText(number(tick), map.x(tick), bottom + 18);
+    }
+    ctx.fillText(withUnit(this.pair.x, `[${this.unit}]`), map.left + map.width / 2, bottom + 38);
+    ctx.textAlign = "right";
+    for (const tick of ticks(...map.ys, 7)) {
+      line(map.left, map.y(tick), map.left + map.width, map.y(tick));
+      ctx.fillText(number(tick), map.left - 6, map.y(tick) + 4);
+    }
+    ctx.save();
+    ctx.translate(14, map.top + map.height / 2);
+    ctx.rotate(-Math.PI / 2);
+    ctx.textAlign = "center";
+    ctx.fillText(withUnit(this.pair.y, `[${this.unit}]`), 0, 0);
+    ctx.restore();
+  }
+
+  #drawCircle(ctx, map) {
+    ctx.strokeStyle = colour("muted");
+    ctx.lineWidth = 1;
+    ctx.setLineDash([4, 4]);
+    ctx.beginPath();
+    ctx.arc(map.x(this.circle.x), map.y(this.circle.y), this.circle.radius * map.scale, 0, 2 * Math.PI);
+    ctx.stroke();
+    ctx.setLineDash([]);
+  }
+
+  #drawTrack(ctx, map, track, index) {
+    ctx.strokeStyle = palette(index);
+    ctx.lineWidth = 1.5;
+    ctx.setLineDash(dashes(track.run.index));
+    ctx.beginPath();
+    this.#points(track, 20000, (x, y, joined) => {
+      if (joined) ctx.lineTo(map.x(x), map.y(y));
+      else ctx.moveTo(map.x(x), map.y(y));
+    });
+    ctx.stroke();
+    ctx.setLineDash([]);
+  }
+
+  #drawCursors(ctx, map) {
+    ["A", "B"].forEach((name, index) => {
+      const { run, x, y } = this.tracks[0];
+      const at = lastAtOrBefore(run.times, this.view.cursors[index]);
+      if (at < 0) return;
+      const [px, py] = this.#magnified(x[at], y[at]);
+      ctx.textAlign = "left";
+      ctx.fillStyle = colour(`cursor-${name}`);
+      ctx.beginPath();
+      ctx.arc(map.x(px), map.y(py), 5, 0, 2 * Math.PI);
+      ctx.fill();
+      ctx.fillText(name, map.x(px) + 9, map.y(py) + 4);
+    });
+  }
+}
