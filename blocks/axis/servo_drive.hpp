@@ -23,7 +23,9 @@ enum class ServoError : std::int64_t {
 
 /// A drive with its motor, mechanics and encoder, from the set-point of one clock to the actual
 /// position of the next. Everything is off by default; the axis is then in simulation, as Siemens'
-/// technology objects have it: the actual position is the set-point that was there at the scan.
+/// technology objects have it: the actual position is the set-point that was there at the scan. In
+/// the servo task, which runs *before* the interpolator at each clock, that is the one of a clock
+/// ago: what the user program then reads.
 ///
 ///     set-point       r(k) = set_position(k - delay), rv likewise             transport, in clocks
 ///     position loop   u = kv (r - position) + velocity_feed_forward * rv      held for a clock

@@ -9,7 +9,7 @@
 
 #include "blocks/contour/baseline.hpp"
 #include "blocks/contour/command_path.hpp"
-#include "blocks/contour/deviation.hpp"
+#include "blocks/contour/magnitude_statistics.hpp"
 #include "runtime/model/units.hpp"
 #include "runtime/trace/csv_reader.hpp"
 #include "tools/lineshaft/command.hpp"
@@ -22,20 +22,24 @@ constexpr const char* help =
     "Each row is one command point with the actual point fed back in the same scan, as a trace\n"
     "of every scan has them. Contour errors, as magnitudes:\n"
     "  real-time  nearest command point so far, tangent from its neighbours (block contour_error)\n"
-    "  linear     distance to the polyline of all command points\n"
-    "  spline     distance to the natural cubic spline through all command points\n"
-    "Rows whose nearest point has left the 512 points of the real-time memory, or that lack a\n"
-    "cell, are left out and counted. Time per point: of this computer, and of the spline without\n"
-    "that of making it. Units come from the trace's sidecar, else columns are in mm.";
+    "  linear     distance to the polyline of all command points, beside the nearest\n"
+    "  spline     distance to the natural cubic spline through all, beside the nearest\n"
+    "and their differences. Units come from the trace's sidecar or from titles such as 'x [um]';\n"
+    "without a unit a column is in mm. Left out and counted: rows that lack a value or are beyond\n"
+    "1000 km, and rows whose nearest point has left the 512 points of the real-time memory.\n"
+    "Time per point is that of this computer: the real-time one includes the search for the\n"
+    "nearest point, the others are told it, and the making of the spline is not counted.";
 
 constexpr std::array<const char*, 3> method_names{"real-time", "linear", "spline"};
-constexpr std::array<const char*, 5> rows{"real-time", "linear", "spline", "real-time - linear",
-                                          "real-time - spline"};
+constexpr std::array<const char*, 6> row_names{
+    "real-time", "linear", "spline", "real-time - linear", "real-time - spline", "linear - spline"};
+constexpr double farthest = 1e9;     // [mm] what is beyond is no position
+constexpr std::size_t chunk = 4096;  // samples between two looks at the clock
 
 struct ContourCommand {
     std::string trace;
     std::vector<std::string> command, actual;
-    bool json = false;
+    bool json = false, quiet = false;
 };
 
 /// What the rows of a trace say, in mm; commands that stand share a point.
@@ -51,112 +55,161 @@ struct Recording {
 };
 
 struct Result {
-    std::array<Deviation, 5> deviations;  ///< [mm], as `rows`
-    std::array<double, 3> nanoseconds{};  ///< per point
-    Deviation points_back, following;
+    std::array<MagnitudeStatistics, row_names.size()> rows;  ///< [mm]
+    std::array<double, method_names.size()> seconds{};       ///< for all samples
+    MagnitudeStatistics points_back, following;
     std::size_t out_of_reach = 0;
 };
 
-/// What one `unit` of the column is in mm; L0303 when it is no length.
-double factor_to_mm(const CsvColumn& column, const CsvTable& table, Diagnostics& out) {
-    const Unit mm = *Unit::parse("mm");
+/// What one unit of the column is in `unit`, 1 for a column without one; L0303 when it measures
+/// something else.
+double factor_to(std::string_view unit, const CsvColumn& column, const CsvTable& table,
+                 Diagnostics& out) {
+    const Unit wanted = *Unit::parse(unit);
     if (column.unit.empty()) return 1;
-    const std::optional<Unit> unit = Unit::parse(column.unit);
-    if (unit && unit->same_dimension(mm)) return convert(1, *unit, mm);
+    const std::optional<Unit> given = Unit::parse(column.unit);
+    if (given && given->same_dimension(wanted)) return convert(1, *given, wanted);
     out.add("L0303", {table.header, 1, 1, 1},
-            fmt::format("column '{}' is in {}", column.name, column.unit),
-            "a contour error is of lengths");
+            fmt::format("column '{}' is in {}, not in {}", column.name, column.unit, unit),
+            "choose columns of positions");
     return 1;
 }
 
-std::optional<Recording> record(const CsvTable& table, const ContourCommand& command,
-                                Diagnostics& out) {
-    std::array<const CsvColumn*, 4> columns{};
-    std::array<double, 4> factors{};
+void set_interval_and_speed(const CsvTable& table, Recording& recording, Diagnostics& out) {
+    const CsvColumn* time = table.find("time");
+    if (!time || table.rows < 2) return;
+    const double duration =
+        factor_to("s", *time, table, out) * (time->values.back() - time->values.front());
+    double way = 0;
+    for (std::size_t i = 1; i < recording.path.size(); ++i)
+        way += std::hypot(recording.path[i].x - recording.path[i - 1].x,
+                          recording.path[i].y - recording.path[i - 1].y);
+    if (!(duration > 0)) return;
+    recording.interval = duration / static_cast<double>(table.rows - 1);
+    recording.speed = way / duration;
+}
+
+Recording record(const CsvTable& table, const ContourCommand& command, Diagnostics& out) {
     const std::array names{command.command[0], command.command[1], command.actual[0],
                            command.actual[1]};
+    std::array<const CsvColumn*, names.size()> columns{};
+    std::array<double, names.size()> factors{};
     for (std::size_t i = 0; i < names.size(); ++i) {
         columns[i] = table.require(names[i], out);
-        if (columns[i]) factors[i] = factor_to_mm(*columns[i], table, out);
+        if (columns[i]) factors[i] = factor_to("mm", *columns[i], table, out);
     }
-    if (!out.empty()) return {};
     Recording recording;
+    if (!out.empty()) return recording;
     CommandPath path;
-    double way = 0;
     for (std::size_t row = 0; row < table.rows; ++row) {
-        std::array<double, 4> v{};
-        bool whole = true;
+        std::array<double, names.size()> v{};
+        bool usable = true;
         for (std::size_t i = 0; i < v.size(); ++i) {
             v[i] = columns[i]->values[row] * factors[i];
-            whole = whole && std::isfinite(v[i]);
+            usable = usable && std::abs(v[i]) <= farthest;
         }
-        recording.left_out += whole ? 0 : 1;
-        if (!whole) continue;
-        const Point point{v[0], v[1]};
-        if (path.add(point)) {
-            if (!recording.path.empty())
-                way += std::hypot(point.x - recording.path.back().x,
-                                  point.y - recording.path.back().y);
-            recording.path.push_back(point);
-        }
-        recording.samples.push_back({point, {v[2], v[3]}, recording.path.size() - 1});
+        recording.left_out += usable ? 0 : 1;
+        if (!usable) continue;
+        if (path.add({v[0], v[1]})) recording.path.push_back({v[0], v[1]});
+        recording.samples.push_back({{v[0], v[1]}, {v[2], v[3]}, recording.path.size() - 1});
     }
-    const CsvColumn* time = table.find("time");
-    if (time && table.rows > 1) {
-        const double duration = time->values[table.rows - 1] - time->values[0];
-        recording.interval = duration / static_cast<double>(table.rows - 1);
-        if (duration > 0) recording.speed = way / duration;
-    }
+    if (recording.samples.empty())
+        out.add("L0721", {table.header, 1, 1, 1}, "no row has all four positions",
+                "there is nothing to compare");
+    set_interval_and_speed(table, recording, out);
     return recording;
 }
 
-/// Nanoseconds a point of `measure(i)` for all `count` points.
+/// The three methods over a recording, a chunk after the other.
+class Comparer {
+  public:
+    explicit Comparer(const Recording& recording) : recording_(recording) {
+        spans_.resize(recording.path.size() - 1);
+        natural_spline(recording.path, spans_);
+    }
+    /// Samples from .. to - 1, at most `chunk`.
+    void compare(std::size_t from, std::size_t to);
+    const Result& result() const { return result_; }
+
+  private:
+    template <class Measure>
+    void time(std::size_t method, std::size_t from, std::size_t to, const Measure& measure);
+    void count(const Recording::Sample& sample, const ContourEstimate& estimate, double linear,
+               double spline);
+
+    const Recording& recording_;
+    std::vector<SplineSpan> spans_;
+    CommandPath path_;
+    Result result_;
+};
+
+/// Runs `measure(sample, i)` with i = 0 .. to - from - 1.
 template <class Measure>
-double timed(std::size_t count, const Measure& measure) {
+void Comparer::time(std::size_t method, std::size_t from, std::size_t to, const Measure& measure) {
     const auto start = std::chrono::steady_clock::now();
-    for (std::size_t i = 0; i < count; ++i) measure(i);
-    const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - start;
-    return took.count() / static_cast<double>(count);
+    for (std::size_t i = from; i < to; ++i) measure(recording_.samples[i], i - from);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    result_.seconds[method] += took.count();
 }
 
-Result compare(const Recording& recording) {
-    const auto& [samples, points, left_out, interval, speed] = recording;
-    Result result;
-    std::vector<ContourEstimate> estimates(samples.size());
-    std::vector<double> linear(samples.size()), spline(samples.size());
-    CommandPath path;
-    result.nanoseconds[0] = timed(samples.size(), [&](std::size_t i) {
-        path.add(samples[i].command);
-        estimates[i] = path.estimate(samples[i].actual);
+void Comparer::compare(std::size_t from, std::size_t to) {
+    using Sample = Recording::Sample;
+    std::array<ContourEstimate, chunk> estimates;
+    std::array<double, chunk> linear{}, spline{};
+    time(0, from, to, [&](const Sample& sample, std::size_t i) {
+        path_.add(sample.command);
+        estimates[i] = path_.estimate(sample.actual);
     });
-    const auto nearest = [&](std::size_t i) {
-        return samples[i].point - static_cast<std::size_t>(estimates[i].points_back);
+    const auto nearest = [&](const Sample& sample, std::size_t i) {
+        return sample.point - static_cast<std::size_t>(estimates[i].points_back);
     };
-    result.nanoseconds[1] = timed(samples.size(), [&](std::size_t i) {
-        linear[i] = polyline_distance(points, nearest(i), samples[i].actual);
+    time(1, from, to, [&](const Sample& sample, std::size_t i) {
+        linear[i] = polyline_distance(recording_.path, nearest(sample, i), sample.actual);
     });
-    std::vector<SplineSpan> spans(points.size() - 1);
-    natural_spline(points, spans);
-    result.nanoseconds[2] = timed(samples.size(), [&](std::size_t i) {
+    time(2, from, to, [&](const Sample& sample, std::size_t i) {
         spline[i] =
-            spans.empty() ? linear[i] : spline_distance(spans, nearest(i), samples[i].actual);
+            spans_.empty() ? linear[i] : spline_distance(spans_, nearest(sample, i), sample.actual);
     });
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        result.out_of_reach += estimates[i].out_of_reach ? 1 : 0;
-        if (estimates[i].out_of_reach) continue;
-        const double real_time = std::abs(estimates[i].signed_error);
-        const std::array values{real_time, linear[i], spline[i], real_time - linear[i],
-                                real_time - spline[i]};
-        for (std::size_t k = 0; k < values.size(); ++k) result.deviations[k].add(values[k]);
-        result.points_back.add(static_cast<double>(estimates[i].points_back));
-        result.following.add(std::hypot(samples[i].command.x - samples[i].actual.x,
-                                        samples[i].command.y - samples[i].actual.y));
+    for (std::size_t i = from; i < to; ++i)
+        count(recording_.samples[i], estimates[i - from], linear[i - from], spline[i - from]);
+}
+
+void Comparer::count(const Recording::Sample& sample, const ContourEstimate& estimate,
+                     double linear, double spline) {
+    result_.out_of_reach += estimate.out_of_reach ? 1 : 0;
+    if (estimate.out_of_reach) return;
+    const double real_time = std::abs(estimate.signed_error);
+    const std::array values{real_time,          linear,         spline, real_time - linear,
+                            real_time - spline, linear - spline};
+    for (std::size_t i = 0; i < values.size(); ++i) result_.rows[i].add(values[i]);
+    result_.points_back.add(static_cast<double>(estimate.points_back));
+    result_.following.add(
+        std::hypot(sample.command.x - sample.actual.x, sample.command.y - sample.actual.y));
+}
+
+/// Empty when interrupted.
+std::optional<Result> compare(const Recording& recording, bool quiet) {
+    ProgressLine line(quiet);
+    Comparer comparer(recording);
+    const std::size_t all = recording.samples.size();
+    for (std::size_t from = 0; from < all; from += chunk) {
+        if (interrupt_requested) return {};
+        comparer.compare(from, std::min(all, from + chunk));
+        line.show([&](double) { return fmt::format("{} of {} samples", from, all); });
     }
-    return result;
+    return comparer.result();
+}
+
+double ns_per_point(const Recording& recording, const Result& result, std::size_t method) {
+    return result.seconds[method] * 1e9 / static_cast<double>(recording.samples.size());
+}
+
+std::string in_nm(double mm) {
+    const double nm = mm * 1e6;
+    return nm < 1e4 ? fmt::format("{:.4g}", nm) : fmt::format("{:.0f}", nm);
 }
 
 void print(const Recording& recording, const Result& result) {
-    constexpr double nm = 1e6;
     fmt::print("{} samples, {} command points", result.points_back.count, recording.path.size());
     if (recording.interval > 0)
         fmt::print(", one every {:.4g} ms, {:.4g} mm/s on average", recording.interval * 1e3,
@@ -167,15 +220,16 @@ void print(const Recording& recording, const Result& result) {
         result.following.mean, result.following.greatest, result.points_back.mean,
         result.points_back.greatest);
     if (recording.left_out + result.out_of_reach > 0)
-        fmt::print("left out: {} incomplete rows, {} out of reach\n", recording.left_out,
-                   result.out_of_reach);
+        fmt::print("left out: {} rows without four positions, {} out of reach\n",
+                   recording.left_out, result.out_of_reach);
     fmt::print("\n{:<20}{:>14}{:>14}{:>14}{:>16}\n", "contour error", "mean [nm]", "rms [nm]",
                "greatest [nm]", "time/point [us]");
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        const Deviation& d = result.deviations[i];
-        fmt::print("{:<20}{:>14.4g}{:>14.4g}{:>14.4g}", rows[i], d.mean * nm, d.rms * nm,
-                   d.greatest * nm);
-        if (i < method_names.size()) fmt::print("{:>16.3f}", result.nanoseconds[i] / 1e3);
+    for (std::size_t i = 0; i < row_names.size(); ++i) {
+        const MagnitudeStatistics& d = result.rows[i];
+        fmt::print("{:<20}{:>14}{:>14}{:>14}", row_names[i], in_nm(d.mean), in_nm(d.rms),
+                   in_nm(d.greatest));
+        if (i < method_names.size())
+            fmt::print("{:>16.3f}", ns_per_point(recording, result, i) / 1e3);
         fmt::print("\n");
     }
 }
@@ -189,14 +243,14 @@ void print_json(const Recording& recording, const Result& result) {
                                {"speed_mm_s", json_number(recording.speed)},
                                {"mean_following_error_mm", json_number(result.following.mean)},
                                {"mean_points_back", json_number(result.points_back.mean)}};
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        const Deviation& d = result.deviations[i];
-        out["contour_error_mm"][rows[i]] = {{"mean", json_number(d.mean)},
-                                            {"rms", json_number(d.rms)},
-                                            {"greatest", json_number(d.greatest)}};
+    for (std::size_t i = 0; i < row_names.size(); ++i) {
+        const MagnitudeStatistics& d = result.rows[i];
+        out["contour_error_mm"][row_names[i]] = {{"mean", json_number(d.mean)},
+                                                 {"rms", json_number(d.rms)},
+                                                 {"greatest", json_number(d.greatest)}};
     }
     for (std::size_t i = 0; i < method_names.size(); ++i)
-        out["ns_per_point"][method_names[i]] = json_number(result.nanoseconds[i]);
+        out["ns_per_point"][method_names[i]] = json_number(ns_per_point(recording, result, i));
     fmt::print("{}\n", out.dump(2));
 }
 
@@ -204,16 +258,14 @@ Exit execute(const ContourCommand& command) {
     Diagnostics mistakes;
     const std::optional<CsvTable> table = read_csv(command.trace, mistakes);
     if (!table) return report(mistakes, command.json);
-    const std::optional<Recording> recording = record(*table, command, mistakes);
-    if (recording && recording->samples.empty())
-        mistakes.add("L0705", {table->header, 1, 1, 1}, "no row has all four values",
-                     "the file has a header and nothing to compare");
-    if (!recording || !mistakes.empty()) return report(mistakes, command.json);
-    const Result result = compare(*recording);
+    const Recording recording = record(*table, command, mistakes);
+    if (!mistakes.empty()) return report(mistakes, command.json);
+    const std::optional<Result> result = compare(recording, command.quiet || command.json);
+    if (!result) return Exit::interrupted;
     if (command.json)
-        print_json(*recording, result);
+        print_json(recording, *result);
     else
-        print(*recording, result);
+        print(recording, *result);
     return Exit::fine;
 }
 
@@ -235,6 +287,7 @@ void add_contour(CLI::App& app, Exit& result) {
         ->expected(2)
         ->required();
     sub->add_flag("--json", command->json, "Print one JSON object for machines");
+    sub->add_flag("--quiet", command->quiet, "No progress line");
     sub->footer(help);
     sub->callback([command, &result] { result = execute(*command); });
 }
