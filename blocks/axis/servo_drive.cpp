@@ -109,10 +109,10 @@ void ServoDrive::start() {
 
 /// The set-point that reaches the drive now.
 ServoDrive::SetPoint ServoDrive::transported() {
-    constexpr auto size = static_cast<std::int64_t>(longest_delay + 1);
-    newest = (newest + 1) % size;
+    newest = newest == longest_delay ? 0 : newest + 1;
     transport[static_cast<std::size_t>(newest)] = {set_position, set_velocity};
-    return transport[static_cast<std::size_t>((newest + size - delay) % size)];
+    const std::int64_t wanted = newest - delay;
+    return transport[static_cast<std::size_t>(wanted < 0 ? wanted + longest_delay + 1 : wanted)];
 }
 
 /// What no double can hold is not set.
