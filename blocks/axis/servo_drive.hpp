@@ -65,7 +65,8 @@ struct ServoDrive {
     };
     std::array<SetPoint, longest_delay + 1> transport{};  ///< a ring
     std::int64_t newest = 0;
-    bool first_scan = true;
+    bool checked = false, in_simulation = false, first_scan = true;
+    ServoError contradiction = ServoError::none;  ///< of the parameters
     std::int64_t last_time = 0;
     double demand = 0;  ///< u [u/s], since the last scan
     VelocityLoop::State motor;
@@ -79,7 +80,9 @@ struct ServoDrive {
     void scan(const Scan& now);
 
   private:
-    ServoError check() const;
+    void check();
+    ServoError copy();
+    ServoError follow(std::int64_t time);
     void start();
     SetPoint transported();
     ServoError move(const SetPoint& wanted, double elapsed);
