@@ -21,6 +21,11 @@ void BackgroundSink::rows(const std::uint64_t* words, std::size_t rows) {
     changed_.notify_all();
 }
 
+void BackgroundSink::drain() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return given_ == taken_; });
+}
+
 void BackgroundSink::finish() {
     {
         const std::lock_guard lock(mutex_);

@@ -21,7 +21,10 @@ class BackgroundSink : public TraceSink {
 
     void rows(const std::uint64_t* words, std::size_t rows) override;
 
-    /// Returns when all rows have been taken; none may follow.
+    /// Returns when all rows have been taken; until the next ones the other sink is at rest.
+    void drain();
+
+    /// Likewise, and none may follow.
     void finish();
 
   private:

@@ -18,8 +18,13 @@ class PulseWriter {
   public:
     /// Becomes the sink of every device of `machine`; must outlive the run.
     PulseWriter(std::string path, Machine& machine);
+    /// Goes on where save() was called.
+    PulseWriter(std::string path, Machine& machine, StateReader& begun);
     PulseWriter(const PulseWriter&) = delete;
     PulseWriter& operator=(const PulseWriter&) = delete;
+
+    void save(StateWriter& out) { file_.save(out); }
+    const std::string& error() const { return file_.error(); }
 
     /// Closes the file. Empty when all is well, else what went wrong.
     std::string finish();
@@ -33,6 +38,8 @@ class PulseWriter {
         PulseWriter& writer;
         std::string name;
     };
+
+    void listen_to(Machine& machine);
 
     OutputFile file_;
     std::string text_;

@@ -132,8 +132,10 @@ TEST_CASE("a task due again before its scan has ended is an overrun") {
     const RunResult result = bench.run();
     CHECK(result.outcome == Outcome::overrun);
     CHECK(result.time == 2 * ms);
-    CHECK(result.message ==
-          "task 'main' overran: due again at 0.002 s in scan 1, before the scan of 0 s had ended");
+    CHECK(
+        result.message ==
+        "task 'main' overran: due again at 0.002 s, before scan 0, begun at 0 s, has ended; STOP: "
+        "no task has it under 'on_overrun'");
 }
 
 TEST_CASE("a task that could not even begin is an overrun, with the time it was due") {
@@ -146,7 +148,8 @@ TEST_CASE("a task that could not even begin is an overrun, with the time it was 
     const RunResult result = bench.run();
     CHECK(result.outcome == Outcome::overrun);
     CHECK(result.time / ms == undisturbed.times("low")[1]);
-    CHECK_THAT(result.message, Catch::EndsWith("before the scan of 0.003 s had ended"));
+    CHECK_THAT(result.message, Catch::Contains("before scan 0, due at 0.003 s, could begin; task "
+                                               "'high' was running"));
 }
 
 TEST_CASE("jitter draws each interval within its bounds and lets them add up") {
@@ -315,7 +318,7 @@ TEST_CASE("inputs are converted as their wires say") {
     struct Ports {
         bool yes = true, inverted = true;
         std::int64_t three = 3;
-        double millimetres = 20, real = 0, centimetres = 0;
+        double millimetres = 20, real = 0, tenths = 0, centimetres = 0;
     } ports;
     Bench bench({{.name = "a"}});
     const auto at = [](auto& member) { return reinterpret_cast<std::byte*>(&member); };
@@ -324,16 +327,18 @@ TEST_CASE("inputs are converted as their wires say") {
         .words = {{at(ports.three), at(bench.live("a").input)}},
         .booleans = {{at(ports.yes), at(bench.live("a").wanted)}},
         .conversions = {{at(ports.yes), at(ports.inverted), 1, 1, Kind::negated},
-                        {at(ports.three), at(ports.real), 1, 1, Kind::integer_to_real},
+                        {at(ports.three), at(ports.real), 1, 1, Kind::widened},
+                        {at(ports.three), at(ports.tenths), 1, 10, Kind::widened_and_scaled},
                         {at(ports.millimetres), at(ports.centimetres), 1, 10, Kind::scaled}}};
     Call& call = task.calls.front();
     call.words = call.booleans = 1;
-    call.conversions = 3;
+    call.conversions = 4;
     bench.machine.duration = 0;
     bench.run();
     CHECK(bench.live("a").wanted);
     CHECK_FALSE(ports.inverted);
     CHECK(ports.real == 3);
+    CHECK(ports.tenths == 0.3);
     CHECK(bench.live("a").input == 3);
     CHECK(ports.centimetres == 2);
 }
