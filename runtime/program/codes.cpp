@@ -365,7 +365,8 @@ after a change.)"},
 its rows and the checksum of its bytes. Copy the two together.)"},
     {"L0721", "a trace without rows",
      R"(The file has a header, but no row: nothing was recorded. Perhaps the run ended before the
-traced task's first scan, or before the trace's trigger.)"},
+traced task's first scan, or before the trace's trigger. Or no row has a value in each of
+the columns that are compared.)"},
     {"L0722", "a trace whose time does not rise",
      R"(The rows of a trace stand in the order of their column 'time', and each has a time. This
 file has been sorted by something else, or put together from several traces.)"},

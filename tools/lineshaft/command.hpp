@@ -69,6 +69,7 @@ void add_plan(CLI::App& app, Exit& result);
 void add_fit(CLI::App& app, Exit& result);
 void add_diff(CLI::App& app, Exit& result);
 void add_verify(CLI::App& app, Exit& result);
+void add_contour(CLI::App& app, Exit& result);
 void add_report(CLI::App& app, Exit& result);
 void add_show(CLI::App& app, Exit& result);
 void add_plot(CLI::App& app, Exit& result);

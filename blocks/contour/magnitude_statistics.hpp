@@ -7,7 +7,7 @@
 namespace lineshaft {
 
 /// Running mean, root mean square and greatest of the magnitudes of a deviation.
-struct Deviation {
+struct MagnitudeStatistics {
     double mean = 0, rms = 0, greatest = 0;
     double sum = 0, squares = 0;
     std::int64_t count = 0;
