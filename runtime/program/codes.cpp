@@ -253,6 +253,10 @@ blanks need quotes in the shell:
     {"L0504", "--pulses for a program without a pulse channel",
      R"(The program has no block that puts out pulses. 'pto' is one:
     x: {type: pto, task: main, start_rate: 1 kHz, count: 500, execute: inputs.go})"},
+    {"L0509", "an output that is a file the command reads",
+     R"(The output would replace what it is made from: --trace program.yaml would leave a table where
+the program was. Two outputs of one name would replace each other. Name another file:
+    lineshaft run program.yaml --trace program.csv)"},
 
     {"L0601", "a study of too many runs",
      R"(The cases, the values of a grid multiplied with each other, and 'repeat' make more

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "runtime/model/random.hpp"
 #include "runtime/study/fit.hpp"
 #include "runtime/study/least_squares.hpp"
+#include "runtime/study/side_by_side.hpp"
 #include "runtime/study/single_run.hpp"
 
 namespace lineshaft {
@@ -210,11 +210,8 @@ std::vector<Figures> Fitter::run_all(const std::vector<Job>& jobs) {
             if (options_.progress) options_.progress(progress_);
         }
     };
-    std::vector<std::jthread> threads;
-    for (std::size_t i = 1; i < std::min<std::size_t>(options_.jobs, jobs.size()); ++i)
-        threads.emplace_back(work);
-    work();
-    threads.clear();
+    side_by_side(std::min<std::int64_t>(options_.jobs, std::ssize(jobs)), work,
+                 [&] { next = jobs.size(); });
     return results;
 }
 

@@ -18,8 +18,8 @@ struct Tracing {
           files(options.trace_path, setup, program.title, program.file->text, options.csv_style),
           recorder(setup, files) {}
 
-    TraceReport finish(const Judge& judge) {
-        files.set_expectations(verdicts_json(judge));
+    TraceReport finish(const RunResult& result, const Judge& judge) {
+        files.set_outcome(result.message, verdicts_json(judge));
         recorder.finish();
         if (recorder.measurements() == 0) {
             files.begin();
@@ -31,6 +31,32 @@ struct Tracing {
     std::string name;
     TraceFiles files;
     Recorder recorder;
+};
+
+/// Stops a run when the user wants it, or when what it records cannot be written.
+class StopWatch {
+  public:
+    StopWatch(const RunOptions& options, const std::deque<Tracing>& traces,
+              const std::optional<PulseWriter>& pulses)
+        : options_(options), traces_(traces), pulses_(pulses) {}
+
+    void look(std::int64_t time) {
+        if (options_.progress) options_.progress(time);
+        if (writing_fails() || (options_.interrupt && *options_.interrupt)) stop_ = true;
+    }
+
+    bool writing_fails() const {
+        return (pulses_ && pulses_->failed()) ||
+               std::ranges::any_of(traces_, [](const Tracing& t) { return t.files.failed(); });
+    }
+
+    const std::atomic<bool>* stop() const { return &stop_; }
+
+  private:
+    const RunOptions& options_;
+    const std::deque<Tracing>& traces_;
+    const std::optional<PulseWriter>& pulses_;
+    std::atomic<bool> stop_ = false;
 };
 
 }  // namespace
@@ -63,14 +89,18 @@ RunReport run(Loaded& loaded, const RunOptions& options) {
     if (!loaded.linked.expectations.empty()) observers.push_back(&judge);
     if (options.observer) observers.push_back(options.observer);
     Executive executive(loaded.linked.machine);
-    report.result = executive.run(observers, options.interrupt, options.progress);
+    StopWatch watch(options, traces, pulses);
+    report.result =
+        executive.run(observers, watch.stop(), [&watch](std::int64_t time) { watch.look(time); });
+    if (report.result.outcome == Outcome::interrupted && watch.writing_fails())
+        report.result.message = "the run stopped at " + format_time(report.result.time);
     judge.finish(report.result);
     report.verdicts = judge.verdicts();
     for (Tracing& trace : traces) {
-        report.traces.push_back(trace.finish(judge));
+        report.traces.push_back(trace.finish(report.result, judge));
         if (report.trace_error.empty()) report.trace_error = trace.files.error();
     }
-    if (pulses) report.pulses_error = pulses->finish();
+    if (pulses) report.pulses_error = pulses->finish(report.result.message);
     for (DeviceCall& device : loaded.linked.machine.devices) device.sink = nullptr;
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     report.wall_seconds = wall.count();

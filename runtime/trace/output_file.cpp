@@ -14,12 +14,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void flush_folder(const std::string& path) {
-    const auto folder = fs::absolute(path).parent_path();
-    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY);
-    if (descriptor < 0) return;
-    ::fsync(descriptor);
+/// So that the new name outlives a power failure. A folder that cannot be read, or a file system
+/// that does not flush folders, is no error.
+bool flush_folder(const std::string& path) {
+    const fs::path folder = fs::path(path).parent_path();
+    const int descriptor =
+        ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return true;
+    const bool flushed = ::fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS;
+    const int error = errno;
     ::close(descriptor);
+    errno = error;
+    return flushed;
 }
 
 }  // namespace
@@ -30,6 +36,7 @@ OutputFile::OutputFile(std::string path, std::int64_t keep)
     const fs::file_status status = fs::status(path_, unknown);
     if (fs::is_directory(status)) {
         error_ = fmt::format("cannot write '{}': it is a directory", path_);
+        failed_ = true;
         return;
     }
     regular_ = !fs::exists(status) || fs::is_regular_file(status);
@@ -59,12 +66,13 @@ bool OutputFile::commit() {
     file_ = nullptr;
     if (!regular_ || !error_.empty()) return error_.empty();
     if (std::rename(part_.c_str(), path_.c_str()) != 0) fail("rename");
-    flush_folder(path_);
+    if (error_.empty() && !flush_folder(path_)) fail("flush the folder of");
     return error_.empty();
 }
 
 void OutputFile::fail(const char* what) {
     error_ = fmt::format("cannot {} '{}': {}", what, path_, std::strerror(errno));
+    failed_ = true;
 }
 
 }  // namespace lineshaft

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <cstdio>
 #include <string>
@@ -30,6 +31,9 @@ class OutputFile {
     /// `cannot write 'x.csv': No space left on device`; empty while all is well.
     const std::string& error() const { return error_; }
 
+    /// Whether there is an error. May be asked while another thread writes.
+    bool failed() const { return failed_; }
+
   private:
     void fail(const char* what);
 
@@ -38,6 +42,7 @@ class OutputFile {
     bool regular_ = true;
     std::FILE* file_ = nullptr;
     std::string error_;
+    std::atomic<bool> failed_ = false;
 };
 
 }  // namespace lineshaft

@@ -21,8 +21,12 @@ class PulseWriter {
     PulseWriter(const PulseWriter&) = delete;
     PulseWriter& operator=(const PulseWriter&) = delete;
 
-    /// Closes the file. Empty when all is well, else what went wrong.
-    std::string finish();
+    /// Closes the file. If the run did not complete, `PATH-metadata.json` beside it says why
+    /// (`lineshaft:stopped`). Empty when all is well, else what went wrong.
+    std::string finish(const std::string& stopped);
+
+    /// Whether writing goes wrong: the rest of the run would not be recorded.
+    bool failed() const { return file_.failed(); }
 
   private:
     struct Channel : PulseSink {
@@ -35,6 +39,7 @@ class PulseWriter {
     };
 
     OutputFile file_;
+    std::string path_;
     std::string text_;
     std::vector<std::unique_ptr<Channel>> channels_;
 };

@@ -74,6 +74,7 @@ void print_text(const RunCommand& command, const Loaded& loaded, const RunReport
 }
 
 Exit exit_code(const RunReport& report) {
+    if (!report.trace_error.empty() || !report.pulses_error.empty()) return Exit::fault;
     if (report.result.outcome == Outcome::interrupted) return Exit::interrupted;
     if (report.faulted()) return Exit::fault;
     return report.expectations_hold() ? Exit::fine : Exit::failed;
@@ -95,7 +96,9 @@ void add_style(CLI::App& sub, CsvStyle& style) {
 
 Exit execute(const RunCommand& command) {
     Diagnostics out;
-    const LoadOptions options = command.common.load_options(out);
+    YamlFiles files;
+    LoadOptions options = command.common.load_options(out);
+    options.files = &files;
     auto loaded = load_program(command.program, options, standard_blocks(), out);
     if (loaded && !command.trace.empty() && loaded->linked.traces.empty())
         out.add("L0503", {loaded->program.file, 0, 0, 1},
@@ -105,6 +108,9 @@ Exit execute(const RunCommand& command) {
         out.add("L0504", {loaded->program.file, 0, 0, 1},
                 "the program has no pulse channel to write to " + command.pulses,
                 "'lineshaft blocks pto' describes one");
+    std::vector<std::string> inputs;
+    for (const auto& file : files.sources()) inputs.push_back(file->path);
+    check_outputs({command.trace, command.pulses}, inputs, out);
     if (!out.empty()) return report(out, command.common.json);
 
     ProgressLine line(command.common.quiet || command.common.json);
