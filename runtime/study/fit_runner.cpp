@@ -81,6 +81,7 @@ class Fitter {
     const FitOptions& options_;
     std::vector<const FitCell*> identification_;
     FitReport report_;
+    std::string first_fault_;  ///< of the search
     FitProgress progress_{.sum = infinity};
 };
 
@@ -159,6 +160,7 @@ std::vector<VectorXd> Fitter::residuals(const std::vector<VectorXd>& points) {
             const FitCell& cell = *identification_[c];
             const Figures& ours = all[p * identification_.size() + c];
             whole = whole && ours.fault.empty();
+            if (first_fault_.empty()) first_fault_ = ours.fault;
             for (std::size_t k = 0; whole && k < cell.targets.size(); ++k)
                 for (std::size_t i = 0; i < cell.targets[k].given.size(); ++i)
                     terms.push_back((ours.values[k][i] - cell.targets[k].given[i]) /
@@ -291,6 +293,7 @@ void Fitter::take_rows(const LeastSquares& best) {
             for (std::size_t k = 0; k < all[c].values.size(); ++k)
                 report_.rows.push_back(make_row(*cells[c], k, all[c].values[k]));
     }
+    if (!any && report_.faults.empty()) report_.faults.push_back(first_fault_);
 }
 
 }  // namespace

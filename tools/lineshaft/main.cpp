@@ -2,7 +2,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <new>
 
 #include <fcntl.h>
@@ -15,6 +17,8 @@
 #include "tools/lineshaft/command.hpp"
 
 namespace {
+
+constexpr const char* out_of_memory = "lineshaft: error: out of memory\n";
 
 void on_signal(int) {
     lineshaft::interrupt_requested = true;
@@ -36,6 +40,18 @@ void set_up_signals() {
     std::signal(SIGTERM, on_signal);
     std::signal(SIGPIPE, SIG_IGN);  // writing tells it
     std::signal(SIGXFSZ, SIG_IGN);  // likewise
+}
+
+/// A library that cannot go on without memory ends here, whatever it calls on its way.
+[[noreturn]] void on_terminate() {
+    try {
+        if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
+    } catch (const std::bad_alloc&) {
+        std::fputs(out_of_memory, stderr);
+        std::_Exit(static_cast<int>(lineshaft::Exit::fault));
+    } catch (...) {
+    }
+    std::abort();
 }
 
 void set_up_messages() {
@@ -94,10 +110,11 @@ int run_command(int argc, char** argv) {
 int main(int argc, char** argv) {
     occupy_closed_streams();
     set_up_signals();
+    std::set_terminate(on_terminate);
     try {
         return run_command(argc, argv);
     } catch (const std::bad_alloc&) {
-        std::fputs("lineshaft: error: out of memory\n", stderr);
+        std::fputs(out_of_memory, stderr);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "lineshaft: error: %s\n", error.what());
     }
