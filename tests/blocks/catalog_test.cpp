@@ -74,7 +74,7 @@ Value any_value(const Field& field, Random& random) {
     }
 }
 
-/// What a program file could set: usual sizes, inside the limits.
+/// A value of a usual size; it may lie outside the limits.
 Value usual_parameter(const Field& field, Random& random) {
     if (field.type != Type::real && field.type != Type::integer) return any_value(field, random);
     constexpr std::int64_t sizes[] = {1, 2, 3, 10, 100};
@@ -89,10 +89,13 @@ void set_some(Instance& block, const BlockType& type, Random& random) {
             block.set(f, any_value(f, random));
 }
 
+/// Some parameters, to what a program file could set them to: inside their limits.
 void set_parameters(Instance& block, const BlockType& type, Random& random) {
-    for (const Field& f : type.fields)
-        if (f.direction == Direction::parameter && random.next() % 2 == 0)
-            block.set(f, usual_parameter(f, random));
+    for (const Field& f : type.fields) {
+        if (f.direction != Direction::parameter || random.next() % 2 != 0) continue;
+        const Value value = usual_parameter(f, random);
+        if (f.admits(as_real(value))) block.set(f, value);
+    }
 }
 
 void check_finite_outputs(const Instance& block, const BlockType& type) {

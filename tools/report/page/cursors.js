@@ -29,7 +29,7 @@ export class CursorLines {
     const line = element("div", { className: `cursor cursor-${name}`, tabIndex: 0, role: "slider" },
                          element("span", {}, name));
     line.ariaLabel = `cursor ${name}`;
-    for (const event of ["mousedown", "click", "dblclick"])
+    for (const event of ["mousedown", "click"])
       line.addEventListener(event, (e) => e.stopPropagation());
     line.addEventListener("pointerdown", (e) => line.setPointerCapture(e.pointerId));
     line.addEventListener("pointermove", (e) => {

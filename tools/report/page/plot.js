@@ -183,11 +183,10 @@ export class Plot {
     ctx.restore();
   }
 
-  #zoomTo(select) {
-    const time = (position) => this.uplot.posToVal(position, "x");
-    const [from, to] = [time(select.left), time(select.left + select.width)];
+  #zoomTo({ left, width }) {
+    const [from, to] = [left, left + width].map((position) => this.uplot.posToVal(position, "x"));
     this.uplot.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
-    if (select.width > 3) this.view.show(from, to);
+    if (width > 3) this.view.show(from, to);
   }
 
   #hover(u) {
