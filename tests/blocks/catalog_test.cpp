@@ -75,7 +75,7 @@ Value any_value(const Field& field, Random& random) {
 }
 
 /// A value of a usual size; it may lie outside the limits.
-Value usual_parameter(const Field& field, Random& random) {
+Value usual_value(const Field& field, Random& random) {
     if (field.type != Type::real && field.type != Type::integer) return any_value(field, random);
     constexpr std::int64_t sizes[] = {1, 2, 3, 10, 100};
     const std::int64_t size = sizes[random.next() % std::size(sizes)];
@@ -89,13 +89,18 @@ void set_some(Instance& block, const BlockType& type, Random& random) {
             block.set(f, any_value(f, random));
 }
 
-/// Some parameters, to what a program file could set them to: inside their limits.
-void set_parameters(Instance& block, const BlockType& type, Random& random) {
+/// Each field of the direction once in `times`, within the limits of what a program may set.
+void set_usual(Instance& block, const BlockType& type, Direction direction, std::uint64_t times,
+               Random& random) {
     for (const Field& f : type.fields) {
-        if (f.direction != Direction::parameter || random.next() % 2 != 0) continue;
-        const Value value = usual_parameter(f, random);
+        if (f.direction != direction || random.next() % times != 0) continue;
+        const Value value = usual_value(f, random);
         if (f.admits(as_real(value))) block.set(f, value);
     }
+}
+
+void set_parameters(Instance& block, const BlockType& type, Random& random) {
+    set_usual(block, type, Direction::parameter, 2, random);
 }
 
 void check_finite_outputs(const Instance& block, const BlockType& type) {
@@ -128,20 +133,14 @@ bool can_move(const BlockType& type) {
     return has(Direction::input) && has(Direction::output);
 }
 
-void set_usual(Instance& block, const BlockType& type, Random& random) {
-    for (const Field& f : type.fields)
-        if (f.direction == Direction::input && random.next() % 4 == 0)
-            block.set(f, usual_parameter(f, random));
-}
-
 /// Scanned `scans` times, with inputs that change now and then.
 Instance scanned(const BlockType& type, std::uint64_t seed, std::int64_t scans) {
     Instance block(type);
     Random random(seed, type.name);
     set_parameters(block, type, random);
-    set_usual(block, type, random);
+    set_usual(block, type, Direction::input, 4, random);
     for (std::int64_t i = 0; i < scans; ++i) {
-        if (i % 50 == 25) set_usual(block, type, random);
+        if (i % 50 == 25) set_usual(block, type, Direction::input, 4, random);
         block.scan(i);
     }
     return block;
@@ -168,10 +167,11 @@ std::vector<Value> extremes(const Field& input) {
             -denormal,    largest,  -largest,  1e300, -1e300};
 }
 
-/// Scans `block` with the extreme value for a while, then with the value of before.
+/// Scans `block` with the extreme value for a while, then with the value of before for longer than
+/// a set-point can be on its way to a drive.
 void check_extreme(Instance block, std::int64_t scan, const BlockType& type, const Field& input,
                    const Value& extreme) {
-    constexpr std::int64_t a_while = 10;
+    constexpr std::int64_t a_while = 10, longer = 70;
     INFO(type.name << "." << input.name << " = " << as_real(extreme) << " at scan " << scan);
     const Value good = block.get(input);
     block.set(input, extreme);
@@ -184,7 +184,7 @@ void check_extreme(Instance block, std::int64_t scan, const BlockType& type, con
             REQUIRE(as_real(block.get(*type.find_readable("error_id"))) > 0);
     }
     block.set(input, good);
-    for (const std::int64_t end = scan + a_while; scan < end; ++scan) {
+    for (const std::int64_t end = scan + longer; scan < end; ++scan) {
         block.scan(scan);
         check_finite_outputs(block, type);
     }
