@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
-#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -44,6 +43,11 @@ class Watch : public Observer {
     std::uint64_t hash = 0xcbf29ce484222325;
 
   private:
+    struct Sample {
+        std::int64_t time = 0;  ///< [ns]
+        double value = 0;
+    };
+
     void look(const Signal& signal, const Scan& scan) {
         const double value = as_real(signal.value());
         if (signal.type == Type::real && !std::isfinite(value))
@@ -52,16 +56,16 @@ class Watch : public Observer {
     }
 
     void hold(std::size_t i, const Scan& scan) {
-        const double value = as_real(bounded_[i]->value());
-        const double held = bounds_[i].of_change
-                                ? (value - last_[i]) / (static_cast<double>(scan.interval) / 1e9)
-                                : value;
-        last_[i] = value;
-        if (bounds_[i].of_change && scan.index == 0) return;
-        if (std::abs(held) > bounds_[i].most * (1 + 1e-6) + rounding)
-            fail(fmt::format("{}{} is {} in scan {}, at most {} is allowed", bounds_[i].signal,
-                             bounds_[i].of_change ? "'s change" : "", held, scan.index,
-                             bounds_[i].most));
+        const Bound& bound = bounds_[i];
+        const Sample now{scan.time, as_real(bounded_[i]->value())};
+        const Sample before = std::exchange(last_[i], now);
+        if (bound.of_change && now.time == before.time) return;
+        const double held = bound.of_change ? (now.value - before.value) * 1e9 /
+                                                  static_cast<double>(now.time - before.time)
+                                            : now.value;
+        if (std::abs(held) > bound.most * (1 + 1e-6) + rounding)
+            fail(fmt::format("{}{} is {} in scan {}, at most {} is allowed", bound.signal,
+                             bound.of_change ? "'s change" : "", held, scan.index, bound.most));
     }
 
     void fail(std::string what) {
@@ -71,14 +75,16 @@ class Watch : public Observer {
     const Machine& machine_;
     const std::vector<Bound>& bounds_;
     std::vector<const Signal*> bounded_;
-    std::vector<double> last_;
+    std::vector<Sample> last_;
 };
 
 std::string wrong_counts(const Machine& machine, const RunResult& result) {
-    if (result.outcome != Outcome::completed) return {};
+    const bool may_wait =
+        std::ranges::any_of(machine.tasks, [](const Task& t) { return t.cost > 0; });
+    if (result.outcome != Outcome::completed || may_wait) return {};
     for (std::size_t i = 0; i < machine.tasks.size(); ++i) {
         const Task& task = machine.tasks[i];
-        if (task.on_event || task.jitter > 0 || task.cost > 0) continue;
+        if (task.on_event || task.jitter > 0) continue;
         const std::int64_t due = machine.duration / task.every + 1;
         if (result.scans[i] != due)
             return fmt::format("{} scans of '{}' instead of {}", result.scans[i], task.name, due);

@@ -163,7 +163,8 @@ std::string Generator::wire(const Field& field, const std::string& unit) {
 }
 
 std::string Generator::new_input(const Field& field, const std::string& unit) {
-    if (field.type == Type::enumeration) return literal(field, unit);
+    const bool would_be_real = field.type == Type::integer && !unit.empty();
+    if (field.type == Type::enumeration || would_be_real) return literal(field, unit);
     inputs_.push_back({fmt::format("i{}", inputs_.size()), field, unit});
     inputs_text_ += fmt::format("  {}: {}\n", inputs_.back().name, literal(field, unit));
     return "inputs." + inputs_.back().name;
@@ -189,13 +190,17 @@ std::string Generator::literal(const Field& field, const std::string& unit) {
             return std::string(choices_.one_of(field.names));
         case Type::integer: {
             const double whole = std::trunc(number(field));
-            const double admitted = field.admits(whole) ? whole : field.minimum;
-            return fmt::format("{} {}", static_cast<std::int64_t>(admitted), unit);
+            double admitted = field.admits(whole) ? whole : field.minimum;
+            if (unit == "ns") admitted = std::abs(admitted);  // a time is not negative
+            return fmt::format("{} {}",
+                               static_cast<std::int64_t>(std::clamp(admitted, -1e18, 1e18)), unit);
         }
         default: {
             const double chosen = number(field);
             numbers_[std::string(field.name)] = chosen;
-            return fmt::format("{} {}", format_number(chosen), unit);
+            std::string text = format_number(chosen);
+            if (text.find_first_of(".e") == text.npos) text += ".0";  // a real, not an integer
+            return fmt::format("{} {}", text, unit);
         }
     }
 }
