@@ -293,7 +293,8 @@ void Fitter::take_rows(const LeastSquares& best) {
             for (std::size_t k = 0; k < all[c].values.size(); ++k)
                 report_.rows.push_back(make_row(*cells[c], k, all[c].values[k]));
     }
-    if (!any && report_.faults.empty()) report_.faults.push_back(first_fault_);
+    if (!any && report_.faults.empty() && !first_fault_.empty())
+        report_.faults.push_back(first_fault_);
 }
 
 }  // namespace

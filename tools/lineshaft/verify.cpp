@@ -43,8 +43,7 @@ bool is_mistake_of_file(const Diagnostic& d) {
 std::optional<CsvTable> verify(const std::string& path, Diagnostics& out) {
     auto table = read_csv(path, out);
     if (!table) return {};
-    const bool is_told = table->metadata && !table->metadata->crc32.empty();
-    if (!is_told)
+    if (!table->metadata || table->metadata->crc32.empty())
         out.add("L0709", {table->header, 0, 0, 1}, "no sidecar tells what the trace was",
                 fmt::format("a trace is whole if it is as '{}' says", sidecar_path(path)));
     else if (const auto is = checksum_of(path, out); is && *is != table->metadata->crc32)
