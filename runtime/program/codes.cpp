@@ -233,6 +233,17 @@ type. For a comparison or a sign use a block that does it.)"},
      R"(The input is fed by a wire, which is copied in before every scan: what the stimulus
 sets would be overwritten before it is seen. Remove the wire, or let the stimulus set
 an input of the program (inputs.name) and wire that.)"},
+    {"L0410", "a time error that cannot be handled",
+     R"('on_overrun' lists the tasks whose time errors start this one, as OB80. A motion task
+(motion: true, such as MC_Servo) may not overrun at all: the controller stops, as an
+S7-1500 does. And a task that overruns cannot be its own help.
+    tasks:
+      time_error: {on_overrun: [main], priority: 22})"},
+    {"L0411", "a signal that cannot be retained",
+     R"('retain' lists values that outlive a run: outputs of blocks, such as the value of a
+counter, and inputs that are set from outside. A parameter is the program's own constant;
+a wired input gets its value from the wire in the first scan, so retain where the wire
+begins.)"},
 
     {"L0501", "a setting for a parameter that the program does not have",
      R"(--set and the cases of a study change what the program declares under 'parameters:',
@@ -253,6 +264,25 @@ blanks need quotes in the shell:
     {"L0504", "--pulses for a program without a pulse channel",
      R"(The program has no block that puts out pulses. 'pto' is one:
     x: {type: pto, task: main, start_rate: 1 kHz, count: 500, execute: inputs.go})"},
+    {"L0505", "--force without signal=value@from..until",
+     R"(A force keeps a signal at a value for an interval, whatever the program writes; after
+it the program's own value is back. Without a time it begins at the start, or does not
+end; without @ it is for the whole run:
+    lineshaft run program.yaml --force slave.ratio=2@1s..2s --force inputs.go=true@..5s)"},
+    {"L0506", "a checkpoint that cannot be resumed",
+     R"(A checkpoint holds the memory of a run of one program with certain parameters and forces,
+by one version of lineshaft, and the place in its trace. It is refused if any of these
+differs, if it is not whole, or if the trace is not the one that was being written then.
+Run the program from its start, or with the same file, --set, --force, --trace and
+--pulses as before.)"},
+    {"L0507", "a file of retained values that does not fit",
+     R"(A retain file is JSON: {"lineshaft_retain": 1, "values": {"counter.cv": 12}}. This one is
+something else, or has a value of another type than the signal. Remove the file, or begin
+with the initial values, which then overwrite it:
+    lineshaft run program.yaml --retain-file line.retain --restart cold)"},
+    {"L0508", "--retain-file for a program that retains nothing",
+     R"(The program does not say what outlives a run. List the signals:
+    retain: [counter.cv, inputs.recipe])"},
     {"L0509", "an output that is a file the command reads",
      R"(The output would replace what it is made from: --trace program.yaml would leave a table where
 the program was. Two outputs of one name would replace each other. Name another file:
@@ -281,6 +311,12 @@ same.)"},
 fewer figures many values fit equally well. Cells that are held out do not count, for
 they only test what the others have found. Take a parameter out of 'parameters:' (its
 value then comes from the program or from 'set:'), or compare more signals or cases.)"},
+    {"L0605", "a measured trace that cannot be compared",
+     R"(A fit takes the program's signals at the times that the trace's column 'time' gives, in
+seconds from the start of the run. So these times are not negative and rise from row to
+row. Rows where a compared column is empty are left out. If the
+measurement begins later than the run, say by how much:
+    trace: {file: measured.csv, offset: 10 ms})"},
     {"L0611", "chunks of a study are missing",
      R"(The result of a study in chunks is put together only when every chunk is there.
     lineshaft study PLAN.yaml --chunk 3/8 -o parts/part_3.csv
@@ -293,13 +329,8 @@ the chunks were made for different divisions (3/8 and 3/10). Compute the chunk a
      R"(The rows of a chunk are not those that its sidecar (FILE-metadata.json) describes: the file
 was cut off, edited, or copied without it. Compute the chunk again.)"},
     {"L0614", "results without a file",
-     R"(--chunk, --merge and --resume are about a result file: say which with -o FILE.csv.)"},
-    {"L0605", "a measured trace that cannot be compared",
-     R"(A fit takes the program's signals at the times that the trace's column 'time' gives, in
-seconds from the start of the run. So these times are not negative and rise from row to
-row. Rows where a compared column is empty are left out. If the
-measurement begins later than the run, say by how much:
-    trace: {file: measured.csv, offset: 10 ms})"},
+     R"(--chunk, --merge and --resume are about a result file: say which with -o FILE.csv. Without one a
+study shows its table on the terminal and keeps nothing.)"},
 
     {"L0701", "a CSV file without columns",
      R"(The first line of a CSV file names its columns, separated by commas (or semicolons, where

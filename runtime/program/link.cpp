@@ -8,6 +8,9 @@ namespace lineshaft {
 
 namespace {
 
+/// Of the main task, as Siemens' controllers have it [ns].
+constexpr std::int64_t default_maximum_cycle_time = 150'000'000;
+
 constexpr std::size_t alignment = alignof(std::max_align_t);
 
 std::size_t aligned(std::size_t size) {
@@ -18,6 +21,7 @@ std::size_t aligned(std::size_t size) {
 
 Linked Linker::link() {
     place_tasks();
+    choose_main_task();
     find_blocks();
     lay_out();
     set_inputs();
@@ -31,9 +35,13 @@ Linked Linker::link() {
     collect_errors();
     collect_devices();
     collect_signals();
+    connect_outputs();
     connect_events();
+    connect_overruns();
     connect_run();
     connect_stimuli();
+    connect_forces();
+    connect_retained();
     connect_traces();
     connect_expectations();
     return std::move(out_);
@@ -44,6 +52,8 @@ void Linker::place_tasks() {
         Task task;
         task.name = plan.name;
         task.on_event = plan.every == 0;
+        task.motion = plan.motion;
+        task.maximum_cycle_time = plan.maximum_cycle_time.value_or(never);
         task.every = plan.every;
         task.offset = plan.offset;
         task.priority = plan.priority;
@@ -53,10 +63,57 @@ void Linker::place_tasks() {
         out_.machine.tasks.push_back(std::move(task));
     }
     std::ranges::stable_sort(out_.machine.tasks, std::ranges::greater{}, &Task::priority);
+    for (const Task& task : out_.machine.tasks) task_names_.push_back(task.name);
+}
+
+void Linker::choose_main_task() {
+    auto& tasks = out_.machine.tasks;
+    for (std::size_t i = 0; i < tasks.size(); ++i)
+        if (!tasks[i].on_event) out_.machine.main_task = static_cast<int>(i);
+    if (out_.machine.main_task < 0) return;
+    Task& main = tasks[static_cast<std::size_t>(out_.machine.main_task)];
+    if (main.maximum_cycle_time == never) main.maximum_cycle_time = default_maximum_cycle_time;
+}
+
+/// -1, and L0206, when there is none.
+int Linker::find_task(const Node& name) {
+    if (name.text.empty()) return -1;
+    const auto it = std::ranges::find(task_names_, name.text);
+    if (it != task_names_.end()) return static_cast<int>(it - task_names_.begin());
+    if (program_.tasks_known)
+        read_.fail("L0206", name, fmt::format("unknown task '{}'", name.text),
+                   suggest(name.text, task_names_));
+    return -1;
+}
+
+void Linker::add_cost(const BlockPlan& plan, int index) {
+    if (!plan.cost || index < 0 || !read_.expect_scalar(*plan.cost, "'cost'")) return;
+    Task& task = out_.machine.tasks[static_cast<std::size_t>(index)];
+    task.cost += read_.time(*plan.cost).value_or(0);
+    if (!task.on_event && task.cost - task.cost_jitter > task.every)
+        read_.fail("L0305", *plan.cost,
+                   fmt::format("the costs of task '{}' and its blocks are above its interval: it "
+                               "never ends in time",
+                               task.name));
+}
+
+/// Then its outputs are published later than they are made.
+bool Linker::takes_time(int task) const {
+    const std::string& name = task_names_[static_cast<std::size_t>(task)];
+    return out_.machine.tasks[static_cast<std::size_t>(task)].cost > 0 ||
+           std::ranges::any_of(program_.stimuli, [&](const StimulusPlan& plan) {
+               return plan.cost && plan.task && plan.task->text == name;
+           });
+}
+
+CallInfo Linker::info(const Instance& block) const {
+    CallInfo info{.block = fmt::format("'{}' ({})", block.plan->name.text, block.type->name)};
+    Diagnostics reported;
+    if (block.plan->cost) info.cost = Reader(reported).time(*block.plan->cost).value_or(0);
+    return info;
 }
 
 void Linker::find_blocks() {
-    for (const Task& task : out_.machine.tasks) task_names_.push_back(task.name);
     for (const BlockPlan& plan : program_.blocks) {
         Instance block{.plan = &plan, .position = static_cast<int>(blocks_.size())};
         if (!plan.type.text.empty()) {
@@ -66,14 +123,8 @@ void Linker::find_blocks() {
                            fmt::format("unknown block type '{}'", plan.type.text),
                            suggest(plan.type.text, catalog_.names()));
         }
-        if (!plan.task.text.empty()) {
-            const auto it = std::ranges::find(task_names_, plan.task.text);
-            if (it != task_names_.end())
-                block.task = static_cast<int>(it - task_names_.begin());
-            else if (program_.tasks_known)
-                read_.fail("L0206", plan.task, fmt::format("unknown task '{}'", plan.task.text),
-                           suggest(plan.task.text, task_names_));
-        }
+        block.task = find_task(plan.task);
+        add_cost(plan, block.task);
         by_name_.emplace(plan.name.text, block.position);
         block_names_.push_back(plan.name.text);
         blocks_.push_back(std::move(block));
@@ -90,14 +141,16 @@ void Linker::lay_out() {
     }
     const std::size_t input_bytes = aligned(8 * program_.inputs.size());
     std::size_t total = input_bytes;
-    for (const Task& task : tasks) total += task.size * (task.cost > 0 ? 2 : 1);
+    for (std::size_t i = 0; i < tasks.size(); ++i)
+        total += tasks[i].size * (takes_time(static_cast<int>(i)) ? 2 : 1);
     auto& memory = out_.machine.memory;
     memory.resize(total);
     std::byte* place = memory.data() + input_bytes;
-    for (Task& task : tasks) {
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+        Task& task = tasks[i];
         task.live = task.published = place;
         place += task.size;
-        if (task.cost == 0) continue;
+        if (!takes_time(static_cast<int>(i))) continue;
         task.published = place;
         place += task.size;
     }
@@ -121,6 +174,7 @@ void Linker::append_call(const Instance& block) {
                           .words = static_cast<std::uint32_t>(wires.words.size()),
                           .booleans = static_cast<std::uint32_t>(wires.booleans.size()),
                           .conversions = static_cast<std::uint32_t>(wires.conversions.size())});
+    task.infos.push_back(info(block));
     const auto append = [](auto& to, const auto& from) {
         to.insert(to.end(), from.begin(), from.end());
     };
@@ -173,7 +227,7 @@ void Linker::collect_errors() {
             flag.error_id = reinterpret_cast<const std::int64_t*>(block.live + id->offset);
             flag.names = id->names;
         }
-        flag.block = fmt::format("'{}' ({})", block.plan->name.text, block.type->name);
+        flag.block = info(block).block;
         out_.machine.tasks[static_cast<std::size_t>(block.task)].errors.push_back(std::move(flag));
     }
 }

@@ -51,6 +51,22 @@ void Linker::collect_signals() {
     }
 }
 
+void Linker::connect_outputs() {
+    for (const auto& [name, shown] : program_.outputs) {
+        output_names_.push_back(name.text);
+        if (shown.text.starts_with("outputs.")) {
+            read_.fail("L0208", shown, fmt::format("'{}' is an output itself", shown.text),
+                       "an output shows a signal block.port");
+            continue;
+        }
+        auto source = signal(shown);
+        if (!source) continue;
+        outputs_.emplace(name.text, shown.text);
+        source->name = "outputs." + name.text;
+        out_.machine.signals.push_back(std::move(*source));
+    }
+}
+
 void Linker::unknown_port(const Node& node, const Instance& block, std::string_view port) {
     std::vector<std::string> names;
     for (const Field& f : block.type->fields)
@@ -64,7 +80,7 @@ void Linker::unknown_port(const Node& node, const Instance& block, std::string_v
 std::optional<Signal> Linker::signal(const Node& node, const std::string& name) {
     if (!is_signal_name(name)) {
         read_.fail("L0208", node, fmt::format("'{}' is no signal", name),
-                   "a signal is written block.port or inputs.name");
+                   "a signal is written block.port, inputs.name or outputs.name");
         return {};
     }
     const auto dot = name.find('.');
@@ -75,6 +91,17 @@ std::optional<Signal> Linker::signal(const Node& node, const std::string& name) 
         if (std::ranges::find(input_names_, port) != input_names_.end()) return {};
         read_.fail("L0208", node, fmt::format("the program has no input '{}'", port),
                    input_names_.empty() ? "it has no 'inputs:'" : suggest(port, input_names_));
+        return {};
+    }
+    if (owner == "outputs") {
+        if (const auto it = outputs_.find(port); it != outputs_.end()) {
+            auto shown = signal(node, it->second);
+            shown->name = name;
+            return shown;
+        }
+        if (std::ranges::find(output_names_, port) != output_names_.end()) return {};
+        read_.fail("L0208", node, fmt::format("the program has no output '{}'", port),
+                   output_names_.empty() ? "it has no 'outputs:'" : suggest(port, output_names_));
         return {};
     }
     const auto it = by_name_.find(owner);

@@ -27,6 +27,28 @@ void Linker::connect_events() {
     }
 }
 
+void Linker::connect_overruns() {
+    for (const TaskPlan& plan : program_.tasks) {
+        const auto handler = std::ranges::find(task_names_, plan.name) - task_names_.begin();
+        for (const Node& node : plan.on_overrun) {
+            const int index = find_task(node);
+            if (index < 0) continue;
+            Task& task = out_.machine.tasks[static_cast<std::size_t>(index)];
+            if (task.motion || index == handler)
+                read_.fail("L0410", node,
+                           fmt::format("'{}' {}", node.text,
+                                       task.motion ? "is a motion task: its overrun is STOP"
+                                                   : "cannot handle its own overrun"));
+            else if (task.on_overrun >= 0)
+                read_.fail("L0212", node,
+                           fmt::format("the overrun of '{}' starts '{}' already", node.text,
+                                       task_names_[static_cast<std::size_t>(task.on_overrun)]));
+            else
+                task.on_overrun = static_cast<int>(handler);
+        }
+    }
+}
+
 void Linker::connect_run() {
     Machine& machine = out_.machine;
     machine.duration = program_.run.duration;
@@ -38,41 +60,6 @@ void Linker::connect_run() {
         read_.fail("L0401", *program_.run.until,
                    fmt::format("'until' takes a boolean, '{}' is {}", machine.until->name,
                                name_of(machine.until->type)));
-}
-
-void Linker::connect_stimuli() {
-    for (const StimulusPlan& plan : program_.stimuli)
-        for (const auto& [key, value] : plan.set) connect_stimulus(plan.at, key, value);
-}
-
-void Linker::connect_stimulus(std::int64_t at, const Node& key, const Node& value) {
-    const auto target = signal(key);
-    if (!target) return;
-    if (wired_.contains(target->name))
-        return read_.fail("L0409", key,
-                          fmt::format("'{}' is wired and cannot be set", target->name),
-                          "wire an input of the program (inputs.name) and set that");
-    Field field;
-    field.name = target->name;
-    field.type = target->type;
-    std::byte* slot = const_cast<std::byte*>(target->slot);
-    Unit unit = parsed(target->unit);
-    if (target->task >= 0) {
-        const auto dot = target->name.find('.');
-        const Instance& block =
-            blocks_[static_cast<std::size_t>(by_name_.at(target->name.substr(0, dot)))];
-        const Field* settable = block.type->find_settable(target->name.substr(dot + 1));
-        if (!settable || settable->direction == Direction::parameter)
-            return read_.fail("L0405", key,
-                              fmt::format("'{}' is {} and cannot be set", target->name,
-                                          settable ? "a parameter" : "an output"),
-                              "a stimulus sets inputs");
-        field = *settable;
-        unit = unit_of(block, field);
-        slot = block.live + field.offset;
-    }
-    if (const auto v = read_literal(read_, value, field, unit))
-        out_.machine.stimuli.push_back({at, slot, field.type, *v});
 }
 
 std::optional<double> Linker::bound(const Signal& signal, const Node& node) {

@@ -24,6 +24,11 @@ std::optional<WireText> parse_wire(const Node& node) {
 }
 
 void Linker::wire(int index, const Field& field, const Node& value, const WireText& text) {
+    if (text.signal.starts_with("outputs."))
+        return read_.fail(
+            "L0203", value,
+            fmt::format("'{}' is for outside, a wire comes from a block or an input", text.signal),
+            "wire the signal that the output shows");
     const auto source = signal(value, text.signal);
     if (!source) return;
     Instance& block = blocks_[static_cast<std::size_t>(index)];

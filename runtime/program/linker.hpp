@@ -41,10 +41,19 @@ std::optional<WireText> parse_wire(const Node& node);
 /// `real`, or an enumeration's names.
 std::string kind(Type type, std::span<const std::string_view> names);
 
+/// What a value from outside is written to.
+struct Target {
+    Signal signal;
+    const Instance* block = nullptr;  ///< null: an input of the program
+    Field field = {};                 ///< with the name that the program gives
+    std::byte* live = nullptr;
+    std::byte* published = nullptr;  ///< may be the live one
+};
+
 /// Turns a program's names into memory, see link(). Its functions stand in link.cpp (the order of
 /// work, tasks, memory), link_names.cpp (signals and units), link_blocks.cpp (parameters and
-/// constants), link_wires.cpp, link_run.cpp (what happens to the machine and what is expected)
-/// and link_trace.cpp.
+/// constants), link_wires.cpp, link_outside.cpp (what is set from outside), link_run.cpp (what
+/// happens to the machine and what is expected) and link_trace.cpp.
 class Linker {
   public:
     Linker(const Program& program, const Catalog& catalog, Diagnostics& out)
@@ -54,7 +63,12 @@ class Linker {
 
   private:
     void place_tasks();
+    void choose_main_task();
     void find_blocks();
+    int find_task(const Node& name);
+    void add_cost(const BlockPlan& plan, int task);
+    bool takes_time(int task) const;
+    CallInfo info(const Instance& block) const;
     void lay_out();
     void set_inputs();
     void set_choices(Instance& block);
@@ -78,8 +92,15 @@ class Linker {
     Signal field_signal(const Instance& block, const Field& field) const;
     void unknown_port(const Node& node, const Instance& block, std::string_view port);
     void connect_run();
+    void connect_outputs();
+    void connect_overruns();
     void connect_stimuli();
-    void connect_stimulus(std::int64_t at, const Node& key, const Node& value);
+    void connect_stimulus(const StimulusPlan& plan, int task, const Node& key, const Node& value);
+    void connect_forces();
+    void connect_force(const ForcePlan& plan);
+    void connect_retained();
+    std::optional<Target> target(const Node& node);
+    std::optional<Value> literal(const Target& target, const Node& value);
     void connect_traces();
     TraceSetup connect_trace(const TracePlan& plan);
     TraceTrigger connect_trigger(const TriggerPlan& plan);
@@ -97,7 +118,8 @@ class Linker {
     std::vector<Instance> blocks_;
     std::unordered_map<std::string, int> by_name_;
     std::unordered_map<std::string, Signal> inputs_;
-    std::vector<std::string> task_names_, block_names_, input_names_;
+    std::unordered_map<std::string, std::string> outputs_;  ///< the signals that they show
+    std::vector<std::string> task_names_, block_names_, input_names_, output_names_;
     std::unordered_map<std::string, Unit> units_;
     std::vector<Wires> wires_;               ///< per block
     std::unordered_set<std::string> wired_;  ///< `block.port` of every wire

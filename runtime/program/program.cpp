@@ -79,7 +79,7 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     if (!root || !check_kind(read_, *root, "lineshaft")) return std::move(program_);
     read_.only_keys(*root, "a program",
                     {"lineshaft", "title", "parameters", "controller", "tasks", "blocks", "inputs",
-                     "run", "stimulus", "trace", "traces", "expect"});
+                     "outputs", "retain", "run", "stimulus", "force", "trace", "traces", "expect"});
     parameters(*root);
     Substitution(values_, read_).apply(*root);
     program_.title = fs::path(file->path).stem().string();
@@ -96,7 +96,11 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     if (const Node* n =
             read_.require(*root, "run", "a program", "say how long to run: run: {for: 2 s}"))
         run(*n);
+    if (const Node* n = root->find("outputs")) outputs(*n);
+    if (const Node* n = root->find("retain")) retain(*n);
     if (const Node* n = root->find("stimulus")) stimuli(*n);
+    if (const Node* n = root->find("force")) forces(*n);
+    for (const std::string& text : options_.forces) force(text);
     if (const Node* n = root->find("trace")) trace({}, *n);
     if (const Node* n = root->find("traces")) traces(*n);
     if (const Node* n = root->find("expect")) expectations(*n);
@@ -164,12 +168,12 @@ void ProgramReader::blocks(const Node& node) {
     if (node.entries.empty()) read_.fail("L0202", node, "'blocks' has no block", block_help);
     for (const auto& [name, body] : node.entries) {
         if (!read_.identifier(name, "a block")) continue;
-        if (name.text == "inputs") {
-            read_.fail("L0210", name, "a block cannot be called 'inputs'",
-                       "inputs.x names the program's own inputs");
+        if (name.text == "inputs" || name.text == "outputs") {
+            read_.fail("L0210", name, fmt::format("a block cannot be called '{}'", name.text),
+                       fmt::format("{0}.x names the program's own {0}", name.text));
             continue;
         }
-        program_.blocks.push_back({.name = name, .type = {}, .task = {}, .ports = {}});
+        program_.blocks.push_back({.name = name, .type = {}, .task = {}, .cost = {}, .ports = {}});
         if (read_.expect_map(body, "a block")) block(program_.blocks.back(), body);
     }
 }
@@ -188,15 +192,12 @@ void ProgramReader::block(BlockPlan& plan, const Node& body) {
     else if (read_.expect_scalar(*task, "a task's name"))
         plan.task = *task;
     check_attached(plan.task);
-    for (const auto& [key, value] : body.entries)
-        if (key.text != "type" && key.text != "task") plan.ports.emplace_back(key, value);
-}
-
-void ProgramReader::inputs(const Node& node) {
-    if (!read_.expect_map(node, "'inputs'")) return;
-    for (const auto& [name, value] : node.entries)
-        if (read_.identifier(name, "an input") && read_.expect_scalar(value, "an input"))
-            program_.inputs.emplace_back(name, value);
+    for (const auto& [key, value] : body.entries) {
+        if (key.text == "cost")
+            plan.cost = value;
+        else if (key.text != "type" && key.text != "task")
+            plan.ports.emplace_back(key, value);
+    }
 }
 
 bool check_kind(const Reader& read, const Node& root, std::string_view kind) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/model/device.hpp"
 #include "runtime/program/diagnostic.hpp"
 #include "runtime/program/reader.hpp"
 #include "runtime/program/yaml_files.hpp"
@@ -35,6 +36,9 @@ struct TaskPlan {
     std::int64_t jitter = 0;    ///< each interval is drawn from every +- jitter
     std::int64_t cost = 0;      ///< execution time: outputs are published this long after the start
     std::int64_t cost_jitter = 0;  ///< each execution time is drawn from cost +- cost_jitter
+    std::optional<std::int64_t> maximum_cycle_time = {};  ///< of one scan, interruptions included
+    bool motion = false;                                  ///< an overrun is STOP
+    std::vector<Node> on_overrun = {};  ///< tasks whose time errors start it, as OB80
 };
 
 /// What could not be read, and is reported, is empty.
@@ -42,6 +46,7 @@ struct BlockPlan {
     Node name;
     Node type;
     Node task;
+    std::optional<Node> cost;                  ///< adds to its task's execution time
     std::vector<std::pair<Node, Node>> ports;  ///< key and value, parameters replaced
 };
 
@@ -54,8 +59,17 @@ struct RunPlan {
 };
 
 struct StimulusPlan {
-    std::int64_t at = 0;  ///< [ns]
-    std::vector<std::pair<Node, Node>> set;
+    std::int64_t at = 0;  ///< [ns]; with `task` the index of its scan
+    std::optional<Node> task = {};
+    std::vector<std::pair<Node, Node>> set = {};
+    std::optional<std::int64_t> cost = {};  ///< [ns] execution time of that scan
+};
+
+/// A value that a signal keeps for [from, until), whatever the program writes. Times in ns.
+struct ForcePlan {
+    std::int64_t from = 0;
+    std::int64_t until = never;
+    Node signal, value;
 };
 
 /// When a trace begins: `signal` and what must hold of it.
@@ -97,7 +111,10 @@ struct Program {
     bool tasks_known = true;  ///< false: not all could be read, a name may be one of the missing
     std::vector<BlockPlan> blocks;
     std::vector<std::pair<Node, Node>> inputs;
+    std::vector<std::pair<Node, Node>> outputs;  ///< name and the signal it shows
+    std::vector<Node> retain;                    ///< signals
     std::vector<StimulusPlan> stimuli;
+    std::vector<ForcePlan> forces;
     std::vector<TracePlan> traces;
     std::vector<ExpectPlan> expectations;
     RunPlan run;
@@ -108,6 +125,7 @@ struct LoadOptions {
     std::vector<Setting> settings;
     std::vector<std::string> include_dirs;  ///< allowed besides the project root
     YamlFiles* files = nullptr;  ///< where files are looked up that were read before; may be null
+    std::vector<std::string> forces = {};  ///< `signal=value@from..until`, as `--force` has them
 };
 
 /// Checks the structure of `file` and replaces parameters. Files that it names (a controller) are

@@ -19,8 +19,8 @@ struct ParameterValue {
 using ParameterValues = std::map<std::string, ParameterValue>;
 
 /// Makes a Program of a file, see read_program(). Its functions stand in program.cpp (the file,
-/// parameters, blocks), program_tasks.cpp, program_run.cpp (what happens,
-/// expectations) and program_trace.cpp.
+/// parameters, blocks), program_tasks.cpp, program_outside.cpp (stimuli, forces, retained signals),
+/// program_run.cpp (how long, expectations) and program_trace.cpp.
 class ProgramReader {
   public:
     ProgramReader(const LoadOptions& options, Diagnostics& out) : options_(options), read_(out) {}
@@ -38,11 +38,18 @@ class ProgramReader {
     void events(TaskPlan& plan, const Node& on, const Node& body);
     void check_task(const TaskPlan& plan, const Node& name, const Node& body);
     void check_attached(const Node& task);
+    void overruns(TaskPlan& plan, const Node& on, const Node& body);
+    void no_interval(const Node& body, std::string_view key);
     void blocks(const Node& node);
     void block(BlockPlan& plan, const Node& body);
     void inputs(const Node& node);
+    void outputs(const Node& node);
+    void retain(const Node& node);
+    void forces(const Node& node);
+    void force(const std::string& text);
     void run(const Node& node);
     void stimuli(const Node& node);
+    void stimulus(const Node& item);
     void traces(const Node& node);
     void trace(const Node& name, const Node& node);
     void traced(const Node& signals, TracePlan& plan);

@@ -40,22 +40,6 @@ void ProgramReader::run(const Node& node) {
                    "known: stop, continue");
 }
 
-void ProgramReader::stimuli(const Node& node) {
-    if (!read_.expect_sequence(node, "'stimulus'")) return;
-    for (const Node& item : node.items) {
-        if (!read_.expect_map(item, "a stimulus")) continue;
-        read_.only_keys(item, "a stimulus", {"at", "set"});
-        StimulusPlan plan;
-        if (const Node* n = read_.require(item, "at", "a stimulus"))
-            plan.at = read_.time(*n).value_or(0);
-        if (const Node* n = read_.require(item, "set", "a stimulus");
-            n && read_.expect_map(*n, "'set'"))
-            plan.set = n->entries;
-        program_.stimuli.push_back(std::move(plan));
-    }
-    std::ranges::stable_sort(program_.stimuli, {}, &StimulusPlan::at);
-}
-
 void ProgramReader::expectations(const Node& node) {
     if (!read_.expect_sequence(node, "'expect'")) return;
     for (const Node& item : node.items)

@@ -152,6 +152,7 @@ Json block_type(const BlockType& type) {
     Json properties;
     properties["type"] = keyword("const", type.name);
     properties["task"] = reference("task_name");
+    properties["cost"] = described("adds to its task's execution time", reference("time"));
     Json::array_t needed{"type", "task"};
     for (const Field& field : type.fields) {
         if (field.direction == Direction::output) continue;
@@ -190,7 +191,8 @@ Json scalars() {
         "a wire from block.port or inputs.name; NOT negates it, previous(...) is the last scan's "
         "value",
         text(fmt::format("(NOT )?({0}|previous\\({0}\\))", signal_pattern)));
-    out["signal"] = described("block.port or inputs.name", text(signal_pattern + "|" + parameter));
+    out["signal"] = described("block.port, inputs.name or outputs.name",
+                              text(signal_pattern + "|" + parameter));
     out["quantity"] = described("a number with its unit, such as 20 mm, 5e4 mm/s^3 or 20 %",
                                 text("[-+]?[.0-9].*"));
     out["interval"] =
@@ -210,11 +212,17 @@ Json task() {
     properties["every"] = time("interval");
     properties["on"] = described("boolean signals: each rising edge starts a scan",
                                  any_of({reference("signal"), list_of(reference("signal"))}));
+    properties["on_overrun"] =
+        described("tasks: each time error of theirs starts a scan, as OB80",
+                  any_of({reference("task_name"), list_of(reference("task_name"))}));
     properties["offset"] = time("start of the first scan");
     properties["priority"] = described("a larger number wins", reference("count"));
     properties["jitter"] = time("each interval is drawn from every +- jitter; a time or in %");
     properties["cost"] = time("execution time: outputs are published this long after the start");
     properties["cost_jitter"] = time("each cost is drawn from cost +- cost_jitter; a time or in %");
+    properties["maximum_cycle_time"] = time("longest scan; 150 ms in the task of lowest priority");
+    properties["motion"] = described("an overrun is STOP, as of MC_Servo",
+                                     any_of({of_type("boolean"), reference("parameter")}));
     return map_of(properties);
 }
 
@@ -237,14 +245,36 @@ Json expectation() {
     return out;
 }
 
-Json stimulus() {
+Json values_of_signals() {
     Json values = of_type("object");
     values["patternProperties"]["^" + signal_pattern + "$"] = reference("scalar");
     values["additionalProperties"] = false;
+    return values;
+}
+
+Json stimulus() {
     Json properties;
     properties["at"] = reference("time");
-    properties["set"] = described("inputs and their new values", values);
-    return map_of(properties, {"at", "set"});
+    properties["scan"] = described("before this scan of the task, from 0", reference("count"));
+    properties["task"] = reference("task_name");
+    properties["set"] = described("inputs and their new values", values_of_signals());
+    properties["cost"] = described("execution time of this scan", reference("time"));
+    Json out = map_of(properties);
+    Json by_scan;
+    by_scan["required"] = Json::array_t{"scan", "task"};
+    Json by_time;
+    by_time["required"] = Json::array_t{"at", "set"};
+    out["oneOf"] = Json::array_t{by_time, by_scan};
+    return out;
+}
+
+Json force() {
+    Json properties;
+    properties["from"] = described("default: the start", reference("time"));
+    properties["until"] =
+        described("then the program's own value again; default: never", reference("time"));
+    properties["set"] = described("signals and their values meanwhile", values_of_signals());
+    return map_of(properties, {"set"});
 }
 
 Json run() {
@@ -301,11 +331,17 @@ Json program_file() {
     properties["blocks"] = described("in the order of their scan", named(reference("block")));
     properties["inputs"] =
         described("values from outside, as they are at the start", named(reference("scalar")));
+    properties["outputs"] =
+        described("names for outside and the signals that they show", named(reference("signal")));
+    properties["retain"] =
+        described("signals that outlive a run, see --retain-file", list_of(reference("signal")));
     properties["run"] = run();
     properties["stimulus"] = described("changes of inputs while running", list_of(stimulus()));
     properties["trace"] = described("what --trace records", reference("trace"));
     properties["traces"] = described(
         "further traces: --trace FILE.csv writes them to FILE.NAME.csv", named(reference("trace")));
+    properties["force"] =
+        described("values that win over what the program writes", list_of(force()));
     properties["expect"] = described("what must hold", list_of(reference("expectation")));
     Json out = map_of(properties, {"lineshaft", "blocks", "run"});
     out["anyOf"] = Json::array_t{required("tasks"), required("controller")};

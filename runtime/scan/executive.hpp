@@ -6,8 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "runtime/scan/machine.hpp"
 #include "runtime/model/random.hpp"
+#include "runtime/scan/event.hpp"
+#include "runtime/scan/forces.hpp"
+#include "runtime/scan/machine.hpp"
+#include "runtime/scan/state.hpp"
 
 namespace lineshaft {
 
@@ -22,12 +25,16 @@ class Observer {
     /// Everything due at `time` has run; nothing changes before `next`, which is later, and at most
     /// one nanosecond past the end of the run.
     virtual void settled(std::int64_t time, std::int64_t next) = 0;
+
+    /// What it must remember for a run that goes on later, see Executive::save().
+    virtual void save(StateWriter&) const {}
+    virtual void restore(StateReader&) {}
 };
 
 enum class Outcome {
     completed,    ///< the time has passed, or `until` has become true
     block_error,  ///< a block set `error`
-    overrun,      ///< a task fell due while it was still running
+    overrun,      ///< a time error that no task may handle, or the second in one cycle
     limit,        ///< `until` did not become true in time
     interrupted,
 };
@@ -36,70 +43,127 @@ struct RunResult {
     Outcome outcome = Outcome::completed;
     std::int64_t time = 0;            ///< virtual time reached [ns]
     std::vector<std::int64_t> scans;  ///< per task
+    std::int64_t time_errors = 0;     ///< those handled by a time-error task, and the last one
     std::string message;              ///< what happened, unless completed
 };
 
 /// Runs a machine in virtual time. A scan takes its inputs at its start and publishes its outputs
 /// when its cost has passed. A task of higher priority that falls due in between runs in between,
 /// on what was published, and puts the end off by its own cost; one of lower or equal priority
-/// waits. At one instant: devices, then stimuli, then outputs that are due, then tasks by priority.
-/// The run covers [0, duration], both included. Nothing is allocated, locked or looked up by name
-/// while cycling.
+/// waits. At one instant: devices, then forces, then stimuli, then outputs that are due, then tasks
+/// by priority. The run covers [0, duration], both included. Nothing is allocated, locked or looked
+/// up by name while cycling, unless an event is told.
 ///
 /// An event task is released by each rising edge of a published boolean: of a device, a stimulus or
 /// another task's output. A value that is true from the start is no edge. Several edges at one
 /// instant are one release. An edge that comes while the task still runs is remembered and runs it
-/// again at its end, as an interrupt controller does; a second one in that time is an overrun, and
-/// so are a thousand runs at one instant.
+/// again at its end, as an interrupt controller does; a second one in that time is a time error.
+///
+/// Time errors, as on an S7-1500: a scan has not ended when its maximum cycle time has passed (and
+/// again each time it passes once more), or its task is due again before it has ended; that release
+/// is lost. The time-error task of the task (OB80) is released. Without one, in a motion task
+/// (MC_Servo), or at the second time error since the main task last began a scan, the machine
+/// stops. A thousand runs of an event task at one instant are STOP in any case.
 class Executive {
   public:
     explicit Executive(Machine& machine);
+
+    /// Before run(): where events go.
+    void report_to(EventSink& events) { events_ = &events; }
+
+    /// Before run(): calls `save` when every instant due at a multiple of `every` [ns] has passed,
+    /// and when the run is interrupted.
+    void checkpoint(std::int64_t every, std::function<void(std::int64_t time)> save);
 
     RunResult run(const std::vector<Observer*>& observers,
                   const std::atomic<bool>* interrupt = nullptr,
                   const std::function<void(std::int64_t time)>& progress = {});
 
+    /// All that the run depends on, the machine's memory too: a machine of the same program, with
+    /// restore() before run(), goes on as if there had been no end. The reader tells whether it
+    /// fits.
+    void save(StateWriter& out) const;
+    void restore(StateReader& in);
+
   private:
     struct State {
         Random jitter;
         Random cost_jitter;
-        std::int64_t due = 0;        ///< next release [ns]
-        std::int64_t released = 0;   ///< last release [ns]
-        std::int64_t remaining = 0;  ///< of the scan under way [ns]
-        std::int64_t index = 0;      ///< of the next scan
-        std::int64_t repeats = 0;    ///< of an event task: starts at the instant of the last one
-        Scan scan;                   ///< the one under way
-        bool pending = false;        ///< released, not yet started
-        bool active = false;         ///< started, not yet published
+        std::int64_t due = 0;           ///< next release [ns]
+        std::int64_t released = 0;      ///< last release [ns]
+        std::int64_t cost = 0;          ///< of the scan under way [ns]
+        std::int64_t remaining = 0;     ///< of it [ns]
+        std::int64_t deadline = never;  ///< when its maximum cycle time passes [ns]
+        std::int64_t index = 0;         ///< of the next scan
+        std::int64_t outside = never;   ///< of the next scan with a stimulus
+        std::int64_t repeats = 0;       ///< of an event task: starts at the instant of the last one
+        std::size_t next_stimulus = 0;  ///< by scan
+        std::size_t next_cost = 0;      ///< likewise
+        std::size_t first_error = 0;    ///< place in error_levels_
+        Scan scan;                      ///< the one under way
+        bool pending = false;           ///< released, not yet started
+        bool active = false;            ///< started, not yet published
     };
 
-    std::int64_t next_event() const;
-    void instant();
-    void advance_devices();
-    void detect_edges();
-    void stimulate();
+    std::int64_t next_event();
     void advance(std::int64_t time);
+    void instant();
     void finish_top();
     void release();
     void start_pending();
     int next_to_start() const;
     void start(int task);
-    bool repeats_without_end(int task);
+    void scan_forced(const Task& task, const Scan& scan);
     void publish(int task);
-    void check_errors(const Task& task, const Scan& scan);
-    void stop(Outcome outcome, std::string message);
+
+    // executive_outside.cpp
+    void advance_devices();
+    void advance_device(const DeviceCall& device);
+    std::int64_t next_event_time(const DeviceCall& device);
+    void publish_device(const DeviceCall& device);
+    void force();
+    void stimulate();
+    void stimulate(int task);
+    void set(const Stimulus& stimulus, int task);
+    void look_ahead(int task);
+    void detect_edges();
+
+    // executive_faults.cpp
+    bool repeats_without_end(int task);
+    void check_deadlines();
+    void due_again(int task);
+    void time_error(int task, std::string what);
+    std::string running_block(int task) const;
+    void check_errors(int task);
+    void tell(EventKind kind, int task, const std::string& text);
+    void stop(Outcome outcome, std::string message, int task = -1);
+
+    State& state(int task) { return states_[static_cast<std::size_t>(task)]; }
+    const State& state(int task) const { return states_[static_cast<std::size_t>(task)]; }
+    const Task& task(int index) const { return machine_.tasks[static_cast<std::size_t>(index)]; }
 
     Machine& machine_;
+    Forces forces_;
     std::vector<State> states_;
     std::vector<std::uint8_t> trigger_levels_;  ///< of each trigger's signal when last looked at
+    std::vector<std::uint8_t> error_levels_;    ///< of each task's error flags, likewise
     std::vector<int> running_;  ///< stack of started scans, the interrupted ones below
     const std::vector<Observer*>* observers_ = nullptr;
+    EventSink* events_ = nullptr;
+    std::function<void(std::int64_t)> save_;
+    std::int64_t save_every_ = 0, next_save_ = never;  ///< [ns]
     std::size_t next_stimulus_ = 0;
     std::size_t next_look_ = 0;
     std::int64_t now_ = 0;
+    int errors_in_cycle_ = 0;  ///< time errors since the main task's last start
     bool stopped_ = false;
     RunResult result_;
 };
+
+/// The end of time when the sum lies beyond it.
+inline std::int64_t later(std::int64_t time, std::int64_t by) {
+    return by > 0 && time > never - by ? never : time + by;
+}
 
 /// `12.345 s`, exact from integer nanoseconds.
 std::string format_time(std::int64_t nanoseconds);

@@ -35,6 +35,22 @@ void Judge::settled(std::int64_t time, std::int64_t next) {
     }
 }
 
+void Judge::save(StateWriter& out) const {
+    for (const Verdict& verdict : verdicts_) {
+        out.put(verdict.ok);
+        out.put(verdict.deviation);
+    }
+    out.put(next_timed_);
+}
+
+void Judge::restore(StateReader& in) {
+    for (Verdict& verdict : verdicts_) {
+        in.get(verdict.ok);
+        in.get(verdict.deviation);
+    }
+    in.get(next_timed_);
+}
+
 void Judge::judge(std::size_t index, std::int64_t time, std::optional<std::int64_t> scan) {
     const Expectation& e = expectations_[index];
     const Value value = e.signal.value();

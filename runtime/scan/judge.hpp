@@ -35,6 +35,8 @@ class Judge : public Observer {
 
     void scanned(int task, const Scan& scan) override;
     void settled(std::int64_t time, std::int64_t next) override;
+    void save(StateWriter& out) const override;
+    void restore(StateReader& in) override;
 
     /// Judges what is due at the end; what was due later has failed.
     void finish(const RunResult& result);

@@ -74,17 +74,44 @@ struct Trigger {
     int task = 0;
 };
 
+/// A value written from outside, before the tasks due then run.
+struct Stimulus {
+    std::int64_t at = 0;  ///< [ns]; of a task's own: the index of the scan that it precedes
+    std::byte* target = nullptr;
+    Type type = Type::real;
+    Value value;
+    std::string text = {};  ///< `inputs.start = true`, for the event list
+};
+
+/// One scan of a task takes another time than the others, so that an overrun can be played in.
+struct CostStimulus {
+    std::int64_t scan = 0;
+    std::int64_t cost = 0;  ///< execution time of that scan [ns]
+};
+
+/// What messages say of a call.
+struct CallInfo {
+    std::string block;      ///< `'slave' (gear_axis)`
+    std::int64_t cost = 0;  ///< the block's own share of its task's cost [ns]
+};
+
 /// A task ready to run: one flat list. Times in ns.
 struct Task {
     std::string name;
-    bool on_event = false;  ///< released by triggers; `every`, `offset` and `jitter` mean nothing
+    bool on_event = false;  ///< not cyclic: released by triggers, or by other tasks' overruns
+    bool motion = false;    ///< an overrun is STOP whatever the program says
     std::int64_t every = 0, offset = 0, priority = 1, jitter = 0, cost = 0, cost_jitter = 0;
+    std::int64_t maximum_cycle_time = never;  ///< from the start of a scan to its end
+    int on_overrun = -1;                      ///< index of the time-error task; -1: STOP
     std::vector<Call> calls;
+    std::vector<CallInfo> infos;  ///< one a call
     Wires wires;
     std::vector<ErrorFlag> errors;
-    std::byte* live = nullptr;       ///< the task's blocks
-    std::byte* published = nullptr;  ///< what others see of them: the same place when cost is 0
-    std::size_t size = 0;            ///< bytes of either
+    std::vector<Stimulus> stimuli;    ///< by scan, sorted
+    std::vector<CostStimulus> costs;  ///< sorted
+    std::byte* live = nullptr;        ///< the task's blocks
+    std::byte* published = nullptr;   ///< what others see of them: the same place when cost is 0
+    std::size_t size = 0;             ///< bytes of either
 };
 
 /// A named value that can be traced, expected, compared: as the world outside its task sees it.
@@ -107,12 +134,24 @@ struct BlockSeed {
     std::string block;           ///< its name in the program
 };
 
-/// A value written from outside at a time, before the tasks due then run.
-struct Stimulus {
-    std::int64_t at = 0;
-    std::byte* target = nullptr;
+/// A signal that keeps a value from outside for [from, until), whatever the program writes.
+struct Force {
+    std::int64_t from = 0, until = never;  ///< [ns]
+    std::byte* live = nullptr;
+    std::byte* published = nullptr;    ///< null where it is the live one
+    const std::byte* block = nullptr;  ///< that it belongs to; null for an input of the program
+    bool is_output = false;            ///< else its block reads it
+    int task = -1;                     ///< of the block
     Type type = Type::real;
     Value value;
+    std::string name, text;  ///< `slave.ratio`, `slave.ratio = 2`
+};
+
+/// A value that outlives the run: see runtime/restart/retain.hpp.
+struct Retained {
+    Signal signal;
+    std::byte* live = nullptr;
+    std::byte* published = nullptr;  ///< may be the live one
 };
 
 /// A checked and wired program in memory. Owns the blocks; movable, not copyable.
@@ -121,11 +160,14 @@ struct Machine {
     std::vector<Task> tasks;  ///< in scan order of equal instants: priority, then place in the file
     std::vector<Signal> signals;
     std::vector<Stimulus> stimuli;  ///< sorted by time
+    std::vector<Force> forces;
+    std::vector<Retained> retained;
     std::vector<DeviceCall> devices;
     std::vector<Trigger> triggers;
     std::vector<BlockSeed> block_seeds;
     std::vector<std::int64_t> looks;  ///< sorted; instants because somebody looks at a device then
     std::optional<Signal> until;
+    int main_task = -1;         ///< the cyclic task of lowest priority: its start begins a cycle
     std::int64_t duration = 0;  ///< [ns]; with `until` the limit
     std::uint64_t seed = 1;
     bool continue_on_error = false;

@@ -21,13 +21,22 @@ struct Loaded {
 std::optional<Loaded> load_program(const std::string& path, const LoadOptions& options,
                                    const Catalog& catalog, Diagnostics& out);
 
+/// How a run begins, as the S7-400 manual has it: cold, all values are the initial ones; warm,
+/// retained ones are kept; hot, everything is as at the last checkpoint and goes on.
+enum class Restart { cold, warm, hot };
+
 struct RunOptions {
-    std::string trace_path;        ///< CSV, see TraceFiles; empty: no trace is recorded
+    std::string
+        trace_path;  ///< CSV, see TraceFiles; empty: no trace is recorded. Events go beside it
     std::string pulses_path = {};  ///< CSV of all pulse channels' edges; empty: none
     CsvStyle csv_style = {};
     const std::atomic<bool>* interrupt = nullptr;
     std::function<void(std::int64_t time)> progress;  ///< called now and then [ns]
     Observer* observer = nullptr;                     ///< sees the run, besides the trace
+    Restart restart = Restart::warm;
+    std::string retain_path = {};       ///< of retained values, read and written; empty: none
+    std::string checkpoint_path = {};   ///< read by a hot restart
+    std::int64_t checkpoint_every = 0;  ///< virtual time between checkpoints [ns]; 0: none
 };
 
 /// What came of one trace.
@@ -45,12 +54,14 @@ struct RunReport {
     std::vector<TraceReport> traces;  ///< that were recorded
     std::string trace_error;          ///< why the trace is not there, if one was wanted
     std::string pulses_error;         ///< likewise of the pulses
+    std::string restart_error;        ///< why retained values or checkpoints were not written
+    Diagnostics refused;              ///< why the run could not begin, if so; nothing has run then
     double wall_seconds = 0;
 
     bool expectations_hold() const;
     bool faulted() const {
         return result.outcome != Outcome::completed || !trace_error.empty() ||
-               !pulses_error.empty();
+               !pulses_error.empty() || !restart_error.empty();
     }
 };
 

@@ -23,8 +23,18 @@ void BackgroundSink::rows(const std::uint64_t* words, std::size_t rows) {
     changed_.notify_all();
 }
 
+void BackgroundSink::drain() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return given_ == taken_; });
+    rethrow();
+}
+
 void BackgroundSink::finish() {
     join();
+    rethrow();
+}
+
+void BackgroundSink::rethrow() {
     if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
 }
 

@@ -22,8 +22,11 @@ class BackgroundSink : public TraceSink {
 
     void rows(const std::uint64_t* words, std::size_t rows) override;
 
-    /// Returns when all rows have been taken; none may follow. Throws what the other sink has
-    /// thrown; it gets no rows after that.
+    /// Returns when all rows have been taken; until the next ones the other sink is at rest. Throws
+    /// what the other sink has thrown; it gets no rows after that.
+    void drain();
+
+    /// Likewise, and none may follow.
     void finish();
 
   private:
@@ -33,6 +36,7 @@ class BackgroundSink : public TraceSink {
     };
 
     void join();
+    void rethrow();
     void work();
     void take(const Block& block);
 

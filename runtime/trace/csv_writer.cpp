@@ -60,6 +60,28 @@ CsvWriter::CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& 
     std::string header = title("time", "s") + separator_ + "scan";
     for (const Signal& signal : signals_) header += separator_ + title(signal.name, signal.unit);
     write(header + "\n");
+    make_room();
+}
+
+CsvWriter::CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& style,
+                     StateReader& begun)
+    : file_(path, begun),
+      path_(std::move(path)),
+      signals_(setup.signals),
+      style_(style),
+      separator_(style.excel_de ? ';' : ',') {
+    begun.get(row_count_);
+    begun.get(checksum_);
+    make_room();
+}
+
+void CsvWriter::save(StateWriter& out) {
+    file_.save(out);
+    out.put(row_count_);
+    out.put(checksum_);
+}
+
+void CsvWriter::make_room() {
     last_.resize(signals_.size());
     longest_row_ = static_cast<std::ptrdiff_t>((2 + signals_.size()) * (longest_number + 1));
     text_.resize(static_cast<std::size_t>(longest_row_) + written_at_once);

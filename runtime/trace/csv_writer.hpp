@@ -33,6 +33,11 @@ struct CsvStyle {
 class CsvWriter : public TraceSink {
   public:
     CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& style = {});
+    /// Goes on where save() was called.
+    CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& style, StateReader& begun);
+
+    void save(StateWriter& out);
+    const std::string& error() const { return file_.error(); }
 
     void rows(const std::uint64_t* words, std::size_t rows) override;
 
@@ -55,6 +60,7 @@ class CsvWriter : public TraceSink {
         std::array<char, longest_number> text = {};
     };
 
+    void make_room();
     std::string title(std::string_view name, std::string_view unit) const;
     void write(std::string_view text);
     char* append_cell(char* end, std::size_t column, std::uint64_t bits);

@@ -1,8 +1,10 @@
 #include "runtime/trace/output_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -28,21 +30,70 @@ bool flush_folder(const std::string& path) {
     return flushed;
 }
 
+/// The last bytes before `size`; empty when there is no such place.
+std::string tail_of(const std::string& path, std::int64_t size) {
+    constexpr std::int64_t most = 4096;
+    const std::int64_t length = std::min(size, most);
+    std::ifstream file(path, std::ios::binary);
+    std::string tail(static_cast<std::size_t>(length), '\0');
+    file.seekg(size - length);
+    file.read(tail.data(), length);
+    return file ? tail : "";
+}
+
 }  // namespace
 
 OutputFile::OutputFile(std::string path, std::int64_t keep)
     : path_(std::move(path)), part_(path_ + ".part") {
-    std::error_code unknown;  // opening tells it
-    const fs::file_status status = fs::status(path_, unknown);
-    if (fs::is_directory(status)) {
-        error_ = fmt::format("cannot write '{}': it is a directory", path_);
-        failed_ = true;
-        return;
-    }
-    regular_ = !fs::exists(status) || fs::is_regular_file(status);
-    const bool kept = keep == 0 || ::truncate(part_.c_str(), keep) == 0;
+    if (look()) open(keep);
+}
+
+OutputFile::OutputFile(std::string path, StateReader& begun)
+    : path_(std::move(path)), part_(path_ + ".part") {
+    std::int64_t size = 0;
+    std::string tail;
+    begun.get(size);
+    begun.get(tail);
+    if (!look()) return;
+    if (regular_ && !take_up(size, tail))
+        set_error(
+            fmt::format("cannot go on with '{}': it is not the file of the checkpoint", path_));
+    else
+        open(size);
+}
+
+void OutputFile::open(std::int64_t keep) {
+    const bool kept = !regular_ || keep == 0 || ::truncate(part_.c_str(), keep) == 0;
     if (kept) file_ = std::fopen(regular_ ? part_.c_str() : path_.c_str(), keep > 0 ? "ab" : "wb");
     if (!file_) fail("open");
+}
+
+bool OutputFile::look() {
+    std::error_code unknown;  // opening tells it
+    const fs::file_status status = fs::status(path_, unknown);
+    if (fs::is_directory(status))
+        set_error(fmt::format("cannot write '{}': it is a directory", path_));
+    regular_ = !fs::exists(status) || fs::is_regular_file(status);
+    return error_.empty();
+}
+
+bool OutputFile::take_up(std::int64_t size, const std::string& tail) {
+    if (tail_of(part_, size) == tail) return true;
+    if (tail_of(path_, size) != tail) return false;
+    std::error_code error;
+    fs::copy_file(path_, part_, fs::copy_options::overwrite_existing, error);
+    return !error;
+}
+
+void OutputFile::save(StateWriter& out) {
+    std::int64_t size = 0;
+    if (error_.empty() && regular_) {
+        if (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0) fail("write");
+        std::fseek(file_, 0, SEEK_END);
+        size = std::ftell(file_);
+    }
+    out.put(size);
+    out.put(tail_of(part_, size));
 }
 
 OutputFile::~OutputFile() {
@@ -71,7 +122,11 @@ bool OutputFile::commit() {
 }
 
 void OutputFile::fail(const char* what) {
-    error_ = fmt::format("cannot {} '{}': {}", what, path_, std::strerror(errno));
+    set_error(fmt::format("cannot {} '{}': {}", what, path_, std::strerror(errno)));
+}
+
+void OutputFile::set_error(std::string text) {
+    error_ = std::move(text);
     failed_ = true;
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/scan/state.hpp"
+
 namespace lineshaft {
 
 /// A file that appears under its name only when it is whole: written as `NAME.part`, then flushed
@@ -15,6 +17,9 @@ class OutputFile {
   public:
     /// Goes on after the first `keep` bytes of what stays in `NAME.part`.
     explicit OutputFile(std::string path, std::int64_t keep = 0);
+    /// Goes on where the file ended at save(); what an earlier run wrote behind it goes. An error
+    /// if neither `NAME.part` nor NAME is that file.
+    OutputFile(std::string path, StateReader& begun);
     ~OutputFile();
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
@@ -24,6 +29,9 @@ class OutputFile {
     void flush();
     /// False when any step failed: see error().
     bool commit();
+
+    /// Flushes to the disk, and notes where the file ends and with what.
+    void save(StateWriter& out);
 
     /// False for a device or a pipe.
     bool is_regular() const { return regular_; }
@@ -35,7 +43,11 @@ class OutputFile {
     bool failed() const { return failed_; }
 
   private:
+    bool look();
+    bool take_up(std::int64_t size, const std::string& tail);
+    void open(std::int64_t keep);
     void fail(const char* what);
+    void set_error(std::string text);
 
     std::string path_;
     std::string part_;

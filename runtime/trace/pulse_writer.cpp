@@ -18,6 +18,15 @@ constexpr std::size_t longest_time = 20;
 
 PulseWriter::PulseWriter(std::string path, Machine& machine) : file_(path), path_(std::move(path)) {
     file_.write("channel,time_ns,direction\n");
+    listen_to(machine);
+}
+
+PulseWriter::PulseWriter(std::string path, Machine& machine, StateReader& begun)
+    : file_(path, begun), path_(std::move(path)) {
+    listen_to(machine);
+}
+
+void PulseWriter::listen_to(Machine& machine) {
     for (DeviceCall& device : machine.devices) {
         channels_.push_back(std::make_unique<Channel>(*this, device.name));
         device.sink = channels_.back().get();

@@ -18,15 +18,17 @@ class PulseWriter {
   public:
     /// Becomes the sink of every device of `machine`; must outlive the run.
     PulseWriter(std::string path, Machine& machine);
+    /// Goes on where save() was called.
+    PulseWriter(std::string path, Machine& machine, StateReader& begun);
     PulseWriter(const PulseWriter&) = delete;
     PulseWriter& operator=(const PulseWriter&) = delete;
+
+    void save(StateWriter& out) { file_.save(out); }
+    const std::string& error() const { return file_.error(); }
 
     /// Closes the file. If the run did not complete, `PATH-metadata.json` beside it says why
     /// (`lineshaft:stopped`). Empty when all is well, else what went wrong.
     std::string finish(const std::string& stopped);
-
-    /// Whether writing goes wrong: the rest of the run would not be recorded.
-    bool failed() const { return file_.failed(); }
 
   private:
     struct Channel : PulseSink {
@@ -37,6 +39,8 @@ class PulseWriter {
         PulseWriter& writer;
         std::string name;
     };
+
+    void listen_to(Machine& machine);
 
     OutputFile file_;
     std::string path_;

@@ -25,8 +25,22 @@ Recorder::Recorder(TraceSetup setup, TraceSink& sink)
       watch_(setup_.trigger),
       row_words_(setup_.row_words()),
       words_(row_words_ * rows_per_block),
-      ring_(row_words_ * static_cast<std::size_t>(setup_.pre_trigger)) {
-    if (setup_.trigger.kind == TraceTrigger::Kind::immediate) begin(0);
+      ring_(row_words_ * static_cast<std::size_t>(setup_.pre_trigger)) {}
+
+void Recorder::save(StateWriter& out) const {
+    watch_.save(out);
+    out.put(ring_);
+    out.put(ring_next_);
+    for (const std::int64_t n : {ring_rows_, origin_, rows_, recorded_, measurements_}) out.put(n);
+    out.put(recording_);
+}
+
+void Recorder::restore(StateReader& in) {
+    watch_.restore(in);
+    in.get(ring_);
+    in.get(ring_next_);
+    for (std::int64_t* n : {&ring_rows_, &origin_, &rows_, &recorded_, &measurements_}) in.get(*n);
+    in.get(recording_);
 }
 
 void Recorder::begin(std::int64_t time) {
@@ -50,7 +64,10 @@ void Recorder::finish() {
 
 void Recorder::scanned(int task, const Scan& scan) {
     if (task != setup_.task) return;
-    if (setup_.trigger.kind != TraceTrigger::Kind::immediate) look(scan);
+    if (setup_.trigger.kind != TraceTrigger::Kind::immediate)
+        look(scan);
+    else if (measurements_ == 0)
+        begin(0);
     if (recording_ && is_over(scan.time)) end();
     if (scan.index % setup_.every != 0) return;
     if (recording_)

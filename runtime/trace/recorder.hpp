@@ -55,6 +55,11 @@ class Recorder : public Observer {
 
     void scanned(int task, const Scan& scan) override;
     void settled(std::int64_t, std::int64_t) override {}
+    void save(StateWriter& out) const override;
+    void restore(StateReader& in) override;
+
+    /// Hands the rows over that wait in the block under way.
+    void flush();
 
     /// Ends the measurement under way. To be called after the run.
     void finish();
@@ -74,7 +79,6 @@ class Recorder : public Observer {
     void keep(const Scan& scan);
     void give_ring();
     void give_ring(std::size_t row, std::size_t end);
-    void flush();
     bool is_over(std::int64_t time) const;
 
     TraceSetup setup_;

@@ -22,10 +22,14 @@ std::string TraceFiles::next_path() const {
     return fmt::format("{}.{}{}", stem_, paths_.size() + 1, extension_);
 }
 
+void TraceFiles::open(auto&... state) {
+    csv_.emplace(paths_.back(), setup_, style_, state...);
+    background_.emplace(*csv_, setup_.row_words());
+}
+
 void TraceFiles::begin() {
     paths_.push_back(next_path());
-    csv_.emplace(paths_.back(), setup_, style_);
-    background_.emplace(*csv_, setup_.row_words());
+    open();
 }
 
 void TraceFiles::rows(const std::uint64_t* words, std::size_t rows) {
@@ -38,6 +42,25 @@ void TraceFiles::end() {
     if (error_.empty()) error_ = wrong;
     background_.reset();
     csv_.reset();
+}
+
+void TraceFiles::save(StateWriter& out) {
+    out.put(std::uint64_t{paths_.size()});
+    out.put(csv_.has_value());
+    if (!csv_) return;
+    background_->drain();
+    csv_->save(out);
+}
+
+void TraceFiles::restore(StateReader& in) {
+    std::uint64_t files = 0;
+    bool is_open = false;
+    in.get(files);
+    in.get(is_open);
+    while (in.ok() && paths_.size() < files) paths_.push_back(next_path());
+    if (!in.ok() || !is_open) return;
+    open(in);
+    error_ = csv_->error();
 }
 
 }  // namespace lineshaft

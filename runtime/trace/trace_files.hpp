@@ -29,6 +29,11 @@ class TraceFiles : public TraceSink {
     void rows(const std::uint64_t* words, std::size_t rows) override;
     void end() override;
 
+    /// What has been handed over goes to the disk; restore() goes on there, in an object that has
+    /// not begun. An error if the files are not those that were saved.
+    void save(StateWriter& out);
+    void restore(StateReader& in);
+
     /// What has been written.
     const std::vector<std::string>& paths() const { return paths_; }
     /// Of the first file that went wrong; empty when all is well.
@@ -38,6 +43,7 @@ class TraceFiles : public TraceSink {
 
   private:
     std::string next_path() const;
+    void open(auto&... state);
 
     std::string stem_, extension_;
     const TraceSetup& setup_;

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "runtime/scan/machine.hpp"
+#include "runtime/scan/state.hpp"
 
 namespace lineshaft {
 
@@ -36,6 +37,9 @@ class TriggerWatch {
 
     /// True in the scan in which the trigger comes.
     bool fires();
+
+    void save(StateWriter& out) const { out.put(held_); }
+    void restore(StateReader& in) { in.get(held_); }
 
   private:
     const TraceTrigger& trigger_;

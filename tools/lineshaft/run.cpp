@@ -1,8 +1,13 @@
+#include <filesystem>
+#include <map>
+
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/program/reader.hpp"
 #include "runtime/study/single_run.hpp"
+#include "runtime/trace/event_writer.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {
@@ -11,8 +16,11 @@ namespace {
 
 struct RunCommand {
     CommonOptions common;
-    std::string program, trace, pulses;
+    std::string program, trace, pulses, retain, checkpoint, checkpoint_every;
+    std::vector<std::string> forces;
     CsvStyle style;
+    Restart restart = Restart::warm;
+    bool resume = false;
 };
 
 nlohmann::ordered_json json_value(const Signal& signal) {
@@ -39,6 +47,7 @@ void print_json(const Loaded& loaded, const RunReport& report) {
                                   {"machine_time_s", seconds(report.result.time)},
                                   {"wall_time_s", report.wall_seconds},
                                   {"scans", scans},
+                                  {"time_errors", report.result.time_errors},
                                   {"signals", signals},
                                   {"expect", expect}};
     for (const TraceReport& trace : report.traces)
@@ -47,9 +56,10 @@ void print_json(const Loaded& loaded, const RunReport& report) {
                                     {"measurements", trace.measurements},
                                     {"rows", trace.rows}});
     if (report.faulted())
-        object["fault"] = !report.trace_error.empty()    ? report.trace_error
-                          : !report.pulses_error.empty() ? report.pulses_error
-                                                         : report.result.message;
+        object["fault"] = !report.trace_error.empty()     ? report.trace_error
+                          : !report.pulses_error.empty()  ? report.pulses_error
+                          : !report.restart_error.empty() ? report.restart_error
+                                                          : report.result.message;
     fmt::print("{}\n", object.dump(2));
 }
 
@@ -66,15 +76,20 @@ void print_text(const RunCommand& command, const Loaded& loaded, const RunReport
         "{}: machine time {:.3f} s, wall time {:.3f} s, {:.0f} times faster than the clock\n",
         loaded.program.title, machine_seconds, report.wall_seconds,
         machine_seconds / report.wall_seconds);
+    if (report.result.time_errors > 0) fmt::print("time errors: {}\n", report.result.time_errors);
     if (report.trace_error.empty())
         for (const TraceReport& trace : report.traces)
             for (const std::string& path : trace.paths) fmt::print("trace: {}\n", path);
+    if (!report.traces.empty() && report.trace_error.empty())
+        fmt::print("events: {}\n", events_path(command.trace));
     if (!command.pulses.empty() && report.pulses_error.empty())
         fmt::print("pulses: {}\n", command.pulses);
 }
 
 Exit exit_code(const RunReport& report) {
-    if (!report.trace_error.empty() || !report.pulses_error.empty()) return Exit::fault;
+    const bool files_failed = !report.trace_error.empty() || !report.pulses_error.empty() ||
+                              !report.restart_error.empty();
+    if (files_failed) return Exit::fault;
     if (report.result.outcome == Outcome::interrupted) return Exit::interrupted;
     if (report.faulted()) return Exit::fault;
     return report.expectations_hold() ? Exit::fine : Exit::failed;
@@ -94,11 +109,35 @@ void add_style(CLI::App& sub, CsvStyle& style) {
         ->transform(CLI::CheckedTransformer(dialects).description("rfc4180|excel-de"));
 }
 
+/// What the command line says of restarts; what is wrong with it goes to `out`.
+RunOptions run_options(const RunCommand& command, Diagnostics& out) {
+    namespace fs = std::filesystem;
+    RunOptions options{.trace_path = command.trace,
+                       .pulses_path = command.pulses,
+                       .csv_style = command.style,
+                       .interrupt = &interrupt_requested,
+                       .progress = {},
+                       .restart = command.resume ? Restart::hot : command.restart,
+                       .retain_path = command.retain,
+                       .checkpoint_path = command.checkpoint};
+    if (options.checkpoint_path.empty())
+        options.checkpoint_path = fs::path(command.program).stem().string() + ".checkpoint";
+    if (command.checkpoint_every.empty()) return options;
+    Node every;
+    every.text = command.checkpoint_every;
+    options.checkpoint_every = Reader(out).time(every).value_or(1);
+    if (options.checkpoint_every == 0)
+        out.add("L0308", {}, "--checkpoint-every must be above 0 s", "such as 10s");
+    return options;
+}
+
 Exit execute(const RunCommand& command) {
     Diagnostics out;
     YamlFiles files;
     LoadOptions options = command.common.load_options(out);
     options.files = &files;
+    options.forces = command.forces;
+    RunOptions how = run_options(command, out);
     auto loaded = load_program(command.program, options, standard_blocks(), out);
     if (loaded && !command.trace.empty() && loaded->linked.traces.empty())
         out.add("L0503", {loaded->program.file, 0, 0, 1},
@@ -108,24 +147,25 @@ Exit execute(const RunCommand& command) {
         out.add("L0504", {loaded->program.file, 0, 0, 1},
                 "the program has no pulse channel to write to " + command.pulses,
                 "'lineshaft blocks pto' describes one");
+    if (loaded && !command.retain.empty() && loaded->linked.machine.retained.empty())
+        out.add("L0508", {loaded->program.file, 0, 0, 1},
+                "the program has nothing to keep in " + command.retain,
+                "say under 'retain:' which signals outlive a run");
     std::vector<std::string> inputs;
     for (const auto& file : files.sources()) inputs.push_back(file->path);
-    check_outputs({command.trace, command.pulses}, inputs, out);
+    check_outputs({command.trace, command.pulses, command.retain, command.checkpoint}, inputs, out);
     if (!out.empty()) return report(out, command.common.json);
 
     ProgressLine line(command.common.quiet || command.common.json);
     const double whole = seconds(loaded->linked.machine.duration);
-    const auto progress = [&](std::int64_t time) {
+    how.progress = [&](std::int64_t time) {
         line.show([&](double elapsed) {
             return fmt::format("{:.1f} s of at most {:.1f} s, {:.0f} times faster than the clock",
                                seconds(time), whole, seconds(time) / elapsed);
         });
     };
-    const RunReport result = run(*loaded, {.trace_path = command.trace,
-                                           .pulses_path = command.pulses,
-                                           .csv_style = command.style,
-                                           .interrupt = &interrupt_requested,
-                                           .progress = progress});
+    const RunReport result = run(*loaded, how);
+    if (!result.refused.empty()) return report(result.refused, command.common.json);
     if (command.common.json)
         print_json(*loaded, result);
     else
@@ -137,6 +177,7 @@ Exit execute(const RunCommand& command) {
     if (!result.result.message.empty()) spdlog::error("{}", result.result.message);
     if (!result.trace_error.empty()) spdlog::error("{}", result.trace_error);
     if (!result.pulses_error.empty()) spdlog::error("{}", result.pulses_error);
+    if (!result.restart_error.empty()) spdlog::error("{}", result.restart_error);
     return exit_code(result);
 }
 
@@ -154,6 +195,29 @@ void add_run(CLI::App& app, Exit& result) {
     sub->add_option("--pulses", command->pulses,
                     "Write the rising edges of all pulse channels to this CSV file")
         ->type_name("FILE");
+    sub->add_option("--force", command->forces,
+                    "Keep a signal at a value, whatever the program writes: slave.ratio=2@1s..2s")
+        ->type_name("SIGNAL=VALUE@FROM..UNTIL")
+        ->take_all()
+        ->expected(1, -1)
+        ->trigger_on_parse(false);
+    sub->add_option("--retain-file", command->retain,
+                    "Begin with the retained values of this file, and keep them there at the end")
+        ->type_name("FILE");
+    const std::map<std::string, Restart> restarts{
+        {"cold", Restart::cold}, {"warm", Restart::warm}, {"hot", Restart::hot}};
+    sub->add_option("--restart", command->restart,
+                    "cold: all initial values; warm: retained ones kept; hot: go on from the "
+                    "checkpoint")
+        ->transform(CLI::CheckedTransformer(restarts))
+        ->type_name("cold|warm|hot");
+    sub->add_flag("--resume", command->resume, "Short for --restart hot");
+    sub->add_option("--checkpoint", command->checkpoint,
+                    "The checkpoint's file; default: the program's name with .checkpoint, here")
+        ->type_name("FILE");
+    sub->add_option("--checkpoint-every", command->checkpoint_every,
+                    "Write a checkpoint each time so much virtual time has passed, such as 10s")
+        ->type_name("TIME");
     command->common.add_to(*sub);
     sub->callback([command, &result] { result = execute(*command); });
 }

@@ -136,8 +136,8 @@ TEST_CASE("a second edge before a waiting scan could begin is an overrun") {
     CHECK(result.outcome == Outcome::overrun);
     CHECK(result.time == 18 * ms / 10);
     CHECK(result.message ==
-          "event task 'e' overran: its event comes again at 0.0018 s, before the scan for that of "
-          "0.0014 s could begin");
+          "task 'e' overran: its event comes again at 0.0018 s, before scan 1, due at 0.0014 s, "
+          "could begin; STOP: no task has it under 'on_overrun'");
 }
 
 TEST_CASE("event tasks that start each other for ever stop the run") {

@@ -63,13 +63,14 @@ TEST_CASE("whole numbers come back exactly", "[packing]") {
     CHECK(greatest_error(samples) == 0);
 }
 
-TEST_CASE("reals come back to 2^-41 of the power of two above the largest", "[packing]") {
+TEST_CASE("reals come back to 2^-41 of the power of two above the largest, noise to 2^-25",
+          "[packing]") {
     std::vector<double> samples(5000);
     for (std::size_t i = 0; i < samples.size(); ++i)
         samples[i] = 20 * std::sin(1e-3 * static_cast<double>(i));
     CHECK(greatest_error(samples) <= 32 * 0x1p-41);
-    CHECK(greatest_error({0.1, 1e-300, -0.3}) <= 0.5 * 0x1p-41);
-    CHECK(greatest_error({1.5e300, -1e300, 3}) <= 1e300 * 0x1p-35);
+    CHECK(greatest_error({0.1, 1e-300, -0.3}) <= 0.5 * 0x1p-25);
+    CHECK(greatest_error({1.5e300, -1e300, 3}) <= 0x1p998 * 0x1p-25);
     CHECK(greatest_error({5e-324, 1e-310}) <= 1e-300);
 }
 

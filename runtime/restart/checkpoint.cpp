@@ -1,0 +1,86 @@
+#include "runtime/restart/checkpoint.hpp"
+
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "runtime/trace/csv_writer.hpp"
+#include "runtime/version.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_of(const Json& head, const char* key) {
+    return head.contains(key) && head[key].is_string() ? head[key].get<std::string>() : "";
+}
+
+/// What is wrong with a checkpoint; empty when nothing is.
+std::string refusal(const Json& head, const std::string& state, const std::string& program) {
+    if (!head.is_object() || !head.contains("lineshaft_checkpoint") ||
+        head["lineshaft_checkpoint"] != 1)
+        return "this is no checkpoint";
+    if (text_of(head, "version") != version())
+        return fmt::format("the checkpoint is of lineshaft {}, this is {}",
+                           text_of(head, "version"), version());
+    if (text_of(head, "program") != program)
+        return "the checkpoint is of another program, or of other parameters";
+    if (text_of(head, "state") != text_hash(state)) return "the checkpoint is not whole";
+    return {};
+}
+
+}  // namespace
+
+std::string fingerprint(const Program& program, const Machine& machine) {
+    std::string text = program.file->text;
+    for (const auto& [name, value] : program.parameters) text += fmt::format("{}={};", name, value);
+    text += fmt::format("{} {} {} {};", machine.memory.size(), machine.seed, machine.duration,
+                        machine.main_task);
+    for (const Task& task : machine.tasks)
+        text += fmt::format("{} {} {} {} {} {} {} {} {} {};", task.name, task.every, task.offset,
+                            task.priority, task.jitter, task.cost, task.cost_jitter, task.size,
+                            task.maximum_cycle_time, task.on_overrun);
+    for (const Signal& signal : machine.signals)
+        text += fmt::format("{} {} {} {};", signal.name, name_of(signal.type), signal.unit,
+                            signal.slot - machine.memory.data());
+    for (const Force& force : machine.forces)
+        text += fmt::format("{} {} {};", force.text, force.from, force.until);
+    return text_hash(text);
+}
+
+std::string write_checkpoint(const std::string& path, const std::string& program, std::int64_t time,
+                             const std::string& state) {
+    const Json head{{"lineshaft_checkpoint", 1},
+                    {"version", version()},
+                    {"program", program},
+                    {"time_ns", time},
+                    {"state", text_hash(state)}};
+    OutputFile file(path);
+    file.write(head.dump() + "\n");
+    file.write(state);
+    file.commit();
+    return file.error();
+}
+
+std::optional<std::string> read_checkpoint(const std::string& path, const std::string& program,
+                                           Diagnostics& out) {
+    std::ifstream file(path, std::ios::binary);
+    std::string line;
+    if (!file || !std::getline(file, line)) {
+        out.add("L0001", {}, fmt::format("cannot read the checkpoint '{}'", path),
+                "--checkpoint-every writes one, --checkpoint names it");
+        return {};
+    }
+    std::string state{std::istreambuf_iterator<char>(file), {}};
+    const std::string wrong = refusal(Json::parse(line, nullptr, false), state, program);
+    if (wrong.empty()) return state;
+    out.add("L0506", {std::make_shared<SourceFile>(SourceFile{path, {}}), 0, 0, 1}, wrong,
+            "run the program from its start: without --resume");
+    return {};
+}
+
+}  // namespace lineshaft

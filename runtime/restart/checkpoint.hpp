@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "runtime/program/program.hpp"
+#include "runtime/scan/machine.hpp"
+
+namespace lineshaft {
+
+/// Tells whether two machines are of one program: its text, its parameters in force, tasks, memory
+/// layout, stimuli and forces, and this version of lineshaft. 16 hexadecimal digits.
+std::string fingerprint(const Program& program, const Machine& machine);
+
+/// Writes a state: one line of JSON (version, program, virtual time, size and hash of the state),
+/// then its bytes; whole or not at all. Empty when all is well, else what went wrong.
+std::string write_checkpoint(const std::string& path, const std::string& program, std::int64_t time,
+                             const std::string& state);
+
+/// The state of a checkpoint of `program` (its fingerprint). L0001 when it cannot be read, L0506
+/// when it is no checkpoint, is not whole, or belongs to another program or version.
+std::optional<std::string> read_checkpoint(const std::string& path, const std::string& program,
+                                           Diagnostics& out);
+
+}  // namespace lineshaft

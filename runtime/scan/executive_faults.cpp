@@ -1,0 +1,135 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "runtime/scan/executive.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+constexpr std::int64_t most_starts_at_once = 1000;
+
+}  // namespace
+
+bool Executive::repeats_without_end(int index) {
+    const Task& task = this->task(index);
+    State& state = this->state(index);
+    if (!task.on_event) return false;
+    state.repeats = state.scan.time == now_ ? state.repeats + 1 : 0;
+    if (state.repeats < most_starts_at_once) return false;
+    stop(Outcome::overrun,
+         fmt::format("event task '{}' overran: {} scans at {}, and no end", task.name,
+                     state.repeats, format_time(now_)),
+         index);
+    return true;
+}
+
+void Executive::check_deadlines() {
+    for (std::size_t i = 0; i < running_.size() && !stopped_; ++i) {
+        const int index = running_[i];
+        State& state = this->state(index);
+        if (state.deadline > now_) continue;
+        const std::int64_t limit = task(index).maximum_cycle_time;
+        state.deadline = later(state.deadline, limit);
+        time_error(index, fmt::format("scan {}, begun at {}, has not ended at {}; its maximum "
+                                      "cycle time is {}",
+                                      state.scan.index, format_time(state.scan.time),
+                                      format_time(now_), format_time(limit)));
+    }
+}
+
+void Executive::due_again(int index) {
+    const State& state = this->state(index);
+    const char* again = task(index).on_event ? "its event comes again" : "due again";
+    time_error(index, state.pending
+                          ? fmt::format("{} at {}, before scan {}, due at {}, could begin", again,
+                                        format_time(now_), state.index, format_time(state.released))
+                          : fmt::format("{} at {}, before scan {}, begun at {}, has ended", again,
+                                        format_time(now_), state.scan.index,
+                                        format_time(state.scan.time)));
+}
+
+void Executive::time_error(int index, std::string what) {
+    const Task& task = this->task(index);
+    std::string message =
+        fmt::format("task '{}' overran: {}{}", task.name, what, running_block(index));
+    tell(EventKind::overrun, index, message);
+    ++result_.time_errors;
+    ++errors_in_cycle_;
+    const auto because = [&](const char* why) {
+        stop(Outcome::overrun, message + "; STOP: " + why, index);
+    };
+    if (task.motion) return because("a motion task must not overrun");
+    if (task.on_overrun < 0) return because("no task has it under 'on_overrun'");
+    if (errors_in_cycle_ > 1) return because("the second time error in one cycle");
+    State& handler = state(task.on_overrun);
+    handler.pending = true;
+    handler.released = now_;
+}
+
+/// `; block 'slave' (gear_axis) was running`: a scan's time is spread over its blocks in the
+/// proportions of their costs, the task's own cost evenly.
+std::string Executive::running_block(int index) const {
+    if (!state(index).active) {
+        if (running_.empty()) return {};
+        const int other = running_.back();
+        return fmt::format("; task '{}' was running{}", task(other).name, running_block(other));
+    }
+    const Task& task = this->task(index);
+    const State& state = this->state(index);
+    const auto blocks = static_cast<std::int64_t>(task.infos.size());
+    if (blocks == 0) return {};
+    std::int64_t own = task.cost;
+    for (const CallInfo& info : task.infos) own -= info.cost;
+    const double even = task.cost > 0 ? static_cast<double>(own) / static_cast<double>(blocks) : 1;
+    const double whole =
+        task.cost > 0 ? static_cast<double>(task.cost) : static_cast<double>(blocks);
+    const double reached = static_cast<double>(state.cost - state.remaining) * whole;
+    double end = 0;
+    for (const CallInfo& info : task.infos) {
+        end += even + static_cast<double>(info.cost);
+        if (reached < end * static_cast<double>(state.cost))
+            return fmt::format("; block {} was running", info.block);
+    }
+    return fmt::format("; block {} was running", task.infos.back().block);
+}
+
+void Executive::check_errors(int index) {
+    std::uint8_t* level = error_levels_.data() + state(index).first_error;
+    for (const ErrorFlag& flag : task(index).errors) {
+        const bool before = *level != 0;
+        *level++ = *flag.error;
+        if (!*flag.error || before) continue;
+        std::string text;
+        if (flag.error_id) {
+            const auto id = static_cast<std::size_t>(*flag.error_id);
+            text = fmt::format(" {}", *flag.error_id);
+            if (id < flag.names.size()) text += fmt::format(" ({})", flag.names[id]);
+        }
+        const Scan& scan = state(index).scan;
+        text = fmt::format("block {} reports error{} in scan {} of task '{}' at {}", flag.block,
+                           text, scan.index, task(index).name, format_time(scan.time));
+        tell(EventKind::block_error, index, text);
+        if (!machine_.continue_on_error) return stop(Outcome::block_error, text, index);
+    }
+}
+
+void Executive::tell(EventKind kind, int index, const std::string& text) {
+    if (!events_) return;
+    events_->happened({.time = now_,
+                       .scan = index < 0 ? -1 : state(index).scan.index,
+                       .task = index,
+                       .kind = kind,
+                       .text = text});
+}
+
+void Executive::stop(Outcome outcome, std::string message, int index) {
+    tell(EventKind::stop, index, message);
+    stopped_ = true;
+    result_.outcome = outcome;
+    result_.message = std::move(message);
+    result_.time = now_;
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,94 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "runtime/scan/executive.hpp"
+
+namespace lineshaft {
+
+void Executive::advance_devices() {
+    for (const DeviceCall& device : machine_.devices) advance_device(device);
+    while (next_look_ < machine_.looks.size() && machine_.looks[next_look_] <= now_) ++next_look_;
+}
+
+/// A device runs on its own outputs, forced or not.
+void Executive::advance_device(const DeviceCall& device) {
+    if (forces_.active()) forces_.release_outputs(device.block);
+    device.calls.advance(device.block, now_, device.sink);
+    if (forces_.active()) forces_.impose_outputs(device.block);
+}
+
+void Executive::publish_device(const DeviceCall& device) {
+    if (forces_.active()) forces_.release_outputs(device.block);
+    device.calls.publish(device.block, now_);
+    device.calls.advance(device.block, now_, device.sink);
+    if (forces_.active()) forces_.impose_outputs(device.block);
+}
+
+std::int64_t Executive::next_event_time(const DeviceCall& device) {
+    if (!forces_.active()) return device.calls.next_event_time(device.block);
+    forces_.release_outputs(device.block);
+    const std::int64_t next = device.calls.next_event_time(device.block);
+    forces_.impose_outputs(device.block);
+    return next;
+}
+
+void Executive::force() {
+    if (forces_.next_time() <= now_) forces_.update(now_, events_);
+}
+
+void Executive::stimulate() {
+    const auto& stimuli = machine_.stimuli;
+    while (next_stimulus_ < stimuli.size() && stimuli[next_stimulus_].at <= now_)
+        set(stimuli[next_stimulus_++], -1);
+}
+
+void Executive::stimulate(int index) {
+    const Task& task = this->task(index);
+    State& state = this->state(index);
+    for (; state.next_stimulus < task.stimuli.size() &&
+           task.stimuli[state.next_stimulus].at == state.scan.index;
+         ++state.next_stimulus)
+        set(task.stimuli[state.next_stimulus], index);
+    if (state.next_cost < task.costs.size() &&
+        task.costs[state.next_cost].scan == state.scan.index) {
+        state.cost = task.costs[state.next_cost++].cost;
+        if (events_)
+            tell(EventKind::stimulus, index,
+                 fmt::format("this scan takes {}", format_time(state.cost)));
+    }
+    look_ahead(index);
+}
+
+void Executive::set(const Stimulus& stimulus, int index) {
+    store(stimulus.type, forces_.own(stimulus.target), stimulus.value);
+    if (events_) tell(EventKind::stimulus, index, stimulus.text);
+}
+
+void Executive::look_ahead(int index) {
+    const Task& task = this->task(index);
+    State& state = this->state(index);
+    state.outside = never;
+    if (state.next_stimulus < task.stimuli.size())
+        state.outside = task.stimuli[state.next_stimulus].at;
+    if (state.next_cost < task.costs.size())
+        state.outside = std::min(state.outside, task.costs[state.next_cost].scan);
+}
+
+void Executive::detect_edges() {
+    for (std::size_t i = 0; i < trigger_levels_.size() && !stopped_; ++i) {
+        const Trigger& trigger = machine_.triggers[i];
+        const bool risen = *trigger.signal && !trigger_levels_[i];
+        trigger_levels_[i] = *trigger.signal;
+        if (!risen) continue;
+        State& state = this->state(trigger.task);
+        if (state.pending && state.released < now_) {
+            due_again(trigger.task);
+            continue;
+        }
+        state.pending = true;
+        state.released = now_;
+    }
+}
+
+}  // namespace lineshaft

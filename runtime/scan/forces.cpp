@@ -1,0 +1,82 @@
+#include "runtime/scan/forces.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace lineshaft {
+
+Forces::Forces(std::span<const Force> forces) : forces_(forces), own_(forces.size()) {
+    look_ahead(-1);
+}
+
+void Forces::update(std::int64_t now, EventSink* events) {
+    const auto tell = [&](const Force& force, const char* what) {
+        if (events)
+            events->happened({.time = now, .kind = EventKind::force, .text = force.text + what});
+    };
+    for (std::size_t i = 0; i < forces_.size(); ++i) {
+        if (!own_[i].active || forces_[i].until > now) continue;
+        end(i);
+        tell(forces_[i], " ends");
+    }
+    for (std::size_t i = 0; i < forces_.size(); ++i) {
+        if (own_[i].active || forces_[i].from > now || forces_[i].until <= now) continue;
+        begin(i);
+        tell(forces_[i], "");
+    }
+    look_ahead(now);
+}
+
+void Forces::look_ahead(std::int64_t now) {
+    next_ = never;
+    active_ = std::ranges::any_of(own_, &Own::active);
+    for (const Force& force : forces_)
+        for (const std::int64_t time : {force.from, force.until})
+            if (time > now) next_ = std::min(next_, time);
+}
+
+void Forces::begin(std::size_t index) {
+    const Force& force = forces_[index];
+    Own& own = own_[index];
+    own.active = true;
+    std::memcpy(own.live, force.live, size_of(force.type));
+    store(force.type, force.live, force.value);
+    if (!force.published) return;
+    std::memcpy(own.published, force.published, size_of(force.type));
+    store(force.type, force.published, force.value);
+}
+
+void Forces::end(std::size_t index) {
+    const Force& force = forces_[index];
+    Own& own = own_[index];
+    own.active = false;
+    std::memcpy(force.live, own.live, size_of(force.type));
+    if (force.published) std::memcpy(force.published, own.published, size_of(force.type));
+}
+
+void Forces::exchange(const std::byte* block, bool outputs, Way way) {
+    for (std::size_t i = 0; i < forces_.size(); ++i) {
+        const Force& force = forces_[i];
+        if (!own_[i].active || force.block != block || force.is_output != outputs) continue;
+        if (way == Way::release) {
+            std::memcpy(force.live, own_[i].live, size_of(force.type));
+        } else {
+            std::memcpy(own_[i].live, force.live, size_of(force.type));
+            store(force.type, force.live, force.value);
+        }
+    }
+}
+
+void Forces::published(int task) {
+    for (std::size_t i = 0; i < forces_.size(); ++i)
+        if (own_[i].active && forces_[i].task == task)
+            std::memcpy(own_[i].published, own_[i].live, sizeof own_[i].live);
+}
+
+std::byte* Forces::own(std::byte* target) {
+    for (std::size_t i = 0; i < forces_.size(); ++i)
+        if (own_[i].active && forces_[i].live == target) return own_[i].live;
+    return target;
+}
+
+}  // namespace lineshaft

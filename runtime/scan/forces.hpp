@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "runtime/scan/event.hpp"
+#include "runtime/scan/machine.hpp"
+#include "runtime/scan/state.hpp"
+
+namespace lineshaft {
+
+/// Keeps forced signals at their values. What the program writes meanwhile (its own value) is kept
+/// beside: a block's own outputs are back in place while it runs, so that it does not see the force
+/// in its memory, and all are back when the force has ended.
+class Forces {
+  public:
+    explicit Forces(std::span<const Force> forces);
+
+    /// Next begin or end [ns].
+    std::int64_t next_time() const { return next_; }
+
+    /// Ends and begins what is due at `now`.
+    void update(std::int64_t now, EventSink* events);
+
+    bool active() const { return active_; }
+
+    /// Around the copies into the inputs of `block`.
+    void release_inputs(const std::byte* block) { exchange(block, false, Way::release); }
+    void impose_inputs(const std::byte* block) { exchange(block, false, Way::impose); }
+    /// Around whatever a block's own code does.
+    void release_outputs(const std::byte* block) { exchange(block, true, Way::release); }
+    void impose_outputs(const std::byte* block) { exchange(block, true, Way::impose); }
+
+    /// After the outputs of `task` were copied to where others see them.
+    void published(int task);
+
+    /// Where a stimulus for `target` goes: to its own value while it is forced.
+    std::byte* own(std::byte* target);
+
+    void save(StateWriter& out) const { out.put(own_); }
+    void restore(StateReader& in) { in.get(own_); }
+
+    /// Finds the next begin or end after `now`; after restore().
+    void look_ahead(std::int64_t now);
+
+  private:
+    enum class Way { release, impose };
+    struct Own {
+        std::byte live[8] = {};
+        std::byte published[8] = {};
+        bool active = false;
+    };
+
+    void exchange(const std::byte* block, bool outputs, Way way);
+    void begin(std::size_t index);
+    void end(std::size_t index);
+
+    std::span<const Force> forces_;
+    std::vector<Own> own_;
+    std::int64_t next_ = 0;
+    bool active_ = false;
+};
+
+}  // namespace lineshaft

@@ -1,0 +1,60 @@
+#!/usr/bin/python3
+"""Kills runs that write retained values, at random moments: the file is always whole, the old or the new one.
+
+usage: retain.py LINESHAFT [KILLS]
+"""
+
+import json
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import time
+
+PROGRAM = """\
+lineshaft: 1
+parameters: {count: 0}
+tasks: {main: {every: 1 ms}}
+blocks: {shaft: {type: virtual_axis, task: main, velocity: 1 mm/s}}
+inputs: {a: $count, b: $count}
+retain: [inputs.a, inputs.b]
+run: {for: 2 s}
+"""
+
+
+def main():
+    lineshaft = str(pathlib.Path(sys.argv[1]).resolve())
+    kills = int(sys.argv[2]) if len(sys.argv) > 2 else 10
+    chance = random.Random(1)
+    with tempfile.TemporaryDirectory() as folder:
+        program = pathlib.Path(folder, "program.yaml")
+        program.write_text(PROGRAM, encoding="utf-8")
+        kept = pathlib.Path(folder, "values.retain")
+
+        def start(count):
+            command = [lineshaft, "run", program, "--quiet", "--restart", "cold", "--retain-file", kept]
+            return subprocess.Popen(command + ["--set", f"count={count}"], stdout=subprocess.DEVNULL)
+
+        begin = time.monotonic()
+        assert start(0).wait() == 0
+        longest = time.monotonic() - begin
+        old, killed, renewed = 0, 0, 0
+        for count in range(1, kills + 1):
+            run = start(count)
+            time.sleep(chance.uniform(0, 1.2 * longest))
+            run.kill()
+            killed += run.wait() != 0
+            values = json.loads(kept.read_text(encoding="utf-8"))["values"]
+            found = values["inputs.a"]
+            if values["inputs.b"] != found or found not in (old, count):
+                print(f"kill {count}: the file has {values}, before it was {old}")
+                return 1
+            renewed += found == count
+            old = found
+    print(f"{kills} runs, {killed} killed, {renewed} had renewed the file, each left a whole one")
+    return 0 if killed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
