@@ -52,10 +52,11 @@ KINDS = ("write", "fsync", "rename", "open", "malloc")
 MOST_SECONDS = 20
 
 
-def is_marked(name, outputs):
+def is_marked(name, outputs, said):
     """What a run that was stopped has left, and says so."""
     beside = name if name.endswith("-metadata.json") else name + "-metadata.json"
-    return "lineshaft:stopped" in json.loads(outputs.get(beside, "{}"))
+    stopped = name.endswith(".events.csv") and "the run stopped at" in said
+    return stopped or "lineshaft:stopped" in json.loads(outputs.get(beside, "{}"))
 
 
 class Command:
@@ -100,7 +101,8 @@ class Command:
             return f"no message: {said}"
         if faulty_case:
             return ""
-        broken = [name for name, text in outputs.items() if self.whole.get(name) != text and not is_marked(name, outputs)]
+        broken = [name for name, text in outputs.items()
+                  if self.whole.get(name) != text and not is_marked(name, outputs, said)]
         return f"{broken} not whole" if broken else ""
 
     def places(self, step):
