@@ -147,6 +147,14 @@ def broken_merges(c):
     assert not list(c.folder.glob("none.csv*"))
 
 
+def size(path):
+    """0 when it is not there, which may be so from one moment to the next."""
+    try:
+        return path.stat().st_size
+    except FileNotFoundError:
+        return 0
+
+
 def kills(c):
     for kill in (signal.SIGKILL, signal.SIGINT, signal.SIGTERM):
         part = c.folder / "killed.csv.part"
@@ -155,8 +163,8 @@ def kills(c):
             process = subprocess.Popen([c.lineshaft, "study", "plan.yaml", "--quiet", "--resume", "-j", "2", "-o",
                                         "killed.csv"], cwd=c.folder, stdout=subprocess.DEVNULL,
                                        stderr=subprocess.DEVNULL)
-            before = part.stat().st_size if part.exists() else 0
-            while process.poll() is None and not (part.exists() and part.stat().st_size > before + 2000):
+            before = size(part)
+            while process.poll() is None and size(part) <= before + 2000:
                 time.sleep(0.002)
             if process.poll() is not None:
                 break

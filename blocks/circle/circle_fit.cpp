@@ -1,9 +1,7 @@
 #include "blocks/circle/circle_fit.hpp"
 
+#include <algorithm>
 #include <cmath>
-
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 
 namespace lineshaft {
 
@@ -72,19 +70,21 @@ void CircleFit::add() {
 
 void CircleFit::solve() {
     const auto& [uu, uv, vv, u, v, uw, vw, w] = sums;
-    Eigen::Matrix3d normal;
-    normal << uu, uv, u, uv, vv, v, u, v, static_cast<double>(samples);
-    const Eigen::LDLT<Eigen::Matrix3d> factors(normal);
-    const Eigen::Vector3d pivots = factors.vectorD();
-    Eigen::Vector3d solution(0, 0, 1);
+    const double n = static_cast<double>(samples), mean_u = u / n, mean_v = v / n;
+    const double suu = uu - u * mean_u, suv = uv - u * mean_v, svv = vv - v * mean_v;
+    const double suw = uw - w * mean_u, svw = vw - w * mean_v;
+    const double determinant = suu * svv - suv * suv;
     constexpr double singular = 1e-12;
-    if (pivots.minCoeff() > singular * pivots.maxCoeff())
-        solution = factors.solve(Eigen::Vector3d(uw, vw, w));
-    const double a = solution[0] / 2, b = solution[1] / 2;
+    double a = 0, b = 0, c = 1;
+    if (determinant > singular * n * std::max(suu, svv)) {
+        a = (suw * svv - svw * suv) / determinant / 2;
+        b = (svw * suu - suw * suv) / determinant / 2;
+        c = w / n - 2 * (a * mean_u + b * mean_v);
+    }
     centre_x = x0 + a * radius;
     centre_y = y0 + b * radius;
     offset = std::sqrt(a * a + b * b) * radius;
-    fitted_radius = std::sqrt(std::max(0.0, solution[2] + a * a + b * b)) * radius;
+    fitted_radius = std::sqrt(std::max(0.0, c + a * a + b * b)) * radius;
 }
 
 }  // namespace lineshaft

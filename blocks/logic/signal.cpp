@@ -51,15 +51,18 @@ std::span<const Field> FilterPt1::fields() {
 void FilterPt1::scan(const Scan& now) {
     NumberError wrong = finite_error(in, time_constant);
     if (wrong == NumberError::none && time_constant < 0) wrong = NumberError::wrong_limits;
-    if (!started || time_constant == 0) {
-        settle(*this, in, wrong);
-    } else {
-        const double dt = seconds(now.time - last_time);
-        settle(*this, out - (in - out) * Sleef_cinz_expm1d1_u10purec(-dt / time_constant), wrong);
-    }
+    if (started && wrong == NumberError::none) set_share(now.time - last_time);
+    settle(*this, started ? out + (in - out) * share : in, wrong);
     if (error) return;
     started = true;
     last_time = now.time;
+}
+
+void FilterPt1::set_share(std::int64_t step) {
+    if (step == share_step && time_constant == share_constant) return;
+    share_step = step;
+    share_constant = time_constant;
+    share = time_constant > 0 ? -Sleef_cinz_expm1d1_u10purec(-seconds(step) / time_constant) : 1;
 }
 
 }  // namespace lineshaft

@@ -42,11 +42,17 @@ struct FilterPt1 {
 
     bool started = false;
     std::int64_t last_time = 0;
+    std::int64_t share_step = 0;  ///< `share` holds for this dt [ns] and the next line's T
+    double share_constant = 0;
+    double share = 1;  ///< 1 - exp(-dt / T)
 
     static constexpr std::string_view type = "filter_pt1";
     static constexpr std::string_view doc = "first-order low-pass filter";
     static std::span<const Field> fields();
     void scan(const Scan& now);
+
+  private:
+    void set_share(std::int64_t step);
 };
 
 }  // namespace lineshaft

@@ -88,8 +88,9 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
                                  .factor = same_unit ? 1 : given.numerator * wanted.denominator,
                                  .divisor = same_unit ? 1 : given.denominator * wanted.numerator,
                                  .kind = text.negated ? Kind::negated
-                                         : widens     ? Kind::integer_to_real
-                                                      : Kind::scaled});
+                                         : !widens    ? Kind::scaled
+                                         : same_unit  ? Kind::widened
+                                                      : Kind::widened_and_scaled});
 }
 
 /// In one task a wire carries this scan's value from an earlier block, and only with `previous()`

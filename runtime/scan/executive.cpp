@@ -21,17 +21,25 @@ const Copy* copy(const Copy* wire, std::uint32_t count) {
     return wire;
 }
 
-void convert(const ConvertedCopy& wire) {
-    if (wire.kind == ConvertedCopy::Kind::negated) {
-        const bool value = !read<bool>(wire.source);
-        std::memcpy(wire.target, &value, sizeof value);
-        return;
-    }
-    const double given = wire.kind == ConvertedCopy::Kind::integer_to_real
-                             ? static_cast<double>(read<std::int64_t>(wire.source))
-                             : read<double>(wire.source);
-    const double value = given * wire.factor / wire.divisor;
+template <class T>
+void store(const ConvertedCopy& wire, T value) {
     std::memcpy(wire.target, &value, sizeof value);
+}
+
+void convert(const ConvertedCopy& wire) {
+    using Kind = ConvertedCopy::Kind;
+    const auto widened = [&] { return static_cast<double>(read<std::int64_t>(wire.source)); };
+    const auto scaled = [&](double value) { return value * wire.factor / wire.divisor; };
+    switch (wire.kind) {
+        case Kind::negated:
+            return store(wire, !read<bool>(wire.source));
+        case Kind::widened:
+            return store(wire, widened());
+        case Kind::scaled:
+            return store(wire, scaled(read<double>(wire.source)));
+        case Kind::widened_and_scaled:
+            return store(wire, scaled(widened()));
+    }
 }
 
 void sow(const BlockSeed& seed, std::uint64_t run_seed) {
@@ -73,14 +81,17 @@ std::string format_time(std::int64_t nanoseconds) {
 Executive::Executive(Machine& machine) : machine_(machine), forces_(machine.forces) {
     for (const BlockSeed& seed : machine.block_seeds) sow(seed, machine.seed);
     for (const Task& task : machine.tasks) {
-        states_.push_back({.jitter = Random(machine.seed, task.name + ".jitter"),
-                           .cost_jitter = Random(machine.seed, task.name + ".cost"),
-                           .due = task.on_event ? never : task.offset,
-                           .first_error = error_levels_.size(),
-                           .scan = {}});
-        error_levels_.resize(error_levels_.size() + task.errors.size());
+        const std::size_t first_error = error_flags_.size();
+        for (const ErrorFlag& flag : task.errors) error_flags_.push_back(flag.error);
+        states_.push_back({.due = task.on_event ? never : task.offset,
+                           .first_error = first_error,
+                           .end_of_errors = error_flags_.size(),
+                           .scan = {},
+                           .jitter = Random(machine.seed, task.name + ".jitter"),
+                           .cost_jitter = Random(machine.seed, task.name + ".cost")});
         look_ahead(static_cast<int>(states_.size()) - 1);
     }
+    error_levels_.resize(error_flags_.size());
     for (const Trigger& trigger : machine.triggers) trigger_levels_.push_back(*trigger.signal);
     running_.reserve(machine.tasks.size());
     result_.scans.resize(machine.tasks.size());
@@ -95,6 +106,7 @@ RunResult Executive::run(const std::vector<Observer*>& observers,
                          const std::atomic<bool>* interrupt,
                          const std::function<void(std::int64_t)>& progress) {
     observers_ = &observers;
+    look_ahead();
     if (save_) next_save_ = later(now_ / save_every_ * save_every_, save_every_);
     std::int64_t next = next_event();
     for (std::uint32_t instants = 0; next <= machine_.duration; ++instants) {
@@ -128,12 +140,23 @@ RunResult Executive::run(const std::vector<Observer*>& observers,
     return result_;
 }
 
-std::int64_t Executive::next_event() {
-    std::int64_t next = forces_.next_time();
-    for (const State& state : states_) next = std::min(next, state.due);
+/// What next_due_, next_outside_ and pending_ summarise.
+void Executive::look_ahead() {
+    next_due_ = never;
+    pending_ = 0;
+    for (const State& state : states_) {
+        next_due_ = std::min(next_due_, state.due);
+        pending_ += state.pending;
+    }
+    next_outside_ = forces_.next_time();
     if (next_stimulus_ < machine_.stimuli.size())
-        next = std::min(next, machine_.stimuli[next_stimulus_].at);
-    if (next_look_ < machine_.looks.size()) next = std::min(next, machine_.looks[next_look_]);
+        next_outside_ = std::min(next_outside_, machine_.stimuli[next_stimulus_].at);
+    if (next_look_ < machine_.looks.size())
+        next_outside_ = std::min(next_outside_, machine_.looks[next_look_]);
+}
+
+std::int64_t Executive::next_event() {
+    std::int64_t next = std::min(next_due_, next_outside_);
     for (const DeviceCall& device : machine_.devices)
         next = std::min(next, next_event_time(device));
     if (running_.empty()) return next;
@@ -147,13 +170,12 @@ void Executive::advance(std::int64_t time) {
 }
 
 void Executive::instant() {
-    advance_devices();
-    force();
-    stimulate();
-    detect_edges();
+    if (!machine_.devices.empty()) advance_devices();
+    if (next_outside_ <= now_) act_from_outside();
+    if (!trigger_levels_.empty()) detect_edges();
     finish_top();
-    if (!stopped_) check_deadlines();
-    if (!stopped_) release();
+    if (!stopped_ && !running_.empty()) check_deadlines();
+    if (!stopped_ && next_due_ <= now_) release();
     if (!stopped_) start_pending();
 }
 
@@ -166,24 +188,37 @@ void Executive::finish_top() {
 }
 
 void Executive::release() {
-    for (std::size_t i = 0; i < states_.size() && !stopped_; ++i) {
-        State& state = states_[i];
-        if (state.due > now_) continue;
-        const Task& task = machine_.tasks[i];
-        if (state.pending || state.active) {
-            due_again(static_cast<int>(i));
-        } else {
-            state.pending = true;
-            state.released = state.due;
-        }
-        const std::int64_t off = task.jitter > 0 ? state.jitter.around_zero(task.jitter) : 0;
-        state.due = later(later(state.due, task.every), off);
+    next_due_ = never;
+    int index = 0;
+    for (State& state : states_) {
+        if (state.due <= now_ && !stopped_) release(index, state);
+        next_due_ = std::min(next_due_, state.due);
+        ++index;
     }
 }
 
+void Executive::release(int index, State& state) {
+    const Task& task = this->task(index);
+    if (state.pending || state.active) {
+        due_again(index);
+    } else {
+        make_pending(index);
+        state.released = state.due;
+    }
+    const std::int64_t off = task.jitter > 0 ? state.jitter.around_zero(task.jitter) : 0;
+    state.due = later(later(state.due, task.every), off);
+}
+
+void Executive::make_pending(int index) {
+    bool& pending = state(index).pending;
+    pending_ += !pending;
+    pending = true;
+}
+
 void Executive::start_pending() {
-    for (int i = next_to_start(); i >= 0 && !stopped_; i = next_to_start()) {
-        if (repeats_without_end(i)) return;
+    while (pending_ > 0 && !stopped_) {
+        const int i = next_to_start();
+        if (i < 0 || (task(i).on_event && repeats_without_end(i))) return;
         start(i);
         if (state(i).remaining > 0) {
             running_.push_back(i);
@@ -193,15 +228,12 @@ void Executive::start_pending() {
     }
 }
 
-/// -1 when none is pending that may interrupt the scan under way.
+/// The first of those that are pending; -1 when it may not interrupt the scan under way.
 int Executive::next_to_start() const {
-    for (std::size_t i = 0; i < states_.size(); ++i) {
-        if (!states_[i].pending) continue;
-        const bool waits =
-            !running_.empty() && task(running_.back()).priority >= machine_.tasks[i].priority;
-        return waits ? -1 : static_cast<int>(i);
-    }
-    return -1;
+    int i = 0;
+    while (!state(i).pending) ++i;
+    const bool waits = !running_.empty() && task(running_.back()).priority >= task(i).priority;
+    return waits ? -1 : i;
 }
 
 void Executive::start(int index) {
@@ -209,6 +241,7 @@ void Executive::start(int index) {
     State& state = this->state(index);
     if (index == machine_.main_task) errors_in_cycle_ = 0;
     state.pending = false;
+    --pending_;
     state.active = true;
     state.scan = {.time = now_, .interval = task.every, .index = state.index++};
     state.cost =
@@ -247,8 +280,15 @@ void Executive::publish(int index) {
         if (device.task == index) publish_device(device);
     ++result_.scans[static_cast<std::size_t>(index)];
     for (Observer* observer : *observers_) observer->scanned(index, state.scan);
-    check_errors(index);
-    if (!stopped_) detect_edges();
+    if (errors_changed(state)) report_errors(index);
+    if (!stopped_ && !trigger_levels_.empty()) detect_edges();
+}
+
+bool Executive::errors_changed(const State& state) const {
+    bool changed = false;
+    for (std::size_t i = state.first_error; i < state.end_of_errors; ++i)
+        changed |= *error_flags_.data()[i] != (error_levels_.data()[i] != 0);
+    return changed;
 }
 
 }  // namespace lineshaft

@@ -87,9 +87,9 @@ class Executive {
 
   private:
     struct State {
-        Random jitter;
-        Random cost_jitter;
         std::int64_t due = 0;           ///< next release [ns]
+        bool pending = false;           ///< released, not yet started
+        bool active = false;            ///< started, not yet published
         std::int64_t released = 0;      ///< last release [ns]
         std::int64_t cost = 0;          ///< of the scan under way [ns]
         std::int64_t remaining = 0;     ///< of it [ns]
@@ -100,29 +100,33 @@ class Executive {
         std::size_t next_stimulus = 0;  ///< by scan
         std::size_t next_cost = 0;      ///< likewise
         std::size_t first_error = 0;    ///< place in error_levels_
+        std::size_t end_of_errors = 0;  ///< likewise
         Scan scan;                      ///< the one under way
-        bool pending = false;           ///< released, not yet started
-        bool active = false;            ///< started, not yet published
+        Random jitter;
+        Random cost_jitter;
     };
 
     std::int64_t next_event();
+    void look_ahead();
     void advance(std::int64_t time);
     void instant();
     void finish_top();
     void release();
+    void release(int task, State& state);
     void start_pending();
+    void make_pending(int task);
     int next_to_start() const;
     void start(int task);
     void scan_forced(const Task& task, const Scan& scan);
     void publish(int task);
+    bool errors_changed(const State& state) const;
 
     // executive_outside.cpp
     void advance_devices();
     void advance_device(const DeviceCall& device);
     std::int64_t next_event_time(const DeviceCall& device);
     void publish_device(const DeviceCall& device);
-    void force();
-    void stimulate();
+    void act_from_outside();
     void stimulate(int task);
     void set(const Stimulus& stimulus, int task);
     void look_ahead(int task);
@@ -134,7 +138,7 @@ class Executive {
     void due_again(int task);
     void time_error(int task, std::string what);
     std::string running_block(int task) const;
-    void check_errors(int task);
+    void report_errors(int task);
     void tell(EventKind kind, int task, const std::string& text);
     void stop(Outcome outcome, std::string message, int task = -1);
 
@@ -147,7 +151,11 @@ class Executive {
     std::vector<State> states_;
     std::vector<std::uint8_t> trigger_levels_;  ///< of each trigger's signal when last looked at
     std::vector<std::uint8_t> error_levels_;    ///< of each task's error flags, likewise
-    std::vector<int> running_;  ///< stack of started scans, the interrupted ones below
+    std::vector<const bool*> error_flags_;      ///< these
+    std::vector<int> running_;       ///< stack of started scans, the interrupted ones below
+    int pending_ = 0;                ///< number of tasks
+    std::int64_t next_due_ = 0;      ///< the first release of all [ns]
+    std::int64_t next_outside_ = 0;  ///< of a force, a stimulus, a look at a device [ns]
     const std::vector<Observer*>* observers_ = nullptr;
     EventSink* events_ = nullptr;
     std::function<void(std::int64_t)> save_;

@@ -15,7 +15,6 @@ constexpr std::int64_t most_starts_at_once = 1000;
 bool Executive::repeats_without_end(int index) {
     const Task& task = this->task(index);
     State& state = this->state(index);
-    if (!task.on_event) return false;
     state.repeats = state.scan.time == now_ ? state.repeats + 1 : 0;
     if (state.repeats < most_starts_at_once) return false;
     stop(Outcome::overrun,
@@ -63,9 +62,8 @@ void Executive::time_error(int index, std::string what) {
     if (task.motion) return because("a motion task must not overrun");
     if (task.on_overrun < 0) return because("no task has it under 'on_overrun'");
     if (errors_in_cycle_ > 1) return because("the second time error in one cycle");
-    State& handler = state(task.on_overrun);
-    handler.pending = true;
-    handler.released = now_;
+    make_pending(task.on_overrun);
+    state(task.on_overrun).released = now_;
 }
 
 /// `; block 'slave' (gear_axis) was running`: a scan's time is spread over its blocks in the
@@ -95,7 +93,7 @@ std::string Executive::running_block(int index) const {
     return fmt::format("; block {} was running", task.infos.back().block);
 }
 
-void Executive::check_errors(int index) {
+void Executive::report_errors(int index) {
     std::uint8_t* level = error_levels_.data() + state(index).first_error;
     for (const ErrorFlag& flag : task(index).errors) {
         const bool before = *level != 0;

@@ -8,7 +8,6 @@ namespace lineshaft {
 
 void Executive::advance_devices() {
     for (const DeviceCall& device : machine_.devices) advance_device(device);
-    while (next_look_ < machine_.looks.size() && machine_.looks[next_look_] <= now_) ++next_look_;
 }
 
 /// A device runs on its own outputs, forced or not.
@@ -33,14 +32,13 @@ std::int64_t Executive::next_event_time(const DeviceCall& device) {
     return next;
 }
 
-void Executive::force() {
+void Executive::act_from_outside() {
     if (forces_.next_time() <= now_) forces_.update(now_, events_);
-}
-
-void Executive::stimulate() {
     const auto& stimuli = machine_.stimuli;
     while (next_stimulus_ < stimuli.size() && stimuli[next_stimulus_].at <= now_)
         set(stimuli[next_stimulus_++], -1);
+    while (next_look_ < machine_.looks.size() && machine_.looks[next_look_] <= now_) ++next_look_;
+    look_ahead();
 }
 
 void Executive::stimulate(int index) {
@@ -86,7 +84,7 @@ void Executive::detect_edges() {
             due_again(trigger.task);
             continue;
         }
-        state.pending = true;
+        make_pending(trigger.task);
         state.released = now_;
     }
 }

@@ -22,9 +22,10 @@ struct Copy {
 /// A value converted on its way into an input.
 struct ConvertedCopy {
     enum class Kind : std::uint8_t {
-        negated,          ///< boolean, inverted (`NOT x.q`)
-        integer_to_real,  ///< widening, then as scaled
-        scaled,           ///< real from another unit of the dimension: times factor, over divisor
+        negated,             ///< boolean, inverted (`NOT x.q`)
+        widened,             ///< integer to real
+        scaled,              ///< real from another unit of the dimension: times factor, over divisor
+        widened_and_scaled,  ///< integer to real in another unit
     };
 
     const std::byte* source = nullptr;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -83,8 +84,10 @@ StudyReport ReportBuilder::finish(bool interrupted) {
             const auto it = names_.find(name);
             return it == names_.end() ? std::nullopt : std::optional(it->second);
         });
-        if (result.error.empty())
-            report_.claims.push_back({&claim, result.value, claim.bounds.hold(result.value)});
+        const bool known = result.error.empty() && std::isfinite(result.value);
+        report_.claims.push_back({&claim,
+                                  known ? result.value : std::numeric_limits<double>::quiet_NaN(),
+                                  known && claim.bounds.hold(result.value)});
     }
     return std::move(report_);
 }

@@ -20,7 +20,7 @@ struct StudyRow {
 
 struct ClaimRow {
     const Claim* claim = nullptr;
-    double ours = 0;
+    double ours = 0;  ///< NaN: it cannot be reckoned, as a case of it did not run to its end
     bool ok = true;
 };
 
@@ -46,8 +46,7 @@ class ReportBuilder {
     ReportBuilder(const Study& study, bool all_rows) : study_(study), all_rows_(all_rows) {}
 
     void add(const CaseResult& result);
-    /// Judges the claims, unless interrupted. A claim over a case that did not run to its end is
-    /// left out; the fault stands in the report.
+    /// Judges the claims, unless interrupted.
     StudyReport finish(bool interrupted);
 
   private:

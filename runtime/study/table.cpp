@@ -107,9 +107,12 @@ std::string claim_table(const StudyReport& report) {
     std::vector<Cells> rows{{"claim", "paper", "ours", "difference", any_limit ? "limit" : ""}};
     for (const ClaimRow& row : report.claims) {
         const Claim& c = *row.claim;
-        rows.push_back({c.text, paper(c.bounds, c.percent), short_number(row.ours, c.percent),
-                        difference(row.ours, c.bounds, c.percent), limit_text(c.bounds, c.percent),
-                        verdict(c.bounds, row.ok)});
+        const bool known = std::isfinite(row.ours);
+        rows.push_back({c.text, paper(c.bounds, c.percent),
+                        known ? short_number(row.ours, c.percent) : "no number",
+                        known ? difference(row.ours, c.bounds, c.percent) : "",
+                        limit_text(c.bounds, c.percent),
+                        row.ok ? verdict(c.bounds, true) : "FAILED"});
     }
     return align(rows);
 }

@@ -25,7 +25,10 @@ Recorder::Recorder(TraceSetup setup, TraceSink& sink)
       watch_(setup_.trigger),
       row_words_(setup_.row_words()),
       words_(row_words_ * rows_per_block),
-      ring_(row_words_ * static_cast<std::size_t>(setup_.pre_trigger)) {}
+      ring_(row_words_ * static_cast<std::size_t>(setup_.pre_trigger)) {
+    for (const Signal& signal : setup_.signals)
+        sources_.push_back({signal.slot, size_of(signal.type) == sizeof(std::uint64_t)});
+}
 
 void Recorder::save(StateWriter& out) const {
     watch_.save(out);
@@ -69,7 +72,7 @@ void Recorder::scanned(int task, const Scan& scan) {
     else if (measurements_ == 0)
         begin(0);
     if (recording_ && is_over(scan.time)) end();
-    if (scan.index % setup_.every != 0) return;
+    if (setup_.every != 1 && scan.index % setup_.every != 0) return;
     if (recording_)
         record(scan);
     else if (setup_.pre_trigger > 0)
@@ -99,9 +102,12 @@ void Recorder::record(const Scan& scan) {
 void Recorder::copy_row(const Scan& scan, std::int64_t origin, std::uint64_t* word) const {
     *word++ = static_cast<std::uint64_t>(scan.time - origin);
     *word++ = static_cast<std::uint64_t>(scan.index);
-    for (const Signal& signal : setup_.signals) {
+    for (const Source& source : sources_) {
         std::uint64_t bits = 0;
-        std::memcpy(&bits, signal.slot, size_of(signal.type));
+        if (source.is_word)
+            std::memcpy(&bits, source.slot, sizeof bits);
+        else
+            std::memcpy(&bits, source.slot, 1);
         *word++ = bits;
     }
 }

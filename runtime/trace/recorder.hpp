@@ -81,7 +81,14 @@ class Recorder : public Observer {
     void give_ring(std::size_t row, std::size_t end);
     bool is_over(std::int64_t time) const;
 
+    /// Where a signal's value is, close to the next one's.
+    struct Source {
+        const std::byte* slot;
+        bool is_word;  ///< 8 bytes; else one
+    };
+
     TraceSetup setup_;
+    std::vector<Source> sources_;
     TraceSink& sink_;
     TriggerWatch watch_;
     std::size_t row_words_;

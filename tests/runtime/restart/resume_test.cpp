@@ -32,7 +32,8 @@ RunOptions options_in(const Folder& folder) {
 std::string result_of(const RunReport& report, const Folder& folder) {
     std::string text = read(folder / "run.csv") + read(folder / "run.events.csv") +
                        std::to_string(report.result.time);
-    if (std::filesystem::exists(folder / "pulses.csv")) text += read(folder / "pulses.csv");
+    for (const char* more : {"pulses.csv", "run.fast.csv"})
+        if (std::filesystem::exists(folder / more)) text += read(folder / more);
     for (const Verdict& verdict : report.verdicts) text += verdict.ok ? "ok" : verdict.deviation;
     return text;
 }
@@ -77,6 +78,10 @@ TEST_CASE("a resumed run leaves the same bytes: pulses", "[resume]") {
 
 TEST_CASE("a resumed run leaves the same bytes: machine logic", "[resume]") {
     check_resumed("06_machine_logic.yaml", false);
+}
+
+TEST_CASE("a resumed run leaves the same bytes: a trace with a trigger", "[resume]") {
+    check_resumed("../tests/cases/trace_begins_at_its_trigger/program.yaml", false);
 }
 
 TEST_CASE("a foreign or cut checkpoint is refused", "[resume]") {

@@ -318,7 +318,7 @@ TEST_CASE("inputs are converted as their wires say") {
     struct Ports {
         bool yes = true, inverted = true;
         std::int64_t three = 3;
-        double millimetres = 20, real = 0, centimetres = 0;
+        double millimetres = 20, real = 0, tenths = 0, centimetres = 0;
     } ports;
     Bench bench({{.name = "a"}});
     const auto at = [](auto& member) { return reinterpret_cast<std::byte*>(&member); };
@@ -327,16 +327,18 @@ TEST_CASE("inputs are converted as their wires say") {
         .words = {{at(ports.three), at(bench.live("a").input)}},
         .booleans = {{at(ports.yes), at(bench.live("a").wanted)}},
         .conversions = {{at(ports.yes), at(ports.inverted), 1, 1, Kind::negated},
-                        {at(ports.three), at(ports.real), 1, 1, Kind::integer_to_real},
+                        {at(ports.three), at(ports.real), 1, 1, Kind::widened},
+                        {at(ports.three), at(ports.tenths), 1, 10, Kind::widened_and_scaled},
                         {at(ports.millimetres), at(ports.centimetres), 1, 10, Kind::scaled}}};
     Call& call = task.calls.front();
     call.words = call.booleans = 1;
-    call.conversions = 3;
+    call.conversions = 4;
     bench.machine.duration = 0;
     bench.run();
     CHECK(bench.live("a").wanted);
     CHECK_FALSE(ports.inverted);
     CHECK(ports.real == 3);
+    CHECK(ports.tenths == 0.3);
     CHECK(bench.live("a").input == 3);
     CHECK(ports.centimetres == 2);
 }

@@ -210,7 +210,7 @@ claims:
     CHECK_FALSE(report.ok());
 }
 
-TEST_CASE("a case that does not run to its end is a fault, and its claims are left out") {
+TEST_CASE("a case that does not run to its end is a fault, and its claims fail") {
     std::string stuck = program;
     stuck.replace(stuck.find("run: {for: $time}"), 17, "run: {for: $time, until: move.done}");
     StudyFile file(R"(
@@ -224,6 +224,8 @@ claims:
     REQUIRE(report.faults.size() == 1);
     CHECK(report.faults[0] == "only: 'move.done' did not become true within 1 s");
     CHECK_FALSE(report.ok());
+    REQUIRE(report.claims.size() == 1);
+    CHECK_FALSE(report.claims[0].ok);
 }
 
 TEST_CASE("a failed expectation of the program fails the study and names the case") {

@@ -1,0 +1,99 @@
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "runtime/trace/csv_writer.hpp"
+#include "tools/bench/circle_trace.hpp"
+
+using namespace lineshaft;
+
+namespace {
+
+/// Rows and what they are.
+struct Table {
+    TraceSetup setup;
+    std::vector<std::uint64_t> words;
+    std::size_t row_words() const { return 2 + setup.signals.size(); }
+    std::size_t rows() const { return words.size() / row_words(); }
+};
+
+Table circle() {
+    const RecordedCircle recorded;
+    return {recorded.setup, recorded.words};
+}
+
+/// Reals of 16 and 17 digits, all different.
+Table random_reals() {
+    Table table;
+    for (const char* name : {"a.a", "a.b", "a.c", "a.d", "a.e", "a.f", "a.g", "a.h"})
+        table.setup.signals.push_back({.name = name, .type = Type::real, .unit = {}, .names = {}});
+    std::mt19937_64 random(1);
+    for (std::uint64_t row = 0; row < 10'000; ++row) {
+        table.words.push_back(row * 1'000'000);
+        table.words.push_back(row);
+        for (int i = 0; i < 8; ++i) {
+            const double value = std::ldexp(static_cast<double>(random()), -60);
+            table.words.push_back(std::bit_cast<std::uint64_t>(value));
+        }
+    }
+    return table;
+}
+
+std::string file() {
+    return (std::filesystem::temp_directory_path() / "lineshaft_csv_bench.csv").string();
+}
+
+void count(benchmark::State& state, const Table& table) {
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(table.words.size()));
+}
+
+void writer(benchmark::State& state, Table (*make)()) {
+    const Table table = make();
+    for (auto _ : state) {
+        CsvWriter writer(file(), table.setup);
+        writer.rows(table.words.data(), table.rows());
+        benchmark::ClobberMemory();
+    }
+    count(state, table);
+}
+
+/// The same rows with std::to_chars alone: what a plain loop takes.
+void bare(benchmark::State& state, Table (*make)()) {
+    const Table table = make();
+    std::vector<char> text(table.words.size() * 32);
+    for (auto _ : state) {
+        std::FILE* out = std::fopen(file().c_str(), "wb");
+        char* end = text.data();
+        for (std::size_t i = 0; i < table.words.size(); ++i) {
+            const std::size_t column = i % table.row_words();
+            const std::uint64_t word = table.words[i];
+            char* const limit = end + 32;
+            if (column == 0)
+                end = std::to_chars(end, limit, seconds(static_cast<std::int64_t>(word))).ptr;
+            else if (column == 1 || table.setup.signals[column - 2].type != Type::real)
+                end = std::to_chars(end, limit, word).ptr;
+            else
+                end = std::to_chars(end, limit, std::bit_cast<double>(word)).ptr;
+            *end++ = column + 1 == table.row_words() ? '\n' : ',';
+        }
+        std::fwrite(text.data(), 1, static_cast<std::size_t>(end - text.data()), out);
+        std::fclose(out);
+    }
+    count(state, table);
+    std::filesystem::remove(file());
+}
+
+}  // namespace
+
+BENCHMARK_CAPTURE(writer, circle, circle);
+BENCHMARK_CAPTURE(bare, circle, circle);
+BENCHMARK_CAPTURE(writer, random, random_reals);
+BENCHMARK_CAPTURE(bare, random, random_reals);
+BENCHMARK_MAIN();
