@@ -283,6 +283,10 @@ with the initial values, which then overwrite it:
     {"L0508", "--retain-file for a program that retains nothing",
      R"(The program does not say what outlives a run. List the signals:
     retain: [counter.cv, inputs.recipe])"},
+    {"L0509", "an output that is a file the command reads",
+     R"(The output would replace what it is made from: --trace program.yaml would leave a table where
+the program was. Two outputs of one name would replace each other. Name another file:
+    lineshaft run program.yaml --trace program.csv)"},
 
     {"L0601", "a study of too many runs",
      R"(The cases, the values of a grid multiplied with each other, and 'repeat' make more
