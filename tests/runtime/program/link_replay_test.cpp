@@ -140,7 +140,7 @@ TEST_CASE("any reals come back from a replay with the same bytes", "[replay]") {
             const std::uint64_t bits = random();
             std::memcpy(&value, &bits, sizeof value);
         } while (!std::isfinite(value));
-        csv += fmt::format("{},{},{},{},{}\n", format_number(row * 1e-3), row, format_number(value),
+        csv += fmt::format("{},{},{},{},{}\n", format_number(row / 1e3), row, format_number(value),
                            random() % 2, static_cast<std::int64_t>(random() >> 12));
     }
     write(folder / "first.csv", csv);
