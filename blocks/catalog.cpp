@@ -3,7 +3,6 @@
 #include "blocks/axis/gear_axis.hpp"
 #include "blocks/axis/move.hpp"
 #include "blocks/axis/servo_drive.hpp"
-#include "blocks/axis/simulated_drive.hpp"
 #include "blocks/axis/virtual_axis.hpp"
 #include "blocks/circle/circle_fit.hpp"
 #include "blocks/circle/circle_ratio.hpp"
@@ -31,7 +30,6 @@ Catalog standard_blocks() {
     blocks.add<VirtualAxis>();
     blocks.add<GearAxis>();
     blocks.add<Move>();
-    blocks.add<SimulatedDrive>();
     blocks.add<ServoDrive>();
     blocks.add<CircleRatio>();
     blocks.add<CircleFit>();

@@ -39,6 +39,8 @@ trace=$(mktemp --suffix=.csv)
 echo 'time,scan,axis.position [mm],axis.done' >"$trace"
 offers axis.position report "$trace" --signals axis.p
 offers !time report "$trace" --signals t
+offers axis.done,axis.position contour "$trace" --actual axis.done,axis.p
+offers "$trace" contour "${trace%.csv}"
 rm -f "$trace"
 [ $failed -eq 0 ] && echo "all completions are right"
 exit $failed

@@ -70,7 +70,7 @@ _lineshaft() {
     fi
     case $before in
         --signals) [ "$command" != show ] && { _lineshaft_list "$lineshaft" "$current"; return; } ;;
-        --path) _lineshaft_list "$lineshaft" "$current"; return ;;
+        --path | --command | --actual) _lineshaft_list "$lineshaft" "$current"; return ;;
         --set) compopt -o nospace 2>/dev/null; _lineshaft_words "$current" < <(_lineshaft_parameters); return ;;
         --include-dir) _lineshaft_files "$current"; return ;;
         --trace | --pulses) _lineshaft_files "$current" csv; return ;;
@@ -83,7 +83,7 @@ _lineshaft() {
     fi
     case $command in
         blocks) _lineshaft_words "$current" < <("$lineshaft" blocks 2>/dev/null | cut -d' ' -f1) ;;
-        plot | plan | diff | verify) _lineshaft_files "$current" csv ;;
+        plot | plan | diff | verify | contour) _lineshaft_files "$current" csv ;;
         report) _lineshaft_files "$current" csv json ;;
         *) _lineshaft_files "$current" yaml yml ;;
     esac

@@ -23,7 +23,9 @@ enum class ServoError : std::int64_t {
 
 /// A drive with its motor, mechanics and encoder, from the set-point of one clock to the actual
 /// position of the next. Everything is off by default; the axis is then in simulation, as Siemens'
-/// technology objects have it: the actual position is the set-point that was there at the scan.
+/// technology objects have it: the actual position is the set-point that was there at the scan. In
+/// the servo task, which runs *before* the interpolator at each clock, that is the one of a clock
+/// ago: what the user program then reads.
 ///
 ///     set-point       r(k) = set_position(k - delay), rv likewise             transport, in clocks
 ///     position loop   u = kv (r - position) + velocity_feed_forward * rv      held for a clock
@@ -63,7 +65,8 @@ struct ServoDrive {
     };
     std::array<SetPoint, longest_delay + 1> transport{};  ///< a ring
     std::int64_t newest = 0;
-    bool first_scan = true;
+    bool checked = false, in_simulation = false, first_scan = true;
+    ServoError contradiction = ServoError::none;  ///< of the parameters
     std::int64_t last_time = 0;
     double demand = 0;  ///< u [u/s], since the last scan
     VelocityLoop::State motor;
@@ -77,7 +80,9 @@ struct ServoDrive {
     void scan(const Scan& now);
 
   private:
-    ServoError check() const;
+    void check();
+    ServoError copy();
+    ServoError follow(std::int64_t time);
     void start();
     SetPoint transported();
     ServoError move(const SetPoint& wanted, double elapsed);

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "blocks/contour/command_path.hpp"
-#include "blocks/contour/deviation.hpp"
+#include "blocks/contour/magnitude_statistics.hpp"
 #include "runtime/model/field.hpp"
 #include "runtime/model/scan.hpp"
 
@@ -28,9 +28,9 @@ struct ContourComparison {
     std::int64_t samples = 0;
     double mean_points_back = 0;
 
-    Deviation real_time_error, linear_error, spline_error, following_error;  ///< [mm]
-    Deviation to_linear, to_spline;  ///< real-time less baseline [nm]
-    Deviation points_back;
+    MagnitudeStatistics real_time_error, linear_error, spline_error, following_error;  ///< [mm]
+    MagnitudeStatistics to_linear, to_spline;  ///< real-time less baseline [nm]
+    MagnitudeStatistics points_back;
     bool last_enable = false;
     CommandPath path;
 

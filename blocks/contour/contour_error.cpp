@@ -35,7 +35,7 @@ std::span<const Field> ContourError::fields() {
 }
 
 void ContourError::scan(const Scan&) {
-    const bool command = all_finite(command_x, command_y);
+    const bool command = all_finite(command_x * command_x + command_y * command_y);
     if (command) path.add({command_x, command_y});
     error = !(command && all_finite(actual_x, actual_y) && measure());
     error_id = error ? Error::not_finite : Error::none;

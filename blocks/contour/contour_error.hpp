@@ -15,7 +15,7 @@ namespace lineshaft {
 /// It remembers the last CommandPath::capacity different command points. When the nearest may have
 /// left them, `out_of_reach` is true and the last estimate is held; likewise, with `error`, while
 /// an input is no number. In the scan of a held estimate the command point is remembered all the
-/// same.
+/// same, unless its distance from 0 is beyond the range of numbers when squared.
 struct ContourError {
     enum class Error : std::int64_t {
         none,

@@ -285,6 +285,10 @@ with the initial values, which then overwrite it:
     {"L0508", "--retain-file for a program that retains nothing",
      R"(The program does not say what outlives a run. List the signals:
     retain: [counter.cv, inputs.recipe])"},
+    {"L0509", "an output that is a file the command reads",
+     R"(The output would replace what it is made from: --trace program.yaml would leave a table where
+the program was. Two outputs of one name would replace each other. Name another file:
+    lineshaft run program.yaml --trace program.csv)"},
 
     {"L0601", "a study of too many runs",
      R"(The cases, the values of a grid multiplied with each other, and 'repeat' make more
@@ -370,9 +374,9 @@ its rows and the checksum of its bytes. Copy the two together.)"},
 columns. Replay fewer columns, thin the file out (a trace with 'every: 10' has a tenth of the
 rows), or cut it to the part that matters.)"},
     {"L0721", "a trace without rows",
-     R"(The file has a header, but no row, or a column that is replayed has no value: nothing was
-recorded. Perhaps the run ended before the traced task's first scan, or before the trace's
-trigger.)"},
+     R"(The file has a header, but no row: nothing was recorded. Perhaps the run ended before the
+traced task's first scan, or before the trace's trigger. Or no row has a value in a column
+that is replayed, or in each of the columns that are compared.)"},
     {"L0722", "a trace whose time does not rise",
      R"(The rows of a trace stand in the order of their column 'time', and each has a time. This
 file has been sorted by something else, or put together from several traces.)"},

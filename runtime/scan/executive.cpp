@@ -282,7 +282,7 @@ void Executive::publish(int index) {
     if (forces_.active()) forces_.published(index);
     for (const DeviceCall& device : machine_.devices)
         if (device.task == index) publish_device(device);
-    ++result_.scans[static_cast<std::size_t>(index)];
+    ++result_.scans.data()[index];
     for (Observer* observer : *observers_) observer->scanned(index, state.scan);
     if (errors_changed(state)) report_errors(index);
     if (!stopped_ && !trigger_levels_.empty()) detect_edges();

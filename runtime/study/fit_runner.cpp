@@ -3,13 +3,13 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "runtime/model/random.hpp"
 #include "runtime/study/fit.hpp"
 #include "runtime/study/least_squares.hpp"
+#include "runtime/study/side_by_side.hpp"
 #include "runtime/study/single_run.hpp"
 
 namespace lineshaft {
@@ -81,6 +81,7 @@ class Fitter {
     const FitOptions& options_;
     std::vector<const FitCell*> identification_;
     FitReport report_;
+    std::string first_fault_;  ///< of the search
     FitProgress progress_{.sum = infinity};
 };
 
@@ -159,6 +160,7 @@ std::vector<VectorXd> Fitter::residuals(const std::vector<VectorXd>& points) {
             const FitCell& cell = *identification_[c];
             const Figures& ours = all[p * identification_.size() + c];
             whole = whole && ours.fault.empty();
+            if (first_fault_.empty()) first_fault_ = ours.fault;
             for (std::size_t k = 0; whole && k < cell.targets.size(); ++k)
                 for (std::size_t i = 0; i < cell.targets[k].given.size(); ++i)
                     terms.push_back((ours.values[k][i] - cell.targets[k].given[i]) /
@@ -210,11 +212,8 @@ std::vector<Figures> Fitter::run_all(const std::vector<Job>& jobs) {
             if (options_.progress) options_.progress(progress_);
         }
     };
-    std::vector<std::jthread> threads;
-    for (std::size_t i = 1; i < std::min<std::size_t>(options_.jobs, jobs.size()); ++i)
-        threads.emplace_back(work);
-    work();
-    threads.clear();
+    side_by_side(std::min<std::int64_t>(options_.jobs, std::ssize(jobs)), work,
+                 [&] { next = jobs.size(); });
     return results;
 }
 
@@ -294,6 +293,8 @@ void Fitter::take_rows(const LeastSquares& best) {
             for (std::size_t k = 0; k < all[c].values.size(); ++k)
                 report_.rows.push_back(make_row(*cells[c], k, all[c].values[k]));
     }
+    if (!any && report_.faults.empty() && !first_fault_.empty())
+        report_.faults.push_back(first_fault_);
 }
 
 }  // namespace

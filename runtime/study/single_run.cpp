@@ -43,8 +43,8 @@ struct Tracing {
         files.save(out);
     }
 
-    TraceReport finish(const Judge& judge) {
-        files.set_expectations(verdicts_json(judge));
+    TraceReport finish(const RunResult& result, const Judge& judge) {
+        files.set_outcome(result.message, verdicts_json(judge));
         recorder.finish();
         if (recorder.measurements() == 0) {
             files.begin();
@@ -76,6 +76,8 @@ class SingleRun {
     bool resume();
     void tell_restart();
     void save(std::int64_t time);
+    void look(std::int64_t time);
+    bool writing_fails() const;
     void finish();
     void open_traces();
     bool has_trace() const {
@@ -96,12 +98,16 @@ class SingleRun {
     std::optional<PulseWriter> pulses_;
     std::optional<Executive> executive_;
     std::vector<Observer*> observers_;
+    std::atomic<bool> stop_ = false;
 };
 
 RunReport SingleRun::run() {
     const auto start = std::chrono::steady_clock::now();
     if (begin()) {
-        report_.result = executive_->run(observers_, options_.interrupt, options_.progress);
+        report_.result =
+            executive_->run(observers_, &stop_, [this](std::int64_t time) { look(time); });
+        if (report_.result.outcome == Outcome::interrupted && writing_fails())
+            report_.result.message = "the run stopped at " + format_time(report_.result.time);
         judge_.finish(report_.result);
         report_.verdicts = judge_.verdicts();
         finish();
@@ -211,16 +217,27 @@ void SingleRun::save(std::int64_t time) {
     report_.restart_error = write_checkpoint(options_.checkpoint_path, program_, time, out.bytes());
 }
 
+/// Stops the run when the user wants it, and when what it records cannot be written.
+void SingleRun::look(std::int64_t time) {
+    if (options_.progress) options_.progress(time);
+    if (writing_fails() || (options_.interrupt && *options_.interrupt)) stop_ = true;
+}
+
+bool SingleRun::writing_fails() const {
+    return (events_ && !events_->error().empty()) || (pulses_ && !pulses_->error().empty()) ||
+           std::ranges::any_of(traces_, [](const Tracing& t) { return t.files.failed(); });
+}
+
 void SingleRun::finish() {
     for (Tracing& trace : traces_) {
-        report_.traces.push_back(trace.finish(judge_));
+        report_.traces.push_back(trace.finish(report_.result, judge_));
         if (report_.trace_error.empty()) report_.trace_error = trace.files.error();
     }
     if (events_) {
         const std::string error = events_->finish();
         if (report_.trace_error.empty()) report_.trace_error = error;
     }
-    if (pulses_) report_.pulses_error = pulses_->finish();
+    if (pulses_) report_.pulses_error = pulses_->finish(report_.result.message);
     if (options_.retain_path.empty()) return;
     const std::string error = write_retained(options_.retain_path, machine_);
     if (!error.empty()) report_.restart_error = error;

@@ -5,10 +5,10 @@
 #include <limits>
 #include <mutex>
 #include <optional>
-#include <thread>
 
 #include <fmt/format.h>
 
+#include "runtime/study/side_by_side.hpp"
 #include "runtime/study/single_run.hpp"
 
 namespace lineshaft {
@@ -123,9 +123,15 @@ class Queue {
 
     /// Empty: interrupted.
     void put(std::int64_t index, std::optional<CaseResult> result) {
+        if (!result) return stop();
         const std::lock_guard lock(mutex_);
-        if (!result) stopped_ = true;
-        if (result) insert(index, std::move(*result));
+        insert(index, std::move(*result));
+        changed_.notify_all();
+    }
+
+    void stop() {
+        const std::lock_guard lock(mutex_);
+        stopped_ = true;
         changed_.notify_all();
     }
 
@@ -182,11 +188,7 @@ std::map<std::int64_t, CaseResult> run_cases(const Study& study, const Catalog& 
         CaseRunner runner(study, catalog, options.interrupt);
         while (const auto index = queue.next()) queue.put(*index, runner.run(*index));
     };
-    std::vector<std::jthread> threads;
-    for (std::int64_t i = 1; i < std::min<std::int64_t>(options.jobs, range.count()); ++i)
-        threads.emplace_back(work);
-    work();
-    threads.clear();
+    side_by_side(std::min<std::int64_t>(options.jobs, range.count()), work, [&] { queue.stop(); });
     return queue.waiting();
 }
 

@@ -1,12 +1,14 @@
 #include "runtime/trace/background_sink.hpp"
 
+#include <utility>
+
 namespace lineshaft {
 
 BackgroundSink::BackgroundSink(TraceSink& to, std::size_t row_words)
     : to_(to), row_words_(row_words), thread_([this] { work(); }) {}
 
 BackgroundSink::~BackgroundSink() {
-    finish();
+    join();
 }
 
 void BackgroundSink::rows(const std::uint64_t* words, std::size_t rows) {
@@ -24,9 +26,19 @@ void BackgroundSink::rows(const std::uint64_t* words, std::size_t rows) {
 void BackgroundSink::drain() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return given_ == taken_; });
+    rethrow();
 }
 
 void BackgroundSink::finish() {
+    join();
+    rethrow();
+}
+
+void BackgroundSink::rethrow() {
+    if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
+}
+
+void BackgroundSink::join() {
     {
         const std::lock_guard lock(mutex_);
         finished_ = true;
@@ -42,10 +54,19 @@ void BackgroundSink::work() {
         if (given_ == taken_) return;
         const Block& block = blocks_[taken_ % blocks_.size()];
         lock.unlock();
-        to_.rows(block.words.data(), block.rows);
+        take(block);
         lock.lock();
         ++taken_;
         changed_.notify_all();
+    }
+}
+
+void BackgroundSink::take(const Block& block) {
+    if (thrown_) return;
+    try {
+        to_.rows(block.words.data(), block.rows);
+    } catch (...) {
+        thrown_ = std::current_exception();
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -21,7 +22,8 @@ class BackgroundSink : public TraceSink {
 
     void rows(const std::uint64_t* words, std::size_t rows) override;
 
-    /// Returns when all rows have been taken; until the next ones the other sink is at rest.
+    /// Returns when all rows have been taken; until the next ones the other sink is at rest. Throws
+    /// what the other sink has thrown; it gets no rows after that.
     void drain();
 
     /// Likewise, and none may follow.
@@ -33,7 +35,10 @@ class BackgroundSink : public TraceSink {
         std::size_t rows = 0;
     };
 
+    void join();
+    void rethrow();
     void work();
+    void take(const Block& block);
 
     TraceSink& to_;
     std::size_t row_words_;
@@ -41,6 +46,7 @@ class BackgroundSink : public TraceSink {
     std::size_t given_ = 0;  ///< blocks so far; the next is blocks_[given_ % 2]
     std::size_t taken_ = 0;
     bool finished_ = false;
+    std::exception_ptr thrown_;
     std::mutex mutex_;
     std::condition_variable changed_;
     std::thread thread_;

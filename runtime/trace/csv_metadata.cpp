@@ -71,6 +71,7 @@ std::optional<CsvMetadata> read_metadata(const std::string& csv_path, Diagnostic
     CsvMetadata metadata{.title = text_at(json, "dc:title"),
                          .version = text_at(json, "lineshaft:version"),
                          .program = text_at(json, "lineshaft:program"),
+                         .stopped = text_at(json, "lineshaft:stopped"),
                          .rows = {},
                          .crc32 = text_at(json, "lineshaft:crc32"),
                          .columns = {}};

@@ -23,6 +23,7 @@ struct CsvMetadata {
     std::string title;                 ///< of the program
     std::string version;               ///< of the lineshaft that wrote it
     std::string program;               ///< text_hash of the program's text
+    std::string stopped;               ///< why its run did not complete; empty: it did
     std::optional<std::int64_t> rows;  ///< without the header
     std::string crc32;                 ///< Checksum of all bytes of the CSV file
     std::vector<Column> columns;

@@ -134,7 +134,11 @@ char* CsvWriter::append_cell(char* end, std::size_t column, std::uint64_t bits) 
 }
 
 std::string CsvWriter::finish(const std::string& program_title, const std::string& program_text,
+                              const std::string& stopped,
                               const nlohmann::ordered_json& expectations) {
+    const std::string beside = sidecar_path(path_);
+    std::error_code none;  // then a later step tells what is wrong
+    if (file_.is_regular() && !file_.failed()) std::filesystem::remove(beside, none);
     if (!file_.commit() || !file_.is_regular()) return file_.error();
     nlohmann::ordered_json columns = nlohmann::ordered_json::array();
     for (const Signal& s : {Signal{.name = "time", .type = Type::real, .unit = "s", .names = {}},
@@ -148,10 +152,11 @@ std::string CsvWriter::finish(const std::string& program_title, const std::strin
                                     {"lineshaft:program", text_hash(program_text)},
                                     {"lineshaft:rows", row_count_},
                                     {"lineshaft:crc32", checksum_.text()}};
+    if (!stopped.empty()) metadata["lineshaft:stopped"] = stopped;
     if (style_.excel_de) metadata["dialect"] = {{"delimiter", ";"}};
     if (!expectations.empty()) metadata["lineshaft:expectations"] = expectations;
     metadata["tableSchema"] = {{"columns", columns}};
-    OutputFile sidecar(sidecar_path(path_));
+    OutputFile sidecar(beside);
     sidecar.write(metadata.dump(2) + "\n");
     sidecar.commit();
     return sidecar.error();

@@ -42,10 +42,15 @@ class CsvWriter : public TraceSink {
     void rows(const std::uint64_t* words, std::size_t rows) override;
 
     /// Closes the file and writes the CSVW sidecar `PATH-metadata.json` beside it: types, units,
-    /// program and its hash, rows, a checksum, and what came of its expectations (see
-    /// verdicts_json). Empty when all is well, else what went wrong.
+    /// program and its hash, rows, a checksum, why the run stopped if it did not complete, and what
+    /// came of its expectations (see verdicts_json). A sidecar of before goes first: whenever this
+    /// is killed, none tells of another file. Empty when all is well, else what went wrong.
     std::string finish(const std::string& program_title, const std::string& program_text,
+                       const std::string& stopped = {},
                        const nlohmann::ordered_json& expectations = {});
+
+    /// Whether writing goes wrong. May be asked while another thread writes.
+    bool failed() const { return file_.failed(); }
 
   private:
     /// A column's last value and its text: what stands still is not formatted again.

@@ -16,12 +16,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void flush_folder(const std::string& path) {
-    const auto folder = fs::absolute(path).parent_path();
-    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY);
-    if (descriptor < 0) return;
-    ::fsync(descriptor);
+/// So that the new name outlives a power failure. A folder that cannot be read, or a file system
+/// that does not flush folders, is no error.
+bool flush_folder(const std::string& path) {
+    const fs::path folder = fs::path(path).parent_path();
+    const int descriptor =
+        ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return true;
+    const bool flushed = ::fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS;
+    const int error = errno;
     ::close(descriptor);
+    errno = error;
+    return flushed;
 }
 
 /// The last bytes before `size`; empty when there is no such place.
@@ -50,7 +56,8 @@ OutputFile::OutputFile(std::string path, StateReader& begun)
     begun.get(tail);
     if (!look()) return;
     if (regular_ && !take_up(size, tail))
-        error_ = fmt::format("cannot go on with '{}': it is not the file of the checkpoint", path_);
+        set_error(
+            fmt::format("cannot go on with '{}': it is not the file of the checkpoint", path_));
     else
         open(size);
 }
@@ -65,7 +72,7 @@ bool OutputFile::look() {
     std::error_code unknown;  // opening tells it
     const fs::file_status status = fs::status(path_, unknown);
     if (fs::is_directory(status))
-        error_ = fmt::format("cannot write '{}': it is a directory", path_);
+        set_error(fmt::format("cannot write '{}': it is a directory", path_));
     regular_ = !fs::exists(status) || fs::is_regular_file(status);
     return error_.empty();
 }
@@ -110,12 +117,17 @@ bool OutputFile::commit() {
     file_ = nullptr;
     if (!regular_ || !error_.empty()) return error_.empty();
     if (std::rename(part_.c_str(), path_.c_str()) != 0) fail("rename");
-    flush_folder(path_);
+    if (error_.empty() && !flush_folder(path_)) fail("flush the folder of");
     return error_.empty();
 }
 
 void OutputFile::fail(const char* what) {
-    error_ = fmt::format("cannot {} '{}': {}", what, path_, std::strerror(errno));
+    set_error(fmt::format("cannot {} '{}': {}", what, path_, std::strerror(errno)));
+}
+
+void OutputFile::set_error(std::string text) {
+    error_ = std::move(text);
+    failed_ = true;
 }
 
 }  // namespace lineshaft

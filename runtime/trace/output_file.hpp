@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <cstdio>
 #include <string>
@@ -38,17 +39,22 @@ class OutputFile {
     /// `cannot write 'x.csv': No space left on device`; empty while all is well.
     const std::string& error() const { return error_; }
 
+    /// Whether there is an error. May be asked while another thread writes.
+    bool failed() const { return failed_; }
+
   private:
     bool look();
     bool take_up(std::int64_t size, const std::string& tail);
     void open(std::int64_t keep);
     void fail(const char* what);
+    void set_error(std::string text);
 
     std::string path_;
     std::string part_;
     bool regular_ = true;
     std::FILE* file_ = nullptr;
     std::string error_;
+    std::atomic<bool> failed_ = false;
 };
 
 }  // namespace lineshaft

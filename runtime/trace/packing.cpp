@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <new>
 
 #include <zlib.h>
 
@@ -93,8 +94,10 @@ std::string byte_planes(const Whole& values, std::size_t& width) {
 std::string deflated(const std::string& bytes) {
     uLongf size = compressBound(bytes.size());
     std::string out(size, '\0');
-    compress2(reinterpret_cast<Bytef*>(out.data()), &size,
-              reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_COMPRESSION);
+    const int result =
+        compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                  reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_COMPRESSION);
+    if (result != Z_OK) throw std::bad_alloc();  // nothing else can go wrong
     out.resize(size);
     return out;
 }

@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "runtime/trace/csv_metadata.hpp"
 
 namespace lineshaft {
 
@@ -11,13 +16,13 @@ constexpr std::size_t longest_time = 20;
 
 }  // namespace
 
-PulseWriter::PulseWriter(std::string path, Machine& machine) : file_(std::move(path)) {
+PulseWriter::PulseWriter(std::string path, Machine& machine) : file_(path), path_(std::move(path)) {
     file_.write("channel,time_ns,direction\n");
     listen_to(machine);
 }
 
 PulseWriter::PulseWriter(std::string path, Machine& machine, StateReader& begun)
-    : file_(std::move(path), begun) {
+    : file_(path, begun), path_(std::move(path)) {
     listen_to(machine);
 }
 
@@ -42,9 +47,17 @@ void PulseWriter::Channel::edges(std::span<const std::int64_t> times, bool rever
     writer.file_.write({text.data(), static_cast<std::size_t>(end - text.data())});
 }
 
-std::string PulseWriter::finish() {
-    file_.commit();
-    return file_.error();
+std::string PulseWriter::finish(const std::string& stopped) {
+    std::error_code none;  // then a later step tells what is wrong
+    if (file_.is_regular() && !file_.failed()) std::filesystem::remove(sidecar_path(path_), none);
+    if (!file_.commit() || stopped.empty() || !file_.is_regular()) return file_.error();
+    const nlohmann::ordered_json note{{"@context", "http://www.w3.org/ns/csvw"},
+                                      {"url", std::filesystem::path(path_).filename().string()},
+                                      {"lineshaft:stopped", stopped}};
+    OutputFile sidecar(sidecar_path(path_));
+    sidecar.write(note.dump(2) + "\n");
+    sidecar.commit();
+    return sidecar.error();
 }
 
 }  // namespace lineshaft

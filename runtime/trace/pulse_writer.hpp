@@ -26,8 +26,9 @@ class PulseWriter {
     void save(StateWriter& out) { file_.save(out); }
     const std::string& error() const { return file_.error(); }
 
-    /// Closes the file. Empty when all is well, else what went wrong.
-    std::string finish();
+    /// Closes the file. If the run did not complete, `PATH-metadata.json` beside it says why
+    /// (`lineshaft:stopped`). Empty when all is well, else what went wrong.
+    std::string finish(const std::string& stopped);
 
   private:
     struct Channel : PulseSink {
@@ -42,6 +43,7 @@ class PulseWriter {
     void listen_to(Machine& machine);
 
     OutputFile file_;
+    std::string path_;
     std::string text_;
     std::vector<std::unique_ptr<Channel>> channels_;
 };

@@ -38,7 +38,7 @@ void TraceFiles::rows(const std::uint64_t* words, std::size_t rows) {
 
 void TraceFiles::end() {
     background_->finish();
-    const std::string wrong = csv_->finish(title_, program_text_, expectations_);
+    const std::string wrong = csv_->finish(title_, program_text_, stopped_, expectations_);
     if (error_.empty()) error_ = wrong;
     background_.reset();
     csv_.reset();

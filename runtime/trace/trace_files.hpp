@@ -18,8 +18,12 @@ class TraceFiles : public TraceSink {
     TraceFiles(const std::string& out, const TraceSetup& setup, std::string title,
                std::string program_text, const CsvStyle& style);
 
-    /// What came of the program's expectations, for the files that end after the run.
-    void set_expectations(nlohmann::ordered_json verdicts) { expectations_ = std::move(verdicts); }
+    /// For the files that end after the run: why it stopped, empty if it completed, and what came
+    /// of the program's expectations.
+    void set_outcome(std::string stopped, nlohmann::ordered_json verdicts) {
+        stopped_ = std::move(stopped);
+        expectations_ = std::move(verdicts);
+    }
 
     void begin() override;
     void rows(const std::uint64_t* words, std::size_t rows) override;
@@ -34,6 +38,8 @@ class TraceFiles : public TraceSink {
     const std::vector<std::string>& paths() const { return paths_; }
     /// Of the first file that went wrong; empty when all is well.
     const std::string& error() const { return error_; }
+    /// Whether writing goes wrong: the rest of the run would not be recorded.
+    bool failed() const { return !error_.empty() || (csv_ && csv_->failed()); }
 
   private:
     std::string next_path() const;
@@ -43,6 +49,7 @@ class TraceFiles : public TraceSink {
     const TraceSetup& setup_;
     std::string title_, program_text_;
     CsvStyle style_;
+    std::string stopped_;
     nlohmann::ordered_json expectations_;
     std::optional<CsvWriter> csv_;
     std::optional<BackgroundSink> background_;

@@ -10,8 +10,8 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
-#include "runtime/model/units.hpp"
 #include "runtime/model/random.hpp"
+#include "runtime/model/units.hpp"
 #include "tests/allocations.hpp"
 #include "tests/blocks/scanning.hpp"
 
@@ -75,7 +75,7 @@ Value any_value(const Field& field, Random& random) {
 }
 
 /// A value of a usual size; it may lie outside the limits.
-Value usual_parameter(const Field& field, Random& random) {
+Value usual_value(const Field& field, Random& random) {
     if (field.type != Type::real && field.type != Type::integer) return any_value(field, random);
     constexpr std::int64_t sizes[] = {1, 2, 3, 10, 100};
     const std::int64_t size = sizes[random.next() % std::size(sizes)];
@@ -89,13 +89,18 @@ void set_some(Instance& block, const BlockType& type, Random& random) {
             block.set(f, any_value(f, random));
 }
 
-/// Some parameters, to what a program file could set them to: inside their limits.
-void set_parameters(Instance& block, const BlockType& type, Random& random) {
+/// Each field of the direction once in `times`, within the limits of what a program may set.
+void set_usual(Instance& block, const BlockType& type, Direction direction, std::uint64_t times,
+               Random& random) {
     for (const Field& f : type.fields) {
-        if (f.direction != Direction::parameter || random.next() % 2 != 0) continue;
-        const Value value = usual_parameter(f, random);
+        if (f.direction != direction || random.next() % times != 0) continue;
+        const Value value = usual_value(f, random);
         if (f.admits(as_real(value))) block.set(f, value);
     }
+}
+
+void set_parameters(Instance& block, const BlockType& type, Random& random) {
+    set_usual(block, type, Direction::parameter, 2, random);
 }
 
 void check_finite_outputs(const Instance& block, const BlockType& type) {
@@ -104,6 +109,86 @@ void check_finite_outputs(const Instance& block, const BlockType& type) {
         INFO("output " << f.name);
         REQUIRE(std::isfinite(as_real(block.get(f))));
     }
+}
+
+constexpr std::int64_t scans_of_motion = 200;
+
+bool is_in_error(const Instance& block, const BlockType& type) {
+    const Field* error = type.find_readable("error");
+    return error && std::get<bool>(block.get(*error));
+}
+
+bool differ(const Instance& a, const Instance& b, const BlockType& type) {
+    return std::ranges::any_of(type.fields, [&](const Field& f) {
+        return f.direction == Direction::output && f.type == Type::real && a.get(f) != b.get(f);
+    });
+}
+
+bool can_move(const BlockType& type) {
+    const auto has = [&](Direction direction) {
+        return std::ranges::any_of(type.fields, [&](const Field& f) {
+            return f.direction == direction && f.type == Type::real;
+        });
+    };
+    return has(Direction::input) && has(Direction::output);
+}
+
+/// Scanned `scans` times, with inputs that change now and then.
+Instance scanned(const BlockType& type, std::uint64_t seed, std::int64_t scans) {
+    Instance block(type);
+    Random random(seed, type.name);
+    set_parameters(block, type, random);
+    set_usual(block, type, Direction::input, 4, random);
+    for (std::int64_t i = 0; i < scans; ++i) {
+        if (i % 50 == 25) set_usual(block, type, Direction::input, 4, random);
+        block.scan(i);
+    }
+    return block;
+}
+
+/// Some of the type that run without an error after scans_of_motion scans, and whose outputs have
+/// changed since the scan `since`.
+std::vector<Instance> in_motion(const BlockType& type, std::int64_t since) {
+    constexpr std::size_t enough = 5;
+    std::vector<Instance> found;
+    for (std::uint64_t seed = 1; seed <= 1000 && found.size() < enough; ++seed) {
+        const Instance block = scanned(type, seed, scans_of_motion);
+        if (!is_in_error(block, type) && differ(scanned(type, seed, since), block, type))
+            found.push_back(block);
+    }
+    return found;
+}
+
+std::vector<Value> extremes(const Field& input) {
+    constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+    if (input.type == Type::integer) return {most, -most - 1, std::int64_t{-1}};
+    if (input.type != Type::real) return {};
+    return {not_a_number, infinite, -infinite, -0.0,  denormal,
+            -denormal,    largest,  -largest,  1e300, -1e300};
+}
+
+/// Scans `block` with the extreme value for a while, then with the value of before for longer than
+/// a set-point can be on its way to a drive.
+void check_extreme(Instance block, std::int64_t scan, const BlockType& type, const Field& input,
+                   const Value& extreme) {
+    constexpr std::int64_t a_while = 10, longer = 70;
+    INFO(type.name << "." << input.name << " = " << as_real(extreme) << " at scan " << scan);
+    const Value good = block.get(input);
+    block.set(input, extreme);
+    for (const std::int64_t end = scan + a_while; scan < end; ++scan) {
+        block.scan(scan);
+        check_finite_outputs(block, type);
+        if (!std::isfinite(as_real(extreme)) && type.find_readable("error"))
+            REQUIRE(is_in_error(block, type));
+        if (is_in_error(block, type))
+            REQUIRE(as_real(block.get(*type.find_readable("error_id"))) > 0);
+    }
+    block.set(input, good);
+    for (const std::int64_t end = scan + longer; scan < end; ++scan) {
+        block.scan(scan);
+        check_finite_outputs(block, type);
+    }
+    CHECK_FALSE(is_in_error(block, type));
 }
 
 std::string replaced(std::string text, std::string_view parameter, std::string_view value) {
@@ -268,25 +353,20 @@ TEST_CASE("finite inputs give finite outputs, however extreme") {
     }
 }
 
-TEST_CASE("an input that is no number is reported and held off the outputs") {
+TEST_CASE("an extreme input is reported or held off the outputs, and over when it is over") {
     const Catalog catalog = standard_blocks();
     for (const BlockType& type : catalog.types()) {
-        const Field* error = type.find_readable("error");
+        const Instance at_rest(type);
+        std::vector<Instance> moving = in_motion(type, scans_of_motion - 1);
+        if (moving.empty()) moving = in_motion(type, 0);  // outputs follow the inputs at once
+        INFO("block " << type.name);
+        REQUIRE((!moving.empty() || !can_move(type)));
         for (const Field& input : type.fields) {
-            if (input.direction != Direction::input || input.type != Type::real) continue;
-            for (const double bad : {not_a_number, infinite, -infinite}) {
-                INFO(type.name << "." << input.name << " = " << bad);
-                Instance block(type);
-                for (std::int64_t i = 0; i < 10; ++i) block.scan(i);
-                const Value good = block.get(input);
-                block.set(input, bad);
-                block.scan(10);
-                check_finite_outputs(block, type);
-                if (error) CHECK(std::get<bool>(block.get(*error)));
-                block.set(input, good);
-                block.scan(11);
-                check_finite_outputs(block, type);
-                if (error) CHECK_FALSE(std::get<bool>(block.get(*error)));
+            if (input.direction != Direction::input) continue;
+            for (const Value& extreme : extremes(input)) {
+                check_extreme(at_rest, 0, type, input, extreme);
+                for (const Instance& block : moving)
+                    check_extreme(block, scans_of_motion, type, input, extreme);
             }
         }
     }

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "blocks/axis/gear_axis.hpp"
-#include "blocks/axis/simulated_drive.hpp"
+#include "blocks/axis/servo_drive.hpp"
 #include "blocks/axis/virtual_axis.hpp"
 #include "blocks/circle/circle_fit.hpp"
 #include "blocks/circle/circle_ratio.hpp"
@@ -21,7 +21,7 @@ struct HandCircle {
     template <class After>
     void run(After after);
 
-    SimulatedDrive g_drive, x_drive, y_drive;
+    ServoDrive g_drive, x_drive, y_drive;
     CircleRatio circle;
     VirtualAxis g;
     GearAxis x, y;

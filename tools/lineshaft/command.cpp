@@ -1,7 +1,9 @@
 #include "tools/lineshaft/command.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -21,6 +23,12 @@ nlohmann::ordered_json to_json(const Diagnostic& d) {
     return {{"code", d.code},       {"file", d.mark.file ? d.mark.file->path : ""},
             {"line", d.mark.line},  {"column", d.mark.column},
             {"message", d.message}, {"help", d.help}};
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+    std::error_code unknown;  // what cannot be looked at is not there
+    return std::filesystem::is_regular_file(a, unknown) &&
+           std::filesystem::equivalent(a, b, unknown);
 }
 
 }  // namespace
@@ -59,6 +67,20 @@ Exit report(const Diagnostics& diagnostics, bool json) {
     for (const Diagnostic& d : diagnostics.list()) list.push_back(to_json(d));
     fmt::print("{}\n", nlohmann::ordered_json{{"diagnostics", list}}.dump(2));
     return Exit::wrong;
+}
+
+void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
+                   Diagnostics& out) {
+    for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+        if (output->empty()) continue;
+        for (const std::string& input : inputs)
+            if (is_same_file(*output, input))
+                out.add("L0509", {}, fmt::format("'{}' would replace what is read", *output),
+                        "name another file");
+        if (std::find(outputs.begin(), output, *output) != output)
+            out.add("L0509", {}, fmt::format("two outputs would be '{}'", *output),
+                    "name another file");
+    }
 }
 
 ProgressLine::ProgressLine(bool quiet)

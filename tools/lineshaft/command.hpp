@@ -41,6 +41,11 @@ struct CommonOptions {
 /// Prints what is wrong, as a compiler does on stderr, or as JSON on stdout. Always Exit::wrong.
 Exit report(const Diagnostics& diagnostics, bool json);
 
+/// L0509 for each of `outputs` that is one of the files `inputs`, by whatever name, or that is
+/// named twice. Empty names are none.
+void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
+                   Diagnostics& out);
+
 /// A line on a terminal that is rewritten while work goes on, once a second has passed.
 class ProgressLine {
   public:
@@ -69,6 +74,7 @@ void add_plan(CLI::App& app, Exit& result);
 void add_fit(CLI::App& app, Exit& result);
 void add_diff(CLI::App& app, Exit& result);
 void add_verify(CLI::App& app, Exit& result);
+void add_contour(CLI::App& app, Exit& result);
 void add_report(CLI::App& app, Exit& result);
 void add_show(CLI::App& app, Exit& result);
 void add_plot(CLI::App& app, Exit& result);

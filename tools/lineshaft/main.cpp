@@ -1,17 +1,57 @@
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <new>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "runtime/version.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace {
 
+constexpr const char* out_of_memory = "lineshaft: error: out of memory\n";
+
 void on_signal(int) {
     lineshaft::interrupt_requested = true;
+}
+
+/// A closed standard stream's number would go to the next file that is opened, and what is printed
+/// into that file. What stands in for it takes nothing.
+void occupy_closed_streams() {
+    while (true) {
+        const int descriptor = ::open("/dev/null", O_RDONLY);
+        if (descriptor <= STDERR_FILENO && descriptor >= 0) continue;
+        if (descriptor >= 0) ::close(descriptor);
+        return;
+    }
+}
+
+void set_up_signals() {
+    std::signal(SIGINT, on_signal);
+    std::signal(SIGTERM, on_signal);
+    std::signal(SIGPIPE, SIG_IGN);  // writing tells it
+    std::signal(SIGXFSZ, SIG_IGN);  // likewise
+}
+
+/// A library that cannot go on without memory ends here, whatever it calls on its way.
+[[noreturn]] void on_terminate() {
+    try {
+        if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
+    } catch (const std::bad_alloc&) {
+        std::fputs(out_of_memory, stderr);
+        std::_Exit(static_cast<int>(lineshaft::Exit::fault));
+    } catch (...) {
+    }
+    std::abort();
 }
 
 void set_up_messages() {
@@ -27,15 +67,10 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
     return fmt::format("unknown command '{}'; {}", word, lineshaft::suggest(word, names));
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/// The exit code.
+int run_command(int argc, char** argv) {
     using namespace lineshaft;
     set_up_messages();
-    std::signal(SIGINT, on_signal);
-    std::signal(SIGTERM, on_signal);
-    std::signal(SIGPIPE, SIG_IGN);
-
     CLI::App app{
         "A PLC soft-runtime for motion control: runs YAML programs scan by scan in virtual time.",
         "lineshaft"};
@@ -47,7 +82,7 @@ int main(int argc, char** argv) {
     Exit result = Exit::fine;
     for (const AddCommand add :
          {add_run, add_check, add_test, add_study, add_fit, add_blocks, add_schema, add_explain,
-          add_plan, add_diff, add_verify, add_report, add_show, add_plot})
+          add_plan, add_diff, add_verify, add_contour, add_report, add_show, add_plot})
         add(app, result);
     if (argc > 1 && argv[1][0] != '-') {
         if (const std::string message = unknown_command(app, argv[1]); !message.empty()) {
@@ -62,13 +97,26 @@ int main(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : static_cast<int>(Exit::wrong);
-    } catch (const std::exception& error) {
-        spdlog::error("{}", error.what());
-        return static_cast<int>(Exit::fault);
     }
     if (std::fflush(stdout) != 0) {
-        spdlog::error("cannot write to the standard output");
+        spdlog::error("cannot write to the standard output: {}", std::strerror(errno));
         return static_cast<int>(Exit::fault);
     }
     return static_cast<int>(result);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    occupy_closed_streams();
+    set_up_signals();
+    std::set_terminate(on_terminate);
+    try {
+        return run_command(argc, argv);
+    } catch (const std::bad_alloc&) {
+        std::fputs(out_of_memory, stderr);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "lineshaft: error: %s\n", error.what());
+    }
+    return static_cast<int>(lineshaft::Exit::fault);
 }

@@ -322,6 +322,9 @@ Exit execute(const PlanCommand& command) {
         spdlog::error("cannot read '{}': it is a directory", command.input);
         return Exit::wrong;
     }
+    Diagnostics out;
+    check_outputs({command.output}, {command.input}, out);
+    if (!out.empty()) return report(out, false);
     const int descriptor =
         standard_input ? STDIN_FILENO : ::open(command.input.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor < 0) {

@@ -218,6 +218,7 @@ Exit execute(PlotCommand& command) {
         return Exit::wrong;
     }
     Diagnostics out;
+    check_outputs({command.output}, command.inputs, out);
     const std::vector<ReportRun> runs = read_runs(command, out);
     if (!out.empty()) return report(out, false);
     if (command.title.empty() && runs.front().table.metadata)

@@ -157,6 +157,7 @@ Exit execute(const ReportCommand& command) {
         return Exit::wrong;
     }
     Diagnostics out;
+    check_outputs({command.output}, command.inputs, out);
     const Json report = make_report(command, out);
     if (!out.empty()) return lineshaft::report(out, false);
     OutputFile file(command.output);

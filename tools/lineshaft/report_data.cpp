@@ -33,11 +33,10 @@ bool is_expectation(const Json& object) {
 }
 
 /// What the run's sidecar says of its expectations; read_csv has complained about a bad sidecar.
-Json read_expectations(const std::string& csv_path) {
+Json read_expectations(const std::string& csv_path, Diagnostics& out) {
     Json list = Json::array();
-    Diagnostics ignored;
     if (!std::filesystem::exists(sidecar_path(csv_path))) return list;
-    const auto file = read_source(sidecar_path(csv_path), ignored);
+    const auto file = read_source(sidecar_path(csv_path), out);
     if (!file) return list;
     const Json sidecar = Json::parse(file->text, nullptr, false);
     if (!sidecar.is_object() || !sidecar.contains("lineshaft:expectations")) return list;
@@ -138,7 +137,7 @@ std::optional<ReportRun> read_run(const std::string& path, const std::vector<std
     if (!run.time || !check_time(run.table, *run.time, out)) return {};
     for (const CsvColumn& column : run.table.columns)
         if (&column != run.time && column.name != "scan") run.signals.push_back(&column);
-    run.expectations = read_expectations(path);
+    run.expectations = read_expectations(path, out);
     return run;
 }
 

@@ -87,6 +87,9 @@ void print_text(const RunCommand& command, const Loaded& loaded, const RunReport
 }
 
 Exit exit_code(const RunReport& report) {
+    const bool files_failed = !report.trace_error.empty() || !report.pulses_error.empty() ||
+                              !report.restart_error.empty();
+    if (files_failed) return Exit::fault;
     if (report.result.outcome == Outcome::interrupted) return Exit::interrupted;
     if (report.faulted()) return Exit::fault;
     return report.expectations_hold() ? Exit::fine : Exit::failed;
@@ -130,7 +133,9 @@ RunOptions run_options(const RunCommand& command, Diagnostics& out) {
 
 Exit execute(const RunCommand& command) {
     Diagnostics out;
+    YamlFiles files;
     LoadOptions options = command.common.load_options(out);
+    options.files = &files;
     options.forces = command.forces;
     RunOptions how = run_options(command, out);
     auto loaded = load_program(command.program, options, standard_blocks(), out);
@@ -146,6 +151,11 @@ Exit execute(const RunCommand& command) {
         out.add("L0508", {loaded->program.file, 0, 0, 1},
                 "the program has nothing to keep in " + command.retain,
                 "say under 'retain:' which signals outlive a run");
+    std::vector<std::string> inputs;
+    for (const auto& file : files.sources()) inputs.push_back(file->path);
+    if (loaded)
+        for (const ReplayPlan& replay : loaded->program.replays) inputs.push_back(replay.path);
+    check_outputs({command.trace, command.pulses, command.retain, command.checkpoint}, inputs, out);
     if (!out.empty()) return report(out, command.common.json);
 
     ProgressLine line(command.common.quiet || command.common.json);

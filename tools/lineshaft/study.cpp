@@ -177,6 +177,7 @@ Exit execute(const StudyCommand& command) {
     if (file)
         study =
             read_study(file, options, catalog, out, part ? StudyCheck::groups : StudyCheck::values);
+    check_outputs({command.output}, {command.plan, study.program}, out);
     if (!out.empty()) return report(out, command.common.json);
     StudyRun run(command, study, chunk);
     return command.merge.empty() ? run.simulate(catalog) : run.merge();

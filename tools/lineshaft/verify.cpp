@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 
 #include <fmt/format.h>
@@ -18,7 +20,8 @@ struct VerifyCommand {
     bool json = false, quiet = false;
 };
 
-std::string checksum_of(const std::string& path) {
+/// Empty, and an L0001 diagnostic, when it cannot be read.
+std::optional<std::string> checksum_of(const std::string& path, Diagnostics& out) {
     Checksum checksum;
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                                &std::fclose);
@@ -27,7 +30,9 @@ std::string checksum_of(const std::string& path) {
         count = std::fread(part.data(), 1, part.size(), file.get());
         checksum.add({part.data(), count});
     }
-    return checksum.text();
+    if (file && !std::ferror(file.get())) return checksum.text();
+    out.add("L0001", {}, fmt::format("cannot read '{}': {}", path, std::strerror(errno)));
+    return {};
 }
 
 bool is_mistake_of_file(const Diagnostic& d) {
@@ -41,11 +46,11 @@ std::optional<CsvTable> verify(const std::string& path, Diagnostics& out) {
     if (!table->metadata || table->metadata->crc32.empty())
         out.add("L0709", {table->header, 0, 0, 1}, "no sidecar tells what the trace was",
                 fmt::format("a trace is whole if it is as '{}' says", sidecar_path(path)));
-    else if (checksum_of(path) != table->metadata->crc32)
-        out.add("L0706", {table->header, 0, 0, 1},
-                fmt::format("the CRC-32 of its bytes is {}, and was {}", checksum_of(path),
-                            table->metadata->crc32),
-                "the file was changed after it had been recorded");
+    else if (const auto is = checksum_of(path, out); is && *is != table->metadata->crc32)
+        out.add(
+            "L0706", {table->header, 0, 0, 1},
+            fmt::format("the CRC-32 of its bytes is {}, and was {}", *is, table->metadata->crc32),
+            "the file was changed after it had been recorded");
     return table;
 }
 
@@ -58,6 +63,8 @@ Exit execute(const VerifyCommand& command) {
         fmt::print("ok  {}: {} rows of {} columns, written by lineshaft {} for '{}'\n", path,
                    table->rows, table->columns.size(), table->metadata->version,
                    table->metadata->title);
+        if (const std::string& stopped = table->metadata->stopped; !stopped.empty())
+            fmt::print("    the run did not complete: {}\n", stopped);
     }
     if (out.empty() && command.json) fmt::print("{{\"diagnostics\": []}}\n");
     if (out.empty()) return Exit::fine;

@@ -1,3 +1,4 @@
+#include <array>
 #include <random>
 
 #include <fmt/format.h>
@@ -5,6 +6,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/scan/executive.hpp"
 #include "runtime/study/single_run.hpp"
+#include "runtime/trace/number_text.hpp"
 #include "tests/folder.hpp"
 #include "tests/runtime/program/small_blocks.hpp"
 
@@ -44,6 +46,16 @@ run: {{for: 3 s}}
     const Signal* signal = linked.machine.find(input);
     REQUIRE(signal);
     return signal->describe(signal->value());
+}
+
+/// As traces write them.
+std::string seconds(std::int64_t nanoseconds) {
+    std::array<char, longest_number> text;
+    return {text.data(), write_seconds(text.data(), nanoseconds)};
+}
+std::string real(double value) {
+    std::array<char, longest_number> text;
+    return {text.data(), write_real(text.data(), value)};
 }
 
 /// All but the header.
@@ -140,8 +152,8 @@ TEST_CASE("any reals come back from a replay with the same bytes", "[replay]") {
             const std::uint64_t bits = random();
             std::memcpy(&value, &bits, sizeof value);
         } while (!std::isfinite(value));
-        csv += fmt::format("{},{},{},{},{}\n", format_number(row / 1e3), row, format_number(value),
-                           random() % 2, static_cast<std::int64_t>(random() >> 12));
+        csv += fmt::format("{},{},{},{},{}\n", seconds(std::int64_t{row} * 1'000'000), row,
+                           real(value), random() % 2, static_cast<std::int64_t>(random() >> 12));
     }
     write(folder / "first.csv", csv);
     CHECK(recorded(folder, "second", pass_through("first", "1 ms", "0 mm")) == rows(csv));

@@ -85,14 +85,13 @@ TEST_CASE("a trace is written while the program runs") {
     CHECK(std::filesystem::exists(trace + "-metadata.json"));
 }
 
-TEST_CASE("a trace that cannot be written is a fault of the run") {
+TEST_CASE("a trace that cannot be written is a fault and ends the run") {
     File file;
     auto loaded = file.load();
     REQUIRE(loaded);
     const RunReport report =
         run(*loaded, {.trace_path = file.folder / "none/t.csv", .interrupt = {}, .progress = {}});
-    CHECK(report.result.outcome == Outcome::completed);
-    CHECK(report.expectations_hold());
+    CHECK(report.result.message == "the run stopped at 0 s");
     CHECK(report.faulted());
     CHECK_THAT(report.trace_error, Catch::EndsWith("No such file or directory"));
 }
@@ -111,15 +110,19 @@ TEST_CASE("a block's error is a fault, and what was traced until then is kept") 
     CHECK(read(trace) == "time,scan,axis.velocity,axis.moving\n0,0,0,0\n0.5,50,10,1\n");
 }
 
-TEST_CASE("an interrupted run stops before its end") {
+TEST_CASE("an interrupted run stops before its end, and its trace says so") {
     File file;
     auto loaded = file.load();
     REQUIRE(loaded);
     const std::atomic<bool> interrupt = true;
+    const std::string trace = file.folder / "t.csv";
     const RunReport report =
-        run(*loaded, {.trace_path = {}, .interrupt = &interrupt, .progress = {}});
+        run(*loaded, {.trace_path = trace, .interrupt = &interrupt, .progress = {}});
     CHECK(report.result.outcome == Outcome::interrupted);
     CHECK(report.result.time < 1'000'000'000);
+    CHECK(read(trace) == "time,scan,axis.velocity,axis.moving\n0,0,0,0\n");
+    CHECK_THAT(read(trace + "-metadata.json"),
+               Catch::Contains(R"("lineshaft:stopped": "interrupted at 0 s")"));
 }
 
 TEST_CASE("a program with mistakes is not loaded") {

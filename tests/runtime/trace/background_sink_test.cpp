@@ -1,6 +1,7 @@
 #include "runtime/trace/background_sink.hpp"
 
 #include <chrono>
+#include <new>
 
 #include <catch2/catch.hpp>
 
@@ -39,6 +40,16 @@ TEST_CASE("a background sink hands on every row in order", "[trace]") {
         sink.finish();
         CHECK(slow.taken == wanted.taken);
     }
+}
+
+TEST_CASE("a background sink hands back what the other sink throws", "[trace]") {
+    struct Full : TraceSink {
+        void rows(const std::uint64_t*, std::size_t) override { throw std::bad_alloc(); }
+    } full;
+    BackgroundSink sink(full, 3);
+    give(sink, 10);
+    CHECK_THROWS_AS(sink.finish(), std::bad_alloc);
+    sink.finish();
 }
 
 TEST_CASE("a background sink without rows ends", "[trace]") {
