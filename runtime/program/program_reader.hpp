@@ -20,8 +20,7 @@ using ParameterValues = std::map<std::string, ParameterValue>;
 
 /// Makes a Program of a file, see read_program(). Its functions stand in program.cpp (the file,
 /// parameters, blocks), program_tasks.cpp, program_outside.cpp (stimuli, replays, forces, retained
-/// signals),
-/// program_run.cpp (how long, expectations) and program_trace.cpp.
+/// signals), program_run.cpp (how long, expectations) and program_trace.cpp.
 class ProgramReader {
   public:
     ProgramReader(const LoadOptions& options, Diagnostics& out) : options_(options), read_(out) {}
