@@ -49,7 +49,7 @@ run: {{for: 3 s}}
 }
 
 /// As traces write them.
-std::string seconds(std::int64_t nanoseconds) {
+std::string time(std::int64_t nanoseconds) {
     std::array<char, longest_number> text;
     return {text.data(), write_seconds(text.data(), nanoseconds)};
 }
@@ -152,7 +152,7 @@ TEST_CASE("any reals come back from a replay with the same bytes", "[replay]") {
             const std::uint64_t bits = random();
             std::memcpy(&value, &bits, sizeof value);
         } while (!std::isfinite(value));
-        csv += fmt::format("{},{},{},{},{}\n", seconds(std::int64_t{row} * 1'000'000), row,
+        csv += fmt::format("{},{},{},{},{}\n", time(std::int64_t{row} * 1'000'000), row,
                            real(value), random() % 2, static_cast<std::int64_t>(random() >> 12));
     }
     write(folder / "first.csv", csv);
