@@ -74,9 +74,9 @@ void CircleFit::solve() {
     const double suu = uu - u * mean_u, suv = uv - u * mean_v, svv = vv - v * mean_v;
     const double suw = uw - w * mean_u, svw = vw - w * mean_v;
     const double determinant = suu * svv - suv * suv;
-    constexpr double singular = 1e-12;
+    const double spread = std::max(suu, svv), rounding = 1e-12 * std::max(uu + vv, n);
     double a = 0, b = 0, c = 1;
-    if (determinant > singular * n * std::max(suu, svv)) {
+    if (spread > 0 && determinant > spread * rounding) {
         a = (suw * svv - svw * suv) / determinant / 2;
         b = (svw * suu - suw * suv) / determinant / 2;
         c = w / n - 2 * (a * mean_u + b * mean_v);

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/trace/csv_cells.hpp"
+
 namespace lineshaft {
 
 namespace {
@@ -16,13 +18,6 @@ constexpr std::string_view separator = " | ";
 constexpr std::string_view out_of_bounds = " is out of its bounds";
 constexpr std::array<std::string_view, 5> fixed{"case", "name", "machine_time", "outcome",
                                                 "message"};
-
-std::string quoted(const std::string& cell) {
-    if (cell.find_first_of(",\"") == std::string::npos) return cell;
-    std::string text = "\"";
-    for (const char c : cell) text += c == '"' ? "\"\"" : std::string(1, c);
-    return text + '"';
-}
 
 std::string one_line(std::string text) {
     std::ranges::replace_if(

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "runtime/program/utf8.hpp"
+#include "runtime/trace/csv_cells.hpp"
 
 namespace lineshaft {
 
@@ -72,32 +73,6 @@ bool Lines::next(std::string_view& line) {
     begin_ += line.size() + (stop ? 1 : 0);
     if (line.ends_with('\r')) line.remove_suffix(1);
     return true;
-}
-
-std::string_view without_blanks(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-/// The end of the cell that begins at `at`: its separator, or the end of the line.
-const char* cell_end(const char* at, const char* end, char separator) {
-    bool quoted = false;
-    for (; at != end && (quoted || *at != separator); ++at)
-        if (*at == '"') quoted = !quoted;
-    return at;
-}
-
-/// What the cell holds, its quotes removed.
-std::string unquoted(std::string_view cell) {
-    cell = without_blanks(cell);
-    if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return std::string(cell);
-    std::string text;
-    for (std::size_t i = 1; i + 1 < cell.size(); ++i) {
-        text += cell[i];
-        if (cell[i] == '"' && cell[i + 1] == '"' && i + 2 < cell.size()) ++i;
-    }
-    return text;
 }
 
 /// Why a cell does not do; empty when it does.

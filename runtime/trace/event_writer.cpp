@@ -4,18 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "runtime/trace/csv_cells.hpp"
 #include "runtime/trace/number_text.hpp"
 
 namespace lineshaft {
 
 namespace {
-
-std::string quoted(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
-    std::string out = "\"";
-    for (const char c : text) out.append(c == '"' ? 2U : 1U, c);
-    return out + "\"";
-}
 
 std::string seconds_text(std::int64_t time) {
     std::array<char, longest_number> text;

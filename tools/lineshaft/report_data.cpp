@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 
 #include "runtime/model/units.hpp"
 #include "runtime/program/yaml.hpp"
+#include "runtime/trace/csv_cells.hpp"
+#include "runtime/trace/event_writer.hpp"
 #include "runtime/trace/packing.hpp"
 
 namespace lineshaft {
@@ -42,6 +45,27 @@ Json read_expectations(const std::string& csv_path, Diagnostics& out) {
     if (!sidecar.is_object() || !sidecar.contains("lineshaft:expectations")) return list;
     for (const Json& e : sidecar["lineshaft:expectations"])
         if (is_expectation(e)) list.push_back(e);
+    return list;
+}
+
+/// What the run's list of events has, if there is one beside the trace.
+Json read_events(const std::string& csv_path) {
+    constexpr std::size_t most = 1000;
+    Json list = Json::array();
+    std::ifstream file(events_path(csv_path));
+    std::string line;
+    std::getline(file, line);
+    while (list.size() < most && std::getline(file, line)) {
+        const std::vector<std::string> cells = csv_cells(line);
+        if (cells.size() != 5) continue;
+        const Json time = Json::parse(cells[0], nullptr, false);
+        if (!time.is_number()) continue;
+        list.push_back({{"time", time},
+                        {"scan", cells[1]},
+                        {"task", cells[2]},
+                        {"kind", cells[3]},
+                        {"text", cells[4]}});
+    }
     return list;
 }
 
@@ -138,6 +162,7 @@ std::optional<ReportRun> read_run(const std::string& path, const std::vector<std
     for (const CsvColumn& column : run.table.columns)
         if (&column != run.time && column.name != "scan") run.signals.push_back(&column);
     run.expectations = read_expectations(path, out);
+    run.events = read_events(path);
     return run;
 }
 
@@ -193,7 +218,8 @@ nlohmann::ordered_json to_json(const ReportRun& run) {
             {"rows", run.table.rows},
             {"time", packed_times(*run.time)},
             {"signals", signals},
-            {"expectations", run.expectations}};
+            {"expectations", run.expectations},
+            {"events", run.events}};
 }
 
 }  // namespace lineshaft

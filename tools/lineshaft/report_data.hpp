@@ -17,6 +17,8 @@ struct ReportRun {
     const CsvColumn* time = nullptr;        ///< [s]
     std::vector<const CsvColumn*> signals;  ///< all columns but `time` and `scan`
     nlohmann::ordered_json expectations = nlohmann::ordered_json::array();  ///< of the sidecar
+    nlohmann::ordered_json events =
+        nlohmann::ordered_json::array();  ///< the first 1,000, see EventWriter
 };
 
 /// The trace at `path`, and of its signals those named in `wanted`, or all. Empty when it cannot be

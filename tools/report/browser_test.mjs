@@ -164,6 +164,10 @@ async function testExpectations(browser) {
   const page = await open(browser, report("failing.html", file("failing.csv")));
   assert.match(await page.textContent(".expectations summary"), /2 of 4 expectations failed/);
   assert.equal(await page.locator(".expectations li.bad").count(), 2);
+  await page.click(".events summary");
+  await page.click(".events li:nth-child(2) button");
+  assert.match(await page.textContent(".events li:nth-child(2)"), /1 s stimulus: inputs.ratio = 2/);
+  assert.match(await readout(page), /^A 1 s/, "a click on an event puts cursor A there");
   const red = await page.$eval(".plot canvas", (canvas) => {
     const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
     let count = 0;

@@ -1,6 +1,7 @@
 import { readout } from "#page/cursors";
 import { unpack } from "#page/decode";
 import { dashes, element, nextFrame } from "#page/dom";
+import { eventList } from "#page/events";
 import { expectationList } from "#page/expectations";
 import { Path } from "#page/path";
 import { groups, Plot } from "#page/plot";
@@ -56,7 +57,8 @@ function showRuns(parent, report, runs) {
   const ends = runs.map(({ times }) => times[times.length - 1]);
   const view = new View(Math.min(...runs.map(({ times }) => times[0])), Math.max(...ends));
   for (const run of runs)
-    if (run.expectations.length > 0) parent.append(expectationList(run, view));
+    parent.append(...[run.expectations.length > 0 && expectationList(run, view),
+                      run.events.length > 0 && eventList(run, view)].filter(Boolean));
   const paths = report.paths.map((pair) => new Path(parent, pair, runs, view, report));
   const plots = paths.flatMap((path) => deviationPlot(parent, path, view));
   plots.push(...groups(runs).map((group) => new Plot(parent, group, view)));

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lineshaft {
+
+std::string_view without_blanks(std::string_view text);
+
+/// The end of the cell that begins at `at`: its separator, or the end of the line.
+const char* cell_end(const char* at, const char* end, char separator);
+
+/// What the cell holds, its quotes removed.
+std::string unquoted(std::string_view cell);
+
+/// As a cell of an RFC 4180 file with commas, in quotes where it must.
+std::string quoted(const std::string& text);
+
+/// The cells of one line, as texts without their quotes.
+std::vector<std::string> csv_cells(std::string_view line, char separator = ',');
+
+}  // namespace lineshaft
