@@ -147,6 +147,33 @@ def broken_merges(c):
     assert not list(c.folder.glob("none.csv*"))
 
 
+def replayed_files(c):
+    """A chunk that replayed other bytes is of another study."""
+    (c.folder / "replay.yaml").write_text(PROGRAM.replace("$speed}", "inputs.v}").replace(
+        "run:", "inputs: {v: 0 mm/s}\nstimulus: [{file: $file, set: {inputs.v: v}}]\nrun:").replace(
+        "{speed: 10 mm/s,", "{speed: 10 mm/s, file: a.csv,"))
+    (c.folder / "replay_plan.yaml").write_text(
+        "lineshaft_study: 1\nprogram: replay.yaml\ncompare: [axis.position]\n"
+        "cases: [{set: {file: a.csv}}, {set: {file: b.csv}}]\n")
+    for name, speed in (("a", 10), ("b", 20)):
+        (c.folder / f"{name}.csv").write_text(f"time,v [mm/s]\n0,{speed}\n")
+
+    def study(*arguments, expect):
+        command = [c.lineshaft, "study", "replay_plan.yaml", "--quiet", *arguments]
+        result = subprocess.run(command, cwd=c.folder, capture_output=True, text=True, timeout=300)
+        assert result.returncode == expect, (arguments, result.stdout, result.stderr)
+        return result
+
+    (c.folder / "replay_parts").mkdir()
+    for i in (1, 2):
+        study("--chunk", f"{i}/2", "-o", f"replay_parts/part_{i}.csv", expect=0)
+    study("--merge", "replay_parts", "-o", "replay.csv", expect=0)
+    a, b = (float(row["axis.position"]) for row in csv.DictReader((c.folder / "replay.csv").open()))
+    assert b == 2 * a > 0, (a, b)
+    (c.folder / "b.csv").write_text("time,v [mm/s]\n0,30\n")
+    assert "L0612" in study("--merge", "replay_parts", "-o", "replay.csv", expect=2).stderr
+
+
 def size(path):
     """0 when it is not there, which may be so from one moment to the next."""
     try:
@@ -225,7 +252,8 @@ def command_lines(c):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         c = Checks(os.path.abspath(sys.argv[1]), Path(folder))
-        for check in (threads, contents, chunks, broken_merges, kills, torn_rows, full_disks, command_lines):
+        for check in (threads, contents, chunks, broken_merges, replayed_files, kills, torn_rows, full_disks,
+                      command_lines):
             check(c)
             print("ok ", check.__name__, flush=True)
 

@@ -134,6 +134,8 @@ A task is cyclic ('every', 'offset', 'jitter') or started by the rising edges of
 signals ('on'), and then has no interval that every(...) could name:
     tasks:
       pto_done: {on: x.done, priority: 18, cost: 0.33 ms}
+A stimulus has a time, a scan or a file. What a file plays into an input is interpolated
+between its rows only where the input is a real.
 A trace's trigger has a signal and one condition (edge, above, below, inside or equals);
 'pre_trigger' and 'repeat' need a trigger other than the start of the run.)"},
     {"L0214", "a row of the wrong length",
@@ -322,8 +324,8 @@ measurement begins later than the run, say by how much:
     lineshaft study PLAN.yaml --chunk 3/8 -o parts/part_3.csv
     lineshaft study PLAN.yaml --merge parts -o all.csv)"},
     {"L0612", "a chunk of another study",
-     R"(A chunk's sidecar has a hash of the plan, the program, its controllers, the settings of the
-command line and the version of lineshaft. It differs from that of the plan to be merged, or
+     R"(A chunk's sidecar has a hash of the plan, the program, its controllers, the files that it
+replays, the settings of the command line and the version of lineshaft. It differs from that of the plan to be merged, or
 the chunks were made for different divisions (3/8 and 3/10). Compute the chunk again.)"},
     {"L0613", "a damaged chunk",
      R"(The rows of a chunk are not those that its sidecar (FILE-metadata.json) describes: the file
@@ -367,10 +369,14 @@ after a change.)"},
     {"L0709", "a trace without a sidecar",
      R"(Whether a trace NAME.csv is whole is told by NAME.csv-metadata.json beside it, which has
 its rows and the checksum of its bytes. Copy the two together.)"},
+    {"L0710", "a CSV file of too many rows",
+     R"(What a program replays is kept in memory: 16 bytes a value, 256 MiB for all files and
+columns. Replay fewer columns, thin the file out (a trace with 'every: 10' has a tenth of the
+rows), or cut it to the part that matters.)"},
     {"L0721", "a trace without rows",
      R"(The file has a header, but no row: nothing was recorded. Perhaps the run ended before the
-traced task's first scan, or before the trace's trigger. Or no row has a value in each of
-the columns that are compared.)"},
+traced task's first scan, or before the trace's trigger. Or no row has a value in a column
+that is replayed, or in each of the columns that are compared.)"},
     {"L0722", "a trace whose time does not rise",
      R"(The rows of a trace stand in the order of their column 'time', and each has a time. This
 file has been sorted by something else, or put together from several traces.)"},

@@ -40,6 +40,7 @@ Linked Linker::link() {
     connect_overruns();
     connect_run();
     connect_stimuli();
+    connect_replays();
     connect_forces();
     connect_retained();
     connect_traces();

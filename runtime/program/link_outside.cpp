@@ -48,27 +48,36 @@ void Linker::connect_stimuli() {
     }
 }
 
+/// What a stimulus may set: an input that no wire feeds. With the unit that it takes.
+std::optional<Target> Linker::settable(const Node& node) {
+    auto set = target(node);
+    if (!set) return {};
+    if (wired_.contains(set->signal.name)) {
+        read_.fail("L0409", node, fmt::format("'{}' is wired and cannot be set", set->signal.name),
+                   "wire an input of the program (inputs.name) and set that, or force it");
+        return {};
+    }
+    if (!set->block) return set;
+    const auto dot = set->signal.name.find('.');
+    const Field* field = set->block->type->find_settable(set->signal.name.substr(dot + 1));
+    if (!field || field->direction == Direction::parameter) {
+        read_.fail("L0405", node,
+                   fmt::format("'{}' is {} and cannot be set", set->signal.name,
+                               field ? "a parameter" : "an output"),
+                   field ? "a stimulus sets inputs"
+                         : "a stimulus sets inputs; a force takes outputs, too");
+        return {};
+    }
+    set->field = *field;
+    set->live = set->block->live + field->offset;
+    set->signal.unit = unit_of(*set->block, *field).text;
+    return set;
+}
+
 void Linker::connect_stimulus(const StimulusPlan& plan, int task, const Node& key,
                               const Node& value) {
-    auto set = target(key);
+    const auto set = settable(key);
     if (!set) return;
-    if (wired_.contains(set->signal.name))
-        return read_.fail("L0409", key,
-                          fmt::format("'{}' is wired and cannot be set", set->signal.name),
-                          "wire an input of the program (inputs.name) and set that, or force it");
-    if (set->block) {
-        const auto dot = set->signal.name.find('.');
-        const Field* settable = set->block->type->find_settable(set->signal.name.substr(dot + 1));
-        if (!settable || settable->direction == Direction::parameter)
-            return read_.fail("L0405", key,
-                              fmt::format("'{}' is {} and cannot be set", set->signal.name,
-                                          settable ? "a parameter" : "an output"),
-                              settable ? "a stimulus sets inputs"
-                                       : "a stimulus sets inputs; a force takes outputs, too");
-        set->field = *settable;
-        set->live = set->block->live + settable->offset;
-        set->signal.unit = unit_of(*set->block, *settable).text;
-    }
     const auto v = literal(*set, value);
     if (!v) return;
     auto& list = task < 0 ? out_.machine.stimuli

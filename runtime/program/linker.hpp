@@ -13,6 +13,7 @@
 
 #include "runtime/program/link.hpp"
 #include "runtime/program/reader.hpp"
+#include "runtime/trace/csv_reader.hpp"
 
 namespace lineshaft {
 
@@ -52,8 +53,9 @@ struct Target {
 
 /// Turns a program's names into memory, see link(). Its functions stand in link.cpp (the order of
 /// work, tasks, memory), link_names.cpp (signals and units), link_blocks.cpp (parameters and
-/// constants), link_wires.cpp, link_outside.cpp (what is set from outside), link_run.cpp (what
-/// happens to the machine and what is expected) and link_trace.cpp.
+/// constants), link_wires.cpp, link_outside.cpp (what is set from outside), link_replay.cpp
+/// (likewise from a file), link_run.cpp (what happens to the machine and what is expected) and
+/// link_trace.cpp.
 class Linker {
   public:
     Linker(const Program& program, const Catalog& catalog, Diagnostics& out)
@@ -96,10 +98,23 @@ class Linker {
     void connect_overruns();
     void connect_stimuli();
     void connect_stimulus(const StimulusPlan& plan, int task, const Node& key, const Node& value);
+    void connect_replays();
+    void connect_replay(const ReplayPlan& plan, std::size_t& room);
+    std::optional<Target> replayed(const ReplayPlan& plan, const Node& key);
+    std::optional<std::vector<std::int64_t>> replay_times(const ReplayPlan& plan,
+                                                          const CsvTable& table);
+    std::vector<Replay::Point> replay_points(const Target& input, const Node& name,
+                                             const CsvTable& table,
+                                             const std::vector<std::int64_t>& times);
+    void wrong_cell(const Target& input, const Node& name, const CsvColumn& column, std::size_t row,
+                    bool is_out_of_range);
+    std::optional<Unit> column_unit(const CsvColumn& column, const std::string& wanted,
+                                    const Node& place);
     void connect_forces();
     void connect_force(const ForcePlan& plan);
     void connect_retained();
     std::optional<Target> target(const Node& node);
+    std::optional<Target> settable(const Node& node);
     std::optional<Value> literal(const Target& target, const Node& value);
     void connect_traces();
     TraceSetup connect_trace(const TracePlan& plan);

@@ -65,6 +65,15 @@ struct StimulusPlan {
     std::optional<std::int64_t> cost = {};  ///< [ns] execution time of that scan
 };
 
+/// Columns of a CSV file that are played into inputs: an item of `stimulus:` with a file.
+struct ReplayPlan {
+    Node file;            ///< as written
+    std::string path;     ///< of it; empty: reported
+    std::int64_t at = 0;  ///< of the file's time 0 [ns]
+    bool interpolated = false;
+    std::vector<std::pair<Node, Node>> set = {};  ///< inputs and columns
+};
+
 /// A value that a signal keeps for [from, until), whatever the program writes. Times in ns.
 struct ForcePlan {
     std::int64_t from = 0;
@@ -114,6 +123,7 @@ struct Program {
     std::vector<std::pair<Node, Node>> outputs;  ///< name and the signal it shows
     std::vector<Node> retain;                    ///< signals
     std::vector<StimulusPlan> stimuli;
+    std::vector<ReplayPlan> replays;
     std::vector<ForcePlan> forces;
     std::vector<TracePlan> traces;
     std::vector<ExpectPlan> expectations;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -46,7 +47,12 @@ void ProgramReader::retain(const Node& node) {
 void ProgramReader::stimuli(const Node& node) {
     if (!read_.expect_sequence(node, "'stimulus'")) return;
     for (const Node& item : node.items)
-        if (read_.expect_map(item, "a stimulus")) stimulus(item);
+        if (!read_.expect_map(item, "a stimulus"))
+            continue;
+        else if (item.find("file"))
+            replay(item);
+        else
+            stimulus(item);
     std::ranges::stable_sort(program_.stimuli, {}, &StimulusPlan::at);
 }
 
@@ -73,6 +79,40 @@ void ProgramReader::stimulus(const Node& item) {
     if (!set && !cost) read_.require(item, "set", "a stimulus");
     if (set && read_.expect_map(*set, "'set'")) plan.set = set->entries;
     program_.stimuli.push_back(std::move(plan));
+}
+
+/// `{file: run.csv, set: {inputs.x: shaft.position}, at: 1 s, between: interpolated}`.
+void ProgramReader::replay(const Node& item) {
+    read_.only_keys(item, "a replay", {"file", "set", "at", "between"});
+    ReplayPlan plan;
+    plan.file = *item.find("file");
+    if (const Node* at = item.find("at")) plan.at = read_.time(*at).value_or(0);
+    if (const Node* between = item.find("between")) plan.interpolated = interpolated(*between);
+    const Node* set = read_.require(item, "set", "a replay", "set: {inputs.x: COLUMN}");
+    if (set && read_.expect_map(*set, "'set'"))
+        for (const auto& [key, column] : set->entries)
+            if (read_.expect_scalar(column, "a column's name") && !column.is_unknown_parameter())
+                plan.set.emplace_back(key, column);
+    if (set && set->is_map() && set->entries.empty())
+        read_.fail("L0202", *set, "'set' has no input", "write set: {inputs.x: COLUMN}");
+    if (!read_.expect_scalar(plan.file, "the name of a file") || plan.file.is_unknown_parameter())
+        return;
+    const auto path = resolve_path(plan.file.text, program_.file->path, options_.include_dirs,
+                                   plan.file.mark, read_.diagnostics());
+    std::error_code unknown;
+    if (path && std::filesystem::is_regular_file(*path, unknown))
+        plan.path = *path;
+    else if (path)
+        read_.fail("L0001", plan.file, fmt::format("there is no file '{}'", *path));
+    program_.replays.push_back(std::move(plan));
+}
+
+bool ProgramReader::interpolated(const Node& between) const {
+    if (!read_.expect_scalar(between, "'between'")) return false;
+    if (between.text != "held" && between.text != "interpolated")
+        read_.fail("L0306", between, fmt::format("'{}' is no way from row to row", between.text),
+                   "known: held, interpolated");
+    return between.text == "interpolated";
 }
 
 void ProgramReader::forces(const Node& node) {

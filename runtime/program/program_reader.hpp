@@ -19,8 +19,8 @@ struct ParameterValue {
 using ParameterValues = std::map<std::string, ParameterValue>;
 
 /// Makes a Program of a file, see read_program(). Its functions stand in program.cpp (the file,
-/// parameters, blocks), program_tasks.cpp, program_outside.cpp (stimuli, forces, retained signals),
-/// program_run.cpp (how long, expectations) and program_trace.cpp.
+/// parameters, blocks), program_tasks.cpp, program_outside.cpp (stimuli, replays, forces, retained
+/// signals), program_run.cpp (how long, expectations) and program_trace.cpp.
 class ProgramReader {
   public:
     ProgramReader(const LoadOptions& options, Diagnostics& out) : options_(options), read_(out) {}
@@ -50,6 +50,8 @@ class ProgramReader {
     void run(const Node& node);
     void stimuli(const Node& node);
     void stimulus(const Node& item);
+    void replay(const Node& item);
+    bool interpolated(const Node& between) const;
     void traces(const Node& node);
     void trace(const Node& name, const Node& node);
     void traced(const Node& signals, TracePlan& plan);

@@ -268,6 +268,18 @@ Json stimulus() {
     return out;
 }
 
+Json replay() {
+    Json properties;
+    properties["file"] =
+        described("CSV with a column 'time', relative to this file", reference("scalar"));
+    properties["set"] = described("inputs and the columns played into them", values_of_signals());
+    properties["at"] = described("time of the run at the file's time 0", reference("time"));
+    properties["between"] = described(
+        "from row to row: held, the default, or on a line",
+        any_of({keyword("enum", Json::array_t{"held", "interpolated"}), reference("parameter")}));
+    return map_of(properties, {"file", "set"});
+}
+
 Json force() {
     Json properties;
     properties["from"] = described("default: the start", reference("time"));
@@ -336,7 +348,9 @@ Json program_file() {
     properties["retain"] =
         described("signals that outlive a run, see --retain-file", list_of(reference("signal")));
     properties["run"] = run();
-    properties["stimulus"] = described("changes of inputs while running", list_of(stimulus()));
+    properties["stimulus"] =
+        described("changes of inputs while running, and files played into them",
+                  list_of(any_of({stimulus(), replay()})));
     properties["trace"] = described("what --trace records", reference("trace"));
     properties["traces"] = described(
         "further traces: --trace FILE.csv writes them to FILE.NAME.csv", named(reference("trace")));

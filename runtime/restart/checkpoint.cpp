@@ -33,6 +33,10 @@ std::string refusal(const Json& head, const std::string& state, const std::strin
     return {};
 }
 
+std::string_view bytes_of(const std::vector<Replay::Point>& points) {
+    return {reinterpret_cast<const char*>(points.data()), points.size() * sizeof(Replay::Point)};
+}
+
 }  // namespace
 
 std::string fingerprint(const Program& program, const Machine& machine) {
@@ -49,6 +53,8 @@ std::string fingerprint(const Program& program, const Machine& machine) {
                             signal.slot - machine.memory.data());
     for (const Force& force : machine.forces)
         text += fmt::format("{} {} {};", force.text, force.from, force.until);
+    for (const Replay& replay : machine.replays)
+        text += fmt::format("{};", text_hash(bytes_of(replay.points())));
     return text_hash(text);
 }
 

@@ -93,6 +93,8 @@ Executive::Executive(Machine& machine) : machine_(machine), forces_(machine.forc
     }
     error_levels_.resize(error_flags_.size());
     for (const Trigger& trigger : machine.triggers) trigger_levels_.push_back(*trigger.signal);
+    interpolates_ =
+        std::ranges::count(machine.replays, Replay::Between::interpolated, &Replay::between) > 0;
     running_.reserve(machine.tasks.size());
     result_.scans.resize(machine.tasks.size());
 }
@@ -149,6 +151,8 @@ void Executive::look_ahead() {
         pending_ += state.pending;
     }
     next_outside_ = forces_.next_time();
+    for (const Replay& replay : machine_.replays)
+        next_outside_ = std::min(next_outside_, replay.next_time());
     if (next_stimulus_ < machine_.stimuli.size())
         next_outside_ = std::min(next_outside_, machine_.stimuli[next_stimulus_].at);
     if (next_look_ < machine_.looks.size())
@@ -171,7 +175,7 @@ void Executive::advance(std::int64_t time) {
 
 void Executive::instant() {
     if (!machine_.devices.empty()) advance_devices();
-    if (next_outside_ <= now_) act_from_outside();
+    if (next_outside_ <= now_ || interpolates_) act_from_outside();
     if (!trigger_levels_.empty()) detect_edges();
     finish_top();
     if (!stopped_ && !running_.empty()) check_deadlines();

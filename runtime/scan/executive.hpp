@@ -50,9 +50,9 @@ struct RunResult {
 /// Runs a machine in virtual time. A scan takes its inputs at its start and publishes its outputs
 /// when its cost has passed. A task of higher priority that falls due in between runs in between,
 /// on what was published, and puts the end off by its own cost; one of lower or equal priority
-/// waits. At one instant: devices, then forces, then stimuli, then outputs that are due, then tasks
-/// by priority. The run covers [0, duration], both included. Nothing is allocated, locked or looked
-/// up by name while cycling, unless an event is told.
+/// waits. At one instant: devices, then forces, then replays, then stimuli, then outputs that are
+/// due, then tasks by priority. The run covers [0, duration], both included. Nothing is allocated,
+/// locked or looked up by name while cycling, unless an event is told.
 ///
 /// An event task is released by each rising edge of a published boolean: of a device, a stimulus or
 /// another task's output. A value that is true from the start is no edge. Several edges at one
@@ -129,6 +129,7 @@ class Executive {
     void act_from_outside();
     void stimulate(int task);
     void set(const Stimulus& stimulus, int task);
+    void play();
     void look_ahead(int task);
     void detect_edges();
 
@@ -156,7 +157,8 @@ class Executive {
     std::vector<int> running_;       ///< stack of started scans, the interrupted ones below
     int pending_ = 0;                ///< number of tasks
     std::int64_t next_due_ = 0;      ///< the first release of all [ns]
-    std::int64_t next_outside_ = 0;  ///< of a force, a stimulus, a look at a device [ns]
+    std::int64_t next_outside_ = 0;  ///< of a force, a replay, a stimulus, a look at a device [ns]
+    bool interpolates_ = false;      ///< a replay: then something is due in every instant
     const std::vector<Observer*>* observers_ = nullptr;
     EventSink* events_ = nullptr;
     std::function<void(std::int64_t)> save_;

@@ -34,11 +34,18 @@ std::int64_t Executive::next_event_time(const DeviceCall& device) {
 
 void Executive::act_from_outside() {
     if (forces_.next_time() <= now_) forces_.update(now_, events_);
+    play();
     const auto& stimuli = machine_.stimuli;
     while (next_stimulus_ < stimuli.size() && stimuli[next_stimulus_].at <= now_)
         set(stimuli[next_stimulus_++], -1);
     while (next_look_ < machine_.looks.size() && machine_.looks[next_look_] <= now_) ++next_look_;
     look_ahead();
+}
+
+void Executive::play() {
+    for (Replay& replay : machine_.replays)
+        if (const auto value = replay.play(now_))
+            store(replay.type(), forces_.own(replay.target()), *value);
 }
 
 void Executive::stimulate(int index) {

@@ -34,6 +34,7 @@ void Executive::restore(StateReader& in) {
     in.get(result_.scans);
     in.get(result_.time_errors);
     forces_.look_ahead(now_);
+    for (Replay& replay : machine_.replays) replay.skip_to(now_);
 }
 
 }  // namespace lineshaft

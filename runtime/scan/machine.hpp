@@ -10,6 +10,7 @@
 
 #include "runtime/model/catalog.hpp"
 #include "runtime/model/value.hpp"
+#include "runtime/scan/replay.hpp"
 
 namespace lineshaft {
 
@@ -22,9 +23,9 @@ struct Copy {
 /// A value converted on its way into an input.
 struct ConvertedCopy {
     enum class Kind : std::uint8_t {
-        negated,             ///< boolean, inverted (`NOT x.q`)
-        widened,             ///< integer to real
-        scaled,              ///< real from another unit of the dimension: times factor, over divisor
+        negated,  ///< boolean, inverted (`NOT x.q`)
+        widened,  ///< integer to real
+        scaled,   ///< real from another unit of the dimension: times factor, over divisor
         widened_and_scaled,  ///< integer to real in another unit
     };
 
@@ -161,6 +162,7 @@ struct Machine {
     std::vector<Task> tasks;  ///< in scan order of equal instants: priority, then place in the file
     std::vector<Signal> signals;
     std::vector<Stimulus> stimuli;  ///< sorted by time
+    std::vector<Replay> replays;    ///< in the order of the file: of one input the last wins
     std::vector<Force> forces;
     std::vector<Retained> retained;
     std::vector<DeviceCall> devices;

@@ -36,7 +36,8 @@ class StudyFileReader {
     void program(const Node& root);
     void notes(const Node& node);
     std::string identity();
-    void add_controllers(std::string& hash);
+    void add_files(std::string& hash);
+    std::set<std::string> choices(const Node& root, const Node& node) const;
 
     void cases(const Node& node);
     void one_case(const Node& node);

@@ -1,10 +1,12 @@
 #include "runtime/study/study_reader.hpp"
 
+#include <fstream>
 #include <set>
 
 #include <fmt/format.h>
 
 #include "runtime/study/study_file_reader.hpp"
+#include "runtime/trace/csv_metadata.hpp"
 #include "runtime/trace/csv_writer.hpp"
 #include "runtime/version.hpp"
 
@@ -20,6 +22,16 @@ bool has_key(const std::string& text, const std::string& key) {
 /// Of all before and `text`.
 void add(std::string& hash, const std::string& text) {
     hash = text_hash(hash + text);
+}
+
+/// Of a file's bytes; of none where it cannot be read.
+std::string checksum_of(const std::string& path) {
+    Checksum checksum;
+    std::ifstream file(path, std::ios::binary);
+    std::vector<char> bytes(std::size_t{1} << 16);
+    while (file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())), file.gcount() > 0)
+        checksum.add({bytes.data(), static_cast<std::size_t>(file.gcount())});
+    return checksum.text();
 }
 
 }  // namespace
@@ -80,39 +92,46 @@ std::string StudyFileReader::identity() {
     add(hash, study_.file->text);
     for (const Setting& s : options_.settings) add(hash, s.name + "=" + s.value);
     add(hash, program_file_->text);
-    add_controllers(hash);
+    add_files(hash);
     return hash;
 }
 
-/// All that a case may choose, whether it is among those at hand or not.
-void StudyFileReader::add_controllers(std::string& hash) {
+/// Its controller and what it replays, each with the sidecar that it may have.
+void StudyFileReader::add_files(std::string& hash) {
     Diagnostics unread;  // then the cases that name them tell it
     const auto root = files_.parse(program_file_, unread);
-    const Node* named = root ? root->find("controller") : nullptr;
-    if (!named) return;
-    std::set<std::string> values{named->text};
-    if (named->text.starts_with('$')) {
-        const std::string parameter = named->text.substr(1);
-        const auto take = [&](const Setting& s) {
-            if (s.name == parameter) values.insert(s.value);
-        };
-        const Node* parameters = root->find("parameters");
-        const Node* usual = parameters ? parameters->find(parameter) : nullptr;
-        values = {usual ? usual->text : ""};
-        for (const CaseGroup& group : study_.groups) {
-            for (const Setting& s : group.settings) take(s);
-            for (const GridAxis& axis : group.grid)
-                for (const Setting& s : axis.values) take(s);
-            for (const RandomParameter& p : group.random)
-                if (p.name == parameter) values.insert(p.choices.begin(), p.choices.end());
+    if (!root) return;
+    std::vector<const Node*> named{root->find("controller")};
+    if (const Node* stimuli = root->find("stimulus"))
+        for (const Node& item : stimuli->items) named.push_back(item.find("file"));
+    for (const Node* node : named) {
+        if (!node) continue;
+        for (const std::string& value : choices(*root, *node)) {
+            const auto path =
+                resolve_path(value, program_file_->path, options_.include_dirs, node->mark, unread);
+            if (path) add(hash, checksum_of(*path) + checksum_of(sidecar_path(*path)));
         }
     }
-    for (const std::string& value : values) {
-        const auto path =
-            resolve_path(value, program_file_->path, options_.include_dirs, named->mark, unread);
-        const auto file = path ? files_.source(*path, unread) : nullptr;
-        if (file) add(hash, file->text);
+}
+
+/// All that a case may choose for `node`, whether it is among those at hand or not.
+std::set<std::string> StudyFileReader::choices(const Node& root, const Node& node) const {
+    if (!node.text.starts_with('$')) return {node.text};
+    const std::string parameter = node.text.substr(1);
+    const Node* parameters = root.find("parameters");
+    const Node* usual = parameters ? parameters->find(parameter) : nullptr;
+    std::set<std::string> values{usual ? usual->text : ""};
+    const auto take = [&](const Setting& s) {
+        if (s.name == parameter) values.insert(s.value);
+    };
+    for (const CaseGroup& group : study_.groups) {
+        for (const Setting& s : group.settings) take(s);
+        for (const GridAxis& axis : group.grid)
+            for (const Setting& s : axis.values) take(s);
+        for (const RandomParameter& p : group.random)
+            if (p.name == parameter) values.insert(p.choices.begin(), p.choices.end());
     }
+    return values;
 }
 
 bool is_study(const SourceFile& file) {

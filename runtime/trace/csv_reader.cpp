@@ -213,6 +213,11 @@ void CsvReader::select() {
 void CsvReader::rows() {
     while (lines_.next(line_)) {
         ++number_;
+        if (table_.rows == options_.most_rows)
+            return out_.add("L0710", {table_.header, 0, 0, 1},
+                            fmt::format("more than {} rows do not fit into the memory that is "
+                                        "allowed for them",
+                                        options_.most_rows));
         row();
         if (mistakes_ < most_mistakes) continue;
         return out_.add("L0705", {table_.header, 0, 0, 1},

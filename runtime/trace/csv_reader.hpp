@@ -40,7 +40,8 @@ struct CsvTable {
 
 struct CsvOptions {
     std::vector<std::string> columns =
-        {};                            ///< names or titles; empty: all. Others are not looked at
+        {};  ///< names or titles; empty: all. Others are not looked at
+    std::size_t most_rows = static_cast<std::size_t>(-1);  ///< that may be kept in memory
     bool last_row_may_be_cut = false;  ///< what a crash left: read up to the last full row
 };
 
@@ -57,6 +58,7 @@ struct CsvOptions {
 ///   L0705  no number, or not one of the column's type
 ///   L0706  the file is cut: the sidecar tells of more rows, or the last one has no line end
 ///   L0707  the sidecar cannot be understood
+///   L0710  more rows than allowed
 std::optional<CsvTable> read_csv(const std::string& path, Diagnostics& out,
                                  const CsvOptions& options = {});
 

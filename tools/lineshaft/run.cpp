@@ -153,6 +153,8 @@ Exit execute(const RunCommand& command) {
                 "say under 'retain:' which signals outlive a run");
     std::vector<std::string> inputs;
     for (const auto& file : files.sources()) inputs.push_back(file->path);
+    if (loaded)
+        for (const ReplayPlan& replay : loaded->program.replays) inputs.push_back(replay.path);
     check_outputs({command.trace, command.pulses, command.retain, command.checkpoint}, inputs, out);
     if (!out.empty()) return report(out, command.common.json);
 

@@ -84,6 +84,10 @@ TEST_CASE("a resumed run leaves the same bytes: a trace with a trigger", "[resum
     check_resumed("../tests/cases/trace_begins_at_its_trigger/program.yaml", false);
 }
 
+TEST_CASE("a resumed run leaves the same bytes: a replayed trace", "[resume]") {
+    check_resumed("../tests/cases/replay_plays_a_recorded_trace/program.yaml", false);
+}
+
 TEST_CASE("a foreign or cut checkpoint is refused", "[resume]") {
     const Folder folder;
     RunOptions options = options_in(folder);

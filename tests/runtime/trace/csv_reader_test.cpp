@@ -177,6 +177,12 @@ TEST_CASE("mistakes of a CSV file are told with their places") {
           "     | ^~~~~~~~ did you mean 'a.x'?\n");
 }
 
+TEST_CASE("no more rows than allowed are read") {
+    CHECK(values(read_text("x\n1\n2\n", {.most_rows = 2}), "x") == Values{1, 2});
+    CHECK(read_text("x\n1\n2\n3\n", {.most_rows = 2}).said.find("error[L0710]: more than 2 rows") !=
+          std::string::npos);
+}
+
 TEST_CASE("mistakes are bounded") {
     std::string text = "x,y\n";
     for (int i = 0; i < 100'000; ++i) text += "a,b\n";
