@@ -72,9 +72,9 @@ void ReportBuilder::learn(const CaseResult& result) {
     }
 }
 
-StudyReport ReportBuilder::finish(bool interrupted) {
+StudyReport ReportBuilder::finish(bool interrupted, bool is_chunk) {
     report_.interrupted = interrupted;
-    if (interrupted) return std::move(report_);
+    if (interrupted || is_chunk) return std::move(report_);
     if (compared_ > 0) {
         names_["mean_relative_error"] = error_sum_ / static_cast<double>(compared_);
         names_["greatest_relative_error"] = greatest_error_;

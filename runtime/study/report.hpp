@@ -46,8 +46,8 @@ class ReportBuilder {
     ReportBuilder(const Study& study, bool all_rows) : study_(study), all_rows_(all_rows) {}
 
     void add(const CaseResult& result);
-    /// Judges the claims, unless interrupted.
-    StudyReport finish(bool interrupted);
+    /// Judges the claims, unless interrupted or, as a chunk, without the other cases.
+    StudyReport finish(bool interrupted, bool is_chunk = false);
 
   private:
     void note(const CaseResult& result);

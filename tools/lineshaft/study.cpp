@@ -128,7 +128,7 @@ Exit StudyRun::merge() {
 
 Exit StudyRun::finish(bool interrupted) {
     if (file_ && !interrupted && !file_->commit()) return tell_stopped(Exit::fault);
-    StudyReport result = builder_.finish(interrupted);
+    StudyReport result = builder_.finish(interrupted, !command_.chunk.empty());
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start_;
     result.wall_seconds = wall.count();
     print(result);
