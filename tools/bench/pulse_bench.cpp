@@ -40,7 +40,7 @@ void csv(benchmark::State& state) {
         train.begin({1000, 100'000, pulses}, RateUpdate::continuous, {});
         for (std::size_t n = train.take(late, out); n > 0; n = train.take(late, out))
             machine.devices[0].sink->edges(std::span(out).first(n), false);
-        const std::string error = writer.finish();
+        const std::string error = writer.finish({});
         if (!error.empty()) state.SkipWithError(error.c_str());
     }
     state.SetItemsProcessed(state.iterations() * pulses);
