@@ -98,21 +98,27 @@ double PulseTrain::rate_at(double offset) const {
                         : static_cast<double>(segment_.end_rate);
 }
 
-double PulseTrain::offset_of(std::int64_t pulse) const {
+double PulseTrain::Ramp::offset(double pulse) const {
+    return 2.0 * second * pulse / (rate + std::sqrt(square(rate) + growth * pulse));
+}
+
+PulseTrain::Ramp PulseTrain::ramp() const {
     const auto f0 = static_cast<double>(segment_.start_rate);
-    const double growth = (square(static_cast<double>(segment_.end_rate)) - square(f0)) /
-                          static_cast<double>(segment_.count);
-    const auto k = static_cast<double>(pulse);
-    return 2.0 * second * k / (f0 + std::sqrt(square(f0) + growth * k));
+    const double squares = square(static_cast<double>(segment_.end_rate)) - square(f0);
+    return {f0, squares / static_cast<double>(segment_.count)};
+}
+
+std::int64_t PulseTrain::rounded(double offset, const PulseTime& start) {
+    return start.nanoseconds + static_cast<std::int64_t>(offset + (start.fraction + 0.5));
 }
 
 std::int64_t PulseTrain::rounded(double offset) const {
-    return start_.nanoseconds + static_cast<std::int64_t>(offset + (start_.fraction + 0.5));
+    return rounded(offset, start_);
 }
 
 std::int64_t PulseTrain::edge(std::int64_t pulse) const {
     const std::int64_t f = segment_.start_rate;
-    if (f != segment_.end_rate) return rounded(offset_of(pulse));
+    if (f != segment_.end_rate) return rounded(ramp().offset(static_cast<double>(pulse)));
     const auto rest = static_cast<double>(pulse * second % f);
     return pulse * second / f + rounded(rest / static_cast<double>(f));
 }
@@ -142,7 +148,9 @@ void PulseTrain::constant_rate_edges(std::int64_t first, std::span<std::int64_t>
 }
 
 void PulseTrain::ramp_edges(std::int64_t first, std::span<std::int64_t> out) const {
-    for (std::int64_t& time : out) time = rounded(offset_of(first++));
+    const Ramp ramp = this->ramp();
+    const PulseTime start = start_;
+    for (std::int64_t& time : out) time = rounded(ramp.offset(static_cast<double>(first++)), start);
 }
 
 std::size_t PulseTrain::walk(std::int64_t until, std::int64_t* out, std::size_t most) {

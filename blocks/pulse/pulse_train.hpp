@@ -72,8 +72,17 @@ class PulseTrain {
     double rate(std::int64_t time) const;
 
   private:
+    /// What a segment's edges have in common.
+    struct Ramp {
+        double rate;    ///< at its start [1/s]
+        double growth;  ///< of the rate's square, a pulse [1/s^2]
+
+        double offset(double pulse) const;  ///< of an edge from the start [ns]
+    };
+
     bool is_closed_form() const;
-    double offset_of(std::int64_t pulse) const;
+    Ramp ramp() const;
+    static std::int64_t rounded(double offset, const PulseTime& start);
     std::int64_t rounded(double offset) const;
     std::int64_t edge(std::int64_t pulse) const;
     std::int64_t count_at(std::int64_t time) const;
