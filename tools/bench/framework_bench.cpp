@@ -26,8 +26,7 @@ Linked linked(const std::string& text) {
 
 std::string head() {
     return fmt::format(
-        "lineshaft: 1\ntasks: {{m: {{every: 1 ms}}}}\nrun: {{for: {} ms}}\nblocks:\n",
-        scans - 1);
+        "lineshaft: 1\ntasks: {{m: {{every: 1 ms}}}}\nrun: {{for: {} ms}}\nblocks:\n", scans - 1);
 }
 
 /// Chains of an oscillating timer, an edge, a counter and a filter; each chain's counter is reset
