@@ -44,8 +44,8 @@ std::vector<PlotGroup> group_signals(const ReportRun& run) {
             group = groups.insert(group, {signal->unit, signal->type, signal->names, {}});
         group->signals.push_back(signal->name);
     }
-    std::ranges::stable_partition(
-        groups, [](const PlotGroup& group) { return group.type != Type::boolean; });
+    std::stable_partition(groups.begin(), groups.end(),
+                          [](const PlotGroup& group) { return group.type != Type::boolean; });
     return groups;
 }
 
