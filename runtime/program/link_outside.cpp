@@ -39,7 +39,7 @@ void Linker::connect_stimuli() {
         const int task = plan.task ? find_task(*plan.task) : -1;
         if (plan.task && task < 0) continue;
         for (const auto& [key, value] : plan.set) connect_stimulus(plan, task, key, value);
-        if (!plan.cost) continue;
+        if (!plan.cost || task < 0) continue;
         auto& costs = out_.machine.tasks[static_cast<std::size_t>(task)].costs;
         if (!costs.empty() && costs.back().scan == plan.at)
             read_.fail("L0212", *plan.task,
