@@ -1,6 +1,7 @@
 #include "runtime/trace/packing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -12,7 +13,7 @@ namespace lineshaft {
 
 namespace {
 
-constexpr double largest_whole = 0x1p49;  // its differences of third order fit a page's numbers
+constexpr double largest_whole = 0x1p49;  // zigzag differences of third order are below 2^53
 constexpr int fine_bits = 40, coarse_bits = 24;
 constexpr std::size_t highest_order = 3;
 constexpr double noise_bits = 24;  // a sample
@@ -48,9 +49,8 @@ Whole whole_numbers(std::span<const double> samples, double scale) {
     return whole;
 }
 
-/// values[i] - values[i - 1] from `first` on.
-void difference(Whole& values, std::size_t first) {
-    for (std::size_t i = values.size(); i-- > first;) values[i] -= values[i - 1];
+void difference(Whole& values) {
+    for (std::size_t i = values.size(); i-- > 1;) values[i] -= values[i - 1];
 }
 
 double bits_per_sample(const Whole& values) {
@@ -60,34 +60,63 @@ double bits_per_sample(const Whole& values) {
 }
 
 struct Differences {
-    Whole values;  ///< from index `seeds.size() - 1` on
-    std::vector<std::int64_t> seeds;
+    Whole values;
+    std::size_t order = 0;
     double bits = 0;
 };
 
 /// Of the order that takes the fewest bits.
 Differences smallest_differences(Whole values) {
-    Differences best{.values = values, .seeds = {}, .bits = bits_per_sample(values)};
-    std::vector<std::int64_t> seeds;
-    for (std::size_t order = 1; order <= highest_order && order <= values.size(); ++order) {
-        seeds.push_back(values[order - 1]);
-        difference(values, order);
+    Differences best{.values = values, .order = 0, .bits = bits_per_sample(values)};
+    for (std::size_t order = 1; order <= highest_order; ++order) {
+        difference(values);
         const double bits = bits_per_sample(values);
-        if (bits < best.bits) best = {values, seeds, bits};
+        if (bits < best.bits) best = {values, order, bits};
     }
-    for (std::size_t i = 0; i < best.seeds.size(); ++i) best.values[i] = 0;
     return best;
 }
 
-std::string byte_planes(const Whole& values, std::size_t& width) {
-    std::uint64_t all = 0;
-    for (const std::int64_t value : values) all |= zigzag(value);
-    width = (static_cast<std::size_t>(std::bit_width(all)) + 7) / 8;
-    std::string planes(width * values.size(), '\0');
+std::size_t bytes_of(std::uint64_t value) {
+    return (static_cast<std::size_t>(std::bit_width(value)) + 7) / 8;
+}
+
+/// The width that leaves the fewest bytes in all, those of the outliers counted.
+std::size_t best_width(const std::vector<std::uint64_t>& values) {
+    std::array<std::size_t, 9> wider{};  // how many values take more bytes than the index says
+    for (const std::uint64_t value : values)
+        for (std::size_t width = 0; width < bytes_of(value); ++width) ++wider[width];
+    const auto bytes = [&](std::size_t width) {
+        return width * values.size() + wider[width] * 2 * PackedSamples::outlier_width;
+    };
+    std::size_t best = 0;
+    for (std::size_t width = 1; width < wider.size(); ++width)
+        if (bytes(width) < bytes(best)) best = width;
+    return best;
+}
+
+void append_planes(std::string& planes, const std::vector<std::uint64_t>& values,
+                   std::size_t width) {
     for (std::size_t plane = 0; plane < width; ++plane)
-        for (std::size_t i = 0; i < values.size(); ++i)
-            planes[plane * values.size() + i] =
-                static_cast<char>(zigzag(values[i]) >> (8 * plane) & 0xff);
+        for (const std::uint64_t value : values)
+            planes += static_cast<char>(value >> (8 * plane) & 0xff);
+}
+
+std::string byte_planes(const Whole& differences, PackedSamples& packed) {
+    std::vector<std::uint64_t> values(differences.size()), gaps, outliers;
+    std::ranges::transform(differences, values.begin(), zigzag);
+    packed.width = best_width(values);
+    std::size_t last = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (bytes_of(values[i]) <= packed.width) continue;
+        gaps.push_back(i - std::exchange(last, i));
+        outliers.push_back(std::exchange(values[i], 0));
+    }
+    packed.outliers = outliers.size();
+    std::string planes;
+    planes.reserve(packed.width * values.size());
+    append_planes(planes, values, packed.width);
+    append_planes(planes, gaps, PackedSamples::outlier_width);
+    append_planes(planes, outliers, PackedSamples::outlier_width);
     return planes;
 }
 
@@ -128,8 +157,8 @@ PackedSamples pack(std::span<const double> samples) {
         packed.scale = step(samples, coarse_bits);
         best = smallest_differences(whole_numbers(samples, packed.scale));
     }
-    packed.seeds = best.seeds;
-    packed.planes = deflated(byte_planes(best.values, packed.width));
+    packed.order = best.order;
+    packed.planes = deflated(byte_planes(best.values, packed));
     return packed;
 }
 

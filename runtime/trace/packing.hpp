@@ -11,15 +11,22 @@
 namespace lineshaft {
 
 /// The samples of one column made small for a page: whole numbers times a scale, their differences
-/// of the order that makes them smallest, zigzag (0, -1, 1, -2 become 0, 1, 2, 3), the bytes of one
-/// significance side by side, deflated. tools/report/page/decode.js undoes it.
+/// of the order that makes them smallest (0 stands before the first of them), zigzag (0, -1, 1, -2
+/// become 0, 1, 2, 3), the bytes of one significance side by side, deflated.
+/// tools/report/page/decode.js undoes it.
 struct PackedSamples {
+    static constexpr std::size_t outlier_width = 7;
+
     std::size_t count = 0;
-    double scale = 1;                 ///< value = whole number times scale
-    std::size_t width = 0;            ///< byte planes, of `count` bytes each, the lowest first
-    std::vector<std::int64_t> seeds;  ///< the first of the samples, of their differences, ...
+    double scale = 1;          ///< value = whole number times scale
+    std::size_t order = 0;     ///< of the differences
+    std::size_t width = 0;     ///< bytes of a difference, but of the outliers
+    std::size_t outliers = 0;  ///< differences that take more bytes; 0 stands in their places
     std::vector<std::pair<std::size_t, std::size_t>> missing;  ///< first and count of each stretch
-    std::string planes;                                        ///< zlib format
+    /// In zlib format: `width` planes of `count` bytes, the lowest byte first; then, in
+    /// `outlier_width` planes of `outliers` bytes each, how far each outlier lies behind the one
+    /// before it (the first one: behind sample 0); then the outliers.
+    std::string planes;
 };
 
 /// Whole numbers below 2^49 stay as they are. Others are rounded to a step of 2^-40 of the power of

@@ -14,23 +14,39 @@ namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-/// As tools/report/page/decode.js does it.
-std::vector<double> unpack(const PackedSamples& packed) {
-    std::string planes(packed.width * packed.count, '\0');
+/// The `planes`, `width` of `count` bytes each, that begin at `at`, which moves behind them.
+std::vector<std::uint64_t> join_planes(const std::string& planes, std::size_t& at,
+                                       std::size_t width, std::size_t count) {
+    std::vector<std::uint64_t> values(count);
+    for (std::size_t plane = 0; plane < width; ++plane)
+        for (std::uint64_t& value : values)
+            value |= std::uint64_t{static_cast<unsigned char>(planes.at(at++))} << (8 * plane);
+    return values;
+}
+
+std::vector<std::uint64_t> zigzags(const PackedSamples& packed) {
+    constexpr std::size_t wide = PackedSamples::outlier_width;
+    std::string planes(packed.width * packed.count + 2 * wide * packed.outliers, '\0');
     uLongf size = planes.size();
     uncompress(reinterpret_cast<Bytef*>(planes.data()), &size,
                reinterpret_cast<const Bytef*>(packed.planes.data()), packed.planes.size());
-    std::vector<std::int64_t> values(packed.count);
-    for (std::size_t i = 0; i < packed.count; ++i) {
-        std::uint64_t bits = 0;
-        for (std::size_t plane = packed.width; plane-- > 0;)
-            bits = bits << 8 | static_cast<unsigned char>(planes[plane * packed.count + i]);
-        values[i] = static_cast<std::int64_t>(bits >> 1) ^ -static_cast<std::int64_t>(bits & 1);
-    }
-    for (std::size_t order = packed.seeds.size(); order-- > 0;) {
-        values[order] = packed.seeds[order];
-        for (std::size_t i = order + 1; i < values.size(); ++i) values[i] += values[i - 1];
-    }
+    REQUIRE(size == planes.size());
+    std::size_t at = 0, place = 0;
+    auto values = join_planes(planes, at, packed.width, packed.count);
+    const auto gaps = join_planes(planes, at, wide, packed.outliers);
+    const auto outliers = join_planes(planes, at, wide, packed.outliers);
+    for (std::size_t k = 0; k < packed.outliers; ++k) values.at(place += gaps[k]) = outliers[k];
+    return values;
+}
+
+/// As tools/report/page/decode.js does it.
+std::vector<double> unpack(const PackedSamples& packed) {
+    std::vector<std::int64_t> values;
+    for (const std::uint64_t bits : zigzags(packed))
+        values.push_back(static_cast<std::int64_t>(bits >> 1) ^
+                         -static_cast<std::int64_t>(bits & 1));
+    for (std::size_t order = packed.order; order-- > 0;)
+        for (std::size_t i = 1; i < values.size(); ++i) values[i] += values[i - 1];
     std::vector<double> samples(packed.count);
     for (std::size_t i = 0; i < packed.count; ++i)
         samples[i] = static_cast<double>(values[i]) * packed.scale;
@@ -92,6 +108,17 @@ TEST_CASE("a straight line takes next to nothing, noise no more than a float", "
     CHECK(pack(line).planes.size() < line.size() / 4);
     CHECK(pack(noise).planes.size() < noise.size() * 4);
     CHECK(greatest_error(noise) <= 0x1p-25);
+}
+
+TEST_CASE("a few wide differences among narrow ones are outliers and cost little", "[packing]") {
+    std::vector<double> steps(100000);
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        steps[i] = std::floor(static_cast<double>(i) / 1000) * 0x1p40;
+    const PackedSamples packed = pack(steps);
+    CHECK(packed.width == 0);
+    CHECK(packed.outliers == 99);
+    CHECK(packed.planes.size() < 1000);
+    CHECK(greatest_error(steps) == 0);
 }
 
 TEST_CASE("base64 as RFC 4648 has it", "[packing]") {
