@@ -16,7 +16,9 @@ namespace {
 constexpr double largest_whole = 0x1p49;  // zigzag differences of third order are below 2^53
 constexpr int fine_bits = 40, coarse_bits = 24;
 constexpr std::size_t highest_order = 3;
-constexpr double noise_bits = 24;  // a sample
+constexpr std::size_t greatest_width = 4;  // of what a page can put together by its whole numbers
+constexpr std::size_t outlier_cost = 10;   // bytes, about
+constexpr double noise_bits = 24;          // a sample
 
 using Whole = std::vector<std::int64_t>;
 
@@ -86,10 +88,10 @@ std::size_t best_width(const std::vector<std::uint64_t>& values) {
     for (const std::uint64_t value : values)
         for (std::size_t width = 0; width < bytes_of(value); ++width) ++wider[width];
     const auto bytes = [&](std::size_t width) {
-        return width * values.size() + wider[width] * 2 * PackedSamples::outlier_width;
+        return width * values.size() + wider[width] * outlier_cost;
     };
     std::size_t best = 0;
-    for (std::size_t width = 1; width < wider.size(); ++width)
+    for (std::size_t width = 1; width <= greatest_width; ++width)
         if (bytes(width) < bytes(best)) best = width;
     return best;
 }
@@ -112,11 +114,14 @@ std::string byte_planes(const Whole& differences, PackedSamples& packed) {
         outliers.push_back(std::exchange(values[i], 0));
     }
     packed.outliers = outliers.size();
+    for (const auto* list : {&gaps, &outliers})
+        for (const std::uint64_t value : *list)
+            packed.outlier_width = std::max(packed.outlier_width, bytes_of(value));
     std::string planes;
     planes.reserve(packed.width * values.size());
     append_planes(planes, values, packed.width);
-    append_planes(planes, gaps, PackedSamples::outlier_width);
-    append_planes(planes, outliers, PackedSamples::outlier_width);
+    append_planes(planes, gaps, packed.outlier_width);
+    append_planes(planes, outliers, packed.outlier_width);
     return planes;
 }
 

@@ -15,13 +15,12 @@ namespace lineshaft {
 /// become 0, 1, 2, 3), the bytes of one significance side by side, deflated.
 /// tools/report/page/decode.js undoes it.
 struct PackedSamples {
-    static constexpr std::size_t outlier_width = 7;
-
     std::size_t count = 0;
-    double scale = 1;          ///< value = whole number times scale
-    std::size_t order = 0;     ///< of the differences
-    std::size_t width = 0;     ///< bytes of a difference, but of the outliers
-    std::size_t outliers = 0;  ///< differences that take more bytes; 0 stands in their places
+    double scale = 1;               ///< value = whole number times scale
+    std::size_t order = 0;          ///< of the differences
+    std::size_t width = 0;          ///< bytes of a difference, but of the outliers
+    std::size_t outliers = 0;       ///< differences that take more bytes; 0 stands in their places
+    std::size_t outlier_width = 0;  ///< bytes of one, and of how far it is from the one before
     std::vector<std::pair<std::size_t, std::size_t>> missing;  ///< first and count of each stretch
     /// In zlib format: `width` planes of `count` bytes, the lowest byte first; then, in
     /// `outlier_width` planes of `outliers` bytes each, how far each outlier lies behind the one

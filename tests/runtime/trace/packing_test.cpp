@@ -25,7 +25,7 @@ std::vector<std::uint64_t> join_planes(const std::string& planes, std::size_t& a
 }
 
 std::vector<std::uint64_t> zigzags(const PackedSamples& packed) {
-    constexpr std::size_t wide = PackedSamples::outlier_width;
+    const std::size_t wide = packed.outlier_width;
     std::string planes(packed.width * packed.count + 2 * wide * packed.outliers, '\0');
     uLongf size = planes.size();
     uncompress(reinterpret_cast<Bytef*>(planes.data()), &size,

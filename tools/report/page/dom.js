@@ -21,13 +21,13 @@ export function nextFrame(task) {
   };
 }
 
-/** Calls `task` once nobody has asked for it for a moment: for what may come after the curves. */
+/** Calls `task` a moment after the next frame, once nobody asks for it: for what may follow the curves. */
 export function afterwards(task) {
   let waiting = 0;
-  return () => {
+  return nextFrame(() => {
     clearTimeout(waiting);
     waiting = setTimeout(task, 150);
-  };
+  });
 }
 
 /** A colour of page.css, in the theme that is shown. */

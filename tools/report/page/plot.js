@@ -2,13 +2,12 @@ import { CursorLines } from "#page/cursors";
 import { colour, dashes, element, palette } from "#page/dom";
 import { drawExpectations, failedBounds } from "#page/expectations";
 import { Legend } from "#page/legend";
-import { seen, slicedTimes, slicedValues, slices } from "#page/samples";
+import { slicedValues } from "#page/samples";
 
 const axisWidth = 84;
 const laneHeight = 34;
 const axisHeight = 62;
 const font = "12px system-ui, sans-serif";
-const slicesAcross = 1200; // two points each: more than a plot has pixels on most screens
 
 /** The plots of a page: one for each unit, one for each enumeration, one of strips for booleans. */
 export function groups(runs) {
@@ -75,11 +74,11 @@ export class Plot {
   #data() {
     const tables = [];
     for (const run of new Set(this.curves.map((curve) => curve.run))) {
-      const borders = slices(...seen(run.times, this.view.range), slicesAcross);
+      const { borders, times } = this.view.slices(run);
       const columns = this.curves
         .filter((curve) => curve.run === run)
         .map((curve) => this.#inLane(slicedValues(curve.signal.values, borders), curve.lane));
-      tables.push([slicedTimes(run.times, borders), ...columns]);
+      tables.push([times, ...columns]);
     }
     return tables.length === 1 ? tables[0] : uPlot.join(tables);
   }

@@ -1,10 +1,38 @@
+/**
+ * Numbers that are read by `at` as an array's are, but are worked out when they are asked for, a
+ * block at a time, by a derived class's `read(first, values)`: `values` are those from `first` on.
+ */
+export class Blocks {
+  static size = 1024;
+  #block = { first: -Blocks.size, values: new Float64Array(Blocks.size) };
+
+  constructor(length) {
+    this.length = length;
+  }
+
+  at(index) {
+    const block = this.block(index);
+    return block.values[index - block.first];
+  }
+
+  /** The block that a number lies in, until another one is asked for. */
+  block(index) {
+    const block = this.#block;
+    if (index < block.first || index >= block.first + Blocks.size) {
+      block.first = index - (index % Blocks.size);
+      this.read(block.first, block.values);
+    }
+    return block;
+  }
+}
+
 /** The index of the first of the rising `times` that is not below `time`; their number if none. */
 export function firstAtOrAfter(times, time) {
   let low = 0;
   let high = times.length;
   while (low < high) {
     const middle = (low + high) >>> 1;
-    if (times[middle] < time) low = middle + 1;
+    if (times.at(middle) < time) low = middle + 1;
     else high = middle;
   }
   return low;
@@ -13,7 +41,7 @@ export function firstAtOrAfter(times, time) {
 /** The index of the last of the rising `times` that is not above `time`; -1 if none. */
 export function lastAtOrBefore(times, time) {
   const index = firstAtOrAfter(times, time);
-  return index < times.length && times[index] === time ? index : index - 1;
+  return index < times.length && times.at(index) === time ? index : index - 1;
 }
 
 /** The samples seen in a view, with one neighbour on either side: [first, end). */
@@ -33,30 +61,44 @@ export function slices(first, end, count) {
 export function slicedTimes(times, borders) {
   const result = [];
   for (let k = 0; k + 1 < borders.length; ++k) {
-    result.push(times[borders[k]]);
-    if (borders[k + 1] - borders[k] > 1) result.push(times[borders[k + 1] - 1]);
+    result.push(times.at(borders[k]));
+    if (borders[k + 1] - borders[k] > 1) result.push(times.at(borders[k + 1] - 1));
   }
   return result;
 }
 
-/**
- * The least and the greatest sample of each slice, in their order, so that no peak is lost however
- * narrow it is; null where all are missing.
- */
-export function slicedValues(values, borders) {
+/** The least and the greatest of the samples [first, end), in their order; null if all are missing. */
+function extremes(samples, first, end) {
+  let low = Infinity;
+  let high = -Infinity;
+  let rises = true;
+  for (let begin = first; begin < end; begin = (Math.floor(begin / Blocks.size) + 1) * Blocks.size) {
+    const block = samples.block(begin);
+    const { values } = block;
+    const behind = Math.min(end - block.first, values.length);
+    for (let i = begin - block.first; i < behind; ++i) {
+      const value = values[i];
+      if (value < low) {
+        low = value;
+        rises = false;
+      }
+      if (value > high) {
+        high = value;
+        rises = true;
+      }
+    }
+  }
+  if (low > high) return [null, null];
+  return rises ? [low, high] : [high, low];
+}
+
+/** Two values a slice, its extremes, so that no peak is lost however narrow it is; as slicedTimes. */
+export function slicedValues(samples, borders) {
   const result = [];
   for (let k = 0; k + 1 < borders.length; ++k) {
-    const [first, end] = [borders[k], borders[k + 1]];
-    let least = first;
-    let greatest = first;
-    for (let i = first; i < end; ++i) {
-      const value = values[i];
-      if (!(value >= values[least])) least = value === value ? i : least;
-      if (!(value <= values[greatest])) greatest = value === value ? i : greatest;
-    }
-    const drawn = (i) => (Number.isNaN(values[i]) ? null : values[i]);
-    result.push(drawn(Math.min(least, greatest)));
-    if (end - first > 1) result.push(drawn(Math.max(least, greatest)));
+    const [one, other] = extremes(samples, borders[k], borders[k + 1]);
+    result.push(one);
+    if (borders[k + 1] - borders[k] > 1) result.push(other);
   }
   return result;
 }
