@@ -13,17 +13,19 @@ namespace lineshaft {
 
 namespace {
 
-constexpr double largest_whole = 0x1p49;  // zigzag differences of third order are below 2^53
+constexpr double largest_whole = 0x1p49;  // differences of third order are below 2^53
 constexpr int fine_bits = 40, coarse_bits = 24;
 constexpr std::size_t highest_order = 3;
-constexpr std::size_t greatest_width = 4;  // of what a page can put together by its whole numbers
-constexpr std::size_t outlier_cost = 10;   // bytes, about
-constexpr double noise_bits = 24;          // a sample
+constexpr std::array<std::size_t, 4> widths{0, 1, 2, 4};  // of a page's arrays of whole numbers
+constexpr std::size_t outlier_bytes = sizeof(double) + sizeof(std::uint32_t);
+constexpr double noise_bits = 24;  // a sample
 
 using Whole = std::vector<std::int64_t>;
 
-std::uint64_t zigzag(std::int64_t value) {
-    return (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63);
+/// Of the value with its sign.
+std::size_t bits_of(std::int64_t value) {
+    const auto size = static_cast<std::uint64_t>(value ^ (value >> 63));
+    return value == 0 ? 0 : static_cast<std::size_t>(std::bit_width(size)) + 1;
 }
 
 bool is_whole(double value) {
@@ -56,8 +58,8 @@ void difference(Whole& values) {
 }
 
 double bits_per_sample(const Whole& values) {
-    std::int64_t bits = 0;
-    for (const std::int64_t value : values) bits += std::bit_width(zigzag(value));
+    std::size_t bits = 0;
+    for (const std::int64_t value : values) bits += bits_of(value);
     return static_cast<double>(bits) / static_cast<double>(std::max<std::size_t>(values.size(), 1));
 }
 
@@ -78,51 +80,46 @@ Differences smallest_differences(Whole values) {
     return best;
 }
 
-std::size_t bytes_of(std::uint64_t value) {
-    return (static_cast<std::size_t>(std::bit_width(value)) + 7) / 8;
+bool fits(std::int64_t value, std::size_t width) {
+    return bits_of(value) <= 8 * width;
 }
 
 /// The width that leaves the fewest bytes in all, those of the outliers counted.
-std::size_t best_width(const std::vector<std::uint64_t>& values) {
-    std::array<std::size_t, 9> wider{};  // how many values take more bytes than the index says
-    for (const std::uint64_t value : values)
-        for (std::size_t width = 0; width < bytes_of(value); ++width) ++wider[width];
-    const auto bytes = [&](std::size_t width) {
-        return width * values.size() + wider[width] * outlier_cost;
-    };
-    std::size_t best = 0;
-    for (std::size_t width = 1; width <= greatest_width; ++width)
-        if (bytes(width) < bytes(best)) best = width;
-    return best;
+std::size_t best_width(const Whole& values) {
+    std::array<std::size_t, widths.size()> bytes{};
+    for (std::size_t k = 0; k < widths.size(); ++k) {
+        const auto wider = std::ranges::count_if(
+            values, [&](std::int64_t value) { return !fits(value, widths[k]); });
+        bytes[k] = widths[k] * values.size() + outlier_bytes * static_cast<std::size_t>(wider);
+    }
+    return widths[static_cast<std::size_t>(std::ranges::min_element(bytes) - bytes.begin())];
 }
 
-void append_planes(std::string& planes, const std::vector<std::uint64_t>& values,
+/// The bytes of one significance side by side, the lowest first.
+void append_planes(std::string& bytes, const std::vector<std::uint64_t>& values,
                    std::size_t width) {
     for (std::size_t plane = 0; plane < width; ++plane)
         for (const std::uint64_t value : values)
-            planes += static_cast<char>(value >> (8 * plane) & 0xff);
+            bytes += static_cast<char>(value >> (8 * plane) & 0xff);
 }
 
-std::string byte_planes(const Whole& differences, PackedSamples& packed) {
-    std::vector<std::uint64_t> values(differences.size()), gaps, outliers;
-    std::ranges::transform(differences, values.begin(), zigzag);
-    packed.width = best_width(values);
+std::string laid_down(const Whole& differences, PackedSamples& packed) {
+    packed.width = best_width(differences);
+    std::vector<std::uint64_t> outliers, gaps, rest(differences.begin(), differences.end());
     std::size_t last = 0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        if (bytes_of(values[i]) <= packed.width) continue;
+    for (std::size_t i = 0; i < differences.size(); ++i) {
+        if (fits(differences[i], packed.width)) continue;
+        outliers.push_back(std::bit_cast<std::uint64_t>(static_cast<double>(differences[i])));
         gaps.push_back(i - std::exchange(last, i));
-        outliers.push_back(std::exchange(values[i], 0));
+        rest[i] = 0;
     }
     packed.outliers = outliers.size();
-    for (const auto* list : {&gaps, &outliers})
-        for (const std::uint64_t value : *list)
-            packed.outlier_width = std::max(packed.outlier_width, bytes_of(value));
-    std::string planes;
-    planes.reserve(packed.width * values.size());
-    append_planes(planes, values, packed.width);
-    append_planes(planes, gaps, packed.outlier_width);
-    append_planes(planes, outliers, packed.outlier_width);
-    return planes;
+    std::string bytes;
+    bytes.reserve(outlier_bytes * outliers.size() + packed.width * rest.size());
+    append_planes(bytes, outliers, sizeof(double));
+    append_planes(bytes, gaps, sizeof(std::uint32_t));
+    append_planes(bytes, rest, packed.width);
+    return bytes;
 }
 
 std::string deflated(const std::string& bytes) {
@@ -163,7 +160,7 @@ PackedSamples pack(std::span<const double> samples) {
         best = smallest_differences(whole_numbers(samples, packed.scale));
     }
     packed.order = best.order;
-    packed.planes = deflated(byte_planes(best.values, packed));
+    packed.bytes = deflated(laid_down(best.values, packed));
     return packed;
 }
 

@@ -1,6 +1,7 @@
 #include "runtime/trace/packing.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -14,37 +15,38 @@ namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-/// The `planes`, `width` of `count` bytes each, that begin at `at`, which moves behind them.
-std::vector<std::uint64_t> join_planes(const std::string& planes, std::size_t& at,
-                                       std::size_t width, std::size_t count) {
+/// Takes `count` numbers from the front, their bytes of one significance side by side.
+std::vector<std::uint64_t> take(std::string_view& bytes, std::size_t width, std::size_t count) {
     std::vector<std::uint64_t> values(count);
-    for (std::size_t plane = 0; plane < width; ++plane)
-        for (std::uint64_t& value : values)
-            value |= std::uint64_t{static_cast<unsigned char>(planes.at(at++))} << (8 * plane);
+    for (std::size_t i = 0; i < width * count; ++i)
+        values[i % count] |= std::uint64_t{static_cast<unsigned char>(bytes.at(i))}
+                             << (8 * (i / count));
+    bytes.remove_prefix(width * count);
     return values;
 }
 
-std::vector<std::uint64_t> zigzags(const PackedSamples& packed) {
-    const std::size_t wide = packed.outlier_width;
-    std::string planes(packed.width * packed.count + 2 * wide * packed.outliers, '\0');
-    uLongf size = planes.size();
-    uncompress(reinterpret_cast<Bytef*>(planes.data()), &size,
-               reinterpret_cast<const Bytef*>(packed.planes.data()), packed.planes.size());
-    REQUIRE(size == planes.size());
-    std::size_t at = 0, place = 0;
-    auto values = join_planes(planes, at, packed.width, packed.count);
-    const auto gaps = join_planes(planes, at, wide, packed.outliers);
-    const auto outliers = join_planes(planes, at, wide, packed.outliers);
-    for (std::size_t k = 0; k < packed.outliers; ++k) values.at(place += gaps[k]) = outliers[k];
+std::vector<std::int64_t> differences(const PackedSamples& packed) {
+    std::string plain(packed.width * packed.count + 12 * packed.outliers, '\0');
+    uLongf size = plain.size();
+    uncompress(reinterpret_cast<Bytef*>(plain.data()), &size,
+               reinterpret_cast<const Bytef*>(packed.bytes.data()), packed.bytes.size());
+    REQUIRE(size == plain.size());
+    std::string_view bytes = plain;
+    const auto outliers = take(bytes, 8, packed.outliers);
+    const auto gaps = take(bytes, 4, packed.outliers);
+    std::vector<std::int64_t> values;
+    const std::size_t above = packed.width == 0 ? 0 : 64 - 8 * packed.width;
+    for (const std::uint64_t value : take(bytes, packed.width, packed.count))
+        values.push_back(static_cast<std::int64_t>(value << above) >> above);
+    std::size_t place = 0;
+    for (std::size_t k = 0; k < packed.outliers; ++k)
+        values.at(place += gaps[k]) = static_cast<std::int64_t>(std::bit_cast<double>(outliers[k]));
     return values;
 }
 
 /// As tools/report/page/decode.js does it.
 std::vector<double> unpack(const PackedSamples& packed) {
-    std::vector<std::int64_t> values;
-    for (const std::uint64_t bits : zigzags(packed))
-        values.push_back(static_cast<std::int64_t>(bits >> 1) ^
-                         -static_cast<std::int64_t>(bits & 1));
+    std::vector<std::int64_t> values = differences(packed);
     for (std::size_t order = packed.order; order-- > 0;)
         for (std::size_t i = 1; i < values.size(); ++i) values[i] += values[i - 1];
     std::vector<double> samples(packed.count);
@@ -105,8 +107,8 @@ TEST_CASE("a straight line takes next to nothing, noise no more than a float", "
         line[i] = 0.0125 * static_cast<double>(i);
         noise[i] = std::ldexp(random(), -64);
     }
-    CHECK(pack(line).planes.size() < line.size() / 4);
-    CHECK(pack(noise).planes.size() < noise.size() * 4);
+    CHECK(pack(line).bytes.size() < line.size() / 4);
+    CHECK(pack(noise).bytes.size() < noise.size() * 4);
     CHECK(greatest_error(noise) <= 0x1p-25);
 }
 
@@ -117,7 +119,7 @@ TEST_CASE("a few wide differences among narrow ones are outliers and cost little
     const PackedSamples packed = pack(steps);
     CHECK(packed.width == 0);
     CHECK(packed.outliers == 99);
-    CHECK(packed.planes.size() < 1000);
+    CHECK(packed.bytes.size() < 1000);
     CHECK(greatest_error(steps) == 0);
 }
 

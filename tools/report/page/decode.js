@@ -1,5 +1,5 @@
-// Undoes runtime/trace/packing.cpp: base64, deflate, byte planes, outliers, zigzag, differences, scale.
-import { Blocks, firstAtOrAfter, lastAtOrBefore } from "#page/samples";
+// Undoes runtime/trace/packing.cpp: base64, deflate, outliers, differences, scale.
+import { Blocks } from "#page/samples";
 
 const bytesOf = (base64) =>
   Uint8Array.fromBase64?.(base64) ?? Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
@@ -12,34 +12,16 @@ async function inflate(base64) {
   return new Uint8Array(await plain);
 }
 
-const split = (bytes, width, count) =>
-  Array.from({ length: width }, (_, k) => bytes.subarray(k * count, (k + 1) * count));
-
-/** The whole numbers behind byte planes, lowest byte first. */
-function joinPlanes(planes, count) {
-  const values = new Float64Array(count);
-  planes.forEach((plane, k) => {
-    const factor = 256 ** k;
-    for (let i = 0; i < count; ++i) values[i] += factor * plane[i];
-  });
-  return values;
+/** Numbers of `width` bytes whose bytes of one significance stand side by side, the lowest first. */
+function joinPlanes(bytes, width) {
+  const count = bytes.length / width;
+  const joined = new Uint8Array(bytes.length);
+  for (let k = 0; k < width; ++k)
+    for (let i = 0; i < count; ++i) joined[width * i + k] = bytes[k * count + i];
+  return joined.buffer;
 }
 
-/** Zigzag undone: 0, 1, 2, 3 stand for 0, -1, 1, -2. */
-const signed = (value) => (value % 2 === 0 ? value / 2 : -(value + 1) / 2);
-
-/** The same of the numbers behind up to four byte planes, from their index `first` on. */
-function joinSigned(planes, first, values) {
-  const [p0, p1, p2, p3] = planes;
-  const width = planes.length;
-  for (let i = 0, k = first; i < values.length; ++i, ++k) {
-    let bits = p0[k];
-    if (width > 1) bits |= p1[k] << 8;
-    if (width > 2) bits |= p2[k] << 16;
-    if (width > 3) bits |= p3[k] << 24;
-    values[i] = (bits >>> 1) ^ -(bits & 1);
-  }
-}
+const wholeNumbers = { 1: Int8Array, 2: Int16Array, 4: Int32Array };
 
 /**
  * Undoes differences of an order up to 3 and the scale, in place. `sums` are those before the first
@@ -59,62 +41,62 @@ function integrate(values, { order, scale }, sums) {
   return [first, second, third];
 }
 
-/** Differences that take more bytes than the others: where they stand, and what they are. */
-function unpackOutliers(bytes, width, count) {
-  const places = joinPlanes(split(bytes, width, count), count);
-  for (let k = 1; k < count; ++k) places[k] += places[k - 1];
-  const planes = split(bytes.subarray(width * count), width, count);
-  return { places, values: joinPlanes(planes, count).map(signed) };
-}
-
 /**
  * The samples of one packed column; a missing sample is NaN. They stay packed but for one block:
  * a browser takes several times as long to get new memory than to unpack what goes into it.
  */
 class Samples extends Blocks {
-  #sums = [[0, 0, 0]]; // before each block, as far as they are known
+  /** Before each block, as far as it is known: sums, the next outlier, the next missing stretch. */
+  #states = [{ sums: [0, 0, 0], outlier: 0, missing: 0 }];
 
-  /** Of `packed` with its planes inflated; `divisor` for what is no whole number times a scale. */
+  /** Of `packed` inflated to `bytes`; `divisor` for what is no whole number times a scale. */
   constructor(packed, bytes, divisor) {
     super(packed.count);
+    const { width, outliers } = packed;
     this.packed = packed;
     this.divisor = divisor;
-    this.planes = split(bytes, packed.width, packed.count);
-    this.outliers = unpackOutliers(bytes.subarray(packed.width * packed.count), packed.outlierWidth, packed.outliers);
-    this.missing = packed.missing.map(([first]) => first);
+    this.outliers = new Float64Array(joinPlanes(bytes.subarray(0, 8 * outliers), 8));
+    this.places = new Uint32Array(joinPlanes(bytes.subarray(8 * outliers, 12 * outliers), 4));
+    for (let k = 1; k < outliers; ++k) this.places[k] += this.places[k - 1];
+    this.differences = width > 0 ? new wholeNumbers[width](joinPlanes(bytes.subarray(12 * outliers), width)) : null;
   }
 
   read(first, values) {
     const index = first / Blocks.size;
-    while (this.#sums.length <= index) this.#unpack(this.#sums.length - 1, values);
+    while (this.#states.length <= index) this.#unpack(this.#states.length - 1, values);
     this.#unpack(index, values);
   }
 
   #unpack(index, block) {
     const first = index * Blocks.size;
     const values = block.subarray(0, this.length - first);
-    if (this.planes.length > 0) joinSigned(this.planes, first, values);
+    if (this.differences) values.set(this.differences.subarray(first, first + values.length));
     else values.fill(0);
-    this.#placeOutliers(first, values);
-    this.#sums[index + 1] = integrate(values, this.packed, this.#sums[index]);
+    const state = this.#states[index];
+    const outlier = this.#placeOutliers(state.outlier, first, values);
+    const sums = integrate(values, this.packed, state.sums);
     if (this.divisor !== 1) for (let i = 0; i < values.length; ++i) values[i] /= this.divisor;
-    this.#forget(first, values);
+    const missing = this.#forget(state.missing, first, values);
+    this.#states[index + 1] ??= { sums, outlier, missing };
   }
 
-  #placeOutliers(first, values) {
-    const { places, values: wide } = this.outliers;
-    for (let k = firstAtOrAfter(places, first); places[k] < first + values.length; ++k)
-      values[places[k] - first] = wide[k];
+  /** From outlier `k` on; returns the first behind the block. */
+  #placeOutliers(k, first, values) {
+    for (; this.places[k] < first + values.length; ++k) values[this.places[k] - first] = this.outliers[k];
+    return k;
   }
 
-  #forget(first, values) {
-    for (let k = Math.max(lastAtOrBefore(this.missing, first), 0); this.missing[k] < first + values.length; ++k) {
-      const begin = this.missing[k] - first;
-      values.fill(NaN, Math.max(begin, 0), Math.max(begin + this.packed.missing[k][1], 0));
+  /** From the missing stretch `k` on; returns the first that ends behind the block. */
+  #forget(k, first, values) {
+    for (const { missing } = this.packed; k < missing.length; ++k) {
+      const [begin, end] = [missing[k][0] - first, missing[k][0] + missing[k][1] - first];
+      if (begin < values.length) values.fill(NaN, Math.max(begin, 0), end);
+      if (end > values.length) break;
     }
+    return k;
   }
 }
 
 export async function unpack(packed, divisor = 1) {
-  return new Samples(packed, await inflate(packed.planes), divisor);
+  return new Samples(packed, await inflate(packed.bytes), divisor);
 }

@@ -88,8 +88,8 @@ function extremes(samples, first, end) {
       }
     }
   }
-  if (low > high) return [null, null];
-  return rises ? [low, high] : [high, low];
+  const none = low > high;
+  return [none ? null : rises ? low : high, none ? null : rises ? high : low];
 }
 
 /** Two values a slice, its extremes, so that no peak is lost however narrow it is; as slicedTimes. */
