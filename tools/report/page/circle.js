@@ -42,13 +42,12 @@ export function deviation(circle, x, y) {
 /** Samples farther from the circle than this share of its radius do not belong to it. */
 const band = 0.05;
 
-/** The deviation of a point that belongs to the circle; not a number if it lies elsewhere. */
-export function deviationNear(circle, x, y) {
-  const by = deviation(circle, x, y);
-  return Math.abs(by) <= band * circle.radius ? by : NaN;
-}
+export const isNear = (circle, x, y) => Math.abs(deviation(circle, x, y)) <= band * circle.radius;
 
-/** The same sample by sample; not a number, too, where `condition`, if there is one, is not true. */
+/**
+ * The deviation from the circle, sample by sample; not a number where a sample lies elsewhere, or
+ * where `condition`, if there is one, is not true.
+ */
 export class Deviations extends Blocks {
   constructor(circle, { x, y, condition }) {
     super(x.length);
@@ -57,8 +56,14 @@ export class Deviations extends Blocks {
 
   read(first, values) {
     const [x, y, condition] = [this.x, this.y, this.condition].map((each) => each?.block(first).values);
-    for (let i = 0; i < values.length; ++i)
-      values[i] = condition && condition[i] !== 1 ? NaN : deviationNear(this.circle, x[i], y[i]);
+    const { x: a, y: b, radius } = this.circle;  // without a call a sample, which takes several times as long
+    for (let i = 0; i < values.length; ++i) {
+      const u = x[i] - a;
+      const v = y[i] - b;
+      const by = Math.sqrt(u * u + v * v) - radius;
+      values[i] = Math.abs(by) <= band * radius ? by : NaN;
+    }
+    if (condition) for (let i = 0; i < values.length; ++i) if (condition[i] !== 1) values[i] = NaN;
   }
 }
 
@@ -81,7 +86,7 @@ export function findCircle(path) {
     circle = fitCircle(xs, ys, (i) => sizes[i] <= limit);
   }
   if (!circle) return null;
-  const on = xs.filter((x, i) => !Number.isNaN(deviationNear(circle, x, ys[i])));
+  const on = xs.filter((x, i) => isNear(circle, x, ys[i]));
   return on.length > length / 2 ? circle : null;
 }
 

@@ -14,6 +14,7 @@ async function inflate(base64) {
 
 /** Numbers of `width` bytes whose bytes of one significance stand side by side, the lowest first. */
 function joinPlanes(bytes, width) {
+  if (width === 1) return bytes.slice().buffer;
   const count = bytes.length / width;
   const joined = new Uint8Array(bytes.length);
   for (let k = 0; k < width; ++k)

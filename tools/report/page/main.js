@@ -47,7 +47,7 @@ function deviationPlot(parent, path, view) {
   const group = { unit: signal.unit, type: "real", curves: path.deviationCurves() };
   const plot = new Plot(parent, group, view);
   path.onCircle(() => {
-    view.tell("range");
+    view.show(view.range.from, view.range.to);
     view.tell("cursors");
   });
   return [plot];

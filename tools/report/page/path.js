@@ -1,7 +1,7 @@
-import { deviationNear, Deviations, figures, findCircle, nominal } from "#page/circle";
+import { deviation, Deviations, figures, findCircle, isNear, nominal } from "#page/circle";
 import { afterwards, colour, dashes, element, nextFrame, palette } from "#page/dom";
 import { number, withUnit } from "#page/format";
-import { lastAtOrBefore, seen, slicedValues } from "#page/samples";
+import { lastAtOrBefore, seen } from "#page/samples";
 
 const wanted = 500;
 
@@ -9,7 +9,7 @@ const wanted = 500;
 function magnification(circle, tracks, view) {
   let worst = 0;
   for (const { run, deviations } of tracks)
-    for (const value of slicedValues(deviations, view.slices(run).borders))
+    for (const value of view.slicedValues(run, deviations))
       worst = Math.max(worst, Math.abs(value));
   const steps = [500, 200, 100, 50, 20, 10, 5, 2];
   return steps.find((step) => step <= wanted && step * worst < 0.8 * circle.radius) ?? 1;
@@ -86,6 +86,7 @@ export class Path {
     const field = (label, value, set) => {
       const input = element("input", { type: "number", step: "any", value, onchange: () => {
         if (Number.isFinite(input.valueAsNumber)) set(input.valueAsNumber);
+        for (const { deviations } of this.tracks) deviations.forget();
         this.refresh();
         this.circleListener?.();
       } });
@@ -117,19 +118,22 @@ export class Path {
     this.figures.replaceChildren(element("tbody", {}, ...lines));
   }
 
-  /** Where a sample is drawn: its distance from the circle magnified; nowhere if it does not belong to it. */
-  #magnified(x, y) {
+  get #centre() {
+    return this.circle ?? { x: 0, y: 0 };
+  }
+
+  /** By what a sample's distance from the circle's centre is drawn longer. */
+  #stretch(x, y) {
     const { circle, magnify } = this;
-    if (!circle || magnify === 1) return [x, y];
-    const by = deviationNear(circle, x, y);
-    const factor = Math.max(circle.radius + magnify * by, 0) / (circle.radius + by);
-    return [circle.x + (x - circle.x) * factor, circle.y + (y - circle.y) * factor];
+    if (!circle || magnify === 1) return 1;
+    const by = deviation(circle, x, y);
+    return Math.max(circle.radius + magnify * by, 0) / (circle.radius + by);
   }
 
   /** Of the points of all tracks, and of the circle with some room. */
   #extent(tracks) {
     const reach = this.circle ? this.circle.radius * 1.02 : -Infinity;
-    const { x, y } = this.circle ?? { x: 0, y: 0 };
+    const { x, y } = this.#centre;
     const extent = { x: [x - reach, x + reach], y: [y - reach, y + reach] };
     for (const points of tracks)
       for (const [axis, values] of Object.entries(points))
@@ -145,10 +149,14 @@ export class Path {
     const [first, end] = seen(run.times, this.view.range);
     const step = Math.max(1, Math.floor((end - first) / 20000));
     const count = Math.ceil((end - first) / step);
-    const points = { x: new Float64Array(count).fill(NaN), y: new Float64Array(count).fill(NaN) };
+    const points = { x: new Float64Array(count), y: new Float64Array(count) };
+    const { x: a, y: b } = this.#centre;
     for (let k = 0, i = first; k < count; ++k, i += step) {
-      if (this.magnify !== 1 && condition && condition.at(i) !== 1) continue;
-      [points.x[k], points.y[k]] = this.#magnified(x.at(i), y.at(i));
+      const [px, py] = [x.at(i), y.at(i)];
+      const off = this.magnify !== 1 && (!isNear(this.circle, px, py) || (condition && condition.at(i) !== 1));
+      const factor = off ? NaN : this.#stretch(px, py);
+      points.x[k] = a + (px - a) * factor;
+      points.y[k] = b + (py - b) * factor;
     }
     return points;
   }
@@ -250,13 +258,15 @@ export class Path {
       const { run, x, y } = this.tracks[0];
       const at = lastAtOrBefore(run.times, this.view.cursors[index]);
       if (at < 0) return;
-      const [px, py] = this.#magnified(x.at(at), y.at(at));
+      const { x: a, y: b } = this.#centre;
+      const factor = this.#stretch(x.at(at), y.at(at));
+      const [px, py] = [map.x(a + (x.at(at) - a) * factor), map.y(b + (y.at(at) - b) * factor)];
       ctx.textAlign = "left";
       ctx.fillStyle = colour(`cursor-${name}`);
       ctx.beginPath();
-      ctx.arc(map.x(px), map.y(py), 5, 0, 2 * Math.PI);
+      ctx.arc(px, py, 5, 0, 2 * Math.PI);
       ctx.fill();
-      ctx.fillText(name, map.x(px) + 9, map.y(py) + 4);
+      ctx.fillText(name, px + 9, py + 4);
     });
   }
 }

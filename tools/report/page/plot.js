@@ -2,7 +2,6 @@ import { CursorLines } from "#page/cursors";
 import { colour, dashes, element, palette } from "#page/dom";
 import { drawExpectations, failedBounds } from "#page/expectations";
 import { Legend } from "#page/legend";
-import { slicedValues } from "#page/samples";
 
 const axisWidth = 84;
 const laneHeight = 34;
@@ -74,11 +73,10 @@ export class Plot {
   #data() {
     const tables = [];
     for (const run of new Set(this.curves.map((curve) => curve.run))) {
-      const { borders, times } = this.view.slices(run);
       const columns = this.curves
         .filter((curve) => curve.run === run)
-        .map((curve) => this.#inLane(slicedValues(curve.signal.values, borders), curve.lane));
-      tables.push([times, ...columns]);
+        .map((curve) => this.#inLane(this.view.slicedValues(run, curve.signal.values), curve.lane));
+      tables.push([this.view.slicedTimes(run), ...columns]);
     }
     return tables.length === 1 ? tables[0] : uPlot.join(tables);
   }

@@ -10,6 +10,11 @@ export class Blocks {
     this.length = length;
   }
 
+  /** What has been read is no longer so. */
+  forget() {
+    this.#block.first = -Blocks.size;
+  }
+
   at(index) {
     const block = this.block(index);
     return block.values[index - block.first];

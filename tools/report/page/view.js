@@ -1,4 +1,4 @@
-import { seen, slicedTimes, slices } from "#page/samples";
+import { seen, slicedTimes, slicedValues, slices } from "#page/samples";
 
 const slicesAcross = 1200; // two points each: more than a plot has pixels on most screens
 
@@ -46,11 +46,22 @@ export class View {
     this.show(about - (about - from) * factor, about + (to - about) * factor);
   }
 
-  /** What is drawn of a run's samples: the borders of slices, and the times of their ends. */
-  slices({ times }) {
+  /** The times at which a run is drawn: the ends of slices of what is seen of it. */
+  slicedTimes(run) {
+    return this.#slicesOf(run).times;
+  }
+
+  /** What is drawn of a run's samples at these times. */
+  slicedValues(run, samples) {
+    const { borders, columns } = this.#slicesOf(run);
+    if (!columns.has(samples)) columns.set(samples, slicedValues(samples, borders));
+    return columns.get(samples);
+  }
+
+  #slicesOf({ times }) {
     if (!this.#slices.has(times)) {
       const borders = slices(...seen(times, this.range), slicesAcross);
-      this.#slices.set(times, { borders, times: slicedTimes(times, borders) });
+      this.#slices.set(times, { borders, times: slicedTimes(times, borders), columns: new Map() });
     }
     return this.#slices.get(times);
   }
