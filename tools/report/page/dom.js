@@ -30,9 +30,15 @@ export function afterwards(task) {
   });
 }
 
-/** A colour of page.css, in the theme that is shown. */
-export const colour = (name) =>
-  getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+const colours = new Map();
+
+/** A colour of page.css, in the theme that is shown. A browser takes its time to say it. */
+export function colour(name) {
+  const root = document.documentElement;
+  const key = `${root.dataset.theme} ${name}`;
+  if (!colours.has(key)) colours.set(key, getComputedStyle(root).getPropertyValue(`--${name}`).trim());
+  return colours.get(key);
+}
 
 export const palette = (index) => colour(`line-${index % 8}`);
 

@@ -62,6 +62,8 @@ function showRuns(parent, report, runs) {
   const paths = report.paths.map((pair) => new Path(parent, pair, runs, view, report));
   const plots = paths.flatMap((path) => deviationPlot(parent, path, view));
   plots.push(...groups(runs).map((group) => new Plot(parent, group, view)));
+  const width = plots[0]?.chart.clientWidth; // of all of them
+  for (const plot of plots) plot.draw(width);
   new ResizeObserver(nextFrame(() => [...paths, ...plots].forEach((p) => p.resize()))).observe(parent);
   return view;
 }

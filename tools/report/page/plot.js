@@ -42,10 +42,14 @@ export class Plot {
     const side = element("div", { className: "side" });
     parent.append(element("section", { className: "plot" }, this.chart, side));
     this.legend = new Legend(side, this.curves, view);
-    this.uplot = new uPlot(this.#options(), this.#data(), this.chart);
-    this.cursors = new CursorLines(this.uplot, view, this.curves[0].run.times);
+  }
+
+  /** Draws the plot for the first time, so wide. */
+  draw(width) {
+    this.uplot = new uPlot(this.#options(width), this.#data(), this.chart);
+    this.cursors = new CursorLines(this.uplot, this.view, this.curves[0].run.times);
     this.#listenToMouse();
-    view.listen((change) => this.#changed(change));
+    this.view.listen((change) => this.#changed(change));
   }
 
   get isStrips() {
@@ -87,9 +91,9 @@ export class Plot {
     return values.map((value) => (value === null ? null : base + 0.45 * value));
   }
 
-  #options() {
+  #options(width) {
     return {
-      width: Math.max(this.chart.clientWidth, 200),
+      width: Math.max(width, 200),
       height: this.#height(),
       legend: { show: false },
       scales: {
