@@ -80,8 +80,8 @@ void check_comparable(const CsvTable& a, const CsvTable& b, bool same_program, D
              "record both with the same task and 'every'");
 }
 
-Comparison compare(const CsvTable& a, const CsvTable& b, const Tolerances& tolerances) {
-    Comparison result;
+TraceComparison compare(const CsvTable& a, const CsvTable& b, const Tolerances& tolerances) {
+    TraceComparison result;
     result.compared = std::min(a.rows, b.rows);
     std::vector<double> tolerance;
     for (const CsvColumn& column : a.columns) tolerance.push_back(tolerances.of(column));

@@ -23,7 +23,7 @@ struct Deviation {
     std::size_t column = 0;  ///< of either table
 };
 
-struct Comparison {
+struct TraceComparison {
     std::optional<Deviation> first;     ///< by row, then column
     std::optional<Deviation> greatest;  ///< by the plain distance, among reals
     std::size_t cells = 0;              ///< that deviate
@@ -40,7 +40,7 @@ void check_comparable(const CsvTable& a, const CsvTable& b, bool same_program, D
 
 /// Compares two comparable tables cell by cell, as far as both have rows. A missing value equals a
 /// missing one only.
-Comparison compare(const CsvTable& a, const CsvTable& b, const Tolerances& tolerances);
+TraceComparison compare(const CsvTable& a, const CsvTable& b, const Tolerances& tolerances);
 
 /// How many doubles lie between two finite ones, and one more; 0 for equal ones, and for 0 and -0.
 std::uint64_t ulp_distance(double a, double b);

@@ -18,7 +18,7 @@ namespace lineshaft {
 
 namespace {
 
-constexpr const char* help =
+constexpr const char* contour_help =
     "Each row is one command point with the actual point fed back in the same scan, as a trace\n"
     "of every scan has them. Contour errors, as magnitudes:\n"
     "  real-time  nearest command point so far, tangent from its neighbours (block contour_error)\n"
@@ -33,8 +33,8 @@ constexpr const char* help =
 constexpr std::array<const char*, 3> method_names{"real-time", "linear", "spline"};
 constexpr std::array<const char*, 6> row_names{
     "real-time", "linear", "spline", "real-time - linear", "real-time - spline", "linear - spline"};
-constexpr double farthest = 1e9;     // [mm] what is beyond is no position
-constexpr std::size_t chunk = 4096;  // samples between two looks at the clock
+constexpr double farthest = 1e9;       // [mm] what is beyond is no position
+constexpr std::size_t stretch = 4096;  // samples between two looks at the clock
 
 struct ContourCommand {
     std::string trace;
@@ -120,14 +120,14 @@ Recording record(const CsvTable& table, const ContourCommand& command, Diagnosti
     return recording;
 }
 
-/// The three methods over a recording, a chunk after the other.
+/// The three methods over a recording, a stretch after the other.
 class Comparer {
   public:
     explicit Comparer(const Recording& recording) : recording_(recording) {
         spans_.resize(recording.path.size() - 1);
         natural_spline(recording.path, spans_);
     }
-    /// Samples from .. to - 1, at most `chunk`.
+    /// Samples from .. to - 1, at most `stretch`.
     void compare(std::size_t from, std::size_t to);
     const Result& result() const { return result_; }
 
@@ -154,8 +154,8 @@ void Comparer::time(std::size_t method, std::size_t from, std::size_t to, const 
 
 void Comparer::compare(std::size_t from, std::size_t to) {
     using Sample = Recording::Sample;
-    std::array<ContourEstimate, chunk> estimates;
-    std::array<double, chunk> linear{}, spline{};
+    std::array<ContourEstimate, stretch> estimates;
+    std::array<double, stretch> linear{}, spline{};
     time(0, from, to, [&](const Sample& sample, std::size_t i) {
         path_.add(sample.command);
         estimates[i] = path_.estimate(sample.actual);
@@ -192,9 +192,9 @@ std::optional<Result> compare(const Recording& recording, bool quiet) {
     ProgressLine line(quiet);
     Comparer comparer(recording);
     const std::size_t all = recording.samples.size();
-    for (std::size_t from = 0; from < all; from += chunk) {
+    for (std::size_t from = 0; from < all; from += stretch) {
         if (interrupt_requested) return {};
-        comparer.compare(from, std::min(all, from + chunk));
+        comparer.compare(from, std::min(all, from + stretch));
         line.show([&](double) { return fmt::format("{} of {} samples", from, all); });
     }
     return comparer.result();
@@ -288,7 +288,7 @@ void add_contour(CLI::App& app, Exit& result) {
         ->required();
     sub->add_flag("--json", command->json, "Print one JSON object for machines");
     sub->add_flag("--quiet", command->quiet, "No progress line");
-    sub->footer(help);
+    sub->footer(contour_help);
     sub->callback([command, &result] { result = execute(*command); });
 }
 

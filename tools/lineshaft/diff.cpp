@@ -65,7 +65,7 @@ std::string distance(const CsvColumn& a, const CsvColumn& b, std::size_t row) {
 }
 
 void print_window(const DiffCommand& command, const CsvTable& a, const CsvTable& b,
-                  const Comparison& found) {
+                  const TraceComparison& found) {
     const auto [row, index] = *found.first;
     const CsvColumn &x = a.columns[index], &y = b.columns[index];
     const CsvColumn *time = a.find("time"), *scan = a.find("scan");
@@ -79,7 +79,7 @@ void print_window(const DiffCommand& command, const CsvTable& a, const CsvTable&
 }
 
 void print_text(const DiffCommand& command, const CsvTable& a, const CsvTable& b,
-                const Comparison& found) {
+                const TraceComparison& found) {
     if (found.same(a, b)) {
         if (!command.quiet) fmt::print("same: {} rows of {} columns\n", a.rows, a.columns.size());
         return;
@@ -116,7 +116,7 @@ nlohmann::ordered_json to_json(const CsvTable& a, const CsvTable& b, const Devia
     return object;
 }
 
-void print_json(const CsvTable& a, const CsvTable& b, const Comparison& found) {
+void print_json(const CsvTable& a, const CsvTable& b, const TraceComparison& found) {
     nlohmann::ordered_json object{{"same", found.same(a, b)},
                                   {"rows_a", a.rows},
                                   {"rows_b", b.rows},
@@ -135,7 +135,7 @@ Exit execute(const DiffCommand& command) {
     if (a && b) check_comparable(*a, *b, !command.any_program, out);
     if (a && b) tolerances = read_tolerances(command.tolerances, *a, out);
     if (!out.empty()) return report(out, command.json);
-    const Comparison found = compare(*a, *b, tolerances);
+    const TraceComparison found = compare(*a, *b, tolerances);
     if (command.json)
         print_json(*a, *b, found);
     else

@@ -15,7 +15,7 @@ namespace lineshaft {
 
 namespace {
 
-constexpr const char* help =
+constexpr const char* fit_help =
     "The plan names parameters of a program with bounds, and cases with what was measured of "
     "them:\n"
     "  lineshaft_fit: 1\n"
@@ -86,7 +86,7 @@ void add_fit(CLI::App& app, Exit& result) {
     auto command = std::make_shared<FitCommand>();
     CLI::App* sub = app.add_subcommand(
         "fit", "Identify a program's parameters from measured figures or traces");
-    sub->footer(help);
+    sub->footer(fit_help);
     sub->add_option("plan", command->plan, "The plan, a YAML file")->required();
     sub->add_option("-o,--output", command->output, "Write the values found as a study's 'set:'")
         ->type_name("OUT.yaml");

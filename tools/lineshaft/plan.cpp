@@ -23,7 +23,7 @@ namespace lineshaft {
 
 namespace {
 
-constexpr const char* help =
+constexpr const char* plan_help =
     "One row of output for each line of input, blank lines aside:\n"
     "  ok            1: planned; 0: cannot be planned, or a bad line: all other cells are empty\n"
     "  case          which ramps there are, and which of them hold the acceleration limit\n"
@@ -353,7 +353,7 @@ void add_plan(CLI::App& app, Exit& result) {
         ->capture_default_str();
     sub->add_option("-o,--output", command->output, "Write here instead of to the standard output")
         ->type_name("FILE");
-    sub->footer(help);
+    sub->footer(plan_help);
     sub->callback([command, &result] { result = execute(*command); });
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* help =
+constexpr const char* report_help =
     "Inputs are traces (run --trace FILE.csv) and studies (study --json >FILE.json). Traces of "
     "the\n"
     "same signals are laid over each other, the second one dashed. Two lengths whose names differ\n"
@@ -199,7 +199,7 @@ void add_report(CLI::App& app, Exit& result) {
         ->type_name("SIGNAL");
     sub->add_option("--title", command->title, "Headline; else the program's title");
     sub->add_flag("--quiet", command->quiet, "Print messages only");
-    sub->footer(help);
+    sub->footer(report_help);
     sub->callback([command, &result] { result = execute(*command); });
 }
 

@@ -51,7 +51,7 @@ TEST_CASE("equal tables are the same, a bit of difference is found") {
     const CsvTable a = table(times, {1, 2, 3});
     CHECK(compare(a, a, {}).same(a, a));
     const CsvTable b = table(times, {1, std::nextafter(2.0, 3.0), 4});
-    const Comparison found = compare(a, b, {});
+    const TraceComparison found = compare(a, b, {});
     REQUIRE(found.first);
     CHECK(found.first->row == 1);
     CHECK(found.first->column == 1);
@@ -85,7 +85,7 @@ TEST_CASE("whole numbers are compared exactly, whatever the tolerance of reals")
 
 TEST_CASE("tables of other length differ, though their rows agree") {
     const CsvTable a = table(times, {1, 2, 3}), b = table({0, 0.002}, {1, 2});
-    const Comparison found = compare(a, b, {});
+    const TraceComparison found = compare(a, b, {});
     CHECK_FALSE(found.first);
     CHECK(found.compared == 2);
     CHECK_FALSE(found.same(a, b));
