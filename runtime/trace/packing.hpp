@@ -15,7 +15,7 @@ namespace lineshaft {
 /// more bytes than the rest apart, deflated. Numbers are as a page's typed arrays have them
 /// (little-endian, two's complement), but with the bytes of one significance side by side.
 /// tools/report/page/decode.js undoes it.
-struct PackedSamples {
+struct PackedSamples {  // of fewer than 2^32 samples
     std::size_t count = 0;
     double scale = 1;          ///< value = whole number times scale
     std::size_t order = 0;     ///< of the differences

@@ -2,11 +2,12 @@ import { Blocks } from "#page/samples";
 
 /**
  * The circle that fits points best, algebraic least squares: x² + y² = 2 a x + 2 b y + c with centre
- * (a, b) and radius √(c + a² + b²). `use(i)` picks the points. Null when they lie on a line.
+ * (a, b) and radius √(c + a² + b²). `use(i)` picks from the points [first, end). Null when they lie on
+ * a line.
  */
-export function fitCircle(xs, ys, use = () => true) {
+export function fitCircle(xs, ys, use = () => true, [first, end] = [0, xs.length]) {
   let [n, mx, my] = [0, 0, 0];
-  for (let i = 0; i < xs.length; ++i) {
+  for (let i = first; i < end; ++i) {
     if (!use(i)) continue;
     n += 1;
     mx += xs.at(i);
@@ -15,7 +16,7 @@ export function fitCircle(xs, ys, use = () => true) {
   if (n < 3) return null;
   [mx, my] = [mx / n, my / n];
   let [uu, uv, vv, uz, vz, z] = [0, 0, 0, 0, 0, 0];
-  for (let i = 0; i < xs.length; ++i) {
+  for (let i = first; i < end; ++i) {
     if (!use(i)) continue;
     const [u, v] = [xs.at(i) - mx, ys.at(i) - my];
     const square = u * u + v * v;
@@ -56,7 +57,7 @@ export class Deviations extends Blocks {
 
   read(first, values) {
     const [x, y, condition] = [this.x, this.y, this.condition].map((each) => each?.block(first).values);
-    const { x: a, y: b, radius } = this.circle;  // without a call a sample, which takes several times as long
+    const { x: a, y: b, radius } = this.circle; // no call for each sample: it takes a browser several times as long
     for (let i = 0; i < values.length; ++i) {
       const u = x[i] - a;
       const v = y[i] - b;
@@ -99,8 +100,7 @@ export function nominal({ x, y, radius }) {
 
 /** Of the samples [first, end): offset of the fitted centre, mean and greatest |deviation|. */
 export function figures(circle, track, on, [first, end]) {
-  const use = (i) => i >= first && i < end && !Number.isNaN(on.at(i));
-  const fitted = fitCircle(track.x, track.y, use);
+  const fitted = fitCircle(track.x, track.y, (i) => !Number.isNaN(on.at(i)), [first, end]);
   let [count, sum, worst, greatest] = [0, 0, -1, -1];
   for (let i = first; i < end; ++i) {
     const size = Math.abs(on.at(i));
