@@ -24,10 +24,11 @@ export function nextFrame(task) {
 /** Calls `task` a moment after the next frame, once nobody asks for it: for what may follow the curves. */
 export function afterwards(task) {
   let waiting = 0;
-  return nextFrame(() => {
+  const wait = nextFrame(() => { waiting = setTimeout(task, 150); });
+  return () => {
     clearTimeout(waiting);
-    waiting = setTimeout(task, 150);
-  });
+    wait();
+  };
 }
 
 const colours = new Map();

@@ -1,18 +1,56 @@
+/** The least and the greatest of numbers one after another. */
+class Extremes {
+  low = Infinity;
+  high = -Infinity;
+  rises = true;
+
+  add(values, first, end) {
+    let { low, high, rises } = this;
+    for (let i = first; i < end; ++i) {
+      const value = values[i];
+      if (value < low) {
+        low = value;
+        rises = false;
+      }
+      if (value > high) {
+        high = value;
+        rises = true;
+      }
+    }
+    Object.assign(this, { low, high, rises });
+  }
+
+  /** Both as they came; NaN if all numbers are missing. */
+  get inOrder() {
+    const { low, high, rises } = this;
+    const some = low <= high;
+    return [some ? (rises ? low : high) : NaN, some ? (rises ? high : low) : NaN];
+  }
+}
+
 /**
  * Numbers that are read by `at` as an array's are, but are worked out when they are asked for, a
  * block at a time, by a derived class's `read(first, values)`: `values` are those from `first` on.
+ * Of each chunk of a block that has been asked for them, the extremes are kept.
  */
 export class Blocks {
   static size = 1024;
+  static chunk = 256;
   #block = { first: -Blocks.size, values: new Float64Array(Blocks.size) };
+  #extremes;
+  #known;
 
   constructor(length) {
     this.length = length;
+    this.forget();
   }
 
   /** What has been read is no longer so. */
   forget() {
+    const chunks = Math.ceil(this.length / Blocks.chunk);
     this.#block.first = -Blocks.size;
+    this.#extremes = new Float64Array(2 * chunks);
+    this.#known = new Uint8Array(chunks);
   }
 
   at(index) {
@@ -28,6 +66,35 @@ export class Blocks {
       this.read(block.first, block.values);
     }
     return block;
+  }
+
+  /** The least and the greatest of the numbers [first, end), as they come; NaN if all are missing. */
+  extremes(first, end) {
+    const found = new Extremes();
+    for (let begin = first; begin < end; ) {
+      const chunk = Math.floor(begin / Blocks.chunk);
+      const next = Math.min((chunk + 1) * Blocks.chunk, end);
+      if (next - begin === Blocks.chunk) found.add(this.#extremesOf(chunk), 2 * chunk, 2 * chunk + 2);
+      else this.#add(found, begin, next);
+      begin = next;
+    }
+    return found.inOrder;
+  }
+
+  #add(found, first, end) {
+    const block = this.block(first);
+    found.add(block.values, first - block.first, end - block.first);
+  }
+
+  /** Those of all chunks, of which at least this one is known. */
+  #extremesOf(chunk) {
+    if (!this.#known[chunk]) {
+      const found = new Extremes();
+      this.#add(found, chunk * Blocks.chunk, (chunk + 1) * Blocks.chunk);
+      this.#extremes.set(found.inOrder, 2 * chunk);
+      this.#known[chunk] = 1;
+    }
+    return this.#extremes;
   }
 }
 
@@ -56,10 +123,15 @@ export function seen(times, view) {
   return [first, Math.max(first, end)];
 }
 
-/** `count` slices of [first, end) as their borders; a slice a sample if there are few samples. */
+/**
+ * `count` slices of [first, end) as their borders; a slice a sample if there are few samples, whole
+ * chunks if there are many.
+ */
 export function slices(first, end, count) {
   const many = Math.min(count, end - first);
-  return Array.from({ length: many + 1 }, (_, k) => first + Math.floor((k * (end - first)) / many));
+  const grain = end - first >= 2 * Blocks.chunk * many ? Blocks.chunk : 1;
+  const border = (k) => Math.floor((first + (k * (end - first)) / many) / grain) * grain;
+  return Array.from({ length: many + 1 }, (_, k) => (k === 0 ? first : k === many ? end : border(k)));
 }
 
 /** Two times a slice: its first and its last sample's; one where a slice is a sample. */
@@ -72,38 +144,13 @@ export function slicedTimes(times, borders) {
   return result;
 }
 
-/** The least and the greatest of the samples [first, end), in their order; null if all are missing. */
-function extremes(samples, first, end) {
-  let low = Infinity;
-  let high = -Infinity;
-  let rises = true;
-  for (let begin = first; begin < end; begin = (Math.floor(begin / Blocks.size) + 1) * Blocks.size) {
-    const block = samples.block(begin);
-    const { values } = block;
-    const behind = Math.min(end - block.first, values.length);
-    for (let i = begin - block.first; i < behind; ++i) {
-      const value = values[i];
-      if (value < low) {
-        low = value;
-        rises = false;
-      }
-      if (value > high) {
-        high = value;
-        rises = true;
-      }
-    }
-  }
-  const none = low > high;
-  return [none ? null : rises ? low : high, none ? null : rises ? high : low];
-}
-
 /** Two values a slice, its extremes, so that no peak is lost however narrow it is; as slicedTimes. */
 export function slicedValues(samples, borders) {
   const result = [];
   for (let k = 0; k + 1 < borders.length; ++k) {
-    const [one, other] = extremes(samples, borders[k], borders[k + 1]);
-    result.push(one);
-    if (borders[k + 1] - borders[k] > 1) result.push(other);
+    const [one, other] = samples.extremes(borders[k], borders[k + 1]);
+    result.push(Number.isNaN(one) ? null : one);
+    if (borders[k + 1] - borders[k] > 1) result.push(Number.isNaN(other) ? null : other);
   }
   return result;
 }
