@@ -5,7 +5,9 @@ class Extremes {
   rises = true;
 
   add(values, first, end) {
-    let { low, high, rises } = this;
+    let low = this.low;
+    let high = this.high;
+    let rises = this.rises;
     for (let i = first; i < end; ++i) {
       const value = values[i];
       if (value < low) {
@@ -17,14 +19,18 @@ class Extremes {
         rises = true;
       }
     }
-    Object.assign(this, { low, high, rises });
+    this.low = low;
+    this.high = high;
+    this.rises = rises;
   }
 
-  /** Both as they came; NaN if all numbers are missing. */
-  get inOrder() {
-    const { low, high, rises } = this;
-    const some = low <= high;
-    return [some ? (rises ? low : high) : NaN, some ? (rises ? high : low) : NaN];
+  /** The one that came first; NaN if all numbers are missing. */
+  get former() {
+    return this.low > this.high ? NaN : this.rises ? this.low : this.high;
+  }
+
+  get latter() {
+    return this.low > this.high ? NaN : this.rises ? this.high : this.low;
   }
 }
 
@@ -68,7 +74,7 @@ export class Blocks {
     return block;
   }
 
-  /** The least and the greatest of the numbers [first, end), as they come; NaN if all are missing. */
+  /** Of the numbers [first, end). */
   extremes(first, end) {
     const found = new Extremes();
     for (let begin = first; begin < end; ) {
@@ -78,7 +84,7 @@ export class Blocks {
       else this.#add(found, begin, next);
       begin = next;
     }
-    return found.inOrder;
+    return found;
   }
 
   #add(found, first, end) {
@@ -91,7 +97,8 @@ export class Blocks {
     if (!this.#known[chunk]) {
       const found = new Extremes();
       this.#add(found, chunk * Blocks.chunk, (chunk + 1) * Blocks.chunk);
-      this.#extremes.set(found.inOrder, 2 * chunk);
+      this.#extremes[2 * chunk] = found.former;
+      this.#extremes[2 * chunk + 1] = found.latter;
       this.#known[chunk] = 1;
     }
     return this.#extremes;
@@ -148,9 +155,9 @@ export function slicedTimes(times, borders) {
 export function slicedValues(samples, borders) {
   const result = [];
   for (let k = 0; k + 1 < borders.length; ++k) {
-    const [one, other] = samples.extremes(borders[k], borders[k + 1]);
-    result.push(Number.isNaN(one) ? null : one);
-    if (borders[k + 1] - borders[k] > 1) result.push(Number.isNaN(other) ? null : other);
+    const { former, latter } = samples.extremes(borders[k], borders[k + 1]);
+    result.push(Number.isNaN(former) ? null : former);
+    if (borders[k + 1] - borders[k] > 1) result.push(Number.isNaN(latter) ? null : latter);
   }
   return result;
 }
