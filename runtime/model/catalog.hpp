@@ -15,6 +15,9 @@
 
 namespace lineshaft {
 
+/// Scans one block of a kind after the other.
+using ScanBlocks = void (*)(std::span<std::byte* const> blocks, const Scan& now);
+
 /// What the runtime knows of a kind of block: how to make one, how to call it, what it is made of.
 struct BlockType {
     std::string_view name;
@@ -24,7 +27,7 @@ struct BlockType {
     std::size_t size = 0;
     std::size_t alignment = 0;
     void (*construct)(std::byte* place) = nullptr;
-    void (*scan)(std::byte* block, const Scan& now) = nullptr;
+    ScanBlocks scan = nullptr;
     DeviceCalls device;
 
     bool is_device() const { return device.advance != nullptr; }
@@ -49,8 +52,9 @@ class Catalog {
         if constexpr (requires { Block::tables(); }) tables = Block::tables();
         types_.push_back({Block::type, Block::doc, Block::fields(), tables, sizeof(Block),
                           alignof(Block), [](std::byte* place) { new (place) Block{}; },
-                          [](std::byte* block, const Scan& now) {
-                              std::launder(reinterpret_cast<Block*>(block))->scan(now);
+                          [](std::span<std::byte* const> blocks, const Scan& now) {
+                              for (std::byte* block : blocks)
+                                  std::launder(reinterpret_cast<Block*>(block))->scan(now);
                           },
                           device_calls<Block>()});
         return *this;

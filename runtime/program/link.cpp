@@ -28,8 +28,7 @@ Linked Linker::link() {
     wires_.resize(blocks_.size());
     for (Instance& block : blocks_) set_choices(block);
     for (Instance& block : blocks_) set_block(block);
-    for (const Instance& block : blocks_)
-        if (block.known()) append_call(block);
+    make_calls();
     for (Task& task : out_.machine.tasks)
         if (task.published != task.live) std::memcpy(task.published, task.live, task.size);
     collect_errors();
@@ -107,8 +106,8 @@ bool Linker::takes_time(int task) const {
            });
 }
 
-CallInfo Linker::info(const Instance& block) const {
-    CallInfo info{.block = fmt::format("'{}' ({})", block.plan->name.text, block.type->name)};
+BlockInfo Linker::info(const Instance& block) const {
+    BlockInfo info{.block = fmt::format("'{}' ({})", block.plan->name.text, block.type->name)};
     Diagnostics reported;
     if (block.plan->cost) info.cost = Reader(reported).time(*block.plan->cost).value_or(0);
     return info;
@@ -165,23 +164,6 @@ void Linker::lay_out() {
         if (seed && seed->direction == Direction::parameter && seed->type == Type::integer)
             out_.machine.block_seeds.push_back({block.live + seed->offset, block.plan->name.text});
     }
-}
-
-void Linker::append_call(const Instance& block) {
-    Task& task = out_.machine.tasks[static_cast<std::size_t>(block.task)];
-    const Wires& wires = wires_[static_cast<std::size_t>(block.position)];
-    task.calls.push_back({.scan = block.type->scan,
-                          .block = block.live,
-                          .words = static_cast<std::uint32_t>(wires.words.size()),
-                          .booleans = static_cast<std::uint32_t>(wires.booleans.size()),
-                          .conversions = static_cast<std::uint32_t>(wires.conversions.size())});
-    task.infos.push_back(info(block));
-    const auto append = [](auto& to, const auto& from) {
-        to.insert(to.end(), from.begin(), from.end());
-    };
-    append(task.wires.words, wires.words);
-    append(task.wires.booleans, wires.booleans);
-    append(task.wires.conversions, wires.conversions);
 }
 
 void Linker::set_inputs() {

@@ -51,7 +51,11 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
     const std::byte* from_slot = source->slot;
     const bool same_task = source_index >= 0 && source->task == block.task;
     if (same_task) {
-        const Instance& from = blocks_[static_cast<std::size_t>(source_index)];
+        Instance& from = blocks_[static_cast<std::size_t>(source_index)];
+        if (text.previous)
+            from.late_readers.push_back(index);
+        else
+            block.sources.push_back(source_index);
         from_slot = from.live + (source->slot - from.published);
     }
     if (text.negated && source->type != Type::boolean)
@@ -74,23 +78,17 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
                           fmt::format("'{}' is in {}, '{}' takes {}", text.signal,
                                       given.text.empty() ? "plain numbers" : given.text, field.name,
                                       wanted.text.empty() ? "plain numbers" : wanted.text));
-    std::byte* target = block.live + field.offset;
-    Wires& wires = wires_[static_cast<std::size_t>(index)];
-    const bool same_unit = given.text == wanted.text;
-    if (!text.negated && !widens && same_unit) {
-        auto& copies = field.type == Type::boolean ? wires.booleans : wires.words;
-        copies.push_back({.source = from_slot, .target = target});
-        return;
-    }
-    using Kind = ConvertedCopy::Kind;
-    wires.conversions.push_back({.source = from_slot,
-                                 .target = target,
-                                 .factor = same_unit ? 1 : given.numerator * wanted.denominator,
-                                 .divisor = same_unit ? 1 : given.denominator * wanted.numerator,
-                                 .kind = text.negated ? Kind::negated
-                                         : !widens    ? Kind::scaled
-                                         : same_unit  ? Kind::widened
-                                                      : Kind::widened_and_scaled});
+    BlockWires& wires = wires_[static_cast<std::size_t>(index)];
+    const Copy copy{.source = from_slot, .target = block.live + field.offset};
+    if (text.negated) return wires.negated.push_back(copy);
+    if (given.text != wanted.text)
+        return wires.scaled.push_back({.source = copy.source,
+                                       .target = copy.target,
+                                       .factor = given.numerator * wanted.denominator,
+                                       .divisor = given.denominator * wanted.numerator,
+                                       .widens = widens});
+    if (widens) return wires.widened.push_back(copy);
+    (field.type == Type::boolean ? wires.booleans : wires.words).push_back(copy);
 }
 
 /// In one task a wire carries this scan's value from an earlier block, and only with `previous()`

@@ -26,8 +26,17 @@ struct Instance {
     std::size_t offset = 0;           ///< in its task's memory
     std::byte* live = nullptr;
     std::byte* published = nullptr;
+    std::vector<int> sources = {};  ///< blocks of its task that it takes this scan's outputs of
+    std::vector<int> late_readers = {};  ///< blocks of its task that take its last scan's outputs
+    int level = 0;                       ///< of its call, see link_calls.cpp
 
     bool known() const { return type && task >= 0; }
+};
+
+/// What feeds a block's inputs, by what happens on the way: see Call.
+struct BlockWires {
+    std::vector<Copy> words, booleans, negated, widened;
+    std::vector<ScaledCopy> scaled;
 };
 
 /// `NOT previous(a.b)` taken apart.
@@ -53,9 +62,9 @@ struct Target {
 
 /// Turns a program's names into memory, see link(). Its functions stand in link.cpp (the order of
 /// work, tasks, memory), link_names.cpp (signals and units), link_blocks.cpp (parameters and
-/// constants), link_wires.cpp, link_outside.cpp (what is set from outside), link_replay.cpp
-/// (likewise from a file), link_run.cpp (what happens to the machine and what is expected) and
-/// link_trace.cpp.
+/// constants), link_wires.cpp, link_calls.cpp (the order of scanning), link_outside.cpp (what is
+/// set from outside), link_replay.cpp (likewise from a file), link_run.cpp (what happens to the
+/// machine and what is expected) and link_trace.cpp.
 class Linker {
   public:
     Linker(const Program& program, const Catalog& catalog, Diagnostics& out)
@@ -70,7 +79,7 @@ class Linker {
     int find_task(const Node& name);
     void add_cost(const BlockPlan& plan, int task);
     bool takes_time(int task) const;
-    CallInfo info(const Instance& block) const;
+    BlockInfo info(const Instance& block) const;
     void lay_out();
     void set_inputs();
     void set_choices(Instance& block);
@@ -83,7 +92,9 @@ class Linker {
     bool check_order(int index, const Node& value, const WireText& wire, int source);
     std::string loop(int from, int to) const;
     void check_required(const Instance& block);
-    void append_call(const Instance& block);
+    void make_calls();
+    void set_level(Instance& block) const;
+    void append_call(std::span<const Instance* const> blocks);
     void collect_signals();
     void collect_errors();
     void collect_devices();
@@ -136,7 +147,7 @@ class Linker {
     std::unordered_map<std::string, std::string> outputs_;  ///< the signals that they show
     std::vector<std::string> task_names_, block_names_, input_names_, output_names_;
     std::unordered_map<std::string, Unit> units_;
-    std::vector<Wires> wires_;               ///< per block
+    std::vector<BlockWires> wires_;          ///< per block
     std::unordered_set<std::string> wired_;  ///< `block.port` of every wire
 };
 

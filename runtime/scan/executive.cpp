@@ -1,6 +1,7 @@
 #include "runtime/scan/executive.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -15,31 +16,20 @@ T read(const std::byte* slot) {
     return value;
 }
 
-template <std::size_t size>
-const Copy* copy(const Copy* wire, std::uint32_t count) {
-    for (; count > 0; --count, ++wire) std::memcpy(wire->target, wire->source, size);
+/// Moves the next `count` wires, a T from each source as `convert` has it.
+template <class T, class Convert>
+const Copy* move(const Copy* wire, std::uint32_t count, Convert convert) {
+    for (; count > 0; --count, ++wire) {
+        const auto value = convert(read<T>(wire->source));
+        std::memcpy(wire->target, &value, sizeof value);
+    }
     return wire;
 }
 
-template <class T>
-void store(const ConvertedCopy& wire, T value) {
-    std::memcpy(wire.target, &value, sizeof value);
-}
-
-void convert(const ConvertedCopy& wire) {
-    using Kind = ConvertedCopy::Kind;
-    const auto widened = [&] { return static_cast<double>(read<std::int64_t>(wire.source)); };
-    const auto scaled = [&](double value) { return value * wire.factor / wire.divisor; };
-    switch (wire.kind) {
-        case Kind::negated:
-            return store(wire, !read<bool>(wire.source));
-        case Kind::widened:
-            return store(wire, widened());
-        case Kind::scaled:
-            return store(wire, scaled(read<double>(wire.source)));
-        case Kind::widened_and_scaled:
-            return store(wire, scaled(widened()));
-    }
+double scaled(const ScaledCopy& wire) {
+    const double value = wire.widens ? static_cast<double>(read<std::int64_t>(wire.source))
+                                     : read<double>(wire.source);
+    return value * wire.factor / wire.divisor;
 }
 
 void sow(const BlockSeed& seed, std::uint64_t run_seed) {
@@ -48,24 +38,28 @@ void sow(const BlockSeed& seed, std::uint64_t run_seed) {
     store(Type::integer, seed.place, static_cast<std::int64_t>(drawn >> 1));
 }
 
-/// Hands out a task's wires, block by block.
+/// Hands out a task's wires, call by call.
 class Feeder {
   public:
     explicit Feeder(const Wires& wires)
-        : word_(wires.words.data()),
-          boolean_(wires.booleans.data()),
-          conversion_(wires.conversions.data()) {}
+        : wire_(wires.copies.data()), scaled_(wires.scaled.data()) {}
 
     void feed(const Call& call) {
-        word_ = copy<8>(word_, call.words);
-        boolean_ = copy<1>(boolean_, call.booleans);
-        for (std::uint32_t n = call.conversions; n > 0; --n) convert(*conversion_++);
+        const Copy* wire = wire_;
+        wire = move<std::uint64_t>(wire, call.words, std::identity());
+        wire = move<std::uint8_t>(wire, call.booleans, std::identity());
+        wire = move<bool>(wire, call.negated, std::logical_not());
+        wire_ =
+            move<std::int64_t>(wire, call.widened, [](auto n) { return static_cast<double>(n); });
+        for (std::uint32_t n = call.scaled; n > 0; --n, ++scaled_) {
+            const double value = scaled(*scaled_);
+            std::memcpy(scaled_->target, &value, sizeof value);
+        }
     }
 
   private:
-    const Copy* word_;
-    const Copy* boolean_;
-    const ConvertedCopy* conversion_;
+    const Copy* wire_;
+    const ScaledCopy* scaled_;
 };
 
 }  // namespace
@@ -95,6 +89,8 @@ Executive::Executive(Machine& machine) : machine_(machine), forces_(machine.forc
     for (const Trigger& trigger : machine.triggers) trigger_levels_.push_back(*trigger.signal);
     interpolates_ =
         std::ranges::count(machine.replays, Replay::Between::interpolated, &Replay::between) > 0;
+    nothing_waits_ = machine.devices.empty() && machine.triggers.empty() &&
+                     std::ranges::none_of(machine.tasks, &Task::takes_time);
     running_.reserve(machine.tasks.size());
     result_.scans.resize(machine.tasks.size());
 }
@@ -176,6 +172,7 @@ void Executive::advance(std::int64_t time) {
 void Executive::instant() {
     if (!machine_.devices.empty()) advance_devices();
     if (next_outside_ <= now_ || interpolates_) act_from_outside();
+    if (nothing_waits_) return run_due();
     if (!trigger_levels_.empty()) detect_edges();
     finish_top();
     if (!stopped_ && !running_.empty()) check_deadlines();
@@ -209,8 +206,12 @@ void Executive::release(int index, State& state) {
         make_pending(index);
         state.released = state.due;
     }
-    const std::int64_t off = task.jitter > 0 ? state.jitter.around_zero(task.jitter) : 0;
-    state.due = later(later(state.due, task.every), off);
+    state.set_next(task);
+}
+
+void Executive::State::set_next(const Task& task) {
+    const std::int64_t off = task.jitter > 0 ? jitter.around_zero(task.jitter) : 0;
+    due = later(later(due, task.every), off);
 }
 
 void Executive::make_pending(int index) {
@@ -232,6 +233,23 @@ void Executive::start_pending() {
     }
 }
 
+/// Where nothing waits: what is due runs at once, which takes half the time of the general way.
+void Executive::run_due() {
+    if (next_due_ > now_) return;
+    next_due_ = never;
+    int index = 0;
+    for (State& state : states_) {
+        if (state.due <= now_ && !stopped_) {
+            begin(index);
+            scan_blocks(task(index), state.scan);
+            conclude(index);
+            state.set_next(task(index));
+        }
+        next_due_ = std::min(next_due_, state.due);
+        ++index;
+    }
+}
+
 /// The first of those that are pending; -1 when it may not interrupt the scan under way.
 int Executive::next_to_start() const {
     int i = 0;
@@ -247,29 +265,38 @@ void Executive::start(int index) {
     state.pending = false;
     --pending_;
     state.active = true;
-    state.scan = {.time = now_, .interval = task.every, .index = state.index++};
     state.cost =
         task.cost + (task.cost_jitter > 0 ? state.cost_jitter.around_zero(task.cost_jitter) : 0);
-    if (state.scan.index == state.outside) stimulate(index);
+    begin(index);
     state.remaining = state.cost;
     state.deadline = state.cost > 0 ? later(now_, task.maximum_cycle_time) : never;
-    if (forces_.active()) return scan_forced(task, state.scan);
+    scan_blocks(task, state.scan);
+}
+
+void Executive::begin(int index) {
+    State& state = this->state(index);
+    state.scan = {.time = now_, .interval = task(index).every, .index = state.index++};
+    if (state.scan.index == state.outside) stimulate(index);
+}
+
+void Executive::scan_blocks(const Task& task, const Scan& scan) {
+    if (forces_.active()) return scan_forced(task, scan);
     Feeder wires(task.wires);
     for (const Call& call : task.calls) {
         wires.feed(call);
-        call.scan(call.block, state.scan);
+        call.scan(call.blocks, scan);
     }
 }
 
 void Executive::scan_forced(const Task& task, const Scan& scan) {
     Feeder wires(task.wires);
     for (const Call& call : task.calls) {
-        forces_.release_inputs(call.block);
+        for (const std::byte* block : call.blocks) forces_.release_inputs(block);
         wires.feed(call);
-        forces_.impose_inputs(call.block);
-        forces_.release_outputs(call.block);
-        call.scan(call.block, scan);
-        forces_.impose_outputs(call.block);
+        for (const std::byte* block : call.blocks) forces_.impose_inputs(block);
+        for (const std::byte* block : call.blocks) forces_.release_outputs(block);
+        call.scan(call.blocks, scan);
+        for (const std::byte* block : call.blocks) forces_.impose_outputs(block);
     }
 }
 
@@ -282,17 +309,24 @@ void Executive::publish(int index) {
     if (forces_.active()) forces_.published(index);
     for (const DeviceCall& device : machine_.devices)
         if (device.task == index) publish_device(device);
-    ++result_.scans.data()[index];
-    for (Observer* observer : *observers_) observer->scanned(index, state.scan);
-    if (errors_changed(state)) report_errors(index);
+    conclude(index);
     if (!stopped_ && !trigger_levels_.empty()) detect_edges();
 }
 
-bool Executive::errors_changed(const State& state) const {
-    bool changed = false;
+/// When what others see of the task's scan is in place.
+void Executive::conclude(int index) {
+    ++result_.scans.data()[index];
+    for (Observer* observer : *observers_) observer->scanned(index, state(index).scan);
+    look_at_errors(index);
+}
+
+void Executive::look_at_errors(int index) {
+    State& state = this->state(index);
+    bool any = false;
     for (std::size_t i = state.first_error; i < state.end_of_errors; ++i)
-        changed |= *error_flags_.data()[i] != (error_levels_.data()[i] != 0);
-    return changed;
+        any |= *error_flags_.data()[i];
+    if (any || state.in_error) report_errors(index);
+    state.in_error = any;
 }
 
 }  // namespace lineshaft

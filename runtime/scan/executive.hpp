@@ -90,6 +90,7 @@ class Executive {
         std::int64_t due = 0;           ///< next release [ns]
         bool pending = false;           ///< released, not yet started
         bool active = false;            ///< started, not yet published
+        bool in_error = false;          ///< a block's `error` was true when last looked at
         std::int64_t released = 0;      ///< last release [ns]
         std::int64_t cost = 0;          ///< of the scan under way [ns]
         std::int64_t remaining = 0;     ///< of it [ns]
@@ -104,6 +105,8 @@ class Executive {
         Scan scan;                      ///< the one under way
         Random jitter;
         Random cost_jitter;
+
+        void set_next(const Task& task);
     };
 
     std::int64_t next_event();
@@ -113,13 +116,17 @@ class Executive {
     void finish_top();
     void release();
     void release(int task, State& state);
+    void run_due();
     void start_pending();
     void make_pending(int task);
     int next_to_start() const;
     void start(int task);
     void scan_forced(const Task& task, const Scan& scan);
+    void begin(int task);
+    void scan_blocks(const Task& task, const Scan& scan);
     void publish(int task);
-    bool errors_changed(const State& state) const;
+    void conclude(int task);
+    void look_at_errors(int task);
 
     // executive_outside.cpp
     void advance_devices();
@@ -158,6 +165,7 @@ class Executive {
     int pending_ = 0;                ///< number of tasks
     std::int64_t next_due_ = 0;      ///< the first release of all [ns]
     std::int64_t next_outside_ = 0;  ///< of a force, a replay, a stimulus, a look at a device [ns]
+    bool nothing_waits_ = false;     ///< no task takes time or comes from an event
     bool interpolates_ = false;      ///< a replay: then something is due in every instant
     const std::vector<Observer*>* observers_ = nullptr;
     EventSink* events_ = nullptr;

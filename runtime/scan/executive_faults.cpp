@@ -79,13 +79,13 @@ std::string Executive::running_block(int index) const {
     const auto blocks = static_cast<std::int64_t>(task.infos.size());
     if (blocks == 0) return {};
     std::int64_t own = task.cost;
-    for (const CallInfo& info : task.infos) own -= info.cost;
+    for (const BlockInfo& info : task.infos) own -= info.cost;
     const double even = task.cost > 0 ? static_cast<double>(own) / static_cast<double>(blocks) : 1;
     const double whole =
         task.cost > 0 ? static_cast<double>(task.cost) : static_cast<double>(blocks);
     const double reached = static_cast<double>(state.cost - state.remaining) * whole;
     double end = 0;
-    for (const CallInfo& info : task.infos) {
+    for (const BlockInfo& info : task.infos) {
         end += even + static_cast<double>(info.cost);
         if (reached < end * static_cast<double>(state.cost))
             return fmt::format("; block {} was running", info.block);

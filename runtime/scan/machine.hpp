@@ -14,42 +14,37 @@
 
 namespace lineshaft {
 
-/// A value moved as it is into an input before its block is called.
+/// A value on its way into an input, before the block is called.
 struct Copy {
     const std::byte* source = nullptr;
     std::byte* target = nullptr;
 };
 
-/// A value converted on its way into an input.
-struct ConvertedCopy {
-    enum class Kind : std::uint8_t {
-        negated,  ///< boolean, inverted (`NOT x.q`)
-        widened,  ///< integer to real
-        scaled,   ///< real from another unit of the dimension: times factor, over divisor
-        widened_and_scaled,  ///< integer to real in another unit
-    };
-
+/// A real from another unit of the input's dimension: times factor, over divisor.
+struct ScaledCopy {
     const std::byte* source = nullptr;
     std::byte* target = nullptr;
     double factor = 1;
     double divisor = 1;
-    Kind kind = Kind::scaled;
+    bool widens = false;  ///< the source is an integer
 };
 
-/// What feeds one block's inputs, or all of a task's blocks, one after the other.
+/// What feeds the inputs of a call's blocks, or of all of a task's, one call after the other.
 struct Wires {
-    std::vector<Copy> words;     ///< of 8 bytes
-    std::vector<Copy> booleans;  ///< of 1 byte
-    std::vector<ConvertedCopy> conversions;
+    std::vector<Copy> copies;  ///< of each call first the words, then the booleans, ...
+    std::vector<ScaledCopy> scaled;
 };
 
-/// One block in a task's list. Its inputs are the next so many of each kind of the task's wires.
+/// One entry of a task's list: blocks of one kind, of which none waits for another. Their inputs
+/// are the next so many of the task's wires.
 struct Call {
-    void (*scan)(std::byte* block, const Scan& now) = nullptr;
-    std::byte* block = nullptr;
-    std::uint32_t words = 0;
-    std::uint32_t booleans = 0;
-    std::uint32_t conversions = 0;
+    ScanBlocks scan = nullptr;
+    std::vector<std::byte*> blocks;
+    std::uint32_t words = 0;     ///< copies of 8 bytes, as they are
+    std::uint32_t booleans = 0;  ///< of 1 byte, as they are
+    std::uint32_t negated = 0;   ///< booleans (`NOT x.q`)
+    std::uint32_t widened = 0;   ///< integers to reals
+    std::uint32_t scaled = 0;
 };
 
 /// A block's `error` output, looked at after each scan of its task.
@@ -91,8 +86,8 @@ struct CostStimulus {
     std::int64_t cost = 0;  ///< execution time of that scan [ns]
 };
 
-/// What messages say of a call.
-struct CallInfo {
+/// What messages say of a block in a task.
+struct BlockInfo {
     std::string block;      ///< `'slave' (gear_axis)`
     std::int64_t cost = 0;  ///< the block's own share of its task's cost [ns]
 };
@@ -106,7 +101,7 @@ struct Task {
     std::int64_t maximum_cycle_time = never;  ///< from the start of a scan to its end
     int on_overrun = -1;                      ///< index of the time-error task; -1: STOP
     std::vector<Call> calls;
-    std::vector<CallInfo> infos;  ///< one a call
+    std::vector<BlockInfo> infos;  ///< in the order of the file
     Wires wires;
     std::vector<ErrorFlag> errors;
     std::vector<Stimulus> stimuli;    ///< by scan, sorted
@@ -114,6 +109,8 @@ struct Task {
     std::byte* live = nullptr;        ///< the task's blocks
     std::byte* published = nullptr;   ///< what others see of them: the same place when cost is 0
     std::size_t size = 0;             ///< bytes of either
+
+    bool takes_time() const { return cost > 0 || cost_jitter > 0 || !costs.empty(); }
 };
 
 /// A named value that can be traced, expected, compared: as the world outside its task sees it.

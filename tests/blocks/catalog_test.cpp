@@ -28,7 +28,8 @@ class Instance {
     }
 
     void scan(std::int64_t index) {
-        type_.scan(memory_.data(),
+        std::byte* const block = memory_.data();
+        type_.scan({&block, 1},
                    {.time = index * millisecond, .interval = millisecond, .index = index});
     }
     void set(const Field& field, const Value& value) {

@@ -123,7 +123,7 @@ TEST_CASE("link: tasks run by priority, blocks in the order of the file") {
     CHECK(tasks[0].name == "high");
     REQUIRE(tasks[1].calls.size() == 2);
     CHECK(tasks[1].calls[0].words == 0);
-    CHECK(tasks[1].calls[1].conversions == 1);
+    CHECK(tasks[1].calls[1].widened == 1);
 }
 
 TEST_CASE("link: constants and the interval of a task") {

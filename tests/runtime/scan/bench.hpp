@@ -100,7 +100,7 @@ class Bench {
     /// The task's input reads another one's published output.
     void wire(const std::string& from, const std::string& to) {
         Task& target = task(to);
-        target.wires.words.push_back(
+        target.wires.copies.push_back(
             {.source = reinterpret_cast<const std::byte*>(&published(from).output),
              .target = reinterpret_cast<std::byte*>(&live(to).input)});
         ++target.calls.front().words;
@@ -152,9 +152,9 @@ class Bench {
         probe->task = spec.name.c_str();
         if (task.published != task.live) new (task.published) Probe(*probe);
         task.calls.push_back(
-            {.scan = [](std::byte* block,
-                        const Scan& now) { reinterpret_cast<Probe*>(block)->scan(now); },
-             .block = task.live});
+            {.scan = [](std::span<std::byte* const> blocks,
+                        const Scan& now) { reinterpret_cast<Probe*>(blocks.front())->scan(now); },
+             .blocks = {task.live}});
         machine.tasks.push_back(std::move(task));
     }
 

@@ -52,8 +52,9 @@ DeviceCall call_of(Bell& bell, int task) {
 /// The scan of `task` takes the bell's flag back.
 void silence(Bench& bench, Bell& bell, const std::string& task) {
     bench.task(task).calls.push_back(
-        {.scan = [](std::byte* b, const Scan&) { reinterpret_cast<Bell*>(b)->ringing = false; },
-         .block = reinterpret_cast<std::byte*>(&bell)});
+        {.scan = [](std::span<std::byte* const> blocks,
+                    const Scan&) { reinterpret_cast<Bell*>(blocks.front())->ringing = false; },
+         .blocks = {reinterpret_cast<std::byte*>(&bell)}});
 }
 
 }  // namespace
@@ -151,11 +152,11 @@ TEST_CASE("event tasks that start each other for ever stop the run") {
     static bool* second = nullptr;
     second = &other;
     bench.task("e").calls.push_back({.scan =
-                                         [](std::byte*, const Scan&) {
+                                         [](std::span<std::byte* const>, const Scan&) {
                                              *wanted = !*wanted;
                                              *second = !*wanted;
                                          },
-                                     .block = nullptr});
+                                     .blocks = {}});
     const RunResult result = bench.run();
     CHECK(result.outcome == Outcome::overrun);
     CHECK(result.message == "event task 'e' overran: 1000 scans at 0.003 s, and no end");

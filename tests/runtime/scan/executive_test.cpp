@@ -314,7 +314,6 @@ TEST_CASE("observers hear of nothing after the end of the run") {
 }
 
 TEST_CASE("inputs are converted as their wires say") {
-    using Kind = ConvertedCopy::Kind;
     struct Ports {
         bool yes = true, inverted = true;
         std::int64_t three = 3;
@@ -323,16 +322,15 @@ TEST_CASE("inputs are converted as their wires say") {
     Bench bench({{.name = "a"}});
     const auto at = [](auto& member) { return reinterpret_cast<std::byte*>(&member); };
     Task& task = bench.task("a");
-    task.wires = {
-        .words = {{at(ports.three), at(bench.live("a").input)}},
-        .booleans = {{at(ports.yes), at(bench.live("a").wanted)}},
-        .conversions = {{at(ports.yes), at(ports.inverted), 1, 1, Kind::negated},
-                        {at(ports.three), at(ports.real), 1, 1, Kind::widened},
-                        {at(ports.three), at(ports.tenths), 1, 10, Kind::widened_and_scaled},
-                        {at(ports.millimetres), at(ports.centimetres), 1, 10, Kind::scaled}}};
+    task.wires = {.copies = {{at(ports.three), at(bench.live("a").input)},
+                             {at(ports.yes), at(bench.live("a").wanted)},
+                             {at(ports.yes), at(ports.inverted)},
+                             {at(ports.three), at(ports.real)}},
+                  .scaled = {{at(ports.three), at(ports.tenths), 1, 10, true},
+                             {at(ports.millimetres), at(ports.centimetres), 1, 10, false}}};
     Call& call = task.calls.front();
-    call.words = call.booleans = 1;
-    call.conversions = 4;
+    call.words = call.booleans = call.negated = call.widened = 1;
+    call.scaled = 2;
     bench.machine.duration = 0;
     bench.run();
     CHECK(bench.live("a").wanted);
