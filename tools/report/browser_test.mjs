@@ -87,6 +87,22 @@ async function testCurves(page) {
   assert.ok(units.some((text) => text.includes("x.position")));
 }
 
+/** Another circle gives other deviations, and the first one the first again. */
+async function testAnotherCircle(page) {
+  const radius = page.locator(".controls input").last();
+  const picture = () => page.locator(".plot canvas").nth(1).evaluate((canvas) => canvas.toDataURL());
+  const change = async (value) => {
+    await radius.fill(value);
+    await radius.press("Enter");
+    await page.evaluate(frame);
+    await page.evaluate(frame);
+    return picture();
+  };
+  const before = await picture();
+  assert.ok(await change("20.01") !== before, "another radius, another deviation");
+  assert.ok(await change("20") === before);
+}
+
 async function testCursors(page) {
   const before = await rowOf(page, "x.position");
   const line = page.locator(".cursor-A").nth(1);
@@ -202,6 +218,7 @@ async function testCircle(browser) {
   await testCurves(page);
   await page.screenshot({ path: file("circle.png") });
   await testPath(page);
+  await testAnotherCircle(page);
   await testCursors(page);
   await testZoom(page);
   await testTheme(page);
