@@ -1,6 +1,7 @@
 #include "runtime/trace/packing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -12,15 +13,19 @@ namespace lineshaft {
 
 namespace {
 
-constexpr double largest_whole = 0x1p49;  // its differences of third order fit a page's numbers
+constexpr double largest_whole = 0x1p49;  // differences of third order are below 2^53
 constexpr int fine_bits = 40, coarse_bits = 24;
 constexpr std::size_t highest_order = 3;
+constexpr std::array<std::size_t, 4> widths{0, 1, 2, 4};  // of a page's arrays of whole numbers
+constexpr std::size_t outlier_bytes = sizeof(double) + sizeof(std::uint32_t);
 constexpr double noise_bits = 24;  // a sample
 
 using Whole = std::vector<std::int64_t>;
 
-std::uint64_t zigzag(std::int64_t value) {
-    return (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63);
+/// Of the value with its sign.
+std::size_t bits_of(std::int64_t value) {
+    const auto size = static_cast<std::uint64_t>(value ^ (value >> 63));
+    return value == 0 ? 0 : static_cast<std::size_t>(std::bit_width(size)) + 1;
 }
 
 bool is_whole(double value) {
@@ -48,47 +53,73 @@ Whole whole_numbers(std::span<const double> samples, double scale) {
     return whole;
 }
 
-/// values[i] - values[i - 1] from `first` on.
-void difference(Whole& values, std::size_t first) {
-    for (std::size_t i = values.size(); i-- > first;) values[i] -= values[i - 1];
+void difference(Whole& values) {
+    for (std::size_t i = values.size(); i-- > 1;) values[i] -= values[i - 1];
 }
 
 double bits_per_sample(const Whole& values) {
-    std::int64_t bits = 0;
-    for (const std::int64_t value : values) bits += std::bit_width(zigzag(value));
+    std::size_t bits = 0;
+    for (const std::int64_t value : values) bits += bits_of(value);
     return static_cast<double>(bits) / static_cast<double>(std::max<std::size_t>(values.size(), 1));
 }
 
 struct Differences {
-    Whole values;  ///< from index `seeds.size() - 1` on
-    std::vector<std::int64_t> seeds;
+    Whole values;
+    std::size_t order = 0;
     double bits = 0;
 };
 
 /// Of the order that takes the fewest bits.
 Differences smallest_differences(Whole values) {
-    Differences best{.values = values, .seeds = {}, .bits = bits_per_sample(values)};
-    std::vector<std::int64_t> seeds;
-    for (std::size_t order = 1; order <= highest_order && order <= values.size(); ++order) {
-        seeds.push_back(values[order - 1]);
-        difference(values, order);
+    Differences best{.values = values, .order = 0, .bits = bits_per_sample(values)};
+    for (std::size_t order = 1; order <= highest_order; ++order) {
+        difference(values);
         const double bits = bits_per_sample(values);
-        if (bits < best.bits) best = {values, seeds, bits};
+        if (bits < best.bits) best = {values, order, bits};
     }
-    for (std::size_t i = 0; i < best.seeds.size(); ++i) best.values[i] = 0;
     return best;
 }
 
-std::string byte_planes(const Whole& values, std::size_t& width) {
-    std::uint64_t all = 0;
-    for (const std::int64_t value : values) all |= zigzag(value);
-    width = (static_cast<std::size_t>(std::bit_width(all)) + 7) / 8;
-    std::string planes(width * values.size(), '\0');
+bool fits(std::int64_t value, std::size_t width) {
+    return bits_of(value) <= 8 * width;
+}
+
+/// The width that leaves the fewest bytes in all, those of the outliers counted.
+std::size_t best_width(const Whole& values) {
+    std::array<std::size_t, widths.size()> bytes{};
+    for (std::size_t k = 0; k < widths.size(); ++k) {
+        const auto wider = std::ranges::count_if(
+            values, [&](std::int64_t value) { return !fits(value, widths[k]); });
+        bytes[k] = widths[k] * values.size() + outlier_bytes * static_cast<std::size_t>(wider);
+    }
+    return widths[static_cast<std::size_t>(std::ranges::min_element(bytes) - bytes.begin())];
+}
+
+/// The bytes of one significance side by side, the lowest first.
+void append_planes(std::string& bytes, const std::vector<std::uint64_t>& values,
+                   std::size_t width) {
     for (std::size_t plane = 0; plane < width; ++plane)
-        for (std::size_t i = 0; i < values.size(); ++i)
-            planes[plane * values.size() + i] =
-                static_cast<char>(zigzag(values[i]) >> (8 * plane) & 0xff);
-    return planes;
+        for (const std::uint64_t value : values)
+            bytes += static_cast<char>(value >> (8 * plane) & 0xff);
+}
+
+std::string laid_down(const Whole& differences, PackedSamples& packed) {
+    packed.width = best_width(differences);
+    std::vector<std::uint64_t> outliers, gaps, rest(differences.begin(), differences.end());
+    std::size_t last = 0;
+    for (std::size_t i = 0; i < differences.size(); ++i) {
+        if (fits(differences[i], packed.width)) continue;
+        outliers.push_back(std::bit_cast<std::uint64_t>(static_cast<double>(differences[i])));
+        gaps.push_back(i - std::exchange(last, i));
+        rest[i] = 0;
+    }
+    packed.outliers = outliers.size();
+    std::string bytes;
+    bytes.reserve(outlier_bytes * outliers.size() + packed.width * rest.size());
+    append_planes(bytes, outliers, sizeof(double));
+    append_planes(bytes, gaps, sizeof(std::uint32_t));
+    append_planes(bytes, rest, packed.width);
+    return bytes;
 }
 
 std::string deflated(const std::string& bytes) {
@@ -128,8 +159,8 @@ PackedSamples pack(std::span<const double> samples) {
         packed.scale = step(samples, coarse_bits);
         best = smallest_differences(whole_numbers(samples, packed.scale));
     }
-    packed.seeds = best.seeds;
-    packed.planes = deflated(byte_planes(best.values, packed.width));
+    packed.order = best.order;
+    packed.bytes = deflated(laid_down(best.values, packed));
     return packed;
 }
 

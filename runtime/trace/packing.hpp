@@ -11,15 +11,20 @@
 namespace lineshaft {
 
 /// The samples of one column made small for a page: whole numbers times a scale, their differences
-/// of the order that makes them smallest, zigzag (0, -1, 1, -2 become 0, 1, 2, 3), the bytes of one
-/// significance side by side, deflated. tools/report/page/decode.js undoes it.
-struct PackedSamples {
+/// of the order that makes them smallest (0 stands before the first of them), the few that take
+/// more bytes than the rest apart, deflated. Numbers are as a page's typed arrays have them
+/// (little-endian, two's complement), but with the bytes of one significance side by side.
+/// tools/report/page/decode.js undoes it.
+struct PackedSamples {  // of fewer than 2^32 samples
     std::size_t count = 0;
-    double scale = 1;                 ///< value = whole number times scale
-    std::size_t width = 0;            ///< byte planes, of `count` bytes each, the lowest first
-    std::vector<std::int64_t> seeds;  ///< the first of the samples, of their differences, ...
+    double scale = 1;          ///< value = whole number times scale
+    std::size_t order = 0;     ///< of the differences
+    std::size_t width = 0;     ///< bytes of a difference: 0 (all are zero), 1, 2 or 4
+    std::size_t outliers = 0;  ///< differences that take more; 0 stands in their places
     std::vector<std::pair<std::size_t, std::size_t>> missing;  ///< first and count of each stretch
-    std::string planes;                                        ///< zlib format
+    /// In zlib format: the outliers as doubles; how far each lies behind the one before it (the
+    /// first one: behind sample 0), as uint32; `count` differences of `width` bytes.
+    std::string bytes;
 };
 
 /// Whole numbers below 2^49 stay as they are. Others are rounded to a step of 2^-40 of the power of

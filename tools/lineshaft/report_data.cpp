@@ -135,9 +135,10 @@ std::string with_y(std::string name) {
 
 Json packed_json(std::span<const double> samples) {
     const PackedSamples packed = pack(samples);
-    return {{"count", packed.count},     {"scale", packed.scale},
-            {"width", packed.width},     {"seeds", packed.seeds},
-            {"missing", packed.missing}, {"planes", base64(packed.planes)}};
+    return {{"count", packed.count},        {"scale", packed.scale},
+            {"order", packed.order},        {"width", packed.width},
+            {"outliers", packed.outliers},  {"missing", packed.missing},
+            {"bytes", base64(packed.bytes)}};
 }
 
 /// Times of a trace are whole nanoseconds; as such they pack to nothing and come back exactly.

@@ -8,6 +8,8 @@ import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, wri
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
+import { unpack } from "#page/decode";
+import { slicedValues, slices } from "#page/samples";
 
 const [lineshaft, project, folder, bars] = process.argv.slice(2);
 const chromium = ["/usr/bin/chromium", "/usr/bin/chromium-browser"].find(existsSync);
@@ -55,8 +57,9 @@ const colouredPixels = (page, selector) => page.$eval(selector, (canvas) => {
   return count;
 });
 
-async function open(browser, address, colorScheme = "light") {
+async function open(browser, address, { colorScheme = "light", before = () => {} } = {}) {
   const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, colorScheme });
+  await page.addInitScript(before);
   page.problems = [];
   page.on("pageerror", (error) => page.problems.push(String(error)));
   page.on("console", (message) => message.type() === "error" && page.problems.push(message.text()));
@@ -82,6 +85,22 @@ async function testCurves(page) {
   }
   const units = await page.locator(".legend").allTextContents();
   assert.ok(units.some((text) => text.includes("x.position")));
+}
+
+/** Another circle gives other deviations, and the first one the first again. */
+async function testAnotherCircle(page) {
+  const radius = page.locator(".controls input").last();
+  const picture = () => page.locator(".plot canvas").nth(1).evaluate((canvas) => canvas.toDataURL());
+  const change = async (value) => {
+    await radius.fill(value);
+    await radius.press("Enter");
+    await page.evaluate(frame);
+    await page.evaluate(frame);
+    return picture();
+  };
+  const before = await picture();
+  assert.ok(await change("20.01") !== before, "another radius, another deviation");
+  assert.ok(await change("20") === before);
 }
 
 async function testCursors(page) {
@@ -199,19 +218,106 @@ async function testCircle(browser) {
   await testCurves(page);
   await page.screenshot({ path: file("circle.png") });
   await testPath(page);
+  await testAnotherCircle(page);
   await testCursors(page);
   await testZoom(page);
   await testTheme(page);
   await page.screenshot({ path: file("circle_whole.png"), fullPage: true });
   assert.deepEqual(page.problems, []);
-  const dark = await open(browser, address, "dark");
+  const dark = await open(browser, address, {
+    colorScheme: "dark",
+    before: () => { delete Uint8Array.fromBase64; }, // browsers before 2025 have none
+  });
   assert.equal(await dark.evaluate(() => document.documentElement.dataset.theme), "dark");
   await dark.screenshot({ path: file("circle_dark.png"), fullPage: true });
   assert.deepEqual(dark.problems, []);
 }
 
+const spike = { rows: 1000001, at: 654321 };
+const oddNumber = (row) => (row * 7919) % 100003;
+
+/** One sample of a million stands out of a line; numbers without any order; every 1,000th is missing. */
+function writeSpike(path) {
+  const lines = ["time [s],a.spike [mm],b.odd,c.gaps [s]"];
+  for (let row = 0; row < spike.rows; ++row)
+    lines.push(`${row / 1e6},${row === spike.at ? 5 : 0},${oddNumber(row)},${row % 1000 === 7 ? "" : row % 1000 / 8}`);
+  writeFileSync(path, `${lines.join("\n")}\n`);
+}
+
+const packedRun = (page) =>
+  JSON.parse(readFileSync(page, "utf8").match(/id="report">(.*?)<\/script>/s)[1]).runs[0];
+
+/** What a page unpacks is what the trace has, in whatever order it is read. */
+async function testSamples() {
+  writeSpike(file("spike.csv"));
+  report("spike.html", file("spike.csv"));
+  const run = packedRun(file("spike.html"));
+  const [times, spiky, odd, gaps] =
+    await Promise.all([unpack(run.time, 1e9), ...run.signals.map(({ data }) => unpack(data))]);
+  assert.equal(odd.length, spike.rows);
+  const check = (row) => {
+    assert.equal(times.at(row), row / 1e6);
+    assert.equal(spiky.at(row), row === spike.at ? 5 : 0);
+    assert.equal(odd.at(row), oddNumber(row));
+    assert.equal(gaps.at(row), row % 1000 === 7 ? NaN : row % 1000 / 8);
+  };
+  for (const row of [700000, 3, spike.rows - 1, 512, 511, 1023, 1024, 654321]) check(row);
+  for (let row = 0; row < spike.rows; ++row) check(row);
+  const borders = slices(5, spike.rows - 5, 1200);
+  slicedValues(odd, borders).forEach((value, k) => {
+    const rows = Array.from({ length: borders[(k >> 1) + 1] - borders[k >> 1] }, (_, i) => borders[k >> 1] + i);
+    const sorted = rows.sort((a, b) => oddNumber(a) - oddNumber(b));
+    const ends = [sorted[0], sorted.at(-1)].sort((a, b) => a - b);
+    assert.equal(value, oddNumber(ends[k & 1]), `slice ${k >> 1}`);
+  });
+}
+
+/** The first drawing has the one sample that stands out, and the cursors' values are the samples'. */
+async function testSpike(browser) {
+  const page = await open(browser, pathToFileURL(file("spike.html")).href);
+  const drawn = await page.$eval(".plot canvas", (canvas) => {
+    const { width, height } = canvas;
+    const { data } = canvas.getContext("2d").getImageData(0, 0, width, height);
+    const found = [];
+    for (let i = 0; i < data.length; i += 4)
+      if (data[i + 3] > 100 && data[i + 2] - data[i] > 60) found.push([(i / 4) % width, Math.floor(i / 4 / width)]);
+    const top = Math.min(...found.map(([, y]) => y));
+    const ys = found.map(([, y]) => y);
+    return { top, bottom: Math.max(...ys), columns: found.filter(([, y]) => y === top).map(([x]) => x),
+             left: Math.min(...found.map(([x]) => x)), right: Math.max(...found.map(([x]) => x)) };
+  });
+  assert.ok(drawn.bottom - drawn.top > 100, `the spike is drawn: ${JSON.stringify(drawn)}`);
+  const x = drawn.left + ((drawn.right - drawn.left) * spike.at) / (spike.rows - 1);
+  assert.ok(drawn.columns.every((each) => Math.abs(each - x) < 4), `near ${x}: ${drawn.columns}`);
+  await page.evaluate(frame);
+  const third = Math.floor((spike.rows - 1) / 3);
+  const [, , a, b] = await rowOf(page, "b.odd");
+  assert.deepEqual([a, b].map(Number), [oddNumber(third), oddNumber(2 * third)]);
+  assert.deepEqual(page.problems, []);
+  rmSync(file("spike.csv"));
+}
+
 const tenSignals = ["g.position", "x.position", "y.position", "x.velocity", "y.velocity",
                     "x.acceleration", "y.acceleration", "circle.ratio_x", "circle.ratio_y", "g.moving"];
+
+/** When the page says that it has drawn, no plot is empty, nor changes afterwards. */
+async function testDrawnAtTheMark(browser, address) {
+  const page = await open(browser, address, { before: () => {
+    const mark = performance.mark.bind(performance);
+    window.pictures = () => [...document.querySelectorAll(".plot canvas")].map((canvas) => canvas.toDataURL());
+    performance.mark = (name) => {
+      if (name === "lineshaft:drawn") window.picturesAtMark = window.pictures();
+      return mark(name);
+    };
+  } });
+  await page.waitForSelector(".figures td");
+  await page.evaluate(frame);
+  const [then, now] = await page.evaluate(() => [window.picturesAtMark, window.pictures()]);
+  assert.ok(now.length > 5 && then.length === now.length);
+  now.forEach((picture, k) => assert.ok(picture === then[k], `plot ${k} was not ready`));
+  await testCurves(page);
+  await page.close();
+}
 
 /** A million rows of ten signals: size of the page, first drawing, drawing after a zoom. */
 async function testLarge(browser) {
@@ -224,6 +330,7 @@ async function testLarge(browser) {
   const megabytes = statSync(file("million.html")).size / 2 ** 20;
   const draws = [];
   const zooms = [];
+  await testDrawnAtTheMark(browser, address);
   for (let repeat = 0; repeat < 3; ++repeat) {
     const page = await open(browser, address);
     draws.push(await mark(page, "drawn"));
@@ -260,7 +367,7 @@ const context = await browserType.launchPersistentContext(profile, {
          "--disable-background-networking", "--disable-component-update", "--disable-sync"],
 });
 try {
-  for (const test of [testCircle, testExpectations, testStudy, testLarge]) {
+  for (const test of [testSamples, testSpike, testCircle, testExpectations, testStudy, testLarge]) {
     await test({ newPage });
     console.log(`ok ${test.name}`);
   }

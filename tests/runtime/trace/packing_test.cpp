@@ -1,6 +1,7 @@
 #include "runtime/trace/packing.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -14,23 +15,40 @@ namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
+/// Takes `count` numbers from the front, their bytes of one significance side by side.
+std::vector<std::uint64_t> take(std::string_view& bytes, std::size_t width, std::size_t count) {
+    std::vector<std::uint64_t> values(count);
+    for (std::size_t i = 0; i < width * count; ++i)
+        values[i % count] |= std::uint64_t{static_cast<unsigned char>(bytes.at(i))}
+                             << (8 * (i / count));
+    bytes.remove_prefix(width * count);
+    return values;
+}
+
+std::vector<std::int64_t> differences(const PackedSamples& packed) {
+    std::string plain(packed.width * packed.count + 12 * packed.outliers, '\0');
+    uLongf size = plain.size();
+    uncompress(reinterpret_cast<Bytef*>(plain.data()), &size,
+               reinterpret_cast<const Bytef*>(packed.bytes.data()), packed.bytes.size());
+    REQUIRE(size == plain.size());
+    std::string_view bytes = plain;
+    const auto outliers = take(bytes, 8, packed.outliers);
+    const auto gaps = take(bytes, 4, packed.outliers);
+    std::vector<std::int64_t> values;
+    const std::size_t above = packed.width == 0 ? 0 : 64 - 8 * packed.width;
+    for (const std::uint64_t value : take(bytes, packed.width, packed.count))
+        values.push_back(static_cast<std::int64_t>(value << above) >> above);
+    std::size_t place = 0;
+    for (std::size_t k = 0; k < packed.outliers; ++k)
+        values.at(place += gaps[k]) = static_cast<std::int64_t>(std::bit_cast<double>(outliers[k]));
+    return values;
+}
+
 /// As tools/report/page/decode.js does it.
 std::vector<double> unpack(const PackedSamples& packed) {
-    std::string planes(packed.width * packed.count, '\0');
-    uLongf size = planes.size();
-    uncompress(reinterpret_cast<Bytef*>(planes.data()), &size,
-               reinterpret_cast<const Bytef*>(packed.planes.data()), packed.planes.size());
-    std::vector<std::int64_t> values(packed.count);
-    for (std::size_t i = 0; i < packed.count; ++i) {
-        std::uint64_t bits = 0;
-        for (std::size_t plane = packed.width; plane-- > 0;)
-            bits = bits << 8 | static_cast<unsigned char>(planes[plane * packed.count + i]);
-        values[i] = static_cast<std::int64_t>(bits >> 1) ^ -static_cast<std::int64_t>(bits & 1);
-    }
-    for (std::size_t order = packed.seeds.size(); order-- > 0;) {
-        values[order] = packed.seeds[order];
-        for (std::size_t i = order + 1; i < values.size(); ++i) values[i] += values[i - 1];
-    }
+    std::vector<std::int64_t> values = differences(packed);
+    for (std::size_t order = packed.order; order-- > 0;)
+        for (std::size_t i = 1; i < values.size(); ++i) values[i] += values[i - 1];
     std::vector<double> samples(packed.count);
     for (std::size_t i = 0; i < packed.count; ++i)
         samples[i] = static_cast<double>(values[i]) * packed.scale;
@@ -89,9 +107,20 @@ TEST_CASE("a straight line takes next to nothing, noise no more than a float", "
         line[i] = 0.0125 * static_cast<double>(i);
         noise[i] = std::ldexp(random(), -64);
     }
-    CHECK(pack(line).planes.size() < line.size() / 4);
-    CHECK(pack(noise).planes.size() < noise.size() * 4);
+    CHECK(pack(line).bytes.size() < line.size() / 4);
+    CHECK(pack(noise).bytes.size() < noise.size() * 4);
     CHECK(greatest_error(noise) <= 0x1p-25);
+}
+
+TEST_CASE("a few wide differences among narrow ones are outliers and cost little", "[packing]") {
+    std::vector<double> steps(100000);
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        steps[i] = std::floor(static_cast<double>(i) / 1000) * 0x1p40;
+    const PackedSamples packed = pack(steps);
+    CHECK(packed.width == 0);
+    CHECK(packed.outliers == 99);
+    CHECK(packed.bytes.size() < 1000);
+    CHECK(greatest_error(steps) == 0);
 }
 
 TEST_CASE("base64 as RFC 4648 has it", "[packing]") {

@@ -50,7 +50,7 @@ export class CursorLines {
     const time = this.view.cursors[index];
     const near = direction > 0 ? lastAtOrBefore(this.times, time) : firstAtOrAfter(this.times, time);
     const next = near + direction * (event.shiftKey ? 10 : 1);
-    this.view.setCursor(index, this.times[Math.min(Math.max(next, 0), this.times.length - 1)]);
+    this.view.setCursor(index, this.times.at(Math.min(Math.max(next, 0), this.times.length - 1)));
   }
 }
 

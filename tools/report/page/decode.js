@@ -1,48 +1,103 @@
-// Undoes runtime/trace/packing.cpp: base64, deflate, byte planes, zigzag, differences, scale.
+// Undoes runtime/trace/packing.cpp: base64, deflate, outliers, differences, scale.
+import { Blocks } from "#page/samples";
+
+const bytesOf = (base64) =>
+  Uint8Array.fromBase64?.(base64) ?? Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
 
 async function inflate(base64) {
-  const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-  const plain = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Uint8Array(await new Response(plain).arrayBuffer());
+  const inflater = new DecompressionStream("deflate");
+  const plain = new Response(inflater.readable).arrayBuffer();
+  const writer = inflater.writable.getWriter();
+  await Promise.all([writer.write(bytesOf(base64)), writer.close()]);
+  return new Uint8Array(await plain);
 }
 
-/** The whole numbers behind byte planes, lowest byte first: 0, 1, 2, 3 stand for 0, -1, 1, -2. */
-export function joinPlanes(planes, width, count) {
-  const values = new Float64Array(count);
-  const none = new Uint8Array(count);
-  const plane = (k) => (k < width ? planes.subarray(k * count, (k + 1) * count) : none);
-  const [p0, p1, p2] = [plane(0), plane(1), plane(2)];
-  for (let i = 0; i < count; ++i) {
-    const low = p0[i] | (p1[i] << 8) | (p2[i] << 16);
-    values[i] = (low >>> 1) ^ -(low & 1);
+/** Numbers of `width` bytes whose bytes of one significance stand side by side, the lowest first. */
+function joinPlanes(bytes, width) {
+  if (width === 1) return bytes.slice().buffer;
+  const count = bytes.length / width;
+  const joined = new Uint8Array(bytes.length);
+  for (let k = 0; k < width; ++k)
+    for (let i = 0; i < count; ++i) joined[width * i + k] = bytes[k * count + i];
+  return joined.buffer;
+}
+
+const wholeNumbers = { 1: Int8Array, 2: Int16Array, 4: Int32Array };
+
+/**
+ * Undoes differences of an order up to 3 and the scale, in place. `sums` are those before the first
+ * value; returns those behind the last.
+ */
+function integrate(values, { order, scale }, sums) {
+  let first = sums[0];
+  let second = sums[1];
+  let third = sums[2];
+  for (let i = 0; i < values.length; ++i) {
+    let value = values[i];
+    if (order > 2) value = third += value;
+    if (order > 1) value = second += value;
+    if (order > 0) value = first += value;
+    values[i] = value * scale;
   }
-  for (let k = 3; k < width; ++k) addPlane(values, plane(k), p0, 2 ** (8 * k - 1));
-  return values;
+  return [first, second, third];
 }
 
-/** Adds a higher plane, which is zero nearly everywhere; the lowest bit of all is the sign. */
-function addPlane(values, plane, lowest, factor) {
-  for (let i = 0; i < plane.length; ++i)
-    if (plane[i] !== 0) values[i] += (lowest[i] & 1 ? -factor : factor) * plane[i];
-}
+/**
+ * The samples of one packed column; a missing sample is NaN. They stay packed but for one block:
+ * a browser takes several times as long to get new memory than to unpack what goes into it.
+ */
+class Samples extends Blocks {
+  /** Before each block, as far as it is known: sums, the next outlier, the next missing stretch. */
+  #states = [{ sums: [0, 0, 0], outlier: 0, missing: 0 }];
 
-/** Sums up in place, once for each seed: the last seed begins the last sum to be undone. */
-export function integrate(values, seeds) {
-  for (let order = seeds.length - 1; order >= 0; --order) {
-    let sum = seeds[order];
-    for (let i = order; i < values.length; ++i) {
-      if (i > order) sum += values[i];
-      values[i] = sum;
+  /** Of `packed` inflated to `bytes`; `divisor` for what is no whole number times a scale. */
+  constructor(packed, bytes, divisor) {
+    super(packed.count);
+    const { width, outliers } = packed;
+    this.packed = packed;
+    this.divisor = divisor;
+    this.outliers = new Float64Array(joinPlanes(bytes.subarray(0, 8 * outliers), 8));
+    this.places = new Uint32Array(joinPlanes(bytes.subarray(8 * outliers, 12 * outliers), 4));
+    for (let k = 1; k < outliers; ++k) this.places[k] += this.places[k - 1];
+    this.differences = width > 0 ? new wholeNumbers[width](joinPlanes(bytes.subarray(12 * outliers), width)) : null;
+  }
+
+  read(first, values) {
+    const index = first / Blocks.size;
+    while (this.#states.length <= index) this.#unpack(this.#states.length - 1, values);
+    this.#unpack(index, values);
+  }
+
+  #unpack(index, block) {
+    const first = index * Blocks.size;
+    const values = block.subarray(0, this.length - first);
+    if (this.differences) values.set(this.differences.subarray(first, first + values.length));
+    else values.fill(0);
+    const state = this.#states[index];
+    const outlier = this.#placeOutliers(state.outlier, first, values);
+    const sums = integrate(values, this.packed, state.sums);
+    if (this.divisor !== 1) for (let i = 0; i < values.length; ++i) values[i] /= this.divisor;
+    const missing = this.#forget(state.missing, first, values);
+    this.#states[index + 1] ??= { sums, outlier, missing };
+  }
+
+  /** From outlier `k` on; returns the first behind the block. */
+  #placeOutliers(k, first, values) {
+    for (; this.places[k] < first + values.length; ++k) values[this.places[k] - first] = this.outliers[k];
+    return k;
+  }
+
+  /** From the missing stretch `k` on; returns the first that ends behind the block. */
+  #forget(k, first, values) {
+    for (const { missing } = this.packed; k < missing.length; ++k) {
+      const [begin, end] = [missing[k][0] - first, missing[k][0] + missing[k][1] - first];
+      if (begin < values.length) values.fill(NaN, Math.max(begin, 0), end);
+      if (end > values.length) break;
     }
+    return k;
   }
-  return values;
 }
 
-/** The samples of one packed column; a missing sample is NaN. */
-export async function unpack(packed) {
-  const values = joinPlanes(await inflate(packed.planes), packed.width, packed.count);
-  integrate(values, packed.seeds);
-  if (packed.scale !== 1) for (let i = 0; i < values.length; ++i) values[i] *= packed.scale;
-  for (const [first, count] of packed.missing) values.fill(NaN, first, first + count);
-  return values;
+export async function unpack(packed, divisor = 1) {
+  return new Samples(packed, await inflate(packed.bytes), divisor);
 }

@@ -21,18 +21,25 @@ export function nextFrame(task) {
   };
 }
 
-/** Calls `task` once nobody has asked for it for a moment: for what may come after the curves. */
+/** Calls `task` a moment after the next frame, once nobody asks for it: for what may follow the curves. */
 export function afterwards(task) {
   let waiting = 0;
+  const wait = nextFrame(() => { waiting = setTimeout(task, 150); });
   return () => {
     clearTimeout(waiting);
-    waiting = setTimeout(task, 150);
+    wait();
   };
 }
 
-/** A colour of page.css, in the theme that is shown. */
-export const colour = (name) =>
-  getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+const colours = new Map();
+
+/** A colour of page.css, in the theme that is shown. A browser takes its time to say it. */
+export function colour(name) {
+  const root = document.documentElement;
+  const key = `${root.dataset.theme} ${name}`;
+  if (!colours.has(key)) colours.set(key, getComputedStyle(root).getPropertyValue(`--${name}`).trim());
+  return colours.get(key);
+}
 
 export const palette = (index) => colour(`line-${index % 8}`);
 

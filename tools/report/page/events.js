@@ -4,7 +4,7 @@ import { lastAtOrBefore } from "#page/samples";
 
 function show(view, run, { time }) {
   const at = Math.max(lastAtOrBefore(run.times, time), 0);
-  const near = (step) => run.times[Math.min(Math.max(at + step, 0), run.times.length - 1)];
+  const near = (step) => run.times.at(Math.min(Math.max(at + step, 0), run.times.length - 1));
   view.show(near(-100), near(100));
   view.setCursor(0, near(0));
 }

@@ -1,7 +1,7 @@
 import { colour, element } from "#page/dom";
 import { firstAtOrAfter, lastAtOrBefore } from "#page/samples";
 
-const timeOf = (expectation, run) => expectation.at ?? run.times[run.times.length - 1];
+const timeOf = (expectation, run) => expectation.at ?? run.times.at(run.times.length - 1);
 
 /** Bounds that were not kept, of a plot's curves: they must be seen where they were due. */
 export function failedBounds(curves, range) {
@@ -40,7 +40,9 @@ function drawInstant(ctx, x, low, high, box, pixel) {
 
 /** The first sample that breaks a bound which holds always; -1 if the trace has none. */
 function firstBreach({ low = -Infinity, high = Infinity }, values) {
-  return values.findIndex((value) => value < low || value > high);
+  for (let i = 0; i < values.length; ++i)
+    if (values.at(i) < low || values.at(i) > high) return i;
+  return -1;
 }
 
 function drawAlways(ctx, u, e, { run, signal }, pixel, place) {
@@ -53,7 +55,7 @@ function drawAlways(ctx, u, e, { run, signal }, pixel, place) {
   ctx.setLineDash([]);
   const breach = e.ok ? -1 : firstBreach(e, signal.values);
   if (breach < 0) return;
-  const [x, y] = [u.valToPos(run.times[breach], "x", true), place(signal.values[breach])];
+  const [x, y] = [u.valToPos(run.times.at(breach), "x", true), place(signal.values.at(breach))];
   drawInstant(ctx, x, y, y, u.bbox, pixel);
 }
 
@@ -84,9 +86,9 @@ function show(view, run, e) {
                       : firstAtOrAfter(run.times, timeOf(e, run));
   if (at < 0) return;
   const shown = Math.min(at, run.times.length - 1);
-  const near = (step) => run.times[Math.min(Math.max(shown + step, 0), run.times.length - 1)];
+  const near = (step) => run.times.at(Math.min(Math.max(shown + step, 0), run.times.length - 1));
   view.show(near(-100), near(100));
-  view.setCursor(0, run.times[lastAtOrBefore(run.times, near(0))]);
+  view.setCursor(0, run.times.at(lastAtOrBefore(run.times, near(0))));
 }
 
 /** The list of a run's expectations; a click shows the place in the plots. */

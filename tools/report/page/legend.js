@@ -46,7 +46,7 @@ export class Legend {
     this.curves.forEach(({ run, signal }, index) => {
       const valueAt = (time) => {
         const at = time === null ? -1 : lastAtOrBefore(run.times, time);
-        return at < 0 ? NaN : signal.values[at];
+        return at < 0 ? NaN : signal.values.at(at);
       };
       const [here, a, b] = [this.view.hover, ...this.view.cursors].map(valueAt);
       const differs = signal.type === "real" || signal.type === "integer";

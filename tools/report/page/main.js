@@ -11,11 +11,14 @@ import { View } from "#page/view";
 
 const byId = (id) => document.getElementById(id);
 
+const nanoseconds = 1e9; // in a second
+
 /** A run of the report with its samples unpacked. */
 async function unpackRun(run, index) {
-  const [times, ...values] = await Promise.all([run.time, ...run.signals.map(({ data }) => data)].map(unpack));
+  const [times, ...values] =
+    await Promise.all([unpack(run.time, nanoseconds), ...run.signals.map(({ data }) => unpack(data))]);
   const signals = run.signals.map((signal, k) => ({ ...signal, values: values[k] }));
-  return { ...run, index, times: times.map((nanoseconds) => nanoseconds / 1e9), signals };
+  return { ...run, index, times, signals };
 }
 
 /** File names instead of paths, where they tell the runs apart. */
@@ -44,24 +47,23 @@ function deviationPlot(parent, path, view) {
   const group = { unit: signal.unit, type: "real", curves: path.deviationCurves() };
   const plot = new Plot(parent, group, view);
   path.onCircle(() => {
-    path.deviationCurves().forEach(({ signal: { values } }, k) => {
-      plot.curves[k].signal.values = values;
-    });
-    view.tell("range");
+    view.show(view.range.from, view.range.to);
     view.tell("cursors");
   });
   return [plot];
 }
 
 function showRuns(parent, report, runs) {
-  const ends = runs.map(({ times }) => times[times.length - 1]);
-  const view = new View(Math.min(...runs.map(({ times }) => times[0])), Math.max(...ends));
+  const ends = runs.map(({ times }) => times.at(times.length - 1));
+  const view = new View(Math.min(...runs.map(({ times }) => times.at(0))), Math.max(...ends));
   for (const run of runs)
     parent.append(...[run.expectations.length > 0 && expectationList(run, view),
                       run.events.length > 0 && eventList(run, view)].filter(Boolean));
   const paths = report.paths.map((pair) => new Path(parent, pair, runs, view, report));
   const plots = paths.flatMap((path) => deviationPlot(parent, path, view));
   plots.push(...groups(runs).map((group) => new Plot(parent, group, view)));
+  const width = plots[0]?.chart.clientWidth; // of all of them
+  for (const plot of plots) plot.draw(width);
   new ResizeObserver(nextFrame(() => [...paths, ...plots].forEach((p) => p.resize()))).observe(parent);
   return view;
 }

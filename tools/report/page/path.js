@@ -1,4 +1,4 @@
-import { deviation, deviations, figures, findCircle, nominal } from "#page/circle";
+import { deviation, Deviations, figures, findCircle, isNear, nominal } from "#page/circle";
 import { afterwards, colour, dashes, element, nextFrame, palette } from "#page/dom";
 import { number, withUnit } from "#page/format";
 import { lastAtOrBefore, seen } from "#page/samples";
@@ -6,10 +6,11 @@ import { lastAtOrBefore, seen } from "#page/samples";
 const wanted = 500;
 
 /** The greatest of 1, 2, 5, 10, ... up to `wanted` that keeps a magnified path off the centre. */
-function magnification(circle, tracks) {
+function magnification(circle, tracks, view) {
   let worst = 0;
-  for (const track of tracks)
-    for (const value of track.deviations) if (Math.abs(value) > worst) worst = Math.abs(value);
+  for (const { run, deviations } of tracks)
+    for (const value of view.slicedValues(run, deviations))
+      worst = Math.max(worst, Math.abs(value));
   const steps = [500, 200, 100, 50, 20, 10, 5, 2];
   return steps.find((step) => step <= wanted && step * worst < 0.8 * circle.radius) ?? 1;
 }
@@ -35,8 +36,9 @@ export class Path {
     });
     this.unit = runs[0].signals.find(({ name }) => name === pair.x).unit;
     this.circle = given ? { ...given } : this.#guess();
-    this.#measure();
-    this.magnify = this.circle ? magnification(this.circle, this.tracks) : 1;
+    for (const track of this.circle ? this.tracks : [])
+      track.deviations = new Deviations(this.circle, track);
+    this.magnify = this.circle ? magnification(this.circle, this.tracks, view) : 1;
     this.canvas = element("canvas", { className: "path" });
     this.figures = element("table", { className: "figures" });
     parent.append(element("section", { className: "plot" },
@@ -60,18 +62,13 @@ export class Path {
     this.circleListener = listener;
   }
 
-  #measure() {
-    if (!this.circle) return;
-    for (const track of this.tracks) track.deviations = deviations(this.circle, track);
-  }
-
   refresh() {
     this.writeLater();
     this.redraw();
   }
 
   resize() {
-    this.redraw();
+    if (this.canvas.clientWidth !== this.width) this.redraw();
   }
 
   #guess() {
@@ -89,7 +86,7 @@ export class Path {
     const field = (label, value, set) => {
       const input = element("input", { type: "number", step: "any", value, onchange: () => {
         if (Number.isFinite(input.valueAsNumber)) set(input.valueAsNumber);
-        this.#measure();
+        for (const { deviations } of this.tracks) deviations.forget();
         this.refresh();
         this.circleListener?.();
       } });
@@ -121,64 +118,74 @@ export class Path {
     this.figures.replaceChildren(element("tbody", {}, ...lines));
   }
 
-  /** Where a sample is drawn: its distance from the circle magnified if it belongs to it. */
-  #magnified(x, y) {
+  get #centre() {
+    return this.circle ?? { x: 0, y: 0 };
+  }
+
+  /** By what a sample's distance from the circle's centre is drawn longer. */
+  #stretch(x, y) {
     const { circle, magnify } = this;
-    if (!circle || magnify === 1) return [x, y];
-    const distance = Math.hypot(x - circle.x, y - circle.y);
-    const radius = Math.max(circle.radius + magnify * deviation(circle, x, y), 0);
-    const factor = radius / distance;
-    return [circle.x + (x - circle.x) * factor, circle.y + (y - circle.y) * factor];
+    if (!circle || magnify === 1) return 1;
+    const by = deviation(circle, x, y);
+    return Math.max(circle.radius + magnify * by, 0) / (circle.radius + by);
   }
 
-  #extent() {
-    const [xs, ys] = [[], []];
-    if (this.circle) {
-      const reach = this.circle.radius * 1.02;
-      xs.push(this.circle.x - reach, this.circle.x + reach);
-      ys.push(this.circle.y - reach, this.circle.y + reach);
-    }
-    for (const track of this.tracks)
-      this.#points(track, 2000, (x, y) => { xs.push(x); ys.push(y); });
-    return { x: [Math.min(...xs), Math.max(...xs)], y: [Math.min(...ys), Math.max(...ys)] };
+  /** Of the points of all tracks, and of the circle with some room. */
+  #extent(tracks) {
+    const reach = this.circle ? this.circle.radius * 1.02 : -Infinity;
+    const { x, y } = this.#centre;
+    const extent = { x: [x - reach, x + reach], y: [y - reach, y + reach] };
+    for (const points of tracks)
+      for (const [axis, values] of Object.entries(points))
+        for (let i = 0; i < values.length; ++i) {
+          if (values[i] < extent[axis][0]) extent[axis][0] = values[i];
+          if (values[i] > extent[axis][1]) extent[axis][1] = values[i];
+        }
+    return extent;
   }
 
-  /** Calls `use(x, y, joined)` for about `count` drawn points of what is in view. */
-  #points({ run, x, y, deviations: on }, count, use) {
+  /** About 20,000 points of what is in view where they are drawn; NaN where the line is broken. */
+  #points({ run, x, y, condition }) {
     const [first, end] = seen(run.times, this.view.range);
-    const step = Math.max(1, Math.floor((end - first) / count));
-    let joined = false;
-    for (let i = first; i < end; i += step) {
-      const drawn = !Number.isNaN(x[i]) && !Number.isNaN(y[i]) && (this.magnify === 1 || !Number.isNaN(on[i]));
-      if (drawn) use(...this.#magnified(x[i], y[i]), joined);
-      joined = drawn;
+    const step = Math.max(1, Math.floor((end - first) / 20000));
+    const count = Math.ceil((end - first) / step);
+    const points = { x: new Float64Array(count), y: new Float64Array(count) };
+    const { x: a, y: b } = this.#centre;
+    for (let k = 0, i = first; k < count; ++k, i += step) {
+      const [px, py] = [x.at(i), y.at(i)];
+      const off = this.magnify !== 1 && (!isNear(this.circle, px, py) || (condition && condition.at(i) !== 1));
+      const factor = off ? NaN : this.#stretch(px, py);
+      points.x[k] = a + (px - a) * factor;
+      points.y[k] = b + (py - b) * factor;
     }
+    return points;
   }
 
   #draw() {
     const width = this.canvas.clientWidth;
+    this.width = width;
     if (width === 0) return;
     const pixel = devicePixelRatio;
     this.canvas.width = width * pixel;
     this.canvas.height = this.canvas.clientHeight * pixel;
     const ctx = this.canvas.getContext("2d");
     ctx.scale(pixel, pixel);
-    const map = this.#map(width, this.canvas.clientHeight);
+    const tracks = this.tracks.map((track) => this.#points(track));
+    const map = this.#map(width, this.canvas.clientHeight, this.#extent(tracks));
     this.#drawAxes(ctx, map);
     ctx.save();
     ctx.beginPath();
     ctx.rect(map.left, map.top, map.width, map.height);
     ctx.clip();
     if (this.circle) this.#drawCircle(ctx, map);
-    this.tracks.forEach((track, index) => this.#drawTrack(ctx, map, track, index));
+    tracks.forEach((points, index) => this.#drawTrack(ctx, map, points, index));
     this.#drawCursors(ctx, map);
     ctx.restore();
   }
 
   /** Equal axes: one scale for both directions, the path in the middle. */
-  #map(width, height) {
+  #map(width, height, { x, y }) {
     const box = { left: 64, top: 10, width: width - 74, height: height - 56 };
-    const { x, y } = this.#extent();
     const scale = 0.94 * Math.min(box.width / (x[1] - x[0] || 1), box.height / (y[1] - y[0] || 1));
     const middle = [(x[0] + x[1]) / 2, (y[0] + y[1]) / 2];
     return { ...box,
@@ -229,15 +236,19 @@ export class Path {
     ctx.setLineDash([]);
   }
 
-  #drawTrack(ctx, map, track, index) {
+  #drawTrack(ctx, map, points, index) {
     ctx.strokeStyle = palette(index);
     ctx.lineWidth = 1.5;
-    ctx.setLineDash(dashes(track.run.index));
+    ctx.setLineDash(dashes(this.tracks[index].run.index));
     ctx.beginPath();
-    this.#points(track, 20000, (x, y, joined) => {
-      if (joined) ctx.lineTo(map.x(x), map.y(y));
-      else ctx.moveTo(map.x(x), map.y(y));
-    });
+    let joined = false;
+    for (let i = 0; i < points.x.length; ++i) {
+      const [x, y] = [map.x(points.x[i]), map.y(points.y[i])];
+      const drawn = !Number.isNaN(x) && !Number.isNaN(y);
+      if (drawn && joined) ctx.lineTo(x, y);
+      else if (drawn) ctx.moveTo(x, y);
+      joined = drawn;
+    }
     ctx.stroke();
     ctx.setLineDash([]);
   }
@@ -247,13 +258,15 @@ export class Path {
       const { run, x, y } = this.tracks[0];
       const at = lastAtOrBefore(run.times, this.view.cursors[index]);
       if (at < 0) return;
-      const [px, py] = this.#magnified(x[at], y[at]);
+      const { x: a, y: b } = this.#centre;
+      const factor = this.#stretch(x.at(at), y.at(at));
+      const [px, py] = [map.x(a + (x.at(at) - a) * factor), map.y(b + (y.at(at) - b) * factor)];
       ctx.textAlign = "left";
       ctx.fillStyle = colour(`cursor-${name}`);
       ctx.beginPath();
-      ctx.arc(map.x(px), map.y(py), 5, 0, 2 * Math.PI);
+      ctx.arc(px, py, 5, 0, 2 * Math.PI);
       ctx.fill();
-      ctx.fillText(name, map.x(px) + 9, map.y(py) + 4);
+      ctx.fillText(name, px + 9, py + 4);
     });
   }
 }

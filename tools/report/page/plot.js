@@ -2,13 +2,11 @@ import { CursorLines } from "#page/cursors";
 import { colour, dashes, element, palette } from "#page/dom";
 import { drawExpectations, failedBounds } from "#page/expectations";
 import { Legend } from "#page/legend";
-import { seen, slicedTimes, slicedValues, slices } from "#page/samples";
 
 const axisWidth = 84;
 const laneHeight = 34;
 const axisHeight = 62;
 const font = "12px system-ui, sans-serif";
-const slicesAcross = 1200; // two points each: more than a plot has pixels on most screens
 
 /** The plots of a page: one for each unit, one for each enumeration, one of strips for booleans. */
 export function groups(runs) {
@@ -44,10 +42,14 @@ export class Plot {
     const side = element("div", { className: "side" });
     parent.append(element("section", { className: "plot" }, this.chart, side));
     this.legend = new Legend(side, this.curves, view);
-    this.uplot = new uPlot(this.#options(), this.#data(), this.chart);
-    this.cursors = new CursorLines(this.uplot, view, this.curves[0].run.times);
+  }
+
+  /** Draws the plot for the first time, so wide. */
+  draw(width) {
+    this.uplot = new uPlot(this.#options(width), this.#data(), this.chart);
+    this.cursors = new CursorLines(this.uplot, this.view, this.curves[0].run.times);
     this.#listenToMouse();
-    view.listen((change) => this.#changed(change));
+    this.view.listen((change) => this.#changed(change));
   }
 
   get isStrips() {
@@ -75,11 +77,10 @@ export class Plot {
   #data() {
     const tables = [];
     for (const run of new Set(this.curves.map((curve) => curve.run))) {
-      const borders = slices(...seen(run.times, this.view.range), slicesAcross);
       const columns = this.curves
         .filter((curve) => curve.run === run)
-        .map((curve) => this.#inLane(slicedValues(curve.signal.values, borders), curve.lane));
-      tables.push([slicedTimes(run.times, borders), ...columns]);
+        .map((curve) => this.#inLane(this.view.slicedValues(run, curve.signal.values), curve.lane));
+      tables.push([this.view.slicedTimes(run), ...columns]);
     }
     return tables.length === 1 ? tables[0] : uPlot.join(tables);
   }
@@ -90,9 +91,9 @@ export class Plot {
     return values.map((value) => (value === null ? null : base + 0.45 * value));
   }
 
-  #options() {
+  #options(width) {
     return {
-      width: Math.max(this.chart.clientWidth, 200),
+      width: Math.max(width, 200),
       height: this.#height(),
       legend: { show: false },
       scales: {
