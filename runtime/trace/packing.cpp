@@ -164,6 +164,25 @@ PackedSamples pack(std::span<const double> samples) {
     return packed;
 }
 
+std::vector<double> chunk_extremes(std::span<const double> samples) {
+    const std::size_t chunks = (samples.size() + extremes_chunk - 1) / extremes_chunk;
+    std::vector<double> extremes(2 * chunks, std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t k = 0; k < chunks; ++k) {
+        const double *least = nullptr, *greatest = nullptr;
+        const std::size_t first = k * extremes_chunk;
+        for (const double& value :
+             samples.subspan(first, std::min(extremes_chunk, samples.size() - first))) {
+            if (!std::isfinite(value)) continue;
+            if (!least || value < *least) least = &value;
+            if (!greatest || value > *greatest) greatest = &value;
+        }
+        if (!least) continue;
+        extremes[k] = *std::min(least, greatest);
+        extremes[chunks + k] = *std::max(least, greatest);
+    }
+    return extremes;
+}
+
 std::string base64(std::string_view bytes) {
     constexpr std::string_view letters =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -32,6 +32,14 @@ struct PackedSamples {  // of fewer than 2^32 samples
 /// take more than three bytes a sample. What is not finite counts as missing.
 PackedSamples pack(std::span<const double> samples);
 
+/// Samples that share a pair of extremes.
+inline constexpr std::size_t extremes_chunk = 256;
+
+/// The least and the greatest of each chunk of samples (the last one may be shorter), so that a
+/// wide view of a page needs no samples: of all chunks the one that comes first, then of all chunks
+/// the other one. NaN where a chunk has no finite sample.
+std::vector<double> chunk_extremes(std::span<const double> samples);
+
 /// RFC 4648, with padding.
 std::string base64(std::string_view bytes);
 

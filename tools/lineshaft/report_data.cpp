@@ -141,6 +141,12 @@ Json packed_json(std::span<const double> samples) {
             {"bytes", base64(packed.bytes)}};
 }
 
+Json packed_signal(std::span<const double> samples) {
+    Json packed = packed_json(samples);
+    packed["extremes"] = packed_json(chunk_extremes(samples));
+    return packed;
+}
+
 /// Times of a trace are whole nanoseconds; as such they pack to nothing and come back exactly.
 Json packed_times(const CsvColumn& time) {
     std::vector<double> nanoseconds(time.values.size());
@@ -207,7 +213,7 @@ nlohmann::ordered_json to_json(const ReportRun& run) {
         Json signal{{"name", column->name},
                     {"unit", column->unit},
                     {"type", name_of(column->type)},
-                    {"data", packed_json(column->values)}};
+                    {"data", packed_signal(column->values)}};
         if (!column->names.empty()) signal["names"] = column->names;
         signals.push_back(std::move(signal));
     }

@@ -50,9 +50,12 @@ class Samples extends Blocks {
   /** Before each block, as far as it is known: sums, the next outlier, the next missing stretch. */
   #states = [{ sums: [0, 0, 0], outlier: 0, missing: 0 }];
 
+  #packedExtremes;
+
   /** Of `packed` inflated to `bytes`; `divisor` for what is no whole number times a scale. */
-  constructor(packed, bytes, divisor) {
+  constructor(packed, bytes, divisor, packedExtremes) {
     super(packed.count);
+    this.#packedExtremes = packedExtremes;
     const { width, outliers } = packed;
     this.packed = packed;
     this.divisor = divisor;
@@ -66,6 +69,20 @@ class Samples extends Blocks {
     const index = first / Blocks.size;
     while (this.#states.length <= index) this.#unpack(this.#states.length - 1, values);
     this.#unpack(index, values);
+  }
+
+  /** As the page has them: of all chunks the former one, then of all the latter one. */
+  chunkExtremes() {
+    const packed = this.#packedExtremes;
+    if (!packed) return super.chunkExtremes();
+    const values = packed.every(1, 0, packed.length);
+    const chunks = new Float64Array(values.length);
+    const count = values.length / 2;
+    for (let k = 0; k < count; ++k) {
+      chunks[2 * k] = values[k];
+      chunks[2 * k + 1] = values[count + k];
+    }
+    return chunks;
   }
 
   #unpack(index, block) {
@@ -99,5 +116,7 @@ class Samples extends Blocks {
 }
 
 export async function unpack(packed, divisor = 1) {
-  return new Samples(packed, await inflate(packed.bytes), divisor);
+  const [bytes, extremes] =
+    await Promise.all([inflate(packed.bytes), packed.extremes && unpack(packed.extremes)]);
+  return new Samples(packed, bytes, divisor, extremes);
 }

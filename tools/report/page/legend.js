@@ -1,4 +1,4 @@
-import { dashes, element, nextFrame, palette, row } from "#page/dom";
+import { afterwards, dashes, element, nextFrame, palette, row } from "#page/dom";
 import { number, sample } from "#page/format";
 import { lastAtOrBefore } from "#page/samples";
 
@@ -22,7 +22,7 @@ export class Legend {
                           element("tbody", {}, ...this.rows)));
     this.update = this.update.bind(this);
     this.write = nextFrame(() => this.#write());
-    this.write();
+    afterwards(() => this.#write())();
   }
 
   update(change) {

@@ -35,6 +35,7 @@ export class Path {
       return { run, x: values(pair.x), y: values(pair.y), condition: condition && values(condition) };
     });
     this.unit = runs[0].signals.find(({ name }) => name === pair.x).unit;
+    this.#choosePoints();
     this.circle = given ? { ...given } : this.#guess();
     for (const track of this.circle ? this.tracks : [])
       track.deviations = new Deviations(this.circle, track);
@@ -72,13 +73,16 @@ export class Path {
   }
 
   #guess() {
-    const found = findCircle(this.tracks[0]);
+    const found = findCircle(this.tracks[0].points);
     return found && nominal(found);
   }
 
   #changed(change) {
     if (change === "hover") return;
-    if (change === "range") this.writeLater();
+    if (change === "range") {
+      this.#choosePoints();
+      this.writeLater();
+    }
     this.redraw();
   }
 
@@ -144,21 +148,28 @@ export class Path {
     return extent;
   }
 
-  /** About 20,000 points of what is in view where they are drawn; NaN where the line is broken. */
-  #points({ run, x, y, condition }) {
-    const [first, end] = seen(run.times, this.view.range);
-    const step = Math.max(1, Math.floor((end - first) / 20000));
-    const count = Math.ceil((end - first) / step);
-    const points = { x: new Float64Array(count), y: new Float64Array(count) };
-    const { x: a, y: b } = this.#centre;
-    for (let k = 0, i = first; k < count; ++k, i += step) {
-      const [px, py] = [x.at(i), y.at(i)];
-      const off = this.magnify !== 1 && (!isNear(this.circle, px, py) || (condition && condition.at(i) !== 1));
-      const factor = off ? NaN : this.#stretch(px, py);
-      points.x[k] = a + (px - a) * factor;
-      points.y[k] = b + (py - b) * factor;
+  /** About 20,000 of the samples in view. */
+  #choosePoints() {
+    for (const track of this.tracks) {
+      const [first, end] = seen(track.run.times, this.view.range);
+      const step = Math.max(1, Math.floor((end - first) / 20000));
+      const [x, y, condition] = [track.x, track.y, track.condition].map((samples) =>
+        samples?.every(step, first, Math.ceil((end - first) / step)));
+      track.points = { x, y, condition };
     }
-    return points;
+  }
+
+  /** A track's points where they are drawn; NaN where the line is broken. */
+  #placed({ points: { x, y, condition } }) {
+    const placed = { x: new Float64Array(x.length), y: new Float64Array(x.length) };
+    const { x: a, y: b } = this.#centre;
+    for (let k = 0; k < x.length; ++k) {
+      const off = this.magnify !== 1 && (!isNear(this.circle, x[k], y[k]) || (condition && condition[k] !== 1));
+      const factor = off ? NaN : this.#stretch(x[k], y[k]);
+      placed.x[k] = a + (x[k] - a) * factor;
+      placed.y[k] = b + (y[k] - b) * factor;
+    }
+    return placed;
   }
 
   #draw() {
@@ -170,7 +181,7 @@ export class Path {
     this.canvas.height = this.canvas.clientHeight * pixel;
     const ctx = this.canvas.getContext("2d");
     ctx.scale(pixel, pixel);
-    const tracks = this.tracks.map((track) => this.#points(track));
+    const tracks = this.tracks.map((track) => this.#placed(track));
     const map = this.#map(width, this.canvas.clientHeight, this.#extent(tracks));
     this.#drawAxes(ctx, map);
     ctx.save();

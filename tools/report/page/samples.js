@@ -37,26 +37,22 @@ class Extremes {
 /**
  * Numbers that are read by `at` as an array's are, but are worked out when they are asked for, a
  * block at a time, by a derived class's `read(first, values)`: `values` are those from `first` on.
- * Of each chunk of a block that has been asked for them, the extremes are kept.
+ * The extremes of all chunks are worked out once, unless the derived class knows them.
  */
 export class Blocks {
   static size = 1024;
-  static chunk = 256;
+  static chunk = 256; // as runtime/trace/packing.hpp has it
   #block = { first: -Blocks.size, values: new Float64Array(Blocks.size) };
-  #extremes;
-  #known;
+  #chunks = null;
 
   constructor(length) {
     this.length = length;
-    this.forget();
   }
 
   /** What has been read is no longer so. */
   forget() {
-    const chunks = Math.ceil(this.length / Blocks.chunk);
     this.#block.first = -Blocks.size;
-    this.#extremes = new Float64Array(2 * chunks);
-    this.#known = new Uint8Array(chunks);
+    this.#chunks = null;
   }
 
   at(index) {
@@ -74,34 +70,48 @@ export class Blocks {
     return block;
   }
 
-  /** Of the numbers [first, end). */
+  /** `count` of the numbers, from one on every so many. */
+  every(step, first, count) {
+    const result = new Float64Array(count);
+    for (let k = 0, i = first; k < count; ) {
+      const { first: start, values } = this.block(i);
+      for (; k < count && i < start + Blocks.size; ++k, i += step) result[k] = values[i - start];
+    }
+    return result;
+  }
+
+  /** Of the numbers [first, end), of which whole chunks are not read. */
   extremes(first, end) {
     const found = new Extremes();
-    for (let begin = first; begin < end; ) {
-      const chunk = Math.floor(begin / Blocks.chunk);
-      const next = Math.min((chunk + 1) * Blocks.chunk, end);
-      if (next - begin === Blocks.chunk) found.add(this.#extremesOf(chunk), 2 * chunk, 2 * chunk + 2);
-      else this.#add(found, begin, next);
-      begin = next;
+    const begin = Math.ceil(first / Blocks.chunk);
+    const behind = end === this.length ? Math.ceil(end / Blocks.chunk) : Math.floor(end / Blocks.chunk);
+    if (begin >= behind) return this.#add(found, first, end);
+    this.#add(found, first, begin * Blocks.chunk);
+    this.#chunks ??= this.chunkExtremes();
+    found.add(this.#chunks, 2 * begin, 2 * behind);
+    return this.#add(found, behind * Blocks.chunk, end);
+  }
+
+  /** Two of each chunk, in the order in which they come. */
+  chunkExtremes() {
+    const chunks = new Float64Array(2 * Math.ceil(this.length / Blocks.chunk));
+    for (let k = 0, first = 0; first < this.length; first += Blocks.chunk) {
+      const { former, latter } =
+        this.#add(new Extremes(), first, Math.min(first + Blocks.chunk, this.length));
+      chunks[k++] = former;
+      chunks[k++] = latter;
     }
-    return found;
+    return chunks;
   }
 
   #add(found, first, end) {
-    const block = this.block(first);
-    found.add(block.values, first - block.first, end - block.first);
-  }
-
-  /** Those of all chunks, of which at least this one is known. */
-  #extremesOf(chunk) {
-    if (!this.#known[chunk]) {
-      const found = new Extremes();
-      this.#add(found, chunk * Blocks.chunk, (chunk + 1) * Blocks.chunk);
-      this.#extremes[2 * chunk] = found.former;
-      this.#extremes[2 * chunk + 1] = found.latter;
-      this.#known[chunk] = 1;
+    for (let i = first; i < end; ) {
+      const block = this.block(i);
+      const next = Math.min(block.first + Blocks.size, end);
+      found.add(block.values, i - block.first, next - block.first);
+      i = next;
     }
-    return this.#extremes;
+    return found;
   }
 }
 
