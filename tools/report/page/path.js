@@ -4,6 +4,7 @@ import { number, withUnit } from "#page/format";
 import { lastAtOrBefore, seen } from "#page/samples";
 
 const wanted = 500;
+const near = 0.25; // pixels between points that count as one
 
 /** The greatest of 1, 2, 5, 10, ... up to `wanted` that keeps a magnified path off the centre. */
 function magnification(circle, tracks, view) {
@@ -252,13 +253,15 @@ export class Path {
     ctx.lineWidth = 1.5;
     ctx.setLineDash(dashes(this.tracks[index].run.index));
     ctx.beginPath();
-    let joined = false;
+    let [joined, lastX, lastY] = [false, 0, 0];
     for (let i = 0; i < points.x.length; ++i) {
-      const [x, y] = [map.x(points.x[i]), map.y(points.y[i])];
+      const x = map.x(points.x[i]);
+      const y = map.y(points.y[i]);
       const drawn = !Number.isNaN(x) && !Number.isNaN(y);
+      if (drawn && joined && Math.abs(x - lastX) < near && Math.abs(y - lastY) < near) continue;
       if (drawn && joined) ctx.lineTo(x, y);
       else if (drawn) ctx.moveTo(x, y);
-      joined = drawn;
+      [joined, lastX, lastY] = [drawn, x, y];
     }
     ctx.stroke();
     ctx.setLineDash([]);
