@@ -122,17 +122,6 @@ std::string laid_down(const Whole& differences, PackedSamples& packed) {
     return bytes;
 }
 
-std::string deflated(const std::string& bytes) {
-    uLongf size = compressBound(bytes.size());
-    std::string out(size, '\0');
-    const int result =
-        compress2(reinterpret_cast<Bytef*>(out.data()), &size,
-                  reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_COMPRESSION);
-    if (result != Z_OK) throw std::bad_alloc();  // nothing else can go wrong
-    out.resize(size);
-    return out;
-}
-
 std::vector<std::pair<std::size_t, std::size_t>> missing_stretches(
     std::span<const double> samples) {
     std::vector<std::pair<std::size_t, std::size_t>> found;
@@ -160,7 +149,7 @@ PackedSamples pack(std::span<const double> samples) {
         best = smallest_differences(whole_numbers(samples, packed.scale));
     }
     packed.order = best.order;
-    packed.bytes = deflated(laid_down(best.values, packed));
+    packed.bytes = laid_down(best.values, packed);
     return packed;
 }
 
@@ -181,6 +170,17 @@ std::vector<double> chunk_extremes(std::span<const double> samples) {
         extremes[chunks + k] = *std::max(least, greatest);
     }
     return extremes;
+}
+
+std::string deflated(const std::string& bytes) {
+    uLongf size = compressBound(bytes.size());
+    std::string out(size, '\0');
+    const int result =
+        compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                  reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_COMPRESSION);
+    if (result != Z_OK) throw std::bad_alloc();  // nothing else can go wrong
+    out.resize(size);
+    return out;
 }
 
 std::string base64(std::string_view bytes) {

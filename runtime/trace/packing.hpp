@@ -12,7 +12,7 @@ namespace lineshaft {
 
 /// The samples of one column made small for a page: whole numbers times a scale, their differences
 /// of the order that makes them smallest (0 stands before the first of them), the few that take
-/// more bytes than the rest apart, deflated. Numbers are as a page's typed arrays have them
+/// more bytes than the rest apart. Numbers are as a page's typed arrays have them
 /// (little-endian, two's complement), but with the bytes of one significance side by side.
 /// tools/report/page/decode.js undoes it.
 struct PackedSamples {  // of fewer than 2^32 samples
@@ -22,8 +22,8 @@ struct PackedSamples {  // of fewer than 2^32 samples
     std::size_t width = 0;     ///< bytes of a difference: 0 (all are zero), 1, 2 or 4
     std::size_t outliers = 0;  ///< differences that take more; 0 stands in their places
     std::vector<std::pair<std::size_t, std::size_t>> missing;  ///< first and count of each stretch
-    /// In zlib format: the outliers as doubles; how far each lies behind the one before it (the
-    /// first one: behind sample 0), as uint32; `count` differences of `width` bytes.
+    /// The outliers as doubles; how far each lies behind the one before it (the first one: behind
+    /// sample 0), as uint32; `count` differences of `width` bytes.
     std::string bytes;
 };
 
@@ -39,6 +39,9 @@ inline constexpr std::size_t extremes_chunk = 256;
 /// wide view of a page needs no samples: of all chunks the one that comes first, then of all chunks
 /// the other one. NaN where a chunk has no finite sample.
 std::vector<double> chunk_extremes(std::span<const double> samples);
+
+/// In zlib format.
+std::string deflated(const std::string& bytes);
 
 /// RFC 4648, with padding.
 std::string base64(std::string_view bytes);

@@ -133,26 +133,26 @@ std::string with_y(std::string name) {
     return any ? name : std::string();
 }
 
-Json packed_json(std::span<const double> samples) {
+/// The samples but for their bytes, which go behind `bytes`.
+Json packed_json(std::span<const double> samples, std::string& bytes) {
     const PackedSamples packed = pack(samples);
-    return {{"count", packed.count},        {"scale", packed.scale},
-            {"order", packed.order},        {"width", packed.width},
-            {"outliers", packed.outliers},  {"missing", packed.missing},
-            {"bytes", base64(packed.bytes)}};
+    bytes += packed.bytes;
+    return {{"count", packed.count}, {"scale", packed.scale},       {"order", packed.order},
+            {"width", packed.width}, {"outliers", packed.outliers}, {"missing", packed.missing}};
 }
 
-Json packed_signal(std::span<const double> samples) {
-    Json packed = packed_json(samples);
-    packed["extremes"] = packed_json(chunk_extremes(samples));
+Json packed_signal(std::span<const double> samples, std::string& bytes) {
+    Json packed = packed_json(samples, bytes);
+    packed["extremes"] = packed_json(chunk_extremes(samples), bytes);
     return packed;
 }
 
 /// Times of a trace are whole nanoseconds; as such they pack to nothing and come back exactly.
-Json packed_times(const CsvColumn& time) {
+Json packed_times(const CsvColumn& time, std::string& bytes) {
     std::vector<double> nanoseconds(time.values.size());
     std::ranges::transform(time.values, nanoseconds.begin(),
                            [](double t) { return std::round(t * 1e9); });
-    return packed_json(nanoseconds);
+    return packed_json(nanoseconds, bytes);
 }
 
 }  // namespace
@@ -208,12 +208,14 @@ std::vector<PathPair> find_paths(const ReportRun& run) {
 }
 
 nlohmann::ordered_json to_json(const ReportRun& run) {
+    std::string bytes;
+    const Json times = packed_times(*run.time, bytes);
     Json signals = Json::array();
     for (const CsvColumn* column : run.signals) {
         Json signal{{"name", column->name},
                     {"unit", column->unit},
                     {"type", name_of(column->type)},
-                    {"data", packed_signal(column->values)}};
+                    {"data", packed_signal(column->values, bytes)}};
         if (!column->names.empty()) signal["names"] = column->names;
         signals.push_back(std::move(signal));
     }
@@ -223,8 +225,9 @@ nlohmann::ordered_json to_json(const ReportRun& run) {
             {"version", metadata ? metadata->version : ""},
             {"program", metadata ? metadata->program : ""},
             {"rows", run.table.rows},
-            {"time", packed_times(*run.time)},
+            {"time", times},
             {"signals", signals},
+            {"bytes", base64(deflated(bytes))},
             {"expectations", run.expectations},
             {"events", run.events}};
 }

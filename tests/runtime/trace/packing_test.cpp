@@ -26,12 +26,8 @@ std::vector<std::uint64_t> take(std::string_view& bytes, std::size_t width, std:
 }
 
 std::vector<std::int64_t> differences(const PackedSamples& packed) {
-    std::string plain(packed.width * packed.count + 12 * packed.outliers, '\0');
-    uLongf size = plain.size();
-    uncompress(reinterpret_cast<Bytef*>(plain.data()), &size,
-               reinterpret_cast<const Bytef*>(packed.bytes.data()), packed.bytes.size());
-    REQUIRE(size == plain.size());
-    std::string_view bytes = plain;
+    REQUIRE(packed.bytes.size() == packed.width * packed.count + 12 * packed.outliers);
+    std::string_view bytes = packed.bytes;
     const auto outliers = take(bytes, 8, packed.outliers);
     const auto gaps = take(bytes, 4, packed.outliers);
     std::vector<std::int64_t> values;
@@ -107,8 +103,8 @@ TEST_CASE("a straight line takes next to nothing, noise no more than a float", "
         line[i] = 0.0125 * static_cast<double>(i);
         noise[i] = std::ldexp(random(), -64);
     }
-    CHECK(pack(line).bytes.size() < line.size() / 4);
-    CHECK(pack(noise).bytes.size() < noise.size() * 4);
+    CHECK(deflated(pack(line).bytes).size() < line.size() / 4);
+    CHECK(deflated(pack(noise).bytes).size() < noise.size() * 4);
     CHECK(greatest_error(noise) <= 0x1p-25);
 }
 
@@ -119,8 +115,36 @@ TEST_CASE("a few wide differences among narrow ones are outliers and cost little
     const PackedSamples packed = pack(steps);
     CHECK(packed.width == 0);
     CHECK(packed.outliers == 99);
-    CHECK(packed.bytes.size() < 1000);
+    CHECK(deflated(packed.bytes).size() < 1000);
     CHECK(greatest_error(steps) == 0);
+}
+
+TEST_CASE("deflated bytes come back", "[packing]") {
+    const std::string bytes(100000, 'x');
+    const std::string small = deflated(bytes);
+    CHECK(small.size() < 1000);
+    std::string back(bytes.size(), '\0');
+    uLongf size = back.size();
+    uncompress(reinterpret_cast<Bytef*>(back.data()), &size,
+               reinterpret_cast<const Bytef*>(small.data()), small.size());
+    CHECK(back == bytes);
+}
+
+TEST_CASE("extremes of a chunk stand in the order of their samples", "[packing]") {
+    CHECK(chunk_extremes({}).empty());
+    std::vector<double> samples(3 * extremes_chunk + 1, missing);
+    std::fill_n(samples.begin(), extremes_chunk, 1);
+    samples[7] = 5;
+    samples[9] = -2;
+    samples[extremes_chunk + 3] = -8;
+    samples[extremes_chunk + 4] = std::numeric_limits<double>::infinity();
+    samples[extremes_chunk + 5] = 4;
+    samples.back() = 6;
+    const std::vector<double> found = chunk_extremes(samples);
+    const std::vector<double> wanted{5, -8, missing, 6, -2, 4, missing, 6};
+    REQUIRE(found.size() == wanted.size());
+    for (std::size_t k = 0; k < found.size(); ++k)
+        CHECK((found[k] == wanted[k] || (std::isnan(found[k]) && std::isnan(wanted[k]))));
 }
 
 TEST_CASE("base64 as RFC 4648 has it", "[packing]") {

@@ -1,6 +1,8 @@
 // Undoes runtime/trace/packing.cpp: base64, deflate, outliers, differences, scale.
 import { Blocks } from "#page/samples";
 
+const nanoseconds = 1e9; // in a second
+
 const bytesOf = (base64) =>
   Uint8Array.fromBase64?.(base64) ?? Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
 
@@ -115,8 +117,13 @@ class Samples extends Blocks {
   }
 }
 
-export async function unpack(packed, divisor = 1) {
-  const [bytes, extremes] =
-    await Promise.all([inflate(packed.bytes), packed.extremes && unpack(packed.extremes)]);
-  return new Samples(packed, bytes, divisor, extremes);
+/** Times [s] and values of a run's signals. */
+export async function unpack(run) {
+  const bytes = await inflate(run.bytes);
+  let at = 0;
+  const next = (packed, divisor = 1) => {
+    const own = bytes.subarray(at, (at += 12 * packed.outliers + packed.width * packed.count));
+    return new Samples(packed, own, divisor, packed.extremes && next(packed.extremes));
+  };
+  return { times: next(run.time, nanoseconds), values: run.signals.map(({ data }) => next(data)) };
 }

@@ -11,12 +11,9 @@ import { View } from "#page/view";
 
 const byId = (id) => document.getElementById(id);
 
-const nanoseconds = 1e9; // in a second
-
 /** A run of the report with its samples unpacked. */
 async function unpackRun(run, index) {
-  const [times, ...values] =
-    await Promise.all([unpack(run.time, nanoseconds), ...run.signals.map(({ data }) => unpack(data))]);
+  const { times, values } = await unpack(run);
   const signals = run.signals.map((signal, k) => ({ ...signal, values: values[k] }));
   return { ...run, index, times, signals };
 }
