@@ -313,6 +313,31 @@ TEST_CASE("observers hear of nothing after the end of the run") {
     CHECK(ends.steady_until == 4 * ms + 1);
 }
 
+TEST_CASE("an event that never comes changes nothing") {
+    const auto run = [](bool with_event, std::uint64_t seed) {
+        Bench bench({{.name = "a", .every = 3, .priority = 2, .jitter = 1},
+                     {.name = "b", .every = 2, .priority = 9, .offset = 1},
+                     {.name = "c", .every = 5, .jitter = 2},
+                     {.name = "e", .priority = 5, .on_event = true}});
+        bench.machine.seed = seed;
+        bench.machine.duration = 400 * ms;
+        bench.wire("a", "b");
+        bench.wire("b", "c");
+        bench.wire("c", "a");
+        bench.report_errors("c");
+        bench.live("c").flag_at = 60;
+        bench.task("b").stimuli.push_back(
+            {7, reinterpret_cast<std::byte*>(&bench.live("b").wanted), Type::boolean, true});
+        if (with_event) bench.trigger("a", "e");
+        Watch output(bench.output("b"));
+        const RunResult result = bench.run({&output});
+        CHECK(result.outcome == Outcome::block_error);
+        return std::tuple(bench.log, output.changes, result.scans, result.time, result.message,
+                          bench.live("b").wanted);
+    };
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) CHECK(run(false, seed) == run(true, seed));
+}
+
 TEST_CASE("inputs are converted as their wires say") {
     struct Ports {
         bool yes = true, inverted = true;
