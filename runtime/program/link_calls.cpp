@@ -8,7 +8,7 @@ namespace lineshaft {
 
 // Blocks of one kind are called together where their wires allow it: one indirect call for all, and
 // their inputs copied in one go before it. Blocks are pure, so only what wires carry tells the
-// order of a scan from that of the file. A hundred small blocks take half the time so, see
+// order of a scan from that of the file. A hundred small blocks take 450 ns so instead of 650, see
 // tools/bench.
 
 void Linker::make_calls() {

@@ -90,7 +90,6 @@ class Executive {
         std::int64_t due = 0;           ///< next release [ns]
         bool pending = false;           ///< released, not yet started
         bool active = false;            ///< started, not yet published
-        bool in_error = false;          ///< a block's `error` was true when last looked at
         std::int64_t released = 0;      ///< last release [ns]
         std::int64_t cost = 0;          ///< of the scan under way [ns]
         std::int64_t remaining = 0;     ///< of it [ns]
