@@ -20,9 +20,10 @@ constexpr Range range_of() {
     return {std::numeric_limits<T>::min(), std::numeric_limits<T>::max()};
 }
 
+constexpr Range ranges[] = {range_of<std::int16_t>(), range_of<std::int32_t>(),
+                            range_of<std::int64_t>()};
+
 constexpr Range range(CounterType type) {
-    constexpr Range ranges[] = {range_of<std::int16_t>(), range_of<std::int32_t>(),
-                                range_of<std::int64_t>()};
     return ranges[static_cast<std::size_t>(type)];
 }
 

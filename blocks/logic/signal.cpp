@@ -49,20 +49,22 @@ std::span<const Field> FilterPt1::fields() {
 }
 
 void FilterPt1::scan(const Scan& now) {
-    NumberError wrong = finite_error(in, time_constant);
-    if (wrong == NumberError::none && time_constant < 0) wrong = NumberError::wrong_limits;
-    if (started && wrong == NumberError::none) set_share(now.time - last_time);
+    NumberError wrong = finite_error(in);
+    if (wrong == NumberError::none) wrong = set_share(started ? now.time - last_time : 0);
     settle(*this, started ? out + (in - out) * share : in, wrong);
     if (error) return;
     started = true;
     last_time = now.time;
 }
 
-void FilterPt1::set_share(std::int64_t step) {
-    if (step == share_step && time_constant == share_constant) return;
+NumberError FilterPt1::set_share(std::int64_t step) {
+    if (step == share_step && time_constant == share_constant) return NumberError::none;
+    if (!all_finite(time_constant)) return NumberError::not_finite;
+    if (time_constant < 0) return NumberError::wrong_limits;
     share_step = step;
     share_constant = time_constant;
     share = time_constant > 0 ? -Sleef_cinz_expm1d1_u10purec(-seconds(step) / time_constant) : 1;
+    return NumberError::none;
 }
 
 }  // namespace lineshaft

@@ -52,7 +52,7 @@ struct FilterPt1 {
     void scan(const Scan& now);
 
   private:
-    void set_share(std::int64_t step);
+    NumberError set_share(std::int64_t step);
 };
 
 }  // namespace lineshaft

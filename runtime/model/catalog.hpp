@@ -15,8 +15,8 @@
 
 namespace lineshaft {
 
-/// Scans one block of a kind after the other.
-using ScanBlocks = void (*)(std::span<std::byte* const> blocks, const Scan& now);
+/// Scans `count` blocks of a kind that stand one behind the other. True when one has an error.
+using ScanBlocks = bool (*)(std::byte* first, std::size_t count, const Scan& now);
 
 /// What the runtime knows of a kind of block: how to make one, how to call it, what it is made of.
 struct BlockType {
@@ -44,7 +44,8 @@ struct BlockType {
 class Catalog {
   public:
     /// A block is a struct with `type`, `doc`, `fields()` and `scan(const Scan&)`. It is plain
-    /// data, so that a machine's state can be kept and restored as bytes.
+    /// data, so that a machine's state can be kept and restored as bytes. An output `error` is its
+    /// member `error`.
     template <class Block>
     Catalog& add() {
         static_assert(std::is_trivially_copyable_v<Block>);
@@ -52,11 +53,7 @@ class Catalog {
         if constexpr (requires { Block::tables(); }) tables = Block::tables();
         types_.push_back({Block::type, Block::doc, Block::fields(), tables, sizeof(Block),
                           alignof(Block), [](std::byte* place) { new (place) Block{}; },
-                          [](std::span<std::byte* const> blocks, const Scan& now) {
-                              for (std::byte* block : blocks)
-                                  std::launder(reinterpret_cast<Block*>(block))->scan(now);
-                          },
-                          device_calls<Block>()});
+                          scan_blocks<Block>, device_calls<Block>()});
         return *this;
     }
 
@@ -65,6 +62,17 @@ class Catalog {
     std::vector<std::string> names() const;
 
   private:
+    template <class Block>
+    static bool scan_blocks(std::byte* first, std::size_t count, const Scan& now) {
+        bool error = false;
+        Block* block = std::launder(reinterpret_cast<Block*>(first));
+        for (; count > 0; --count, ++block) {
+            block->scan(now);
+            if constexpr (requires { block->error; }) error |= block->error;
+        }
+        return error;
+    }
+
     template <class Block>
     static constexpr DeviceCalls device_calls() {
         DeviceCalls calls;

@@ -23,7 +23,9 @@ Linked Linker::link() {
     place_tasks();
     choose_main_task();
     find_blocks();
+    order_blocks();
     lay_out();
+    place_blocks();
     set_inputs();
     wires_.resize(blocks_.size());
     for (Instance& block : blocks_) set_choices(block);
@@ -133,12 +135,15 @@ void Linker::find_blocks() {
 
 void Linker::lay_out() {
     auto& tasks = out_.machine.tasks;
-    for (Instance& block : blocks_) {
-        if (!block.known()) continue;
-        Task& task = tasks[static_cast<std::size_t>(block.task)];
-        block.offset = task.size;
-        task.size += aligned(block.type->size);
+    const Instance* before = nullptr;
+    for (Instance* block : order_) {
+        Task& task = tasks[static_cast<std::size_t>(block->task)];
+        if (!before || before->call() != block->call()) task.size = aligned(task.size);
+        block->offset = task.size;
+        task.size += block->type->size;
+        before = block;
     }
+    for (Task& task : tasks) task.size = aligned(task.size);
     const std::size_t input_bytes = aligned(8 * program_.inputs.size());
     std::size_t total = input_bytes;
     for (std::size_t i = 0; i < tasks.size(); ++i)
@@ -154,9 +159,12 @@ void Linker::lay_out() {
         task.published = place;
         place += task.size;
     }
+}
+
+void Linker::place_blocks() {
     for (Instance& block : blocks_) {
         if (!block.known()) continue;
-        const Task& task = tasks[static_cast<std::size_t>(block.task)];
+        const Task& task = out_.machine.tasks[static_cast<std::size_t>(block.task)];
         block.live = task.live + block.offset;
         block.published = block.type->is_device() ? block.live : task.published + block.offset;
         block.type->construct(block.live);

@@ -31,7 +31,7 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
             "wire the signal that the output shows");
     const auto source = signal(value, text.signal);
     if (!source) return;
-    Instance& block = blocks_[static_cast<std::size_t>(index)];
+    const Instance& block = blocks_[static_cast<std::size_t>(index)];
     wired_.insert(fmt::format("{}.{}", block.plan->name.text, field.name));
     int source_index = -1;
     if (source->task >= 0) {
@@ -51,11 +51,7 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
     const std::byte* from_slot = source->slot;
     const bool same_task = source_index >= 0 && source->task == block.task;
     if (same_task) {
-        Instance& from = blocks_[static_cast<std::size_t>(source_index)];
-        if (text.previous)
-            from.late_readers.push_back(index);
-        else
-            block.sources.push_back(source_index);
+        const Instance& from = blocks_[static_cast<std::size_t>(source_index)];
         from_slot = from.live + (source->slot - from.published);
     }
     if (text.negated && source->type != Type::boolean)

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -31,6 +32,7 @@ struct Instance {
     int level = 0;                       ///< of its call, see link_calls.cpp
 
     bool known() const { return type && task >= 0; }
+    auto call() const { return std::tuple(task, level, type); }
 };
 
 /// What feeds a block's inputs, by what happens on the way: see Call.
@@ -80,7 +82,10 @@ class Linker {
     void add_cost(const BlockPlan& plan, int task);
     bool takes_time(int task) const;
     BlockInfo info(const Instance& block) const;
+    void order_blocks();
+    void set_level(Instance& block) const;
     void lay_out();
+    void place_blocks();
     void set_inputs();
     void set_choices(Instance& block);
     void set_block(Instance& block);
@@ -93,7 +98,6 @@ class Linker {
     std::string loop(int from, int to) const;
     void check_required(const Instance& block);
     void make_calls();
-    void set_level(Instance& block) const;
     void append_call(std::span<const Instance* const> blocks);
     void collect_signals();
     void collect_errors();
@@ -142,6 +146,7 @@ class Linker {
     Reader read_;
     Linked out_;
     std::vector<Instance> blocks_;
+    std::vector<Instance*> order_;  ///< of the known ones in memory: call by call
     std::unordered_map<std::string, int> by_name_;
     std::unordered_map<std::string, Signal> inputs_;
     std::unordered_map<std::string, std::string> outputs_;  ///< the signals that they show

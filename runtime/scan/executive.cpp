@@ -16,14 +16,41 @@ T read(const std::byte* slot) {
     return value;
 }
 
-/// Moves the next `count` wires, a T from each source as `convert` has it.
+/// A T from the source to the target, as `convert` has it.
+template <class T, class Convert>
+void move(const Copy& wire, Convert convert) {
+    const auto value = convert(read<T>(wire.source));
+    std::memcpy(wire.target, &value, sizeof value);
+}
+
 template <class T, class Convert>
 const Copy* move(const Copy* wire, std::uint32_t count, Convert convert) {
-    for (; count > 0; --count, ++wire) {
-        const auto value = convert(read<T>(wire->source));
-        std::memcpy(wire->target, &value, sizeof value);
-    }
+    for (; count > 0; --count) move<T>(*wire++, convert);
     return wire;
+}
+
+template <class T, class Convert>
+void move(const Row& row, Convert convert) {
+    auto [wire, source_step, target_step, count, transfer] = row;
+    // A scan of a hundred small blocks takes 258 ns so, 285 without.
+#pragma GCC unroll 4
+    for (; count > 0; --count, wire.source += source_step, wire.target += target_step)
+        move<T>(wire, convert);
+}
+
+constexpr auto widen = [](std::int64_t n) { return static_cast<double>(n); };
+
+void move(const Row& row) {
+    switch (row.transfer) {
+        case Transfer::word:
+            return move<std::uint64_t>(row, std::identity());
+        case Transfer::boolean:
+            return move<std::uint8_t>(row, std::identity());
+        case Transfer::negated:
+            return move<bool>(row, std::logical_not());
+        case Transfer::widened:
+            return move<std::int64_t>(row, widen);
+    }
 }
 
 double scaled(const ScaledCopy& wire) {
@@ -42,15 +69,15 @@ void sow(const BlockSeed& seed, std::uint64_t run_seed) {
 class Feeder {
   public:
     explicit Feeder(const Wires& wires)
-        : wire_(wires.copies.data()), scaled_(wires.scaled.data()) {}
+        : copy_(wires.copies.data()), row_(wires.rows.data()), scaled_(wires.scaled.data()) {}
 
     void feed(const Call& call) {
-        const Copy* wire = wire_;
-        wire = move<std::uint64_t>(wire, call.words, std::identity());
-        wire = move<std::uint8_t>(wire, call.booleans, std::identity());
-        wire = move<bool>(wire, call.negated, std::logical_not());
-        wire_ =
-            move<std::int64_t>(wire, call.widened, [](auto n) { return static_cast<double>(n); });
+        const Copy* copy = copy_;
+        copy = move<std::uint64_t>(copy, call.words, std::identity());
+        copy = move<std::uint8_t>(copy, call.booleans, std::identity());
+        copy = move<bool>(copy, call.negated, std::logical_not());
+        copy_ = move<std::int64_t>(copy, call.widened, widen);
+        for (std::uint32_t n = call.rows; n > 0; --n) move(*row_++);
         for (std::uint32_t n = call.scaled; n > 0; --n, ++scaled_) {
             const double value = scaled(*scaled_);
             std::memcpy(scaled_->target, &value, sizeof value);
@@ -58,7 +85,8 @@ class Feeder {
     }
 
   private:
-    const Copy* wire_;
+    const Copy* copy_;
+    const Row* row_;
     const ScaledCopy* scaled_;
 };
 
@@ -75,17 +103,14 @@ std::string format_time(std::int64_t nanoseconds) {
 Executive::Executive(Machine& machine) : machine_(machine), forces_(machine.forces) {
     for (const BlockSeed& seed : machine.block_seeds) sow(seed, machine.seed);
     for (const Task& task : machine.tasks) {
-        const std::size_t first_error = error_flags_.size();
-        for (const ErrorFlag& flag : task.errors) error_flags_.push_back(flag.error);
         states_.push_back({.due = task.on_event ? never : task.offset,
-                           .first_error = first_error,
-                           .end_of_errors = error_flags_.size(),
+                           .first_error = error_levels_.size(),
                            .scan = {},
                            .jitter = Random(machine.seed, task.name + ".jitter"),
                            .cost_jitter = Random(machine.seed, task.name + ".cost")});
+        error_levels_.resize(error_levels_.size() + task.errors.size());
         look_ahead(static_cast<int>(states_.size()) - 1);
     }
-    error_levels_.resize(error_flags_.size());
     for (const Trigger& trigger : machine.triggers) trigger_levels_.push_back(*trigger.signal);
     interpolates_ =
         std::ranges::count(machine.replays, Replay::Between::interpolated, &Replay::between) > 0;
@@ -242,7 +267,7 @@ void Executive::run_due() {
     for (State& state : states_) {
         if (state.due <= now_ && !stopped_) {
             begin(index);
-            scan_blocks(task(index), state.scan);
+            state.may_err |= scan_blocks(task(index), state.scan);
             conclude(index);
             state.set_next(task(index));
         }
@@ -271,7 +296,7 @@ void Executive::start(int index) {
     begin(index);
     state.remaining = state.cost;
     state.deadline = state.cost > 0 ? later(now_, task.maximum_cycle_time) : never;
-    scan_blocks(task, state.scan);
+    state.may_err |= scan_blocks(task, state.scan);
 }
 
 void Executive::begin(int index) {
@@ -280,24 +305,30 @@ void Executive::begin(int index) {
     if (state.scan.index == state.outside) stimulate(index);
 }
 
-void Executive::scan_blocks(const Task& task, const Scan& scan) {
-    if (forces_.active()) return scan_forced(task, scan);
+/// Whether a block may have an error.
+bool Executive::scan_blocks(const Task& task, const Scan& scan) {
+    if (forces_.active()) {
+        scan_forced(task, scan);
+        return true;
+    }
+    bool error = false;
     Feeder wires(task.wires);
     for (const Call& call : task.calls) {
         wires.feed(call);
-        call.scan(call.blocks, scan);
+        error |= call.scan(call.first, call.count, scan);
     }
+    return error;
 }
 
 void Executive::scan_forced(const Task& task, const Scan& scan) {
     Feeder wires(task.wires);
     for (const Call& call : task.calls) {
-        for (const std::byte* block : call.blocks) forces_.release_inputs(block);
+        for (std::size_t i = 0; i < call.count; ++i) forces_.release_inputs(call.block(i));
         wires.feed(call);
-        for (const std::byte* block : call.blocks) forces_.impose_inputs(block);
-        for (const std::byte* block : call.blocks) forces_.release_outputs(block);
-        call.scan(call.blocks, scan);
-        for (const std::byte* block : call.blocks) forces_.impose_outputs(block);
+        for (std::size_t i = 0; i < call.count; ++i) forces_.impose_inputs(call.block(i));
+        for (std::size_t i = 0; i < call.count; ++i) forces_.release_outputs(call.block(i));
+        call.scan(call.first, call.count, scan);
+        for (std::size_t i = 0; i < call.count; ++i) forces_.impose_outputs(call.block(i));
     }
 }
 
@@ -318,15 +349,7 @@ void Executive::publish(int index) {
 void Executive::conclude(int index) {
     ++result_.scans.data()[index];
     for (Observer* observer : *observers_) observer->scanned(index, state(index).scan);
-    look_at_errors(index);
-}
-
-void Executive::look_at_errors(int index) {
-    const State& state = this->state(index);
-    int any = 0;  // now or when last looked at
-    for (std::size_t i = state.first_error; i < state.end_of_errors; ++i)
-        any |= int{*error_flags_.data()[i]} | error_levels_.data()[i];
-    if (any != 0) report_errors(index);
+    if (state(index).may_err) report_errors(index);
 }
 
 }  // namespace lineshaft

@@ -100,7 +100,7 @@ class Executive {
         std::size_t next_stimulus = 0;  ///< by scan
         std::size_t next_cost = 0;      ///< likewise
         std::size_t first_error = 0;    ///< place in error_levels_
-        std::size_t end_of_errors = 0;  ///< likewise
+        bool may_err = true;            ///< an error flag may be set, or was when last looked at
         Scan scan;                      ///< the one under way
         Random jitter;
         Random cost_jitter;
@@ -120,12 +120,11 @@ class Executive {
     void make_pending(int task);
     int next_to_start() const;
     void start(int task);
-    void scan_forced(const Task& task, const Scan& scan);
     void begin(int task);
-    void scan_blocks(const Task& task, const Scan& scan);
+    bool scan_blocks(const Task& task, const Scan& scan);
+    void scan_forced(const Task& task, const Scan& scan);
     void publish(int task);
     void conclude(int task);
-    void look_at_errors(int task);
 
     // executive_outside.cpp
     void advance_devices();
@@ -159,7 +158,6 @@ class Executive {
     std::vector<State> states_;
     std::vector<std::uint8_t> trigger_levels_;  ///< of each trigger's signal when last looked at
     std::vector<std::uint8_t> error_levels_;    ///< of each task's error flags, likewise
-    std::vector<const bool*> error_flags_;      ///< these
     std::vector<int> running_;       ///< stack of started scans, the interrupted ones below
     int pending_ = 0;                ///< number of tasks
     std::int64_t next_due_ = 0;      ///< the first release of all [ns]

@@ -95,9 +95,11 @@ std::string Executive::running_block(int index) const {
 
 void Executive::report_errors(int index) {
     std::uint8_t* level = error_levels_.data() + state(index).first_error;
+    state(index).may_err = false;
     for (const ErrorFlag& flag : task(index).errors) {
         const bool before = *level != 0;
         *level++ = *flag.error;
+        state(index).may_err |= *flag.error;
         if (!*flag.error || before) continue;
         std::string text;
         if (flag.error_id) {

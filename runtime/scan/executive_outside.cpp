@@ -21,6 +21,7 @@ void Executive::publish_device(const DeviceCall& device) {
     if (forces_.active()) forces_.release_outputs(device.block);
     device.calls.publish(device.block, now_);
     device.calls.advance(device.block, now_, device.sink);
+    state(device.task).may_err = true;
     if (forces_.active()) forces_.impose_outputs(device.block);
 }
 

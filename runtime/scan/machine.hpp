@@ -20,6 +20,22 @@ struct Copy {
     std::byte* target = nullptr;
 };
 
+/// What becomes of it on the way.
+enum class Transfer : std::uint8_t {
+    word,     ///< 8 bytes, as they are
+    boolean,  ///< 1 byte, as it is
+    negated,  ///< a boolean (`NOT x.q`)
+    widened,  ///< an integer to a real
+};
+
+/// Copies at equal distances: the same input of one block after the other.
+struct Row {
+    Copy first;
+    std::ptrdiff_t source_step = 0, target_step = 0;  ///< [bytes]
+    std::uint32_t count = 0;
+    Transfer transfer = Transfer::word;
+};
+
 /// A real from another unit of the input's dimension: times factor, over divisor.
 struct ScaledCopy {
     const std::byte* source = nullptr;
@@ -31,20 +47,21 @@ struct ScaledCopy {
 
 /// What feeds the inputs of a call's blocks, or of all of a task's, one call after the other.
 struct Wires {
-    std::vector<Copy> copies;  ///< of each call first the words, then the booleans, ...
+    std::vector<Copy> copies;  ///< those in no row: of each call by their transfers
+    std::vector<Row> rows;
     std::vector<ScaledCopy> scaled;
 };
 
-/// One entry of a task's list: blocks of one kind, of which none waits for another. Their inputs
-/// are the next so many of the task's wires.
+/// One entry of a task's list: blocks of one kind, of which none waits for another, one behind the
+/// other in memory. Their inputs are the next so many of the task's wires.
 struct Call {
     ScanBlocks scan = nullptr;
-    std::vector<std::byte*> blocks;
-    std::uint32_t words = 0;     ///< copies of 8 bytes, as they are
-    std::uint32_t booleans = 0;  ///< of 1 byte, as they are
-    std::uint32_t negated = 0;   ///< booleans (`NOT x.q`)
-    std::uint32_t widened = 0;   ///< integers to reals
-    std::uint32_t scaled = 0;
+    std::byte* first = nullptr;
+    std::size_t count = 0, size = 0;  ///< of blocks; [bytes] of each
+    std::uint32_t words = 0, booleans = 0, negated = 0, widened = 0;  ///< of copies
+    std::uint32_t rows = 0, scaled = 0;
+
+    std::byte* block(std::size_t i) const { return first + i * size; }
 };
 
 /// A block's `error` output, looked at after each scan of its task.

@@ -28,14 +28,19 @@ class Instance {
     }
 
     void scan(std::int64_t index) {
-        std::byte* const block = memory_.data();
-        type_.scan({&block, 1},
-                   {.time = index * millisecond, .interval = millisecond, .index = index});
+        const bool error =
+            type_.scan(memory_.data(), 1,
+                       {.time = index * millisecond, .interval = millisecond, .index = index});
+        if (error != is_in_error()) FAIL("the scan says something else than the output");
     }
     void set(const Field& field, const Value& value) {
         store(field.type, memory_.data() + field.offset, value);
     }
     Value get(const Field& field) const { return load(field.type, memory_.data() + field.offset); }
+    bool is_in_error() const {
+        const Field* error = type_.find_readable("error");
+        return error && std::get<bool>(get(*error));
+    }
     bool same_bytes(const Instance& other) const {
         return std::memcmp(memory_.data(), other.memory_.data(), memory_.size()) == 0;
     }
@@ -114,11 +119,6 @@ void check_finite_outputs(const Instance& block, const BlockType& type) {
 
 constexpr std::int64_t scans_of_motion = 200;
 
-bool is_in_error(const Instance& block, const BlockType& type) {
-    const Field* error = type.find_readable("error");
-    return error && std::get<bool>(block.get(*error));
-}
-
 bool differ(const Instance& a, const Instance& b, const BlockType& type) {
     return std::ranges::any_of(type.fields, [&](const Field& f) {
         return f.direction == Direction::output && f.type == Type::real && a.get(f) != b.get(f);
@@ -154,7 +154,7 @@ std::vector<Instance> in_motion(const BlockType& type, std::int64_t since) {
     std::vector<Instance> found;
     for (std::uint64_t seed = 1; seed <= 1000 && found.size() < enough; ++seed) {
         const Instance block = scanned(type, seed, scans_of_motion);
-        if (!is_in_error(block, type) && differ(scanned(type, seed, since), block, type))
+        if (!block.is_in_error() && differ(scanned(type, seed, since), block, type))
             found.push_back(block);
     }
     return found;
@@ -180,16 +180,15 @@ void check_extreme(Instance block, std::int64_t scan, const BlockType& type, con
         block.scan(scan);
         check_finite_outputs(block, type);
         if (!std::isfinite(as_real(extreme)) && type.find_readable("error"))
-            REQUIRE(is_in_error(block, type));
-        if (is_in_error(block, type))
-            REQUIRE(as_real(block.get(*type.find_readable("error_id"))) > 0);
+            REQUIRE(block.is_in_error());
+        if (block.is_in_error()) REQUIRE(as_real(block.get(*type.find_readable("error_id"))) > 0);
     }
     block.set(input, good);
     for (const std::int64_t end = scan + longer; scan < end; ++scan) {
         block.scan(scan);
         check_finite_outputs(block, type);
     }
-    CHECK_FALSE(is_in_error(block, type));
+    CHECK_FALSE(block.is_in_error());
 }
 
 std::string replaced(std::string text, std::string_view parameter, std::string_view value) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "blocks/catalog.hpp"
 #include "runtime/program/link.hpp"
 #include "runtime/scan/executive.hpp"
 #include "tests/runtime/program/small_blocks.hpp"
@@ -84,12 +85,7 @@ class DrawnProgram {
     std::vector<Drawn> blocks_;
 };
 
-Linked linked(const std::string& text, bool second_first = false) {
-    Catalog catalog;
-    if (second_first)
-        catalog.add<Mix<5>>().add<Mix<3>>();
-    else
-        catalog.add<Mix<3>>().add<Mix<5>>();
+Linked linked(const std::string& text, const Catalog& catalog) {
     Diagnostics out;
     const Program program = read_program(small_file(text), {}, out);
     Linked result = link(program, catalog, out);
@@ -98,9 +94,18 @@ Linked linked(const std::string& text, bool second_first = false) {
     return result;
 }
 
+Linked linked(const std::string& text, bool second_first = false) {
+    Catalog catalog;
+    if (second_first)
+        catalog.add<Mix<5>>().add<Mix<3>>();
+    else
+        catalog.add<Mix<3>>().add<Mix<5>>();
+    return linked(text, catalog);
+}
+
 std::vector<std::size_t> sizes(const Linked& linked) {
     std::vector<std::size_t> sizes;
-    for (const Call& call : linked.machine.tasks.front().calls) sizes.push_back(call.blocks.size());
+    for (const Call& call : linked.machine.tasks.front().calls) sizes.push_back(call.count);
     return sizes;
 }
 
@@ -108,7 +113,38 @@ std::string program_of(const std::string& blocks) {
     return "lineshaft: 1\ntasks: {t: {every: 1 ms}}\nrun: {for: 9 ms}\nblocks:\n" + blocks;
 }
 
+/// Each chain with a wire of each transfer.
+std::string chains(int count) {
+    std::string blocks;
+    for (int i = 0; i < count; ++i)
+        blocks += fmt::format(
+            "  t{0}: {{type: ton, task: t, in: NOT previous(t{0}.q), pt: {1} ms}}\n"
+            "  e{0}: {{type: r_trig, task: t, clk: t{0}.q}}\n"
+            "  d{0}: {{type: ctu, task: t, cu: e{0}.q, pv: previous(d{0}.cv)}}\n"
+            "  f{0}: {{type: filter_pt1, task: t, in: d{0}.cv, time_constant: 5 ms}}\n",
+            i, i % 3);
+    return program_of(blocks);
+}
+
 }  // namespace
+
+TEST_CASE("link: a chain does the same alone and beside others, with which its wires are rows") {
+    Linked few = linked(chains(3), standard_blocks()), many = linked(chains(11), standard_blocks());
+    std::vector<Transfer> transfers;
+    for (const Row& row : many.machine.tasks.front().wires.rows) {
+        CHECK(row.count == 11);
+        transfers.push_back(row.transfer);
+    }
+    CHECK(transfers == std::vector{Transfer::negated, Transfer::boolean, Transfer::word,
+                                   Transfer::boolean, Transfer::widened});
+    CHECK(few.machine.tasks.front().wires.rows.empty());
+    Executive(few.machine).run({});
+    Executive(many.machine).run({});
+    for (const Signal& signal : few.machine.signals) {
+        INFO(signal.name);
+        CHECK(signal.value() == many.machine.find(signal.name)->value());
+    }
+}
 
 TEST_CASE("link: whatever is called together, values are those of the file's order") {
     std::mt19937 draw(1);

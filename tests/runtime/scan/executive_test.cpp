@@ -351,6 +351,7 @@ TEST_CASE("inputs are converted as their wires say") {
                              {at(ports.yes), at(bench.live("a").wanted)},
                              {at(ports.yes), at(ports.inverted)},
                              {at(ports.three), at(ports.real)}},
+                  .rows = {},
                   .scaled = {{at(ports.three), at(ports.tenths), 1, 10, true},
                              {at(ports.millimetres), at(ports.centimetres), 1, 10, false}}};
     Call& call = task.calls.front();
