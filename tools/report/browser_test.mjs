@@ -296,6 +296,26 @@ async function testSpike(browser) {
   rmSync(file("spike.csv"));
 }
 
+/** Axes tell numbers apart whose third decimals are equal. */
+async function testSmallNumbers(browser) {
+  const rows = Array.from({ length: 100 }, (_, row) => `${row / 1e6},${(row % 7) * 2e-5},${20 + row / 1e6}`);
+  writeFileSync(file("small.csv"), `time [s],a.small [mm],b.near [mm/s]\n${rows.join("\n")}\n`);
+  const page = await open(browser, report("small.html", file("small.csv")), { before: () => {
+    globalThis.texts = new Map();
+    const { fillText } = CanvasRenderingContext2D.prototype;
+    CanvasRenderingContext2D.prototype.fillText = function (text, ...place) {
+      globalThis.texts.set(this.canvas, [...(globalThis.texts.get(this.canvas) ?? []), text]);
+      fillText.call(this, text, ...place);
+    };
+  } });
+  const drawn = await page.evaluate(() => [...globalThis.texts.values()]);
+  assert.equal(drawn.length, 2);
+  assert.ok(drawn[0].includes("4e−5") && drawn[0].includes("0.0001"), drawn[0].join(" "));
+  assert.ok(drawn[1].includes("20.00004"), drawn[1].join(" "));
+  for (const texts of drawn) assert.ok(texts.includes("2e−5"), `the time: ${texts.join(" ")}`);
+  assert.deepEqual(page.problems, []);
+}
+
 const tenSignals = ["g.position", "x.position", "y.position", "x.velocity", "y.velocity",
                     "x.acceleration", "y.acceleration", "circle.ratio_x", "circle.ratio_y", "g.moving"];
 
@@ -366,7 +386,7 @@ const context = await browserType.launchPersistentContext(profile, {
          "--disable-background-networking", "--disable-component-update", "--disable-sync"],
 });
 try {
-  for (const test of [testSamples, testSpike, testCircle, testExpectations, testStudy, testLarge]) {
+  for (const test of [testSamples, testSpike, testSmallNumbers, testCircle, testExpectations, testStudy, testLarge]) {
     await test({ newPage });
     console.log(`ok ${test.name}`);
   }

@@ -12,6 +12,13 @@ export function number(value, formatted = rounded) {
   return formatted.format(value).replace("-", "−");
 }
 
+/** A number beside an axis: with all digits that tell it from its neighbours. */
+export function tick(value) {
+  const size = Math.abs(value);
+  const text = size !== 0 && size < 1e-4 ? (+value.toPrecision(9)).toExponential() : exact.format(value);
+  return text.replaceAll("-", "−");
+}
+
 /** A time in the unit that suits it. */
 export function duration(seconds) {
   const size = Math.abs(seconds);

@@ -1,6 +1,7 @@
 import { CursorLines } from "#page/cursors";
 import { colour, dashes, element, palette } from "#page/dom";
 import { drawExpectations, failedBounds } from "#page/expectations";
+import { tick } from "#page/format";
 import { Legend } from "#page/legend";
 
 const axisWidth = 84;
@@ -131,6 +132,7 @@ export class Plot {
       stroke: () => colour("muted"),
       grid: { stroke: () => colour("grid"), width: 1 },
       ticks: { stroke: () => colour("grid"), size: 4 },
+      values: (_, ticks) => ticks.map(tick),
     };
   }
 
