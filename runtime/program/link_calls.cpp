@@ -7,9 +7,12 @@ namespace lineshaft {
 
 namespace {
 
+/// The shortest that is worth a row.
+constexpr std::uint32_t row_size = 4;
+
 /// Those from the first on that are at equal distances.
-Row row_of(std::span<const Copy> copies) {
-    Row row{.first = copies.front()};
+Row row_of(std::span<const Copy> copies, Transfer transfer) {
+    Row row{.first = copies.front(), .transfer = transfer};
     Copy next = row.first;
     if (copies.size() > 1) {
         row.source_step = copies[1].source - next.source;
@@ -24,8 +27,20 @@ Row row_of(std::span<const Copy> copies) {
     return row;
 }
 
-/// The shortest that is worth a row.
-constexpr std::uint32_t row_size = 4;
+/// Returns how many are in no row.
+std::uint32_t append(std::span<const Copy> copies, Transfer transfer, Wires& wires) {
+    const std::size_t before = wires.copies.size();
+    while (!copies.empty()) {
+        const Row row = row_of(copies, transfer);
+        const bool is_row = row.count >= row_size;
+        if (is_row)
+            wires.rows.push_back(row);
+        else
+            wires.copies.push_back(row.first);
+        copies = copies.subspan(is_row ? row.count : 1);
+    }
+    return static_cast<std::uint32_t>(wires.copies.size() - before);
+}
 
 }  // namespace
 
@@ -96,10 +111,10 @@ void Linker::append_call(std::span<const Instance* const> blocks) {
     call.first = blocks.front()->live;
     call.count = blocks.size();
     call.size = blocks.front()->type->size;
-    const auto collect = [&](auto BlockWires::*kind) {
-        auto all = wires_[static_cast<std::size_t>(blocks.front()->position)].*kind;
+    const auto by_input = [&](auto BlockWires::*transfer) {
+        auto all = wires_[static_cast<std::size_t>(blocks.front()->position)].*transfer;
         for (const Instance* block : blocks.subspan(1)) {
-            const auto& more = wires_[static_cast<std::size_t>(block->position)].*kind;
+            const auto& more = wires_[static_cast<std::size_t>(block->position)].*transfer;
             all.insert(all.end(), more.begin(), more.end());
         }
         std::ranges::stable_sort(all, std::less{}, [&](const auto& wire) {
@@ -107,29 +122,15 @@ void Linker::append_call(std::span<const Instance* const> blocks) {
         });
         return all;
     };
-    const auto append = [&](std::vector<Copy> BlockWires::*kind, Transfer transfer) {
-        const std::size_t before = task.wires.copies.size();
-        const auto all = collect(kind);
-        for (std::span<const Copy> rest = all; !rest.empty();) {
-            Row row = row_of(rest);
-            row.transfer = transfer;
-            if (row.count >= row_size) {
-                task.wires.rows.push_back(row);
-                ++call.rows;
-            } else {
-                row.count = 1;
-                task.wires.copies.push_back(row.first);
-            }
-            rest = rest.subspan(row.count);
-        }
-        return static_cast<std::uint32_t>(task.wires.copies.size() - before);
-    };
-    call.words = append(&BlockWires::words, Transfer::word);
-    call.booleans = append(&BlockWires::booleans, Transfer::boolean);
-    call.negated = append(&BlockWires::negated, Transfer::negated);
-    call.widened = append(&BlockWires::widened, Transfer::widened);
-    const auto scaled = collect(&BlockWires::scaled);
-    task.wires.scaled.insert(task.wires.scaled.end(), scaled.begin(), scaled.end());
+    Wires& wires = task.wires;
+    const std::size_t rows = wires.rows.size();
+    call.words = append(by_input(&BlockWires::words), Transfer::word, wires);
+    call.booleans = append(by_input(&BlockWires::booleans), Transfer::boolean, wires);
+    call.negated = append(by_input(&BlockWires::negated), Transfer::negated, wires);
+    call.widened = append(by_input(&BlockWires::widened), Transfer::widened, wires);
+    call.rows = static_cast<std::uint32_t>(wires.rows.size() - rows);
+    const auto scaled = by_input(&BlockWires::scaled);
+    wires.scaled.insert(wires.scaled.end(), scaled.begin(), scaled.end());
     call.scaled = static_cast<std::uint32_t>(scaled.size());
 }
 
