@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include <fmt/format.h>
@@ -65,7 +66,7 @@ class Generator {
     Choices& choices_;
     const Catalog& catalog_;
     RandomProgram program_;
-    int first_interval_ms_ = 1;
+    int shortest_interval_ms_ = std::numeric_limits<int>::max();
     std::vector<std::string> tasks_;
     std::vector<Source> sources_;
     std::vector<Input> inputs_;
@@ -86,7 +87,7 @@ RandomProgram Generator::make() {
     if (!inputs_.empty()) program_.text += "inputs:\n" + inputs_text_;
     add_stimuli();
     program_.text +=
-        fmt::format("run: {{for: {} ms, on_error: continue}}\n", scans * first_interval_ms_);
+        fmt::format("run: {{for: {} ms, on_error: continue}}\n", scans * shortest_interval_ms_);
     return std::move(program_);
 }
 
@@ -95,7 +96,7 @@ void Generator::add_task(std::size_t index) {
     constexpr std::string_view jitters[] = {"0 ms", "100 us", "10 %"};
     constexpr std::string_view costs[] = {"0 us", "50 us", "100 us"};
     const int interval = choices_.one_of(intervals);
-    if (index == 0) first_interval_ms_ = interval;
+    shortest_interval_ms_ = std::min(shortest_interval_ms_, interval);
     tasks_.push_back(fmt::format("t{}", index));
     program_.text += fmt::format("  {}: {{every: {} ms, priority: {}, jitter: {}, cost: {}}}\n",
                                  tasks_.back(), interval, 1 + choices_.below(20),

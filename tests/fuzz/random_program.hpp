@@ -22,7 +22,7 @@ struct RandomProgram {
 };
 
 /// One to three tasks, up to 16 blocks of any type, wired to each other and to inputs that change
-/// in the run. Blocks with `error` go on after one. The run takes 200 scans of the first task.
+/// in the run. Blocks with `error` go on after one. The run takes 200 scans of the fastest task.
 RandomProgram random_program(Choices& choices, const Catalog& catalog);
 
 }  // namespace lineshaft::test
