@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include <unsupported/Eigen/Polynomials>
-
 namespace lineshaft {
 
 namespace {
@@ -22,25 +20,48 @@ double segment_distance(Point a, Point b, Point p) {
     return length(p.x - a.x - t * dx, p.y - a.y - t * dy);
 }
 
-/// Calls `use` with each real root of g[0] + g[1] t + .. + g[Degree] t^Degree, by the eigenvalues
-/// of its companion matrix. A leading term too small to matter for t = 0 .. 1 is left out.
-template <int Degree, class Use>
-void real_roots(const std::array<double, 6>& g, const Use& use) {
-    if constexpr (Degree > 0) {
-        double greatest = 0;
-        for (int i = 0; i <= Degree; ++i)
-            greatest = std::max(greatest, std::abs(g[static_cast<std::size_t>(i)]));
-        if (!(std::abs(g[Degree]) > 1e-13 * greatest)) return real_roots<Degree - 1>(g, use);
-        if constexpr (Degree == 1) {
-            use(-g[0] / g[1]);
-        } else {
-            const Eigen::Map<const Eigen::Matrix<double, Degree + 1, 1>> coefficients(g.data());
-            const Eigen::PolynomialSolver<double, Degree> solver(coefficients);
-            for (const std::complex<double>& root : solver.roots())
-                if (std::abs(root.imag()) < 1e-4) use(root.real());
+/// g[0] + g[1] t + .. + g[5] t^5
+using Quintic = std::array<double, 6>;
+
+double value(const Quintic& g, double t) {
+    double sum = 0;
+    for (std::size_t i = g.size(); i-- > 0;) sum = sum * t + g[i];
+    return sum;
+}
+
+Quintic derivative(const Quintic& g) {
+    Quintic d{};
+    for (std::size_t i = 1; i < g.size(); ++i) d[i - 1] = static_cast<double>(i) * g[i];
+    return d;
+}
+
+/// Where g changes its sign between `low` and `high`, by halves.
+double crossing(const Quintic& g, double low, double high) {
+    const bool rises = value(g, low) < 0;
+    for (int i = 0; i < std::numeric_limits<double>::digits; ++i) {
+        const double middle = (low + high) / 2;
+        ((value(g, middle) < 0) == rises ? low : high) = middle;
+    }
+    return high;
+}
+
+/// Where a polynomial is zero or changes its sign for t = 0 .. 1, in order. Between two such places
+/// of its derivative it is monotone and so changes it once at most.
+struct Crossings {
+    std::array<double, 5> at{};
+    std::size_t count = 0;
+
+    explicit Crossings(const Quintic& g, int degree = 5) {
+        if (degree == 0) return;
+        const Crossings turns(derivative(g), degree - 1);
+        double low = 0;
+        for (std::size_t i = 0; i <= turns.count; ++i) {
+            const double high = i < turns.count ? turns.at[i] : 1;
+            if (!(value(g, low) * value(g, high) > 0)) at[count++] = crossing(g, low, high);
+            low = high;
         }
     }
-}
+};
 
 double span_distance(const SplineSpan& span, Point p) {
     const auto& c = span.c;
@@ -48,16 +69,16 @@ double span_distance(const SplineSpan& span, Point p) {
         const Point s = span.at(t);
         return length(s.x - p.x, s.y - p.y);
     };
-    std::array<double, 6> g{};  // of (s - p) s'
+    Quintic g{};  // of (s - p) s'
     for (std::size_t i = 0; i < 4; ++i) {
         const Point s{c[i].x - (i == 0 ? p.x : 0), c[i].y - (i == 0 ? p.y : 0)};
         for (std::size_t k = 1; k < 4; ++k)
             g[i + k - 1] += static_cast<double>(k) * (s.x * c[k].x + s.y * c[k].y);
     }
     double least = std::min(deviation(0), deviation(1));
-    real_roots<5>(g, [&](double t) {
-        if (t > 0 && t < 1) least = std::min(least, deviation(t));
-    });
+    const Crossings stationary(g);
+    for (std::size_t i = 0; i < stationary.count; ++i)
+        least = std::min(least, deviation(stationary.at[i]));
     return least;
 }
 

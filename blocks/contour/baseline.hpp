@@ -26,8 +26,8 @@ struct SplineSpan {
 void natural_spline(std::span<const Point> points, std::span<SplineSpan> spans);
 
 /// Shortest distance from `p` to the spans beside the point `nearest`: over each, the least
-/// |p - s(t)| of the ends and of all points where (s(t) - p) s'(t) = 0, the real roots of a
-/// polynomial of degree 5. At least one span.
+/// |p - s(t)| of the ends and of all points where (s(t) - p) s'(t), a polynomial of degree 5,
+/// changes its sign. At least one span.
 double spline_distance(std::span<const SplineSpan> spans, std::size_t nearest, Point p);
 
 }  // namespace lineshaft
