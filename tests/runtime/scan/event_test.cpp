@@ -204,6 +204,20 @@ TEST_CASE("a device is brought up to date whenever somebody looks, and at the en
     CHECK(bell.now == 10 * ms);
 }
 
+TEST_CASE("an error that a device finds while it publishes ends the run") {
+    Bench bench({{.name = "main", .every = 2}});
+    Bell bell{.next = never};
+    DeviceCall call = call_of(bell, 0);
+    call.calls.publish = [](std::byte* b, std::int64_t time) {
+        reinterpret_cast<Bell*>(b)->ringing = time >= 4 * ms;
+    };
+    bench.machine.devices.push_back(call);
+    bench.task("main").errors.push_back({&bell.ringing, nullptr, {}, "'bell' (bell)"});
+    const RunResult result = bench.run();
+    CHECK(result.outcome == Outcome::block_error);
+    CHECK(result.time == 4 * ms);
+}
+
 TEST_CASE("nothing is allocated while events come and go") {
     Bench bench({{.name = "isr", .cost = 1, .on_event = true},
                  {.name = "main", .every = 2, .priority = 0}});

@@ -31,6 +31,14 @@ Force force_output(Bench& bench, const std::string& task, std::int64_t from, std
             .text = {}};
 }
 
+Force force_flag(Bench& bench, const std::string& task, std::int64_t from, std::int64_t until) {
+    Force force = force_output(bench, task, from, until, 0);
+    force.live = slot(bench.live(task).flag);
+    force.type = Type::boolean;
+    force.value = true;
+    return force;
+}
+
 }  // namespace
 
 TEST_CASE("a forced output keeps its value, and the block's own is back after it", "[force]") {
@@ -88,18 +96,18 @@ TEST_CASE("a stimulus during a force counts after it", "[force]") {
 TEST_CASE("a forced signal releases event tasks", "[force]") {
     Bench bench({{.name = "a", .every = 1}, {.name = "event", .priority = 5, .on_event = true}});
     bench.trigger("a", "event");
-    bench.machine.forces = {{.from = 3 * ms,
-                             .until = 5 * ms,
-                             .live = slot(bench.live("a").flag),
-                             .block = bench.task("a").live,
-                             .is_output = true,
-                             .task = bench.index("a"),
-                             .type = Type::boolean,
-                             .value = true,
-                             .name = {},
-                             .text = {}}};
+    bench.machine.forces = {force_flag(bench, "a", 3, 5)};
     bench.run();
     CHECK(bench.times("event") == std::vector<std::int64_t>{3});
+}
+
+TEST_CASE("a forced error ends the run like the block's own", "[force]") {
+    Bench bench({{.name = "a", .every = 2}});
+    bench.report_errors("a");
+    bench.machine.forces = {force_flag(bench, "a", 3, 7)};
+    const RunResult result = bench.run();
+    CHECK(result.outcome == Outcome::block_error);
+    CHECK(result.time == 4 * ms);
 }
 
 TEST_CASE("a stimulus by scan comes before that scan of its task", "[force]") {
