@@ -7,7 +7,7 @@
 #include <random>
 
 #include <catch2/catch.hpp>
-#include <zlib.h>
+#include <libdeflate.h>
 
 using namespace lineshaft;
 
@@ -124,9 +124,10 @@ TEST_CASE("deflated bytes come back", "[packing]") {
     const std::string small = deflated(bytes);
     CHECK(small.size() < 1000);
     std::string back(bytes.size(), '\0');
-    uLongf size = back.size();
-    uncompress(reinterpret_cast<Bytef*>(back.data()), &size,
-               reinterpret_cast<const Bytef*>(small.data()), small.size());
+    libdeflate_decompressor* const decompressor = libdeflate_alloc_decompressor();
+    CHECK(libdeflate_zlib_decompress(decompressor, small.data(), small.size(), back.data(),
+                                     back.size(), nullptr) == LIBDEFLATE_SUCCESS);
+    libdeflate_free_decompressor(decompressor);
     CHECK(back == bytes);
 }
 
