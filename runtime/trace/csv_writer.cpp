@@ -1,6 +1,7 @@
 #include "runtime/trace/csv_writer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <filesystem>
@@ -82,21 +83,22 @@ void CsvWriter::save(StateWriter& out) {
 }
 
 void CsvWriter::make_room() {
-    last_.resize(signals_.size());
+    for (const Signal& signal : signals_) cells_.push_back({.type = signal.type});
     longest_row_ = static_cast<std::ptrdiff_t>((2 + signals_.size()) * (longest_number + 1));
     text_.resize(static_cast<std::size_t>(longest_row_) + written_at_once);
 }
 
 void CsvWriter::rows(const std::uint64_t* words, std::size_t rows) {
+    const char separator = separator_;
     char* end = text_.data();
     for (std::size_t row = 0; row < rows; ++row) {
         if (text_.data() + text_.size() - end < longest_row_) end = write_out(end);
         end = write_seconds(end, static_cast<std::int64_t>(*words++));
-        *end++ = separator_;
+        *end++ = separator;
         end = write_integer(end, static_cast<std::int64_t>(*words++));
-        for (std::size_t i = 0; i < signals_.size(); ++i) {
-            *end++ = separator_;
-            end = append_cell(end, i, *words++);
+        for (Cell& cell : cells_) {
+            *end++ = separator;
+            end = append_cell(end, cell, *words++);
         }
         *end++ = '\n';
     }
@@ -119,18 +121,24 @@ void CsvWriter::write(std::string_view text) {
 char* CsvWriter::write_out(char* end) {
     if (style_.excel_de) std::replace(text_.data(), end, '.', ',');
     write({text_.data(), static_cast<std::size_t>(end - text_.data())});
+    for (Cell& cell : cells_) cell.text = nullptr;
     return text_.data();
 }
 
-char* CsvWriter::append_cell(char* end, std::size_t column, std::uint64_t bits) {
-    Cell& last = last_[column];
-    if (last.bits != bits || last.length == 0) {
-        last.bits = bits;
-        last.length = static_cast<std::size_t>(
-            append(last.text.data(), signals_[column].type, bits) - last.text.data());
+char* CsvWriter::append_cell(char* end, Cell& cell, std::uint64_t bits) {
+    if (cell.bits != bits || !cell.text) {
+        char* const begin = end;
+        end = append(end, cell.type, bits);
+        cell = {.type = cell.type,
+                .bits = bits,
+                .text = begin,
+                .length = static_cast<std::size_t>(end - begin)};
+        return end;
     }
-    std::memcpy(end, last.text.data(), longest_number);
-    return end + last.length;
+    std::array<char, longest_number> text;  // the two may overlap
+    std::memcpy(text.data(), cell.text, text.size());
+    std::memcpy(end, text.data(), text.size());
+    return end + cell.length;
 }
 
 std::string CsvWriter::finish(const std::string& program_title, const std::string& program_text,

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -53,17 +52,19 @@ class CsvWriter : public TraceSink {
     bool failed() const { return file_.failed(); }
 
   private:
-    /// A column's last value and its text: what stands still is not formatted again.
+    /// A column's last value, and where in `text_` it stands: what stands still is not formatted
+    /// again.
     struct Cell {
+        Type type;
         std::uint64_t bits = 0;
+        const char* text = nullptr;  ///< null: not yet in `text_`
         std::size_t length = 0;
-        std::array<char, longest_number> text = {};
     };
 
     void make_room();
     std::string title(std::string_view name, std::string_view unit) const;
     void write(std::string_view text);
-    char* append_cell(char* end, std::size_t column, std::uint64_t bits);
+    static char* append_cell(char* end, Cell& cell, std::uint64_t bits);
     /// The text up to `end` into the file; returns where the next begins.
     char* write_out(char* end);
 
@@ -72,7 +73,7 @@ class CsvWriter : public TraceSink {
     std::vector<Signal> signals_;
     CsvStyle style_;
     char separator_;
-    std::vector<Cell> last_;
+    std::vector<Cell> cells_;
     std::string text_;
     std::ptrdiff_t longest_row_ = 0;
     std::int64_t row_count_ = 0;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 using namespace lineshaft;
 
@@ -54,6 +55,19 @@ TEST_CASE("any real reads back as the same bits, in at most 17 digits", "[trace]
         REQUIRE(written.size() <= 24);
         REQUIRE(std::bit_cast<std::uint64_t>(parsed(written)) ==
                 std::bit_cast<std::uint64_t>(value));
+    }
+}
+
+TEST_CASE("a real has the digits and the form of fmt's", "[trace][number]") {
+    std::mt19937_64 random(2);
+    for (int i = 0; i < 200'000; ++i) {
+        const double scale = std::pow(10.0, static_cast<double>(random() % 16) - 7);
+        double value = scale * static_cast<double>(static_cast<std::int64_t>(random())) / 0x1p63;
+        const double digits = std::pow(10.0, static_cast<double>(random() % 17));
+        if (random() % 2 == 0) value = std::round(value * digits) / digits;
+        if (value == std::round(value)) continue;
+        for (const double near : {value, std::nextafter(value, 0), std::nextafter(value, 1e9)})
+            REQUIRE(text(write_real, near) == fmt::format("{}", near));
     }
 }
 
