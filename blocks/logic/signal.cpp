@@ -1,8 +1,16 @@
 #include "blocks/logic/signal.hpp"
 
+#include <limits>
+
 #include <sleef.h>
 
 namespace lineshaft {
+
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
 
 std::span<const Field> Scale::fields() {
     using S = Scale;
@@ -49,22 +57,27 @@ std::span<const Field> FilterPt1::fields() {
 }
 
 void FilterPt1::scan(const Scan& now) {
-    NumberError wrong = finite_error(in);
-    if (wrong == NumberError::none) wrong = set_share(started ? now.time - last_time : 0);
-    settle(*this, started ? out + (in - out) * share : in, wrong);
-    if (error) return;
+    const std::int64_t step = now.time - last_time;
+    if (step != share_step || time_constant != share_constant) set_share(step);
+    const double from = started ? out : in;
+    const double next = from + (in - from) * share;
+    if (!report(*this, all_finite(next) ? NumberError::none : why_not_finite())) return;
+    out = next;
     started = true;
     last_time = now.time;
 }
 
-NumberError FilterPt1::set_share(std::int64_t step) {
-    if (step == share_step && time_constant == share_constant) return NumberError::none;
-    if (!all_finite(time_constant)) return NumberError::not_finite;
-    if (time_constant < 0) return NumberError::wrong_limits;
+void FilterPt1::set_share(std::int64_t step) {
     share_step = step;
     share_constant = time_constant;
+    share = not_a_number;
+    if (!all_finite(time_constant) || time_constant < 0) return;
     share = time_constant > 0 ? -Sleef_cinz_expm1d1_u10purec(-seconds(step) / time_constant) : 1;
-    return NumberError::none;
+}
+
+NumberError FilterPt1::why_not_finite() const {
+    if (!all_finite(in, time_constant)) return NumberError::not_finite;
+    return time_constant < 0 ? NumberError::wrong_limits : NumberError::overflow;
 }
 
 }  // namespace lineshaft

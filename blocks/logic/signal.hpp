@@ -44,7 +44,7 @@ struct FilterPt1 {
     std::int64_t last_time = 0;
     std::int64_t share_step = 0;  ///< `share` holds for this dt [ns] and the next line's T
     double share_constant = 0;
-    double share = 1;  ///< 1 - exp(-dt / T)
+    double share = 1;  ///< 1 - exp(-dt / T); not a number where T is no time constant
 
     static constexpr std::string_view type = "filter_pt1";
     static constexpr std::string_view doc = "first-order low-pass filter";
@@ -52,7 +52,8 @@ struct FilterPt1 {
     void scan(const Scan& now);
 
   private:
-    NumberError set_share(std::int64_t step);
+    void set_share(std::int64_t step);
+    NumberError why_not_finite() const;
 };
 
 }  // namespace lineshaft

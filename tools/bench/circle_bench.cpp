@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <filesystem>
 #include <string>
@@ -9,6 +10,7 @@
 #include "runtime/trace/csv_writer.hpp"
 #include "tools/bench/circle_trace.hpp"
 #include "tools/bench/hand_circle.hpp"
+#include "tools/bench/quickest.hpp"
 
 using namespace lineshaft;
 
@@ -24,60 +26,67 @@ void remove_file() {
 }
 
 void by_hand(benchmark::State& state) {
-    std::int64_t clocks = 0;
+    std::size_t clocks = 0;
+    Quickest quickest;
     for (auto _ : state) {
         clocks = 0;
         HandCircle circle;
-        circle.run([&](const auto&, const auto&, const auto&) { ++clocks; });
+        quickest.time(
+            [&] { circle.run([&](const auto&, const auto&, const auto&) { ++clocks; }); });
         benchmark::DoNotOptimize(circle);
     }
-    state.SetItemsProcessed(state.iterations() * clocks);
+    quickest.count(state, clocks);
 }
 
 /// The executive, with or without a trace kept in memory.
 void executive(benchmark::State& state, bool traced) {
-    std::int64_t clocks = 0;
+    Loaded loaded = load_circle();
+    Machine& machine = loaded.linked.machine;
+    const std::vector<std::byte> start = machine.memory;
+    MemoryTrace memory(loaded.linked.traces.front());
+    RunResult result;
+    Quickest quickest;
     for (auto _ : state) {
-        state.PauseTiming();
-        Loaded loaded = load_circle();
-        MemoryTrace memory(loaded.linked.traces.front());
-        memory.words.reserve(20'000 * memory.row_words);
+        std::ranges::copy(start, machine.memory.begin());
+        memory.words.clear();
         Recorder recorder(loaded.linked.traces.front(), memory);
         std::vector<Observer*> observers;
         if (traced) observers.push_back(&recorder);
-        Executive executive(loaded.linked.machine);
-        state.ResumeTiming();
-        const RunResult result = executive.run(observers);
-        recorder.finish();
-        benchmark::DoNotOptimize(memory.words.data());
-        clocks = result.scans.front();
+        Executive executive(machine);
+        quickest.time([&] {
+            result = executive.run(observers);
+            recorder.finish();
+        });
     }
-    state.SetItemsProcessed(state.iterations() * clocks);
+    quickest.count(state, static_cast<std::size_t>(result.scans.front()));
 }
 
 /// A whole run with its trace in a file, as `lineshaft run --trace` makes it.
 void traced_to_file(benchmark::State& state) {
-    std::int64_t clocks = 0;
+    RunReport report;
+    Quickest quickest;
     for (auto _ : state) {
-        state.PauseTiming();
         Loaded loaded = load_circle();
-        state.ResumeTiming();
-        clocks = run(loaded, {.trace_path = file(), .progress = {}}).result.scans.front();
+        quickest.time([&] { report = run(loaded, {.trace_path = file(), .progress = {}}); });
     }
-    state.SetItemsProcessed(state.iterations() * clocks);
+    quickest.count(state, static_cast<std::size_t>(report.result.scans.front()));
     remove_file();
 }
 
 /// The other half of it alone: the same rows to the same file.
 void rows_to_file(benchmark::State& state) {
     const RecordedCircle circle;
+    Quickest quickest;
     for (auto _ : state) {
-        CsvWriter writer(file(), circle.setup);
-        writer.rows(circle.words.data(), circle.rows());
-        const std::string error = writer.finish("", "");
+        std::string error;
+        quickest.time([&] {
+            CsvWriter writer(file(), circle.setup);
+            writer.rows(circle.words.data(), circle.rows());
+            error = writer.finish("", "");
+        });
         if (!error.empty()) state.SkipWithError(error.c_str());
     }
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(circle.rows()));
+    quickest.count(state, circle.rows());
     remove_file();
 }
 
@@ -104,8 +113,8 @@ std::string difference() {
 BENCHMARK(by_hand);
 BENCHMARK_CAPTURE(executive, untraced, false);
 BENCHMARK_CAPTURE(executive, in_memory, true);
-BENCHMARK(traced_to_file)->UseRealTime();
-BENCHMARK(rows_to_file)->UseRealTime();
+BENCHMARK(traced_to_file);
+BENCHMARK(rows_to_file);
 
 int main(int count, char** arguments) {
     if (const std::string where = difference(); !where.empty()) {

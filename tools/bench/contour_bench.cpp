@@ -5,6 +5,7 @@
 
 #include "blocks/contour/baseline.hpp"
 #include "blocks/contour/command_path.hpp"
+#include "tools/bench/quickest.hpp"
 
 using namespace lineshaft;
 
@@ -29,24 +30,32 @@ struct Ride {
     }
 };
 
+/// `distance` of each point of the ride.
+template <class Distance>
+void measure(benchmark::State& state, const Ride& ride, const Distance& distance) {
+    Quickest quickest;
+    for (auto _ : state) {
+        quickest.time([&] {
+            for (std::size_t i = 0; i < ride.command.size(); ++i)
+                benchmark::DoNotOptimize(distance(i));
+        });
+    }
+    quickest.count(state, ride.command.size());
+}
+
 void real_time(benchmark::State& state) {
     const Ride ride;
     CommandPath path;
-    for (auto _ : state) {
-        for (std::size_t i = 0; i < ride.command.size(); ++i) {
-            path.add(ride.command[i]);
-            benchmark::DoNotOptimize(path.estimate(ride.actual[i < lag ? 0 : i - lag]));
-        }
-    }
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ride.command.size()));
+    measure(state, ride, [&](std::size_t i) {
+        path.add(ride.command[i]);
+        return path.estimate(ride.actual[i < lag ? 0 : i - lag]);
+    });
 }
 
 void linear(benchmark::State& state) {
     const Ride ride;
-    for (auto _ : state)
-        for (std::size_t i = 0; i < ride.command.size(); ++i)
-            benchmark::DoNotOptimize(polyline_distance(ride.command, i, ride.actual[i]));
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ride.command.size()));
+    measure(state, ride,
+            [&](std::size_t i) { return polyline_distance(ride.command, i, ride.actual[i]); });
 }
 
 /// As the paper counts: without the time of making the spline.
@@ -54,20 +63,18 @@ void spline(benchmark::State& state) {
     const Ride ride;
     std::vector<SplineSpan> spans(ride.command.size() - 1);
     natural_spline(ride.command, spans);
-    for (auto _ : state)
-        for (std::size_t i = 0; i < ride.command.size(); ++i)
-            benchmark::DoNotOptimize(spline_distance(spans, i, ride.actual[i]));
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ride.command.size()));
+    measure(state, ride, [&](std::size_t i) { return spline_distance(spans, i, ride.actual[i]); });
 }
 
 void making_the_spline(benchmark::State& state) {
     const Ride ride;
     std::vector<SplineSpan> spans(ride.command.size() - 1);
+    Quickest quickest;
     for (auto _ : state) {
-        natural_spline(ride.command, spans);
+        quickest.time([&] { natural_spline(ride.command, spans); });
         benchmark::DoNotOptimize(spans.data());
     }
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ride.command.size()));
+    quickest.count(state, ride.command.size());
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "runtime/trace/csv_writer.hpp"
 #include "tools/bench/circle_trace.hpp"
+#include "tools/bench/quickest.hpp"
 
 using namespace lineshaft;
 
@@ -50,43 +51,46 @@ std::string file() {
     return (std::filesystem::temp_directory_path() / "lineshaft_csv_bench.csv").string();
 }
 
-void count(benchmark::State& state, const Table& table) {
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(table.words.size()));
-}
-
 void writer(benchmark::State& state, Table (*make)()) {
     const Table table = make();
+    Quickest quickest;
     for (auto _ : state) {
-        CsvWriter writer(file(), table.setup);
-        writer.rows(table.words.data(), table.rows());
-        benchmark::ClobberMemory();
+        quickest.time([&] {
+            CsvWriter writer(file(), table.setup);
+            writer.rows(table.words.data(), table.rows());
+        });
     }
-    count(state, table);
+    quickest.count(state, table.words.size());
+}
+
+char* append(char* end, const Table& table, std::size_t i) {
+    const std::size_t column = i % table.row_words();
+    const std::uint64_t word = table.words[i];
+    char* const limit = end + 32;
+    if (column == 0) return std::to_chars(end, limit, seconds(static_cast<std::int64_t>(word))).ptr;
+    if (column == 1 || table.setup.signals[column - 2].type != Type::real)
+        return std::to_chars(end, limit, word).ptr;
+    return std::to_chars(end, limit, std::bit_cast<double>(word)).ptr;
 }
 
 /// The same rows with std::to_chars alone: what a plain loop takes.
 void bare(benchmark::State& state, Table (*make)()) {
     const Table table = make();
     std::vector<char> text(table.words.size() * 32);
+    Quickest quickest;
     for (auto _ : state) {
-        std::FILE* out = std::fopen(file().c_str(), "wb");
-        char* end = text.data();
-        for (std::size_t i = 0; i < table.words.size(); ++i) {
-            const std::size_t column = i % table.row_words();
-            const std::uint64_t word = table.words[i];
-            char* const limit = end + 32;
-            if (column == 0)
-                end = std::to_chars(end, limit, seconds(static_cast<std::int64_t>(word))).ptr;
-            else if (column == 1 || table.setup.signals[column - 2].type != Type::real)
-                end = std::to_chars(end, limit, word).ptr;
-            else
-                end = std::to_chars(end, limit, std::bit_cast<double>(word)).ptr;
-            *end++ = column + 1 == table.row_words() ? '\n' : ',';
-        }
-        std::fwrite(text.data(), 1, static_cast<std::size_t>(end - text.data()), out);
-        std::fclose(out);
+        quickest.time([&] {
+            std::FILE* out = std::fopen(file().c_str(), "wb");
+            char* end = text.data();
+            for (std::size_t i = 0; i < table.words.size(); ++i) {
+                end = append(end, table, i);
+                *end++ = (i + 1) % table.row_words() == 0 ? '\n' : ',';
+            }
+            std::fwrite(text.data(), 1, static_cast<std::size_t>(end - text.data()), out);
+            std::fclose(out);
+        });
     }
-    count(state, table);
+    quickest.count(state, table.words.size());
     std::filesystem::remove(file());
 }
 

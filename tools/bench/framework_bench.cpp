@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -8,12 +10,14 @@
 #include "blocks/catalog.hpp"
 #include "runtime/program/link.hpp"
 #include "runtime/scan/executive.hpp"
+#include "tools/bench/hand_small_blocks.hpp"
+#include "tools/bench/quickest.hpp"
 
 using namespace lineshaft;
 
 namespace {
 
-constexpr std::int64_t scans = 1000;
+constexpr std::size_t scans = 1000;
 
 Linked linked(const std::string& text) {
     Diagnostics problems;
@@ -26,29 +30,29 @@ Linked linked(const std::string& text) {
 
 std::string head() {
     return fmt::format(
-        "lineshaft: 1\ntasks: {{m: {{every: 1 ms}}}}\nrun: {{for: {} ms}}\nblocks:\n", scans - 1);
+        "lineshaft: 1\ntasks: {{m: {{every: {} ns}}}}\nrun: {{for: {} ns}}\nblocks:\n",
+        small_interval, static_cast<std::int64_t>(scans - 1) * small_interval);
 }
 
-/// Chains of an oscillating timer, an edge, a counter and a filter; each chain's counter is reset
-/// by the edge of the chain before.
-std::string small_blocks(std::int64_t chains) {
+/// The program of hand_small_blocks.hpp.
+std::string small_blocks(std::size_t chains) {
     std::string text = head();
-    for (std::int64_t i = 0; i < chains; ++i) {
+    for (std::size_t i = 0; i < chains; ++i) {
         const std::string reset = i == 0 ? "" : fmt::format(", r: e{}.q", i - 1);
         text += fmt::format(
-            "  t{0}: {{type: ton, task: m, in: NOT previous(t{0}.q), pt: {1} ms}}\n"
+            "  t{0}: {{type: ton, task: m, in: NOT previous(t{0}.q), pt: {1} ns}}\n"
             "  e{0}: {{type: r_trig, task: m, clk: t{0}.q}}\n"
             "  c{0}: {{type: ctu, task: m, cu: e{0}.q, pv: 10{2}}}\n"
-            "  f{0}: {{type: filter_pt1, task: m, in: c{0}.cv, time_constant: 5 ms}}\n",
-            i, 3 + i % 7, reset);
+            "  f{0}: {{type: filter_pt1, task: m, in: c{0}.cv, time_constant: {3} s}}\n",
+            i, small_preset(i), reset, small_time_constant);
     }
     return text;
 }
 
 /// One of the axes is the shaft. 8,000 is what the loader's 100,000 values admit.
-std::string gear_axes(std::int64_t axes) {
+std::string gear_axes(std::size_t axes) {
     std::string text = head() + "  a: {type: virtual_axis, task: m, velocity: 10 mm/s}\n";
-    for (std::int64_t i = 0; i < axes - 1; ++i)
+    for (std::size_t i = 0; i < axes - 1; ++i)
         text += fmt::format(
             "  s{}: {{type: gear_axis, task: m, master_position: a.position, "
             "master_velocity: a.velocity, ratio: {}}}\n",
@@ -56,40 +60,103 @@ std::string gear_axes(std::int64_t axes) {
     return text;
 }
 
-/// Time of a scan, and of a block in it, over a second of machine time from its first scan on.
-void run(benchmark::State& state, const std::string& text, std::int64_t blocks) {
+/// Time of a scan over a thousand scans from the first on.
+void run(benchmark::State& state, const std::string& text) {
+    Linked program = linked(text);
+    const std::vector<std::byte> start = program.machine.memory;
+    Quickest quickest;
     for (auto _ : state) {
-        state.PauseTiming();
-        auto machine = std::make_unique<Linked>(linked(text));
-        Executive executive(machine->machine);
-        state.ResumeTiming();
-        benchmark::DoNotOptimize(executive.run({}));
-        state.PauseTiming();
-        machine.reset();
-        state.ResumeTiming();
+        std::ranges::copy(start, program.machine.memory.begin());
+        Executive executive(program.machine);
+        quickest.time([&] { benchmark::DoNotOptimize(executive.run({})); });
     }
-    state.SetItemsProcessed(state.iterations() * scans);
-    state.counters["blocks"] = static_cast<double>(blocks);
+    quickest.count(state, scans);
+}
+
+std::size_t chains(const benchmark::State& state) {
+    return static_cast<std::size_t>(state.range(0)) / 4;
 }
 
 void small(benchmark::State& state) {
-    run(state, small_blocks(state.range(0) / 4), state.range(0));
+    run(state, small_blocks(chains(state)));
+}
+
+template <class Blocks>
+void small_by_hand(benchmark::State& state) {
+    Quickest quickest;
+    for (auto _ : state) {
+        Blocks blocks(chains(state));
+        quickest.time([&] {
+            for (std::size_t i = 0; i < scans; ++i) {
+                blocks.scan(static_cast<std::int64_t>(i) * small_interval);
+                benchmark::ClobberMemory();
+            }
+        });
+    }
+    quickest.count(state, scans);
 }
 
 void axes(benchmark::State& state) {
-    run(state, gear_axes(state.range(0)), state.range(0));
+    run(state, gear_axes(static_cast<std::size_t>(state.range(0))));
 }
 
-/// Reading, checking and wiring a program.
+/// Reading, checking and wiring a program: time of a block.
 void load(benchmark::State& state) {
-    const std::string text = small_blocks(state.range(0) / 4);
-    for (auto _ : state) benchmark::DoNotOptimize(linked(text));
-    state.counters["blocks"] = static_cast<double>(state.range(0));
+    const std::string text = small_blocks(chains(state));
+    Quickest quickest;
+    for (auto _ : state) quickest.time([&] { benchmark::DoNotOptimize(linked(text)); });
+    quickest.count(state, static_cast<std::size_t>(state.range(0)));
+}
+
+/// Runs the chains by hand beside the program's and looks for the first difference.
+template <class Blocks>
+class Beside : public Observer {
+  public:
+    Beside(const Machine& machine, std::size_t chains) : blocks_(chains) {
+        for (std::size_t i = 0; i < chains; ++i)
+            outs_.push_back(machine.find(fmt::format("f{}.out", i)));
+    }
+
+    void scanned(int, const Scan& scan) override {
+        blocks_.scan(scan.time);
+        for (std::size_t i = 0; i < outs_.size(); ++i)
+            if (difference.empty() && std::get<double>(outs_[i]->value()) != blocks_.out(i))
+                difference = fmt::format("'{}' in scan {}", outs_[i]->name, scan.index);
+    }
+    void settled(std::int64_t, std::int64_t) override {}
+
+    std::string difference;
+
+  private:
+    Blocks blocks_;
+    std::vector<const Signal*> outs_;
+};
+
+/// Empty, or where the program and the chains by hand part.
+template <class Blocks>
+std::string difference() {
+    constexpr std::size_t chains = 25;
+    Linked program = linked(small_blocks(chains));
+    Beside<Blocks> beside(program.machine, chains);
+    Executive(program.machine).run({&beside});
+    return beside.difference;
 }
 
 }  // namespace
 
 BENCHMARK(small)->Arg(100)->Arg(1000);
+BENCHMARK(small_by_hand<InlinedSmallBlocks>)->Name("small_inlined")->Arg(100)->Arg(1000);
+BENCHMARK(small_by_hand<CalledSmallBlocks>)->Name("small_called")->Arg(100)->Arg(1000);
 BENCHMARK(axes)->Arg(10)->Arg(100)->Arg(1000)->Arg(8'000);
 BENCHMARK(load)->Arg(1000)->Arg(2000)->Arg(4000);
-BENCHMARK_MAIN();
+
+int main(int count, char** arguments) {
+    for (const std::string& where :
+         {difference<InlinedSmallBlocks>(), difference<CalledSmallBlocks>()})
+        if (!where.empty()) {
+            fmt::print(stderr, "the blocks by hand are not the program's: {}\n", where);
+            return 1;
+        }
+    benchmark::Initialize(&count, arguments);
+    benchmark::RunSpecifiedBenchmarks();
+}

@@ -8,6 +8,7 @@
 #include "blocks/pulse/pto.hpp"
 #include "blocks/pulse/pulse_train.hpp"
 #include "runtime/trace/pulse_writer.hpp"
+#include "tools/bench/quickest.hpp"
 
 using namespace lineshaft;
 
@@ -16,34 +17,41 @@ namespace {
 constexpr std::int64_t pulses = 1'000'000;
 constexpr std::int64_t late = never / 2;
 
-/// Edges a second of one ramp, written to memory in pieces as a channel does.
+/// One ramp's edges, written to memory in pieces as a channel does.
 void edges(benchmark::State& state, const PulseSegment& segment, RateUpdate update) {
     std::vector<std::int64_t> out(1024);
     PulseTrain train;
+    Quickest quickest;
     for (auto _ : state) {
-        train.begin(segment, update, {});
-        while (train.take(late, out) > 0) benchmark::DoNotOptimize(out.data());
+        quickest.time([&] {
+            train.begin(segment, update, {});
+            while (train.take(late, out) > 0) benchmark::DoNotOptimize(out.data());
+        });
     }
-    state.SetItemsProcessed(state.iterations() * segment.count);
+    quickest.count(state, pulses);
 }
 
-/// Edges a second from a channel into a CSV file.
+/// Edges from a channel into a CSV file.
 void csv(benchmark::State& state) {
     const std::string path =
         (std::filesystem::temp_directory_path() / "lineshaft_pulse_bench.csv").string();
     std::vector<std::int64_t> out(1024);
+    Quickest quickest;
     for (auto _ : state) {
-        Machine machine;
-        machine.devices.push_back({.calls = {}, .block = nullptr, .name = "x"});
-        PulseWriter writer(path, machine);
-        PulseTrain train;
-        train.begin({1000, 100'000, pulses}, RateUpdate::continuous, {});
-        for (std::size_t n = train.take(late, out); n > 0; n = train.take(late, out))
-            machine.devices[0].sink->edges(std::span(out).first(n), false);
-        const std::string error = writer.finish({});
+        std::string error;
+        quickest.time([&] {
+            Machine machine;
+            machine.devices.push_back({.calls = {}, .block = nullptr, .name = "x"});
+            PulseWriter writer(path, machine);
+            PulseTrain train;
+            train.begin({1000, 100'000, pulses}, RateUpdate::continuous, {});
+            for (std::size_t n = train.take(late, out); n > 0; n = train.take(late, out))
+                machine.devices[0].sink->edges(std::span(out).first(n), false);
+            error = writer.finish({});
+        });
         if (!error.empty()) state.SkipWithError(error.c_str());
     }
-    state.SetItemsProcessed(state.iterations() * pulses);
+    quickest.count(state, pulses);
     std::filesystem::remove(path);
 }
 

@@ -1,6 +1,7 @@
 #include "blocks/logic/signal.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include <catch2/catch.hpp>
 
@@ -81,4 +82,37 @@ TEST_CASE("a filter refuses a time constant below 0 and goes on after it") {
     CHECK_FALSE(filter.error);
     CHECK(filter.out > 3);
     CHECK(filter.out < 4);
+}
+
+TEST_CASE("a filter holds and says why when it has no result") {
+    const double inf = std::numeric_limits<double>::infinity();
+    const double most = std::numeric_limits<double>::max();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    struct Refused {
+        double in, time_constant;
+        NumberError why;
+    };
+    for (const auto& [in, time_constant, why] :
+         {Refused{nan, 0.02, NumberError::not_finite}, Refused{-inf, 0.02, NumberError::not_finite},
+          Refused{1, nan, NumberError::not_finite}, Refused{1, inf, NumberError::not_finite},
+          Refused{1, -0.02, NumberError::wrong_limits},
+          Refused{nan, -1, NumberError::not_finite}}) {
+        INFO("in " << in << ", time constant " << time_constant);
+        for (FilterPt1 filter : {FilterPt1{}, filter_at(3)}) {
+            const double held = filter.out;
+            filter.in = in;
+            filter.time_constant = time_constant;
+            for (std::int64_t i = 1; i <= 2; ++i) {
+                filter.scan({.time = i * millisecond, .interval = {}, .index = i});
+                CHECK(filter.error);
+                CHECK(filter.error_id == why);
+                CHECK(filter.out == held);
+            }
+        }
+    }
+    FilterPt1 far = filter_at(-most);
+    far.in = most;
+    far.scan({.time = millisecond, .interval = {}, .index = 1});
+    CHECK(far.error_id == NumberError::overflow);
+    CHECK(far.out == -most);
 }
