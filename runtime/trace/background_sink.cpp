@@ -13,7 +13,8 @@ BackgroundSink::~BackgroundSink() {
 
 void BackgroundSink::rows(const std::uint64_t* words, std::size_t rows) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return given_ - taken_ < blocks_.size(); });
+    if (given_ - taken_ == blocks_.size())
+        changed_.wait(lock, [this] { return given_ - taken_ <= blocks_.size() / 2; });
     Block& block = blocks_[given_ % blocks_.size()];
     lock.unlock();
     block.words.assign(words, words + rows * row_words_);
@@ -57,7 +58,7 @@ void BackgroundSink::work() {
         take(block);
         lock.lock();
         ++taken_;
-        changed_.notify_all();
+        if (given_ - taken_ <= blocks_.size() / 2) changed_.notify_all();
     }
 }
 

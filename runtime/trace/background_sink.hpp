@@ -12,7 +12,8 @@
 namespace lineshaft {
 
 /// Hands rows to another sink in a thread of its own, in order, so that the machine runs on while
-/// they are formatted and written. At most two blocks wait; then rows() waits too.
+/// they are formatted and written. At most eight blocks wait; then rows() waits too, until half of
+/// them are taken: waking a thread costs as much as some tens of rows.
 class BackgroundSink : public TraceSink {
   public:
     /// `to`, which takes rows of `row_words` words, must outlive this and is left alone by others
@@ -29,6 +30,8 @@ class BackgroundSink : public TraceSink {
     /// Likewise, and none may follow.
     void finish();
 
+    static constexpr std::size_t waiting_blocks = 8;
+
   private:
     struct Block {
         std::vector<std::uint64_t> words;
@@ -42,8 +45,8 @@ class BackgroundSink : public TraceSink {
 
     TraceSink& to_;
     std::size_t row_words_;
-    std::array<Block, 2> blocks_;
-    std::size_t given_ = 0;  ///< blocks so far; the next is blocks_[given_ % 2]
+    std::array<Block, waiting_blocks> blocks_;
+    std::size_t given_ = 0;  ///< blocks so far; the next is blocks_[given_ % size]
     std::size_t taken_ = 0;
     bool finished_ = false;
     std::exception_ptr thrown_;

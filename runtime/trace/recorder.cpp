@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cstring>
 
+#include "runtime/trace/background_sink.hpp"
+
 namespace lineshaft {
 
 namespace {
 
-constexpr std::size_t rows_per_block = 1024;
-constexpr std::uint64_t blocks = 3;  // one under way, two that wait in a BackgroundSink
+constexpr std::size_t rows_per_block = 256;
+constexpr std::uint64_t blocks = 1 + BackgroundSink::waiting_blocks;  // one under way
 
 }  // namespace
 

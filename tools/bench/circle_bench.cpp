@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "runtime/trace/csv_writer.hpp"
+#include "runtime/trace/event_writer.hpp"
 #include "tools/bench/circle_trace.hpp"
 #include "tools/bench/hand_circle.hpp"
 #include "tools/bench/quickest.hpp"
@@ -23,6 +24,7 @@ std::string file() {
 void remove_file() {
     std::filesystem::remove(file());
     std::filesystem::remove(file() + "-metadata.json");
+    std::filesystem::remove(events_path(file()));
 }
 
 void by_hand(benchmark::State& state) {
@@ -73,16 +75,18 @@ void traced_to_file(benchmark::State& state) {
     remove_file();
 }
 
-/// The other half of it alone: the same rows to the same file.
-void rows_to_file(benchmark::State& state) {
+/// The other half of it alone: the same files.
+void files_alone(benchmark::State& state) {
     const RecordedCircle circle;
     Quickest quickest;
     for (auto _ : state) {
         std::string error;
         quickest.time([&] {
+            EventWriter events(events_path(file()), circle.loaded.linked.machine);
             CsvWriter writer(file(), circle.setup);
+            for (const RunEvent& event : circle.events.list) events.happened(event);
             writer.rows(circle.words.data(), circle.rows());
-            error = writer.finish("", "");
+            error = writer.finish("", "") + events.finish();
         });
         if (!error.empty()) state.SkipWithError(error.c_str());
     }
@@ -114,7 +118,7 @@ BENCHMARK(by_hand);
 BENCHMARK_CAPTURE(executive, untraced, false);
 BENCHMARK_CAPTURE(executive, in_memory, true);
 BENCHMARK(traced_to_file);
-BENCHMARK(rows_to_file);
+BENCHMARK(files_alone);
 
 int main(int count, char** arguments) {
     if (const std::string where = difference(); !where.empty()) {

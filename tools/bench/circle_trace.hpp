@@ -32,11 +32,18 @@ struct MemoryTrace : TraceSink {
     std::vector<std::uint64_t> words;
 };
 
-/// The circle's trace: position of shaft, x and y first.
+struct EventList : EventSink {
+    void happened(const RunEvent& event) override { list.push_back(event); }
+    std::vector<RunEvent> list;
+};
+
+/// The circle's trace, position of shaft, x and y first, and its events.
 struct RecordedCircle {
     RecordedCircle() {
         Recorder recorder(setup, trace);
-        Executive(loaded.linked.machine).run({&recorder});
+        Executive executive(loaded.linked.machine);
+        executive.report_to(events);
+        executive.run({&recorder});
         recorder.finish();
     }
     std::size_t rows() const { return trace.rows(); }
@@ -44,6 +51,7 @@ struct RecordedCircle {
     Loaded loaded = load_circle();
     TraceSetup setup = loaded.linked.traces.front();
     MemoryTrace trace{setup};
+    EventList events;
     std::size_t row_words = trace.row_words;
     const std::vector<std::uint64_t>& words = trace.words;
 };

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -11,6 +10,7 @@
 
 #include "blocks/profile/seven_segment.hpp"
 #include "blocks/profile/velocity_ramp.hpp"
+#include "tools/bench/quickest.hpp"
 
 using namespace lineshaft;
 
@@ -100,43 +100,29 @@ double bare_ramps(const std::vector<Change>& list) {
     return sum;
 }
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Seconds for one bare ramp formula, the least of many repetitions: what the ratios stand on.
+/// One bare ramp formula [ns], the least of many repetitions: what the ratios stand on.
 double measure_baseline() {
     const std::vector<Change> list = changes();
-    double least = 1;
-    for (int i = 0; i < 1000; ++i) {
-        const auto start = Clock::now();
-        benchmark::DoNotOptimize(bare_ramps(list));
-        least = std::min(least, seconds_since(start));
-    }
-    return least / static_cast<double>(list.size());
+    Quickest quickest;
+    for (int i = 0; i < 1000; ++i)
+        quickest.time([&] { benchmark::DoNotOptimize(bare_ramps(list)); });
+    return quickest.per(list.size());
 }
 
 double baseline = 0;
 
 /// Runs the loop, which handles some thousand items, and counts for each item `mean` [ns of
-/// processor time], `least` [ns, the fastest loop: what the machine does when nothing else runs on
-/// it] and `ratio` (least to the bare ramp formula).
+/// processor time], `least` [ns, the quickest loop] and `ratio` (least to the bare ramp formula).
 template <typename Loop>
 void measure(benchmark::State& state, std::size_t items, const Loop& loop) {
     const std::clock_t start = std::clock();
-    double least = 1;
-    for (auto _ : state) {
-        const auto loop_start = Clock::now();
-        loop();
-        least = std::min(least, seconds_since(loop_start));
-    }
+    Quickest quickest;
+    for (auto _ : state) quickest.time(loop);
     const double taken = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    const auto count = static_cast<double>(items);
-    state.counters["mean"] = taken / static_cast<double>(state.iterations()) / count * 1e9;
-    state.counters["least"] = least / count * 1e9;
-    state.counters["ratio"] = least / count / baseline;
+    const auto handled = static_cast<double>(state.iterations()) * static_cast<double>(items);
+    state.counters["mean"] = taken / handled * 1e9;
+    quickest.count(state, items);
+    state.counters["ratio"] = quickest.per(items) / baseline;
 }
 
 void bare_ramp(benchmark::State& state) {
@@ -196,7 +182,7 @@ int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     baseline = measure_baseline();
-    std::printf("ratio 1 = the bare ramp formula, %.2f ns\n", baseline * 1e9);
+    std::printf("ratio 1 = the bare ramp formula, %.2f ns\n", baseline);
 
     benchmark::RegisterBenchmark("bare_ramp", bare_ramp);
     benchmark::RegisterBenchmark("velocity_ramp", velocity_ramp);

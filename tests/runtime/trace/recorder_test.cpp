@@ -266,7 +266,7 @@ TEST_CASE("a ring larger than a block is given in blocks") {
     t.run(setup, values);
     REQUIRE(t.sink.all.size() == 3001);
     for (std::size_t i = 0; i < 3001; ++i) REQUIRE(t.sink.all[i][0] == (i - 3000) * 1000);
-    for (const std::size_t rows : t.sink.blocks) CHECK(rows <= 1024);
+    for (const std::size_t rows : t.sink.blocks) CHECK(rows <= 256);
 }
 
 TEST_CASE("only every n-th scan is a row, and the trigger comes in any") {
@@ -330,9 +330,9 @@ TEST_CASE("a measurement of a time may follow the one before at once") {
 TEST_CASE("the memory of a trace is known before it records") {
     TraceSetup setup;
     setup.signals.resize(8);
-    CHECK(setup.memory() == 3 * 1024 * 80);
+    CHECK(setup.memory() == 9 * 256 * 80);
     setup.pre_trigger = 1000;
-    CHECK(setup.memory() == (1000 + 3 * 1024) * 80);
+    CHECK(setup.memory() == (1000 + 9 * 256) * 80);
     setup.pre_trigger = std::numeric_limits<std::int64_t>::max();
     CHECK(setup.memory() == std::uint64_t{1} << 63);
 }
