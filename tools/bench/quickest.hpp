@@ -22,9 +22,9 @@ class Quickest {
         nanoseconds_ = std::min(nanoseconds_, taken.count());
     }
 
-    /// Counts `least` [ns an item, wall time] of iterations that handle `items` each.
-    void count(benchmark::State& state, std::size_t items) const {
-        state.counters["least"] = per(items);
+    /// Counts `what` [ns an item, wall time] of iterations that handle `items` each.
+    void count(benchmark::State& state, std::size_t items, const char* what = "least") const {
+        state.counters[what] = per(items);
     }
     double per(std::size_t items) const { return nanoseconds_ / static_cast<double>(items); }
 
