@@ -182,7 +182,7 @@ int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     baseline = measure_baseline();
-    std::printf("ratio 1 = the bare ramp formula, %.2f ns\n", baseline);
+    std::fprintf(stderr, "ratio 1 = the bare ramp formula, %.2f ns\n", baseline);
 
     benchmark::RegisterBenchmark("bare_ramp", bare_ramp);
     benchmark::RegisterBenchmark("velocity_ramp", velocity_ramp);
