@@ -73,10 +73,12 @@ void executive(benchmark::State& state, bool traced) {
 
 /// A whole run with its trace in a file, as `lineshaft run --trace` makes it.
 void traced_to_file(benchmark::State& state) {
+    Loaded loaded = load_circle();
+    const std::vector<std::byte> start = loaded.linked.machine.memory;
     RunReport report;
     Quickest quickest;
     for (auto _ : state) {
-        Loaded loaded = load_circle();
+        std::ranges::copy(start, loaded.linked.machine.memory.begin());
         quickest.time([&] { report = run(loaded, {.trace_path = file(), .progress = {}}); });
     }
     quickest.count(state, static_cast<std::size_t>(report.result.scans.front()));
