@@ -32,7 +32,7 @@ const Copy* move(const Copy* wire, std::uint32_t count, Convert convert) {
 template <class T, class Convert>
 void move(const Row& row, Convert convert) {
     auto [wire, source_step, target_step, count, transfer] = row;
-    // A scan of a hundred small blocks takes 258 ns so, 285 without.
+    // A scan of a hundred small blocks takes 225 ns so, 248 without.
 #pragma GCC unroll 4
     for (; count > 0; --count, wire.source += source_step, wire.target += target_step)
         move<T>(wire, convert);
@@ -258,7 +258,7 @@ void Executive::start_pending() {
     }
 }
 
-/// Where nothing waits: what is due runs at once. A clock of the circle takes 178 ns so, 210 in the
+/// Where nothing waits: what is due runs at once. A clock of the circle takes 150 ns so, 183 in the
 /// general way.
 void Executive::run_due() {
     if (next_due_ > now_) return;
