@@ -47,26 +47,28 @@ Table random_reals() {
     return table;
 }
 
-/// A name that is free: a file that is written over is flushed when it is closed, by ext4.
-std::string new_file() {
-    const auto path = std::filesystem::temp_directory_path() / "lineshaft_csv_bench.csv";
-    std::filesystem::remove(path);
-    std::filesystem::remove(path.string() + ".part");
-    return path.string();
+std::string file() {
+    return (std::filesystem::temp_directory_path() / "lineshaft_csv_bench.csv").string();
+}
+
+/// Before each writing: a file that is written over is flushed when it is closed, by ext4.
+void remove_file() {
+    std::filesystem::remove(file());
+    std::filesystem::remove(file() + ".part");
 }
 
 void writer(benchmark::State& state, Table (*make)()) {
     const Table table = make();
     Quickest quickest;
     for (auto _ : state) {
-        const std::string path = new_file();
+        remove_file();
         quickest.time([&] {
-            CsvWriter writer(path, table.setup);
+            CsvWriter writer(file(), table.setup);
             writer.rows(table.words.data(), table.rows());
         });
     }
     quickest.count(state, table.words.size());
-    new_file();
+    remove_file();
 }
 
 char* append(char* end, const Table& table, std::size_t i) {
@@ -85,9 +87,9 @@ void bare(benchmark::State& state, Table (*make)()) {
     std::vector<char> text(table.words.size() * 32);
     Quickest quickest;
     for (auto _ : state) {
-        const std::string path = new_file();
+        remove_file();
         quickest.time([&] {
-            std::FILE* out = std::fopen(path.c_str(), "wb");
+            std::FILE* out = std::fopen(file().c_str(), "wb");
             char* end = text.data();
             for (std::size_t i = 0; i < table.words.size(); ++i) {
                 end = append(end, table, i);
@@ -98,7 +100,7 @@ void bare(benchmark::State& state, Table (*make)()) {
         });
     }
     quickest.count(state, table.words.size());
-    new_file();
+    remove_file();
 }
 
 }  // namespace
