@@ -1,6 +1,6 @@
 #include "runtime/model/value.hpp"
 
-#include "runtime/model/units.hpp"
+#include "runtime/source/units.hpp"
 
 namespace lineshaft {
 

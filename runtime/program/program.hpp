@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "runtime/model/device.hpp"
-#include "runtime/program/diagnostic.hpp"
-#include "runtime/program/reader.hpp"
-#include "runtime/program/yaml_files.hpp"
-#include "runtime/trace/trigger.hpp"
+#include "runtime/source/diagnostic.hpp"
+#include "runtime/source/reader.hpp"
+#include "runtime/source/yaml_files.hpp"
 
 namespace lineshaft {
 
@@ -81,9 +80,19 @@ struct ForcePlan {
     Node signal, value;
 };
 
+enum class TriggerKind : std::uint8_t {
+    immediate,  ///< the start of the run
+    rising,     ///< of a boolean
+    falling,
+    above,   ///< value > low
+    below,   ///< value < high
+    inside,  ///< low <= value <= high
+    equals,  ///< value = low
+};
+
 /// When a trace begins: `signal` and what must hold of it.
 struct TriggerPlan {
-    TraceTrigger::Kind kind = TraceTrigger::Kind::immediate;
+    TriggerKind kind = TriggerKind::immediate;
     Node signal;
     std::vector<Node> values;  ///< of above, below, equals one, of inside two
 };

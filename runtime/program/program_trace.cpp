@@ -15,13 +15,13 @@ constexpr const char* trigger_help =
 
 struct Comparison {
     const char* key;
-    TraceTrigger::Kind kind;
+    TriggerKind kind;
 };
 
-constexpr Comparison comparisons[] = {{"above", TraceTrigger::Kind::above},
-                                      {"below", TraceTrigger::Kind::below},
-                                      {"inside", TraceTrigger::Kind::inside},
-                                      {"equals", TraceTrigger::Kind::equals}};
+constexpr Comparison comparisons[] = {{"above", TriggerKind::above},
+                                      {"below", TriggerKind::below},
+                                      {"inside", TriggerKind::inside},
+                                      {"equals", TriggerKind::equals}};
 
 }  // namespace
 
@@ -106,7 +106,7 @@ void ProgramReader::trigger(const Node& node, TriggerPlan& plan) {
         const Node* value = node.find(key);
         if (!value) continue;
         plan.kind = kind;
-        if (kind != TraceTrigger::Kind::inside) {
+        if (kind != TriggerKind::inside) {
             plan.values = {*value};
             if (!read_.expect_scalar(*value, fmt::format("'{}'", key))) plan.values.clear();
             continue;
@@ -120,7 +120,7 @@ void ProgramReader::trigger(const Node& node, TriggerPlan& plan) {
 
 void ProgramReader::edge(const Node& node, TriggerPlan& plan) {
     if (!read_.expect_scalar(node, "'edge'")) return;
-    plan.kind = node.text == "falling" ? TraceTrigger::Kind::falling : TraceTrigger::Kind::rising;
+    plan.kind = node.text == "falling" ? TriggerKind::falling : TriggerKind::rising;
     if (node.text != "falling" && node.text != "rising")
         read_.fail("L0306", node, fmt::format("'{}' is no edge", node.text),
                    "known: rising, falling");

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "runtime/model/units.hpp"
-#include "runtime/program/literal.hpp"
+#include "runtime/model/literal.hpp"
+#include "runtime/source/units.hpp"
 
 namespace lineshaft {
 

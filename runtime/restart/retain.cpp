@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "runtime/program/yaml.hpp"
+#include "runtime/source/yaml.hpp"
 #include "runtime/trace/output_file.hpp"
 
 namespace lineshaft {

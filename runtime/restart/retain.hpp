@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "runtime/program/diagnostic.hpp"
 #include "runtime/scan/machine.hpp"
+#include "runtime/source/diagnostic.hpp"
 
 namespace lineshaft {
 

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "runtime/model/random.hpp"
+#include "runtime/model/state.hpp"
 #include "runtime/scan/event.hpp"
 #include "runtime/scan/forces.hpp"
 #include "runtime/scan/machine.hpp"
-#include "runtime/scan/state.hpp"
 
 namespace lineshaft {
 

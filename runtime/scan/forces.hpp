@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "runtime/model/state.hpp"
 #include "runtime/scan/event.hpp"
 #include "runtime/scan/machine.hpp"
-#include "runtime/scan/state.hpp"
 
 namespace lineshaft {
 

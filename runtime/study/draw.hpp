@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "runtime/model/units.hpp"
-#include "runtime/program/diagnostic.hpp"
+#include "runtime/source/diagnostic.hpp"
+#include "runtime/source/units.hpp"
 
 namespace lineshaft {
 

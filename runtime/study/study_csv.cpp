@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/trace/csv_cells.hpp"
+#include "runtime/csv/csv_cells.hpp"
 
 namespace lineshaft {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/program/link.hpp"
-#include "runtime/program/reader.hpp"
+#include "runtime/net/link.hpp"
+#include "runtime/source/reader.hpp"
 #include "runtime/study/study_reader.hpp"
 
 namespace lineshaft {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/csv/csv_metadata.hpp"
 #include "runtime/study/study_file_reader.hpp"
-#include "runtime/trace/csv_metadata.hpp"
 #include "runtime/trace/csv_writer.hpp"
 #include "runtime/version.hpp"
 

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "runtime/study/side_by_side.hpp"
-#include "runtime/study/single_run.hpp"
+#include "runtime/run/side_by_side.hpp"
+#include "runtime/run/single_run.hpp"
 
 namespace lineshaft {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/trace/csv_reader.hpp"
+#include "runtime/csv/csv_reader.hpp"
 
 namespace lineshaft {
 

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "runtime/trace/csv_metadata.hpp"
-#include "runtime/trace/number_text.hpp"
+#include "runtime/csv/csv_metadata.hpp"
+#include "runtime/csv/number_text.hpp"
 #include "runtime/version.hpp"
 
 namespace lineshaft {

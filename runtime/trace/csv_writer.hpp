@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "runtime/csv/number_text.hpp"
 #include "runtime/trace/checksum.hpp"
-#include "runtime/trace/number_text.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "runtime/trace/recorder.hpp"
 

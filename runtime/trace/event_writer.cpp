@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "runtime/trace/csv_cells.hpp"
-#include "runtime/trace/number_text.hpp"
+#include "runtime/csv/csv_cells.hpp"
+#include "runtime/csv/number_text.hpp"
 
 namespace lineshaft {
 

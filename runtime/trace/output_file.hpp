@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/scan/state.hpp"
+#include "runtime/model/state.hpp"
 
 namespace lineshaft {
 

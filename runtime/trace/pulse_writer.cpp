@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runtime/trace/csv_metadata.hpp"
+#include "runtime/csv/csv_metadata.hpp"
 
 namespace lineshaft {
 

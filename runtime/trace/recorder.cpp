@@ -69,7 +69,7 @@ void Recorder::finish() {
 
 void Recorder::scanned(int task, const Scan& scan) {
     if (task != setup_.task) return;
-    if (setup_.trigger.kind != TraceTrigger::Kind::immediate)
+    if (setup_.trigger.kind != TriggerKind::immediate)
         look(scan);
     else if (measurements_ == 0)
         begin(0);

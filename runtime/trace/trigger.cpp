@@ -3,22 +3,22 @@
 namespace lineshaft {
 
 bool TraceTrigger::condition_holds() const {
-    if (kind == Kind::immediate) return true;
+    if (kind == TriggerKind::immediate) return true;
     const double value = as_real(signal.value());
     switch (kind) {
-        case Kind::immediate:
+        case TriggerKind::immediate:
             break;
-        case Kind::rising:
+        case TriggerKind::rising:
             return value != 0;
-        case Kind::falling:
+        case TriggerKind::falling:
             return value == 0;
-        case Kind::above:
+        case TriggerKind::above:
             return value > low;
-        case Kind::below:
+        case TriggerKind::below:
             return value < high;
-        case Kind::inside:
+        case TriggerKind::inside:
             return value >= low && value <= high;
-        case Kind::equals:
+        case TriggerKind::equals:
             return value == low;
     }
     return true;
@@ -26,8 +26,7 @@ bool TraceTrigger::condition_holds() const {
 
 TriggerWatch::TriggerWatch(const TraceTrigger& trigger)
     : trigger_(trigger),
-      held_(trigger.kind == TraceTrigger::Kind::rising ||
-            trigger.kind == TraceTrigger::Kind::falling) {}
+      held_(trigger.kind == TriggerKind::rising || trigger.kind == TriggerKind::falling) {}
 
 bool TriggerWatch::fires() {
     const bool holds = trigger_.condition_holds();

@@ -2,8 +2,9 @@
 
 #include <cstdint>
 
+#include "runtime/model/state.hpp"
+#include "runtime/program/program.hpp"
 #include "runtime/scan/machine.hpp"
-#include "runtime/scan/state.hpp"
 
 namespace lineshaft {
 
@@ -11,17 +12,7 @@ namespace lineshaft {
 /// in the scan before. A condition that holds in the very first scan begins it at once; an edge
 /// needs a scan before it.
 struct TraceTrigger {
-    enum class Kind : std::uint8_t {
-        immediate,  ///< the start of the run
-        rising,     ///< of a boolean
-        falling,
-        above,   ///< value > low
-        below,   ///< value < high
-        inside,  ///< low <= value <= high
-        equals,  ///< value = low
-    };
-
-    Kind kind = Kind::immediate;
+    TriggerKind kind = TriggerKind::immediate;
     Signal signal = {};
     double low = 0;
     double high = 0;

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "runtime/model/random.hpp"
-#include "runtime/model/units.hpp"
+#include "runtime/source/units.hpp"
 #include "tests/allocations.hpp"
 #include "tests/blocks/scanning.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <unistd.h>
 
-#include "runtime/trace/csv_reader.hpp"
+#include "runtime/csv/csv_reader.hpp"
 
 using namespace lineshaft;
 

@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "blocks/catalog.hpp"
-#include "runtime/program/link.hpp"
-#include "runtime/study/fit.hpp"
+#include "runtime/fit/fit.hpp"
+#include "runtime/net/link.hpp"
 #include "runtime/study/study_reader.hpp"
 
 using namespace lineshaft;

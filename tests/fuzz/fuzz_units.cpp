@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "runtime/model/units.hpp"
+#include "runtime/source/units.hpp"
 
 using namespace lineshaft;
 

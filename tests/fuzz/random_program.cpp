@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/model/units.hpp"
+#include "runtime/source/units.hpp"
 
 namespace lineshaft::test {
 

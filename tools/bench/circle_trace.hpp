@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "blocks/catalog.hpp"
-#include "runtime/study/single_run.hpp"
+#include "runtime/run/single_run.hpp"
 
 namespace lineshaft {
 

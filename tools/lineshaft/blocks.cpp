@@ -2,8 +2,8 @@
 #include <spdlog/spdlog.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/program/diagnostic.hpp"
-#include "runtime/program/literal.hpp"
+#include "runtime/model/literal.hpp"
+#include "runtime/source/diagnostic.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {

@@ -1,8 +1,8 @@
 #include <fmt/core.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/program/link.hpp"
-#include "runtime/study/fit.hpp"
+#include "runtime/fit/fit.hpp"
+#include "runtime/net/link.hpp"
 #include "runtime/study/study_reader.hpp"
 #include "tools/lineshaft/command.hpp"
 

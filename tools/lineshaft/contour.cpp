@@ -10,8 +10,8 @@
 #include "blocks/contour/baseline.hpp"
 #include "blocks/contour/command_path.hpp"
 #include "blocks/contour/magnitude_statistics.hpp"
-#include "runtime/model/units.hpp"
-#include "runtime/trace/csv_reader.hpp"
+#include "runtime/csv/csv_reader.hpp"
+#include "runtime/source/units.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {

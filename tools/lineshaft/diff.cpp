@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "runtime/model/units.hpp"
+#include "runtime/source/units.hpp"
 #include "runtime/trace/compare.hpp"
 #include "tools/lineshaft/command.hpp"
 

@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
-#include "runtime/program/codes.hpp"
+#include "runtime/source/codes.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {

@@ -1,4 +1,4 @@
-#include "runtime/study/fit.hpp"
+#include "runtime/fit/fit.hpp"
 
 #include <cmath>
 #include <thread>
@@ -7,7 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/study/fit_table.hpp"
+#include "runtime/fit/fit_table.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
 

@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #include "blocks/profile/seven_segment.hpp"
-#include "runtime/trace/number_text.hpp"
+#include "runtime/csv/number_text.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "runtime/program/yaml.hpp"
+#include "runtime/source/yaml.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
 #include "tools/lineshaft/report_data.hpp"

@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
-#include "runtime/model/units.hpp"
-#include "runtime/program/yaml.hpp"
-#include "runtime/trace/csv_cells.hpp"
+#include "runtime/csv/csv_cells.hpp"
+#include "runtime/source/units.hpp"
+#include "runtime/source/yaml.hpp"
 #include "runtime/trace/event_writer.hpp"
-#include "runtime/trace/packing.hpp"
+#include "tools/lineshaft/packing.hpp"
 
 namespace lineshaft {
 

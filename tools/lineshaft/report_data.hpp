@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runtime/program/diagnostic.hpp"
-#include "runtime/trace/csv_reader.hpp"
+#include "runtime/csv/csv_reader.hpp"
+#include "runtime/source/diagnostic.hpp"
 
 namespace lineshaft {
 

@@ -5,8 +5,8 @@
 #include <spdlog/spdlog.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/program/reader.hpp"
-#include "runtime/study/single_run.hpp"
+#include "runtime/run/single_run.hpp"
+#include "runtime/source/reader.hpp"
 #include "runtime/trace/event_writer.hpp"
 #include "tools/lineshaft/command.hpp"
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/program/linker.hpp"
-#include "runtime/study/single_run.hpp"
+#include "runtime/net/linker.hpp"
+#include "runtime/run/single_run.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {

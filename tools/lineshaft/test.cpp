@@ -6,9 +6,9 @@
 #include <spdlog/spdlog.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/run/single_run.hpp"
 #include "runtime/study/junit.hpp"
 #include "runtime/study/report.hpp"
-#include "runtime/study/single_run.hpp"
 #include "runtime/study/study_reader.hpp"
 #include "runtime/study/table.hpp"
 #include "runtime/trace/output_file.hpp"

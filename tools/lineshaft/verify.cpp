@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/csv/csv_reader.hpp"
 #include "runtime/trace/checksum.hpp"
-#include "runtime/trace/csv_reader.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {

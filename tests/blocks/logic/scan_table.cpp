@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "blocks/catalog.hpp"
-#include "runtime/model/units.hpp"
+#include "runtime/source/units.hpp"
 
 namespace lineshaft::test {
 

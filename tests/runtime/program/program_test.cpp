@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/runtime/program/small_blocks.hpp"
+#include "tests/runtime/net/small_blocks.hpp"
 
 using namespace lineshaft;
 namespace fs = std::filesystem;

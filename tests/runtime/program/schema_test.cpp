@@ -1,6 +1,6 @@
 #include "runtime/program/schema.hpp"
 
-#include "tests/runtime/program/small_blocks.hpp"
+#include "tests/runtime/net/small_blocks.hpp"
 
 using namespace lineshaft;
 using Json = nlohmann::ordered_json;

@@ -5,7 +5,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/restart/checkpoint.hpp"
-#include "runtime/study/single_run.hpp"
+#include "runtime/run/single_run.hpp"
 #include "tests/folder.hpp"
 
 using namespace lineshaft;

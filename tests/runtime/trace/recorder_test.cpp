@@ -130,7 +130,7 @@ TEST_CASE("a recorder allocates nothing while recording") {
 
 namespace {
 
-using Kind = TraceTrigger::Kind;
+using Kind = TriggerKind;
 
 /// A trace of scan() numbers while a boolean or a number takes `values`, one a scan.
 struct Triggered {

@@ -1,4 +1,4 @@
-// Undoes runtime/trace/packing.cpp: base64, deflate, outliers, differences, scale.
+// Undoes tools/lineshaft/packing.cpp: base64, deflate, outliers, differences, scale.
 import { Blocks } from "#page/samples";
 
 const nanoseconds = 1e9; // in a second

@@ -41,7 +41,7 @@ class Extremes {
  */
 export class Blocks {
   static size = 1024;
-  static chunk = 256; // as runtime/trace/packing.hpp has it
+  static chunk = 256; // as tools/lineshaft/packing.hpp has it
   #block = { first: -Blocks.size, values: new Float64Array(Blocks.size) };
   #chunks = null;
 

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/model/value.hpp"
+#include "runtime/source/diagnostic.hpp"
+
+namespace lineshaft {
+
+/// What a trace's sidecar says (W3C CSVW): `NAME.csv-metadata.json` beside `NAME.csv`.
+struct CsvMetadata {
+    struct Column {
+        std::string title;   ///< as the header has it
+        std::string signal;  ///< as the program has it: `shaft.position`
+        Type type = Type::real;
+        std::string unit;                 ///< empty: none
+        std::vector<std::string> values;  ///< names of an enumeration
+    };
+
+    std::string title;                 ///< of the program
+    std::string version;               ///< of the lineshaft that wrote it
+    std::string program;               ///< text_hash of the program's text
+    std::string stopped;               ///< why its run did not complete; empty: it did
+    std::optional<std::int64_t> rows;  ///< without the header
+    std::string crc32;                 ///< Checksum of all bytes of the CSV file
+    std::vector<Column> columns;
+
+    /// By title; null when there is none.
+    const Column* find(std::string_view title) const;
+};
+
+/// `PATH-metadata.json`.
+std::string sidecar_path(const std::string& csv_path);
+
+/// The sidecar of a CSV file. Empty when there is none, and when it cannot be read: then L0707 says
+/// why.
+std::optional<CsvMetadata> read_metadata(const std::string& csv_path, Diagnostics& out);
+
+}  // namespace lineshaft

@@ -1,0 +1,358 @@
+#include "runtime/csv/csv_reader.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "runtime/csv/csv_cells.hpp"
+#include "runtime/source/utf8.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+constexpr std::size_t chunk = 1 << 20;  // bytes; also the longest line
+constexpr std::size_t most_mistakes = 20;
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+/// Cuts a file into lines, in constant memory.
+class Lines {
+  public:
+    explicit Lines(const std::string& path) : file_(std::fopen(path.c_str(), "rb"), &std::fclose) {
+        error_ = file_ ? 0 : errno;
+        buffer_.resize(2 * chunk);
+    }
+
+    /// The next line without its end; false at the end of the file, or after an error.
+    bool next(std::string_view& line);
+    bool is_ended() const { return ended_; }  ///< the last line had a newline
+    int error() const { return error_; }      ///< errno, 0 when all is well
+
+  private:
+    void fill();
+
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+    std::string buffer_;
+    std::size_t begin_ = 0, end_ = 0;
+    bool ended_ = true;
+    int error_ = 0;
+};
+
+void Lines::fill() {
+    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+    end_ -= begin_;
+    begin_ = 0;
+    errno = 0;
+    end_ +=
+        std::fread(buffer_.data() + end_, 1, std::min(chunk, buffer_.size() - end_), file_.get());
+    if (std::ferror(file_.get()) != 0) error_ = errno;
+}
+
+bool Lines::next(std::string_view& line) {
+    if (error_ != 0) return false;
+    const auto newline = [this] {
+        return static_cast<const char*>(std::memchr(buffer_.data() + begin_, '\n', end_ - begin_));
+    };
+    const char* stop = newline();
+    while (!stop && std::feof(file_.get()) == 0 && error_ == 0) {
+        if (end_ - begin_ > chunk) error_ = EFBIG;
+        fill();
+        stop = newline();
+    }
+    if (error_ != 0 || (!stop && begin_ == end_)) return false;
+    ended_ = stop != nullptr;
+    const char* const first = buffer_.data() + begin_;
+    line = {first, static_cast<std::size_t>((stop ? stop : buffer_.data() + end_) - first)};
+    begin_ += line.size() + (stop ? 1 : 0);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return true;
+}
+
+/// Why a cell does not do; empty when it does.
+template <class Number>
+const char* parse(const std::string& text, Number& value) {
+    const char* first = text.data();
+    const char* const last = first + text.size();
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') ++first;
+    const auto [stop, error] = std::from_chars(first, last, value);
+    if (stop != last || error == std::errc::invalid_argument) return "is not a number";
+    if (error != std::errc{}) return "is beyond the range of numbers";
+    return nullptr;
+}
+
+/// Whether a column of whole numbers may hold the value.
+bool fits(const CsvColumn& column, std::int64_t value) {
+    if (column.type == Type::integer) return true;
+    const auto values = static_cast<std::int64_t>(column.names.size());
+    return value >= 0 && value < (column.type == Type::boolean ? 2 : values);
+}
+
+class CsvReader {
+  public:
+    CsvReader(const std::string& path, Diagnostics& out, const CsvOptions& options)
+        : path_(path), out_(out), options_(options), lines_(path) {}
+
+    std::optional<CsvTable> read();
+
+  private:
+    bool header();
+    void add_column(std::string_view cell);
+    void select();
+    void rows();
+    void row();
+    const char* cell(CsvColumn& column, const char* at, const char* end);
+    void take(CsvColumn& column, std::int64_t value);
+    void odd_cell(CsvColumn& column, std::string_view cell);
+    void end_of_rows();
+    void drop_last_row();
+    void check_file();
+
+    /// A mistake in a part of the line under way.
+    void fail(const char* code, std::string_view part, std::string message, std::string help = {});
+
+    const std::string& path_;
+    Diagnostics& out_;
+    const CsvOptions& options_;
+    Lines lines_;
+    std::string_view line_;
+    std::size_t number_ = 0;  ///< of the line
+    std::size_t mistakes_ = 0;
+    char separator_ = ',';
+    std::vector<CsvColumn*> order_;  ///< of the file's columns; null: not wanted
+    CsvTable table_;
+};
+
+std::optional<CsvTable> CsvReader::read() {
+    const std::size_t before = out_.list().size();
+    table_.metadata = read_metadata(path_, out_);
+    if (lines_.next(line_) && header()) rows();
+    check_file();
+    if (out_.list().size() != before) return {};
+    return std::move(table_);
+}
+
+void CsvReader::check_file() {
+    if (lines_.error() == EFBIG)
+        return out_.add("L0704", {table_.header, 0, 0, 1},
+                        fmt::format("line {} has more than {} bytes", number_ + 1, chunk));
+    if (lines_.error() != 0)
+        return out_.add("L0001", {},
+                        fmt::format("cannot read '{}': {}", path_, std::strerror(lines_.error())));
+    if (number_ == 0)
+        out_.add("L0701", {std::make_shared<const SourceFile>(SourceFile{path_, ""}), 0, 0, 1},
+                 "the file is empty", "the first line names the columns");
+}
+
+bool CsvReader::header() {
+    ++number_;
+    if (line_.starts_with(utf8_byte_order_mark)) line_.remove_prefix(utf8_byte_order_mark.size());
+    table_.header = std::make_shared<const SourceFile>(SourceFile{path_, std::string(line_)});
+    line_ = table_.header->text;
+    if (line_.find(',') == std::string_view::npos && line_.find(';') != std::string_view::npos)
+        separator_ = ';';
+    const char* const end = line_.data() + line_.size();
+    for (const char* at = line_.data();; ++at) {
+        const char* const stop = cell_end(at, end, separator_);
+        add_column({at, stop});
+        at = stop;
+        if (at == end) break;
+    }
+    if (mistakes_ == 0) select();
+    return mistakes_ == 0;
+}
+
+void CsvReader::add_column(std::string_view cell) {
+    CsvColumn column;
+    column.title = column.name = unquoted(cell);
+    double number = 0;
+    if (column.title.empty() || !parse(column.title, number))
+        return fail("L0701", cell,
+                    column.title.empty() ? "a column has no name"
+                                         : fmt::format("'{}' is no name of a column", column.title),
+                    "the first line names the columns");
+    const std::size_t bracket = column.title.find(" [");
+    if (bracket != std::string::npos && column.title.ends_with(']')) {
+        column.unit = column.title.substr(bracket + 2, column.title.size() - bracket - 3);
+        column.name = column.title.substr(0, bracket);
+    }
+    const auto* known = table_.metadata ? table_.metadata->find(column.title) : nullptr;
+    if (known) {
+        column.name = known->signal;
+        column.unit = known->unit;
+        column.type = known->type;
+        column.names = known->values;
+    }
+    if (table_.find(column.name) || table_.find(column.title))
+        fail("L0703", cell, fmt::format("a second column '{}'", column.title));
+    table_.columns.push_back(std::move(column));
+}
+
+void CsvReader::select() {
+    std::vector<bool> wanted(table_.columns.size(), options_.columns.empty());
+    for (const std::string& name : options_.columns)
+        if (const CsvColumn* column = table_.require(name, out_))
+            wanted[static_cast<std::size_t>(column - table_.columns.data())] = true;
+        else
+            ++mistakes_;
+    std::vector<CsvColumn> kept;
+    kept.reserve(wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        if (wanted[i]) kept.push_back(std::move(table_.columns[i]));
+        order_.push_back(wanted[i] ? &kept.back() : nullptr);
+    }
+    table_.columns = std::move(kept);
+}
+
+void CsvReader::rows() {
+    while (lines_.next(line_)) {
+        ++number_;
+        if (table_.rows == options_.most_rows)
+            return out_.add("L0710", {table_.header, 0, 0, 1},
+                            fmt::format("more than {} rows do not fit into the memory that is "
+                                        "allowed for them",
+                                        options_.most_rows));
+        row();
+        if (mistakes_ < most_mistakes) continue;
+        return out_.add("L0705", {table_.header, 0, 0, 1},
+                        fmt::format("{} mistakes; the rest of the file is not read", mistakes_));
+    }
+    if (lines_.error() == 0 && mistakes_ == 0) end_of_rows();
+}
+
+void CsvReader::row() {
+    const std::size_t before = mistakes_;
+    const char* at = line_.data();
+    const char* const end = at + line_.size();
+    std::size_t count = 0;
+    for (;; ++at) {
+        CsvColumn* const column = count < order_.size() ? order_[count] : nullptr;
+        at = column ? cell(*column, at, end) : cell_end(at, end, separator_);
+        ++count;
+        if (at == end) break;
+    }
+    ++table_.rows;
+    const bool cut = !lines_.is_ended() && options_.last_row_may_be_cut;
+    if (cut || mistakes_ != before || count == order_.size()) return;
+    fail(lines_.is_ended() ? "L0704" : "L0706", line_,
+         fmt::format("{} {} instead of {}{}", count, count == 1 ? "cell" : "cells", order_.size(),
+                     lines_.is_ended() ? "" : ": the file is cut"),
+         separator_ == ',' && count > order_.size()
+             ? "with decimal commas, semicolons stand between the cells"
+             : "");
+}
+
+/// Reads a cell into its column; where it ends.
+const char* CsvReader::cell(CsvColumn& column, const char* at, const char* end) {
+    if (column.type == Type::real) {
+        double value = 0;
+        const auto [stop, error] = std::from_chars(at, end, value);
+        if (error == std::errc{} && (stop == end || *stop == separator_) && std::isfinite(value)) {
+            column.values.push_back(value);
+            return stop;
+        }
+    } else {
+        std::int64_t value = 0;
+        const auto [stop, error] = std::from_chars(at, end, value);
+        if (error == std::errc{} && (stop == end || *stop == separator_) && fits(column, value)) {
+            take(column, value);
+            return stop;
+        }
+    }
+    const char* const stop = cell_end(at, end, separator_);
+    odd_cell(column, {at, stop});
+    return stop;
+}
+
+void CsvReader::take(CsvColumn& column, std::int64_t value) {
+    column.values.push_back(static_cast<double>(value));
+    if (column.type == Type::integer) column.integers.push_back(value);
+}
+
+/// Empty, quoted, between blanks, with a decimal comma or a plus; or wrong.
+void CsvReader::odd_cell(CsvColumn& column, std::string_view cell) {
+    std::string text = unquoted(cell);
+    if (separator_ == ';' && column.type == Type::real) std::ranges::replace(text, ',', '.');
+    const char* wrong = nullptr;
+    double real = missing;
+    std::int64_t whole = 0;
+    if (!text.empty() && column.type == Type::real) {
+        wrong = parse(text, real);
+        if (!wrong && !std::isfinite(real)) wrong = "is not a number";
+    } else if (!text.empty()) {
+        wrong = parse(text, whole);
+        if (!wrong && !fits(column, whole)) wrong = "is not one of its values";
+        real = static_cast<double>(whole);
+    }
+    if (wrong)
+        fail("L0705", cell, fmt::format("'{}' in column '{}' {}", text, column.title, wrong),
+             column.type == Type::real ? "leave the cell empty where there is no value"
+                                       : fmt::format("the column is {}", name_of(column.type)));
+    column.values.push_back(real);
+    if (column.type == Type::integer) column.integers.push_back(whole);
+}
+
+void CsvReader::end_of_rows() {
+    if (!lines_.is_ended() && number_ > 1 && options_.last_row_may_be_cut) drop_last_row();
+    if (options_.last_row_may_be_cut || !table_.metadata || !table_.metadata->rows) return;
+    const auto due = static_cast<std::size_t>(*table_.metadata->rows);
+    if (due == table_.rows && lines_.is_ended()) return;
+    out_.add("L0706", {table_.header, 0, 0, 1},
+             due == table_.rows
+                 ? "the file is cut: its last row has no end"
+                 : fmt::format("{} rows, where its sidecar tells of {}", table_.rows, due),
+             "it is not the file that was recorded; remove the sidecar to read it all the same");
+}
+
+void CsvReader::drop_last_row() {
+    --table_.rows;
+    for (CsvColumn& column : table_.columns) {
+        column.values.resize(table_.rows);
+        if (column.type == Type::integer) column.integers.resize(table_.rows);
+    }
+}
+
+void CsvReader::fail(const char* code, std::string_view part, std::string message,
+                     std::string help) {
+    ++mistakes_;
+    const std::string_view before =
+        line_.substr(0, static_cast<std::size_t>(part.data() - line_.data()));
+    // Messages find their line by counting: empty ones stand for those before it.
+    const auto file = std::make_shared<const SourceFile>(
+        SourceFile{path_, std::string(number_ - 1, '\n') + std::string(line_)});
+    out_.add(code,
+             {file, static_cast<int>(number_), static_cast<int>(count_characters(before)) + 1,
+              std::max(1, static_cast<int>(count_characters(part)))},
+             std::move(message), std::move(help));
+}
+
+}  // namespace
+
+const CsvColumn* CsvTable::find(std::string_view name) const {
+    const auto it = std::ranges::find_if(
+        columns, [&](const CsvColumn& c) { return c.name == name || c.title == name; });
+    return it == columns.end() ? nullptr : &*it;
+}
+
+const CsvColumn* CsvTable::require(std::string_view name, Diagnostics& out, Mark where) const {
+    if (const CsvColumn* column = find(name)) return column;
+    std::vector<std::string> names;
+    for (const CsvColumn& column : columns) names.push_back(column.name);
+    if (!where.file) where = {header, 1, 1, static_cast<int>(count_characters(header->text))};
+    out.add("L0702", std::move(where), fmt::format("no column '{}' in '{}'", name, header->path),
+            suggest(name, names));
+    return nullptr;
+}
+
+std::optional<CsvTable> read_csv(const std::string& path, Diagnostics& out,
+                                 const CsvOptions& options) {
+    return CsvReader(path, out, options).read();
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,144 @@
+#include "runtime/fit/fit_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "runtime/study/text_table.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double same_sum = 0.01;  // relative difference of starts that ended alike
+
+std::string with_unit(double value, const std::string& unit) {
+    return short_number(value) + (unit.empty() ? "" : " " + unit);
+}
+
+/// As many digits as the standard error bears out, and two of it.
+int digits_after_point(const FitValue& v) {
+    if (!(v.standard_error > 0)) return 6;
+    return std::clamp(1 - static_cast<int>(std::floor(std::log10(v.standard_error))), 0, 12);
+}
+
+std::string value_table(const FitReport& report) {
+    std::vector<Cells> rows{{"parameter", "value", "standard error", "from", "to", ""}};
+    for (const FitValue& v : report.values) {
+        const FitParameter& p = *v.parameter;
+        const int digits = digits_after_point(v);
+        const std::string unit = p.unit.text.empty() ? "" : " " + p.unit.text;
+        const bool known = std::isfinite(v.standard_error);
+        rows.push_back(
+            {p.name, fmt::format("{:.{}f}{}", v.value, digits, unit),
+             known ? fmt::format("{:.{}f}{}", v.standard_error, digits, unit) : "not determined",
+             p.text(p.from), p.text(p.to), v.at_bound ? "AT ITS BOUND" : ""});
+    }
+    return align(rows);
+}
+
+std::string cell_table(const FitReport& report, bool held_out) {
+    std::vector<Cells> rows{{held_out ? "held-out cell" : "cell", "signal", "given", "ours",
+                             "difference", "residual", ""}};
+    for (const FitRow& row : report.rows) {
+        if (row.cell->hold_out != held_out) continue;
+        const Comparison& c = *row.comparison;
+        const bool trace = !row.cell->times.empty();
+        const double share = row.difference / std::abs(row.given) * 100;
+        rows.push_back({describe(row.cell->run), c.signal,
+                        trace ? fmt::format("{} samples", row.samples) : short_number(row.given),
+                        trace ? "" : with_unit(row.ours, c.unit),
+                        trace ? "rms " + with_unit(row.difference, c.unit)
+                              : fmt::format("{:+.2g}{}", row.difference,
+                                            row.given == 0 ? ""
+                                                           : fmt::format(" ({:+.{}f} %)", share,
+                                                                         decimals(share))),
+                        fmt::format("{:.3g}", row.residual),
+                        c.bounds.judged() ? (row.ok ? "ok" : "FAILED") : ""});
+    }
+    return rows.size() == 1 ? "" : align(rows);
+}
+
+std::string start_line(const FitReport& report) {
+    const double least = report.starts[report.best].sum;
+    const auto alike = std::ranges::count_if(report.starts, [&](const FitStart& start) {
+        return start.sum - least <= same_sum * least;
+    });
+    const bool converged = report.starts[report.best].converged;
+    return fmt::format("sum of squares {:.6g} in uncertainties; {} of {} starts ended there{}\n",
+                       least, alike, report.starts.size(),
+                       converged ? "" : "; the search had not converged");
+}
+
+Json finite(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json row_json(const FitRow& row) {
+    Json set = Json::object();
+    for (const Setting& s : row.cell->run.settings) set[s.name] = s.value;
+    const bool trace = !row.cell->times.empty();
+    return {{"name", row.cell->run.name},
+            {"set", set},
+            {"signal", row.comparison->signal},
+            {"unit", row.comparison->unit},
+            {"given", trace ? Json(nullptr) : Json(row.given)},
+            {"ours", trace ? Json(nullptr) : finite(row.ours)},
+            {"difference", finite(row.difference)},
+            {"residual", finite(row.residual)},
+            {"samples", row.samples},
+            {"held_out", row.cell->hold_out},
+            {"ok", row.ok}};
+}
+
+}  // namespace
+
+std::string fit_table(const FitPlan& plan, const FitReport& report) {
+    std::string text = plan.title + "\n\n";
+    if (report.values.empty())
+        text += "No start could be evaluated: the program does not run there.\n";
+    else
+        text += value_table(report) + start_line(report);
+    for (const bool held_out : {false, true})
+        if (const std::string table = cell_table(report, held_out); !table.empty())
+            text += "\n" + table;
+    for (const std::string& note : plan.notes) text += "\n" + note + "\n";
+    for (const std::string& line : report.faults) text += "\nfault: " + line + "\n";
+    return text;
+}
+
+Json fit_json(const FitPlan& plan, const FitReport& report) {
+    Json parameters = Json::array(), cells = Json::array(), starts = Json::array();
+    for (const FitValue& v : report.values)
+        parameters.push_back({{"name", v.parameter->name},
+                              {"value", finite(v.value)},
+                              {"unit", v.parameter->unit.text},
+                              {"standard_error", finite(v.standard_error)},
+                              {"from", v.parameter->from},
+                              {"to", v.parameter->to},
+                              {"at_bound", v.at_bound}});
+    for (const FitRow& row : report.rows) cells.push_back(row_json(row));
+    for (const FitStart& start : report.starts)
+        starts.push_back(
+            {{"values", start.values}, {"sum", finite(start.sum)}, {"converged", start.converged}});
+    Json object{{"title", plan.title},
+                {"parameters", parameters},
+                {"cells", cells},
+                {"starts", starts},
+                {"runs", report.runs}};
+    if (!report.faults.empty()) object["faults"] = report.faults;
+    object["ok"] = report.ok();
+    return object;
+}
+
+std::string fit_settings(const FitPlan& plan, const FitReport& report) {
+    std::string text = fmt::format("# Identified: {}\nset:\n", plan.title);
+    for (const FitValue& v : report.values)
+        text += fmt::format("  {}: {}\n", v.parameter->name, v.parameter->text(v.value));
+    return text;
+}
+
+}  // namespace lineshaft

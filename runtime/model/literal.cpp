@@ -1,0 +1,76 @@
+#include "runtime/model/literal.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace lineshaft {
+
+namespace {
+
+std::optional<Value> read_name(const Reader& read, const Node& node, const Field& field) {
+    if (!read.expect_scalar(node, "a name")) return {};
+    const auto it = std::ranges::find(field.names, node.text);
+    if (it != field.names.end()) return Value(static_cast<std::int64_t>(it - field.names.begin()));
+    std::vector<std::string> names(field.names.begin(), field.names.end());
+    std::erase(names, "");
+    read.fail("L0306", node, fmt::format("'{}' is no value of '{}'", node.text, field.name),
+              suggest(node.text, names));
+    return {};
+}
+
+std::optional<Value> read_integer(const Reader& read, const Node& node, const Field& field,
+                                  const Unit& unit) {
+    if (unit.text.empty()) {
+        const auto value = read.integer(node);
+        return value ? std::optional<Value>(*value) : std::nullopt;
+    }
+    if (unit.text == "ns") {
+        const auto value = read.time(node);
+        return value ? std::optional<Value>(*value) : std::nullopt;
+    }
+    const auto value = read.real(node, unit);
+    if (!value) return {};
+    if (*value == std::trunc(*value) && std::abs(*value) < 9e15)
+        return Value(static_cast<std::int64_t>(*value));
+    read.fail(
+        "L0309", node,
+        fmt::format("'{}' is no whole number of {} for '{}'", node.text, unit.text, field.name));
+    return {};
+}
+
+}  // namespace
+
+std::string describe_limits(const Field& field, const std::string& unit) {
+    const std::string suffix = unit.empty() ? "" : " " + unit;
+    std::string text;
+    if (std::isfinite(field.minimum))
+        text = fmt::format("{} {}{}", field.minimum_excluded ? "above" : "at least",
+                           format_number(field.minimum), suffix);
+    if (std::isfinite(field.maximum))
+        text += fmt::format("{}{} {}{}", text.empty() ? "" : ", ",
+                            field.maximum_excluded ? "below" : "at most",
+                            format_number(field.maximum), suffix);
+    return text;
+}
+
+std::optional<Value> read_literal(const Reader& read, const Node& node, const Field& field,
+                                  const Unit& unit) {
+    std::optional<Value> value;
+    if (field.type == Type::enumeration) return read_name(read, node, field);
+    if (field.type == Type::boolean) {
+        if (const auto b = read.boolean(node)) value = *b;
+        return value;
+    }
+    if (field.type == Type::integer)
+        value = read_integer(read, node, field, unit);
+    else if (const auto number = read.real(node, unit))
+        value = *number;
+    if (!value || field.admits(as_real(*value))) return value;
+    read.fail("L0305", node, fmt::format("'{}' is out of range for '{}'", node.text, field.name),
+              "it must be " + describe_limits(field, unit.text));
+    return {};
+}
+
+}  // namespace lineshaft

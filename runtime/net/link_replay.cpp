@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "runtime/model/literal.hpp"
+#include "runtime/net/linker.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+constexpr std::size_t most_memory = std::size_t{256} << 20;  // bytes, of all replays
+constexpr double most_time = 0x1p62;                         // ns
+
+/// The line of the file that a person sees.
+std::size_t line(std::size_t row) {
+    return row + 2;
+}
+
+/// Whether the values of a column may be those of an input; an untyped one is looked at cell by
+/// cell.
+bool fits(const CsvColumn& column, bool is_typed, const Field& input) {
+    if (!is_typed) return true;
+    const bool widens = column.type == Type::integer && input.type == Type::real;
+    return (column.type == input.type || widens) && std::ranges::equal(column.names, input.names);
+}
+
+std::optional<Value> whole(double value) {
+    if (value != std::trunc(value) || std::abs(value) >= 9e15) return {};
+    return static_cast<std::int64_t>(value);
+}
+
+/// A cell as the value of an input; empty where it is none of its type.
+std::optional<Value> cell(const CsvColumn& column, std::size_t row, const Field& input,
+                          const Unit& from, const Unit& to) {
+    const bool same_unit = from.text == to.text;
+    if (input.type == Type::integer && column.type == Type::integer && same_unit)
+        return column.integers[row];
+    const double value = column.values[row];
+    const auto among = [&](std::size_t count) {
+        return value >= 0 && value < static_cast<double>(count);
+    };
+    switch (input.type) {
+        case Type::boolean:
+            return among(2) && whole(value) ? std::optional<Value>(value == 1) : std::nullopt;
+        case Type::enumeration:
+            return among(input.names.size()) ? whole(value) : std::nullopt;
+        case Type::integer:
+            return whole(same_unit ? value : convert(value, from, to));
+        case Type::real:
+            break;
+    }
+    const double converted = same_unit ? value : convert(value, from, to);
+    return std::isfinite(converted) ? std::optional<Value>(converted) : std::nullopt;
+}
+
+}  // namespace
+
+void Linker::connect_replays() {
+    std::size_t room = most_memory / sizeof(Replay::Point);
+    for (const ReplayPlan& plan : program_.replays) connect_replay(plan, room);
+}
+
+/// `room` is for so many points more.
+void Linker::connect_replay(const ReplayPlan& plan, std::size_t& room) {
+    std::vector<std::optional<Target>> targets;
+    for (const auto& [key, column] : plan.set) targets.push_back(replayed(plan, key));
+    if (plan.path.empty() || plan.set.empty()) return;
+    CsvOptions csv{.columns = {"time"}, .most_rows = room / plan.set.size()};
+    for (const auto& [key, column] : plan.set) csv.columns.push_back(column.text);
+    const auto table = read_csv(plan.path, read_.diagnostics(), csv);
+    if (!table) return;
+    room -= table->rows * plan.set.size();
+    const auto times = replay_times(plan, *table);
+    if (!times) return;
+    using enum Replay::Between;
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        if (!targets[i]) continue;
+        auto points = replay_points(*targets[i], plan.set[i].second, *table, *times);
+        if (!points.empty())
+            out_.machine.replays.emplace_back(targets[i]->live, targets[i]->field.type,
+                                              plan.interpolated ? interpolated : held,
+                                              std::move(points));
+    }
+}
+
+std::optional<Target> Linker::replayed(const ReplayPlan& plan, const Node& key) {
+    auto input = settable(key);
+    if (!input || !plan.interpolated || input->field.type == Type::real) return input;
+    read_.fail("L0213", key,
+               fmt::format("'{}' is {}: there is nothing between two values", key.text,
+                           kind(input->field.type, input->field.names)),
+               "only reals are interpolated: between: held");
+    return {};
+}
+
+/// In ns of the run, a row each.
+std::optional<std::vector<std::int64_t>> Linker::replay_times(const ReplayPlan& plan,
+                                                              const CsvTable& table) {
+    const CsvColumn& time = *table.find("time");
+    const auto fail = [&](const char* code, const std::string& message, const char* help) {
+        read_.fail(code, plan.file, message, help);
+        return std::nullopt;
+    };
+    if (table.rows == 0)
+        return fail("L0721", fmt::format("'{}' has no rows", plan.file.text),
+                    "there is nothing to replay");
+    const auto unit = column_unit(time, "s", plan.file);
+    if (!unit) return {};
+    std::vector<std::int64_t> times;
+    times.reserve(table.rows);
+    for (std::size_t row = 0; row < table.rows; ++row) {
+        const bool missing = time.is_missing(row);
+        if (missing || (row > 0 && time.values[row] < time.values[row - 1]))
+            return fail("L0722",
+                        fmt::format("the time in line {} of '{}' {}", line(row), plan.file.text,
+                                    missing ? "is missing" : "is before that of the line above"),
+                        "rows stand in the order of time");
+        const double at = std::round(convert(time.values[row], *unit, parsed("ns")));
+        if (!(std::abs(at) + static_cast<double>(plan.at) < most_time))
+            return fail("L0308",
+                        fmt::format("the time in line {} of '{}' lies more than 146 years away",
+                                    line(row), plan.file.text),
+                        "times are in s, or in the unit of a title such as 'time [ms]'");
+        times.push_back(static_cast<std::int64_t>(at) + plan.at);
+    }
+    return times;
+}
+
+/// Those of the rows that have a value; none when anything is wrong.
+std::vector<Replay::Point> Linker::replay_points(const Target& input, const Node& name,
+                                                 const CsvTable& table,
+                                                 const std::vector<std::int64_t>& times) {
+    const CsvColumn& column = *table.find(name.text);
+    const bool is_typed = table.metadata && table.metadata->find(column.title);
+    const std::vector<std::string_view> names(column.names.begin(), column.names.end());
+    if (!fits(column, is_typed, input.field)) {
+        read_.fail(
+            "L0401", name,
+            fmt::format("column '{}' is {}, '{}' takes {}", name.text, kind(column.type, names),
+                        input.signal.name, kind(input.field.type, input.field.names)));
+        return {};
+    }
+    const auto unit = column_unit(column, input.signal.unit, name);
+    if (!unit) return {};
+    std::vector<Replay::Point> points;
+    points.reserve(table.rows);
+    for (std::size_t row = 0; row < table.rows; ++row) {
+        if (column.is_missing(row)) continue;
+        const auto value = cell(column, row, input.field, *unit, parsed(input.signal.unit));
+        if (!value || !input.field.admits(as_real(*value))) {
+            wrong_cell(input, name, column, row, value.has_value());
+            return {};
+        }
+        points.push_back({.time = times[row]});
+        store(input.field.type, points.back().value.data(), *value);
+    }
+    if (points.empty())
+        read_.fail("L0721", name, fmt::format("column '{}' has no values", name.text),
+                   "there is nothing to replay");
+    return points;
+}
+
+void Linker::wrong_cell(const Target& input, const Node& name, const CsvColumn& column,
+                        std::size_t row, bool is_out_of_range) {
+    const std::string what = fmt::format("'{}' in line {} of column '{}'",
+                                         format_number(column.values[row]), line(row), name.text);
+    if (is_out_of_range)
+        read_.fail("L0305", name,
+                   fmt::format("{} is out of range for '{}'", what, input.signal.name),
+                   "it must be " + describe_limits(input.field, input.signal.unit));
+    else
+        read_.fail("L0705", name, fmt::format("{} is no value of '{}'", what, input.signal.name),
+                   "it takes " + kind(input.field.type, input.field.names));
+}
+
+/// What the file says, else `wanted`; both measure the same, or it is L0303.
+std::optional<Unit> Linker::column_unit(const CsvColumn& column, const std::string& wanted,
+                                        const Node& place) {
+    const Unit& due = parsed(wanted);
+    const auto found = column.unit.empty() ? std::optional(due) : Unit::parse(column.unit);
+    if (found && found->same_dimension(due)) return found;
+    read_.fail("L0303", place,
+               fmt::format("column '{}' is in {}, not in {}", column.name, column.unit,
+                           wanted.empty() ? "plain numbers" : wanted));
+    return {};
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,252 @@
+#include "runtime/run/single_run.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <deque>
+
+#include <fmt/format.h>
+
+#include "runtime/restart/checkpoint.hpp"
+#include "runtime/restart/retain.hpp"
+#include "runtime/trace/event_writer.hpp"
+#include "runtime/trace/pulse_writer.hpp"
+#include "runtime/trace/trace_files.hpp"
+
+namespace lineshaft {
+
+std::optional<Loaded> load_program(const std::string& path, const LoadOptions& options,
+                                   const Catalog& catalog, Diagnostics& out) {
+    const auto file = options.files ? options.files->source(path, out) : read_source(path, out);
+    if (!file) return {};
+    Loaded loaded{.program = read_program(file, options, out), .linked = {}};
+    loaded.linked = link(loaded.program, catalog, out);
+    if (!out.empty()) return {};
+    return loaded;
+}
+
+bool RunReport::expectations_hold() const {
+    return std::ranges::all_of(verdicts, &Verdict::ok);
+}
+
+namespace {
+
+/// One trace while it is recorded.
+struct Tracing {
+    Tracing(const TraceSetup& setup, const Program& program, const RunOptions& options)
+        : name(setup.name),
+          files(options.trace_path, setup, program.title, program.file->text, options.csv_style),
+          recorder(setup, files) {}
+
+    void save(StateWriter& out) {
+        recorder.flush();
+        files.save(out);
+    }
+
+    TraceReport finish(const RunResult& result, const Judge& judge) {
+        files.set_outcome(result.message, verdicts_json(judge));
+        recorder.finish();
+        if (recorder.measurements() == 0) {
+            files.begin();
+            files.end();
+        }
+        return {name, files.paths(), recorder.measurements(), recorder.recorded()};
+    }
+
+    std::string name;
+    TraceFiles files;
+    Recorder recorder;
+};
+
+/// One run: its observers and files from the start to the end.
+class SingleRun {
+  public:
+    SingleRun(Loaded& loaded, const RunOptions& options)
+        : loaded_(loaded), options_(options), machine_(loaded.linked.machine) {}
+
+    RunReport run();
+
+  private:
+    bool begin();
+    bool restart();
+    bool open_files();
+    template <class Writer, class... Arguments>
+    void open(std::optional<Writer>& writer, Arguments&&... arguments);
+    void refuse(const std::string& error);
+    bool resume();
+    void tell_restart();
+    void save(std::int64_t time);
+    void look(std::int64_t time);
+    bool writing_fails() const;
+    void finish();
+    void open_traces();
+    bool has_trace() const {
+        return !options_.trace_path.empty() && !loaded_.linked.traces.empty();
+    }
+
+    Loaded& loaded_;
+    const RunOptions& options_;
+    Machine& machine_;
+    RunReport report_;
+    Judge judge_{loaded_.linked.expectations};
+    std::string program_;  ///< fingerprint; empty when there are no checkpoints
+    std::string state_;    ///< of a checkpoint
+    int retained_ = 0;
+    std::optional<StateReader> begun_;
+    std::deque<Tracing> traces_;
+    std::optional<EventWriter> events_;
+    std::optional<PulseWriter> pulses_;
+    std::optional<Executive> executive_;
+    std::vector<Observer*> observers_;
+    std::atomic<bool> stop_ = false;
+};
+
+RunReport SingleRun::run() {
+    const auto start = std::chrono::steady_clock::now();
+    if (begin()) {
+        report_.result =
+            executive_->run(observers_, &stop_, [this](std::int64_t time) { look(time); });
+        if (report_.result.outcome == Outcome::interrupted && writing_fails())
+            report_.result.message = "the run stopped at " + format_time(report_.result.time);
+        judge_.finish(report_.result);
+        report_.verdicts = judge_.verdicts();
+        finish();
+    }
+    for (DeviceCall& device : machine_.devices) device.sink = nullptr;
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+    report_.wall_seconds = wall.count();
+    return std::move(report_);
+}
+
+bool SingleRun::begin() {
+    if (!restart() || !open_files()) return false;
+    executive_.emplace(machine_);
+    if (events_) executive_->report_to(*events_);
+    if (begun_ && !resume()) return false;
+    tell_restart();
+    if (options_.checkpoint_every > 0)
+        executive_->checkpoint(options_.checkpoint_every,
+                               [this](std::int64_t time) { save(time); });
+    return true;
+}
+
+bool SingleRun::restart() {
+    if (options_.checkpoint_every > 0 || options_.restart == Restart::hot)
+        program_ = fingerprint(loaded_.program, machine_);
+    if (options_.restart == Restart::warm && !options_.retain_path.empty())
+        retained_ = read_retained(options_.retain_path, machine_, report_.refused);
+    if (options_.restart == Restart::hot) {
+        state_ = read_checkpoint(options_.checkpoint_path, program_, report_.refused).value_or("");
+        begun_.emplace(state_);
+    }
+    return report_.refused.empty();
+}
+
+/// What a file of the checkpoint holds comes first in it, then the machine and its observers.
+bool SingleRun::open_files() {
+    std::array<bool, 2> files = {has_trace(), !options_.pulses_path.empty()}, before = files;
+    if (begun_) begun_->get(before);
+    if (files != before) {
+        report_.refused.add("L0506", {},
+                            "the checkpoint was made with other files than this run has",
+                            "give the same --trace and --pulses as before");
+        return false;
+    }
+    if (has_trace()) open_traces();
+    if (!options_.pulses_path.empty()) open(pulses_, options_.pulses_path, machine_);
+    if (!loaded_.linked.expectations.empty()) observers_.push_back(&judge_);
+    if (options_.observer) observers_.push_back(options_.observer);
+    return report_.refused.empty();
+}
+
+template <class Writer, class... Arguments>
+void SingleRun::open(std::optional<Writer>& writer, Arguments&&... arguments) {
+    if (begun_)
+        writer.emplace(arguments..., *begun_);
+    else
+        writer.emplace(arguments...);
+    if (begun_) refuse(writer->error());
+}
+
+void SingleRun::refuse(const std::string& error) {
+    if (!error.empty())
+        report_.refused.add("L0506", {}, error, "run the program from its start: without --resume");
+}
+
+void SingleRun::open_traces() {
+    open(events_, events_path(options_.trace_path), machine_);
+    for (const TraceSetup& setup : loaded_.linked.traces) {
+        Tracing& trace = traces_.emplace_back(setup, loaded_.program, options_);
+        if (begun_) trace.files.restore(*begun_);
+        refuse(trace.files.error());
+        observers_.push_back(&trace.recorder);
+        trace.recorder.on_trigger = [this, &setup](const Scan& scan) {
+            events_->happened({.time = scan.time,
+                               .scan = scan.index,
+                               .task = setup.task,
+                               .kind = EventKind::trigger,
+                               .text = setup.name.empty() ? "trace" : "trace " + setup.name});
+        };
+    }
+}
+
+bool SingleRun::resume() {
+    executive_->restore(*begun_);
+    for (Observer* observer : observers_) observer->restore(*begun_);
+    if (begun_->at_end()) return true;
+    refuse("the checkpoint does not fit the program");
+    return false;
+}
+
+void SingleRun::tell_restart() {
+    if (!events_ || options_.restart == Restart::hot) return;
+    const bool warm = options_.restart == Restart::warm && !options_.retain_path.empty();
+    events_->happened({.kind = EventKind::restart,
+                       .text = warm ? fmt::format("warm restart, {} retained values", retained_)
+                                    : "cold restart"});
+}
+
+void SingleRun::save(std::int64_t time) {
+    StateWriter out;
+    out.put(std::array<bool, 2>{has_trace(), pulses_.has_value()});
+    if (events_) events_->save(out);
+    for (Tracing& trace : traces_) trace.save(out);
+    if (pulses_) pulses_->save(out);
+    executive_->save(out);
+    for (const Observer* observer : observers_) observer->save(out);
+    report_.restart_error = write_checkpoint(options_.checkpoint_path, program_, time, out.bytes());
+}
+
+/// Stops the run when the user wants it, and when what it records cannot be written.
+void SingleRun::look(std::int64_t time) {
+    if (options_.progress) options_.progress(time);
+    if (writing_fails() || (options_.interrupt && *options_.interrupt)) stop_ = true;
+}
+
+bool SingleRun::writing_fails() const {
+    return (events_ && !events_->error().empty()) || (pulses_ && !pulses_->error().empty()) ||
+           std::ranges::any_of(traces_, [](const Tracing& t) { return t.files.failed(); });
+}
+
+void SingleRun::finish() {
+    for (Tracing& trace : traces_) {
+        report_.traces.push_back(trace.finish(report_.result, judge_));
+        if (report_.trace_error.empty()) report_.trace_error = trace.files.error();
+    }
+    if (events_) {
+        const std::string error = events_->finish();
+        if (report_.trace_error.empty()) report_.trace_error = error;
+    }
+    if (pulses_) report_.pulses_error = pulses_->finish(report_.result.message);
+    if (options_.retain_path.empty()) return;
+    const std::string error = write_retained(options_.retain_path, machine_);
+    if (!error.empty()) report_.restart_error = error;
+}
+
+}  // namespace
+
+RunReport run(Loaded& loaded, const RunOptions& options) {
+    return SingleRun(loaded, options).run();
+}
+
+}  // namespace lineshaft

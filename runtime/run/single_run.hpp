@@ -1,0 +1,70 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/net/link.hpp"
+#include "runtime/trace/csv_writer.hpp"
+
+namespace lineshaft {
+
+/// A program file, read, checked and wired.
+struct Loaded {
+    Program program;
+    Linked linked;
+};
+
+/// Empty when `out` got any diagnostic.
+std::optional<Loaded> load_program(const std::string& path, const LoadOptions& options,
+                                   const Catalog& catalog, Diagnostics& out);
+
+/// How a run begins, as the S7-400 manual has it: cold, all values are the initial ones; warm,
+/// retained ones are kept; hot, everything is as at the last checkpoint and goes on.
+enum class Restart { cold, warm, hot };
+
+struct RunOptions {
+    std::string
+        trace_path;  ///< CSV, see TraceFiles; empty: no trace is recorded. Events go beside it
+    std::string pulses_path = {};  ///< CSV of all pulse channels' edges; empty: none
+    CsvStyle csv_style = {};
+    const std::atomic<bool>* interrupt = nullptr;
+    std::function<void(std::int64_t time)> progress;  ///< called now and then [ns]
+    Observer* observer = nullptr;                     ///< sees the run, besides the trace
+    Restart restart = Restart::warm;
+    std::string retain_path = {};       ///< of retained values, read and written; empty: none
+    std::string checkpoint_path = {};   ///< read by a hot restart
+    std::int64_t checkpoint_every = 0;  ///< virtual time between checkpoints [ns]; 0: none
+};
+
+/// What came of one trace.
+struct TraceReport {
+    std::string name;                ///< as in TraceSetup
+    std::vector<std::string> paths;  ///< one a measurement; without any an empty one
+    std::int64_t measurements = 0;   ///< 0: the trigger did not come
+    std::int64_t rows = 0;           ///< of all measurements
+};
+
+/// What came of one run. Final values stand in the machine's signals.
+struct RunReport {
+    RunResult result;
+    std::vector<Verdict> verdicts;    ///< one per expectation of the program
+    std::vector<TraceReport> traces;  ///< that were recorded
+    std::string trace_error;          ///< why the trace is not there, if one was wanted
+    std::string pulses_error;         ///< likewise of the pulses
+    std::string restart_error;        ///< why retained values or checkpoints were not written
+    Diagnostics refused;              ///< why the run could not begin, if so; nothing has run then
+    double wall_seconds = 0;
+
+    bool expectations_hold() const;
+    bool faulted() const {
+        return result.outcome != Outcome::completed || !trace_error.empty() ||
+               !pulses_error.empty() || !restart_error.empty();
+    }
+};
+
+RunReport run(Loaded& loaded, const RunOptions& options);
+
+}  // namespace lineshaft

@@ -1,0 +1,220 @@
+#include "runtime/source/diagnostic.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "runtime/source/utf8.hpp"
+
+namespace lineshaft {
+namespace {
+
+constexpr std::size_t longest_line = 100;      // characters of source shown
+constexpr std::size_t before_mark = 40;        // of these, when the line is cut at its start
+constexpr std::size_t longest_message = 1000;  // characters; a message quotes the user's text
+constexpr std::size_t longest_word = 100;      // bytes that `nearest` compares
+constexpr std::size_t most_names = 12;
+constexpr std::string_view cut = "...";
+
+/// Line breaks, and characters that reorder or hide what stands around them.
+bool is_unsafe(char32_t code) {
+    if (is_control(code) || code == 0xFEFF) return true;
+    if (code == 0x061C || code == 0x200E || code == 0x200F) return true;
+    return (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
+}
+
+/// At most `most` characters from the beginning of `text`, one string each, as they are printed.
+std::vector<std::string> printable(std::string_view text, std::size_t most) {
+    std::vector<std::string> out;
+    while (!text.empty() && out.size() < most) {
+        const Utf8Character character = first_character(text);
+        const bool unsafe = !character.valid || is_unsafe(character.code);
+        if (text.front() == '\t') {
+            out.emplace_back(" ");
+        } else {
+            out.emplace_back(unsafe ? "?" : text.substr(0, character.bytes));
+        }
+        text.remove_prefix(character.bytes);
+    }
+    return out;
+}
+
+/// Removes `count` characters, or all there are, from the beginning; how many that were.
+std::size_t skip(std::string_view& text, std::size_t count) {
+    std::size_t skipped = 0;
+    for (; skipped < count && !text.empty(); ++skipped) {
+        const bool ascii = static_cast<unsigned char>(text.front()) < 0x80;
+        text.remove_prefix(ascii ? 1 : first_character(text).bytes);
+    }
+    return skipped;
+}
+
+std::string printable_text(std::string_view text) {
+    const std::string shown = fmt::format("{}", fmt::join(printable(text, longest_message), ""));
+    const bool whole = skip(text, longest_message) < longest_message || text.empty();
+    return whole ? shown : fmt::format("{}{}", shown, cut);
+}
+
+/// Line `line` (from 1) without its end; empty beyond the last.
+std::string_view line_of(const SourceFile& file, int line) {
+    std::string_view text = file.text;
+    if (text.starts_with(utf8_byte_order_mark)) text.remove_prefix(utf8_byte_order_mark.size());
+    for (int i = 1; i < line; ++i) {
+        const std::size_t end = text.find('\n');
+        if (end == std::string_view::npos) return {};
+        text.remove_prefix(end + 1);
+    }
+    text = text.substr(0, text.find('\n'));
+    if (text.ends_with('\r')) text.remove_suffix(1);
+    return text;
+}
+
+/// What is shown of a line, and where in it (from 0) the mark begins and ends.
+struct Window {
+    std::string text;
+    std::size_t begin = 0;
+    std::size_t end = 0;
+};
+
+Window window_of(std::string_view line, const Mark& mark) {
+    std::string_view rest = line;
+    const bool whole = skip(rest, longest_line) < longest_line || rest.empty();
+    rest = line;
+    const std::size_t column = skip(rest, static_cast<std::size_t>(std::max(mark.column, 1)) - 1);
+    const std::size_t length = static_cast<std::size_t>(std::max(mark.length, 1));
+    const std::size_t first = whole || column <= before_mark ? 0 : column - before_mark;
+    rest = line;
+    skip(rest, first);
+    const std::vector<std::string> shown = printable(rest, longest_line);
+
+    const std::string_view left = first > 0 ? cut : "";
+    const std::size_t begin = column - first;
+    const std::size_t end = std::max(begin + 1, std::min(begin + length, shown.size()));
+    const std::string_view right =
+        skip(rest, longest_line) == longest_line && !rest.empty() ? cut : "";
+    return {fmt::format("{}{}{}", left, fmt::join(shown, ""), right), begin + left.size(),
+            end + left.size()};
+}
+
+std::string snippet(const Diagnostic& diagnostic) {
+    const Mark& mark = diagnostic.mark;
+    const Window window = window_of(line_of(*mark.file, mark.line), mark);
+    const std::string number = fmt::format("{:>4}", mark.line);
+    const std::string help = printable_text(diagnostic.help);
+    return fmt::format("{} |{}{}\n{:{}} | {:{}}^{:~<{}}{}{}\n", number,
+                       window.text.empty() ? "" : " ", window.text, "", number.size(), "",
+                       window.begin, "", window.end - window.begin - 1, help.empty() ? "" : " ",
+                       help);
+}
+
+std::string_view path_of(const Diagnostic& diagnostic) {
+    const Mark& mark = diagnostic.mark;
+    return mark.file ? std::string_view(mark.file->path) : std::string_view();
+}
+
+auto order(const Diagnostic& d) {
+    return std::make_tuple(path_of(d), d.mark.line, d.mark.column, std::string_view(d.code),
+                           std::string_view(d.message));
+}
+
+std::string lower(std::string_view text) {
+    std::string out(text);
+    for (char& c : out) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+    return out;
+}
+
+/// Optimal string alignment: insert, remove, replace, exchange of two neighbours cost 1 each.
+std::size_t distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> before_last;
+    std::vector<std::size_t> last(b.size() + 1);
+    std::iota(last.begin(), last.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::vector<std::size_t> row(b.size() + 1);
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t replaced = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            row[j] = std::min({last[j] + 1, row[j - 1] + 1, replaced});
+            const bool exchanged = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+            if (exchanged) row[j] = std::min(row[j], before_last[j - 2] + 1);
+        }
+        before_last = std::move(last);
+        last = std::move(row);
+    }
+    return last.back();
+}
+
+}  // namespace
+
+void Diagnostics::add(std::string code, Mark mark, std::string message, std::string help) {
+    list_.push_back({std::move(code), std::move(mark), std::move(message), std::move(help)});
+}
+
+std::string Diagnostics::render(std::size_t limit) const {
+    std::vector<const Diagnostic*> sorted;
+    sorted.reserve(list_.size());
+    for (const Diagnostic& diagnostic : list_) sorted.push_back(&diagnostic);
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const auto* a, const auto* b) { return order(*a) < order(*b); });
+    const auto end = std::unique(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) {
+        return order(*a) == order(*b);
+    });
+    sorted.erase(end, sorted.end());
+
+    std::string out;
+    const std::size_t shown = std::min(limit, sorted.size());
+    for (std::size_t i = 0; i < shown; ++i) out += lineshaft::render(*sorted[i]);
+    if (shown < sorted.size()) out += fmt::format("... and {} more\n", sorted.size() - shown);
+    return out;
+}
+
+std::string render(const Diagnostic& diagnostic) {
+    const Mark& mark = diagnostic.mark;
+    const bool placed = mark.file && mark.line > 0;
+    std::string place;
+    if (mark.file) place = printable_text(mark.file->path) + ":";
+    if (placed) place += fmt::format("{}:{}:", mark.line, mark.column);
+    if (!place.empty()) place += " ";
+
+    std::string out = fmt::format("{}error[{}]: {}\n", place, diagnostic.code,
+                                  printable_text(diagnostic.message));
+    if (placed) {
+        out += snippet(diagnostic);
+    } else if (!diagnostic.help.empty()) {
+        out += fmt::format("     | {}\n", printable_text(diagnostic.help));
+    }
+    return out;
+}
+
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
+    if (word.size() > longest_word) return {};
+    const std::size_t limit = std::clamp<std::size_t>(word.size() / 3, 1, 3);
+    const std::string wanted = lower(word);
+    const std::string* best = nullptr;
+    std::size_t best_distance = limit + 1;
+    for (const std::string& candidate : candidates) {
+        const std::size_t longer = std::max(candidate.size(), word.size());
+        if (longer - std::min(candidate.size(), word.size()) > limit) continue;
+        const std::size_t edits = distance(wanted, lower(candidate));
+        if (edits >= best_distance || edits >= longer) continue;
+        best = &candidate;
+        best_distance = edits;
+    }
+    return best == nullptr ? std::string() : *best;
+}
+
+std::string suggest(std::string_view word, const std::vector<std::string>& candidates) {
+    const std::string near = nearest(word, candidates);
+    if (!near.empty()) return fmt::format("did you mean '{}'?", near);
+    if (candidates.empty()) return {};
+    const auto end = std::next(
+        candidates.begin(), static_cast<std::ptrdiff_t>(std::min(candidates.size(), most_names)));
+    return fmt::format("known: {}{}", fmt::join(candidates.begin(), end, ", "),
+                       candidates.size() > most_names ? ", ..." : "");
+}
+
+}  // namespace lineshaft

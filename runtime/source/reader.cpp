@@ -1,0 +1,224 @@
+#include "runtime/source/reader.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace lineshaft {
+
+namespace {
+
+bool is_letter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+std::string_view name_of(Node::Kind kind) {
+    constexpr std::string_view names[] = {"a single value", "a map", "a list"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+/// `mm/s (length/time)`, or `a plain number`.
+std::string measure(const Unit& unit) {
+    const bool plain = unit.same_dimension({});
+    return plain ? "a plain number" : fmt::format("{} ({})", unit.text, unit.dimension_name());
+}
+
+std::string given(const Quantity& q) {
+    return (q.unit.same_dimension({}) ? "" : "in ") + measure(q.unit);
+}
+
+std::string number_help(std::string_view text, std::string due) {
+    if (text.size() > 1 && text[0] == '0' && is_digit(text[1]))
+        return "a number has no leading zero";
+    const bool comma = !text.empty() && is_digit(text[0]) && text.find(',') != text.npos;
+    return comma ? "a number has a decimal point, not a comma" : std::move(due);
+}
+
+/// The part of a quantity's unit that is none: `sec` of `10 mm/sec`; empty if there is no such
+/// part.
+std::string unknown_factor(std::string_view text) {
+    const std::string_view number = text.substr(text.starts_with('+') ? 1 : 0);
+    double ignored = 0;
+    const char* const end =
+        std::from_chars(number.data(), number.data() + number.size(), ignored).ptr;
+    const auto blank = text.find(' ');
+    std::string_view rest = number.substr(static_cast<std::size_t>(end - number.data()));
+    if (blank != text.npos) rest = text.substr(blank + 1);
+    while (!rest.empty()) {
+        const auto length = std::min(rest.find_first_of("*/"), rest.size());
+        const std::string_view factor = rest.substr(0, length);
+        if (factor != "1" && !Unit::parse(factor)) return std::string(factor);
+        rest.remove_prefix(std::min(length + 1, rest.size()));
+    }
+    return {};
+}
+
+}  // namespace
+
+bool is_plain(const Unit& unit) {
+    return unit.same_dimension({}) && unit.numerator == unit.denominator;
+}
+
+bool is_identifier(std::string_view text) {
+    return !text.empty() && is_letter(text.front()) &&
+           std::ranges::all_of(text, [](char c) { return is_letter(c) || is_digit(c); });
+}
+
+bool is_signal_name(std::string_view text) {
+    const auto dot = text.find('.');
+    return dot != std::string_view::npos && is_identifier(text.substr(0, dot)) &&
+           is_identifier(text.substr(dot + 1));
+}
+
+void Reader::fail(const char* code, const Node& node, std::string message, std::string help) const {
+    if (node.is_unknown_parameter()) return;
+    if (!node.parameter.empty())
+        message += fmt::format(" (parameter '{}' is '{}')", node.parameter, node.text);
+    out_.add(code, node.mark, std::move(message), std::move(help));
+}
+
+bool Reader::expect_map(const Node& node, std::string_view what) const {
+    if (!node.is_map())
+        fail("L0209", node, fmt::format("{} is a map, not {}", what, name_of(node.kind)));
+    return node.is_map();
+}
+
+bool Reader::expect_sequence(const Node& node, std::string_view what) const {
+    if (!node.is_sequence())
+        fail("L0209", node, fmt::format("{} is a list, not {}", what, name_of(node.kind)));
+    return node.is_sequence();
+}
+
+bool Reader::expect_scalar(const Node& node, std::string_view what) const {
+    if (!node.is_scalar())
+        fail("L0209", node, fmt::format("{} is a single value, not {}", what, name_of(node.kind)));
+    else if (node.is_empty())
+        fail("L0209", node, fmt::format("{} has no value", what));
+    return node.is_scalar() && !node.is_empty();
+}
+
+void Reader::only_keys(const Node& map, std::string_view what,
+                       std::initializer_list<std::string_view> allowed) const {
+    for (const auto& [key, value] : map.entries)
+        if (std::ranges::find(allowed, key.text) == allowed.end())
+            fail("L0201", key, fmt::format("unknown key '{}' in {}", key.text, what),
+                 key.text.find(':') == std::string::npos
+                     ? suggest(key.text, {allowed.begin(), allowed.end()})
+                     : "a blank is missing after ':'");
+}
+
+const Node* Reader::require(const Node& map, std::string_view key, std::string_view what,
+                            std::string help) const {
+    const Node* value = map.find(key);
+    if (!value) fail("L0202", map, fmt::format("{} has no '{}'", what, key), std::move(help));
+    return value;
+}
+
+bool Reader::identifier(const Node& node, std::string_view what) const {
+    if (node.is_scalar() && is_identifier(node.text)) return true;
+    fail("L0210", node, fmt::format("'{}' is no name for {}", node.text, what),
+         "a name has letters, digits and '_', and does not begin with a digit");
+    return false;
+}
+
+std::optional<bool> Reader::boolean(const Node& node) const {
+    if (!expect_scalar(node, "a boolean")) return {};
+    if (!node.quoted && node.text == "true") return true;
+    if (!node.quoted && node.text == "false") return false;
+    fail("L0307", node, fmt::format("'{}' is no boolean", node.text), "write true or false");
+    return {};
+}
+
+std::optional<Quantity> Reader::quantity(const Node& node, std::string due) const {
+    if (!expect_scalar(node, "a number")) return {};
+    if (node.quoted) {
+        fail("L0301", node, "a text in quotes is no number", "write it without quotes");
+        return {};
+    }
+    const auto result = parse_quantity(node.text);
+    if (const auto* quantity = std::get_if<Quantity>(&result)) return *quantity;
+    const QuantityError error = std::get<QuantityError>(result);
+    if (error == QuantityError::out_of_range) {
+        fail("L0305", node, fmt::format("'{}' is beyond a 64-bit number's range", node.text));
+        return {};
+    }
+    const std::string unit =
+        error == QuantityError::unknown_unit ? unknown_factor(node.text) : std::string();
+    if (unit.empty() || unit.starts_with(','))
+        fail("L0301", node, fmt::format("'{}' is no number", node.text),
+             number_help(node.text, std::move(due)));
+    else
+        fail("L0304", node, fmt::format("unknown unit '{}' in '{}'", unit, node.text),
+             suggest(unit, unit_names()));
+    return {};
+}
+
+std::optional<std::int64_t> Reader::integer(const Node& node) const {
+    const auto q = quantity(node, "a whole number is due");
+    if (!q) return {};
+    if (q->is_integer && !q->has_unit) return q->integer;
+    fail("L0309", node, fmt::format("'{}' is no whole number", node.text),
+         q->has_unit ? "write it without a unit" : "write it without point and exponent");
+    return {};
+}
+
+std::optional<double> Reader::real(const Node& node, const Unit& unit) const {
+    const auto q = quantity(node, is_plain(unit) ? "a plain number is due"
+                                                 : fmt::format("a number in {} is due", unit.text));
+    if (!q) return {};
+    if (!q->has_unit && !is_plain(unit)) {
+        fail("L0302", node, fmt::format("'{}' has no unit", node.text),
+             fmt::format("did you mean '{} {}'?", node.text, unit.text));
+        return {};
+    }
+    if (!q->unit.same_dimension(unit)) {
+        fail("L0303", node,
+             fmt::format("'{}' is {}, {} is due", node.text, given(*q), measure(unit)));
+        return {};
+    }
+    const double value = convert(q->number, q->unit, unit);
+    if (std::isfinite(value)) return value;
+    fail("L0305", node, fmt::format("'{}' is beyond a 64-bit number's range", node.text));
+    return {};
+}
+
+std::optional<std::int64_t> Reader::time(const Node& node) const {
+    static constexpr const char* help = "write a time such as 2 ms";
+    const auto q = quantity(node, help);
+    if (!q) return {};
+    static const Unit second = *Unit::parse("s");
+    if (!q->has_unit) {
+        fail("L0302", node, fmt::format("'{}' has no time unit", node.text),
+             fmt::format("did you mean '{} ms' or '{} s'?", node.text, node.text));
+        return {};
+    }
+    if (!q->unit.same_dimension(second)) {
+        fail("L0308", node, fmt::format("'{}' is {}, a time is due", node.text, given(*q)), help);
+        return {};
+    }
+    const auto ns = to_nanoseconds(*q);
+    if (ns && *ns >= 0) return ns;
+    if (q->number < 0)
+        fail("L0308", node, fmt::format("'{}' is below 0", node.text));
+    else
+        fail("L0308", node, fmt::format("'{}' is no whole number of nanoseconds", node.text),
+             "times are counted in ns, up to 292 years");
+    return {};
+}
+
+std::optional<std::int64_t> Reader::time_or_share(const Node& node, std::int64_t whole) const {
+    if (!node.is_scalar() || node.text.find('%') == std::string::npos) return time(node);
+    static const Unit one;
+    const auto share = real(node, one);
+    if (!share) return {};
+    if (*share >= 0 && *share <= 1) return std::llround(*share * static_cast<double>(whole));
+    fail("L0305", node, fmt::format("'{}' is not between 0 % and 100 %", node.text));
+    return {};
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/source/units.hpp"
+#include "runtime/source/yaml.hpp"
+
+namespace lineshaft {
+
+/// Reads checked values out of nodes; what is wrong becomes a diagnostic at the node's place.
+/// Every function returns nothing, or a harmless default, after reporting. Nothing is reported of
+/// an unknown parameter, for that has been already.
+class Reader {
+  public:
+    explicit Reader(Diagnostics& out) : out_(out) {}
+
+    void fail(const char* code, const Node& node, std::string message, std::string help = {}) const;
+
+    /// L0209 unless it is one.
+    bool expect_map(const Node& node, std::string_view what) const;
+    bool expect_sequence(const Node& node, std::string_view what) const;
+    bool expect_scalar(const Node& node, std::string_view what) const;
+
+    /// L0201 for each key of `map` that is not `allowed`.
+    void only_keys(const Node& map, std::string_view what,
+                   std::initializer_list<std::string_view> allowed) const;
+
+    /// The value at `key`; L0202 at the map when it is missing.
+    const Node* require(const Node& map, std::string_view key, std::string_view what,
+                        std::string help = {}) const;
+
+    /// Letters, digits and underscores, not starting with a digit; L0210 otherwise.
+    bool identifier(const Node& node, std::string_view what) const;
+
+    std::optional<bool> boolean(const Node& node) const;
+    std::optional<std::int64_t> integer(const Node& node) const;
+    /// `due` is what is wanted instead of something that is no number, for the message.
+    std::optional<Quantity> quantity(const Node& node, std::string due = {}) const;
+
+    /// A quantity in `unit`: L0302 when the unit is missing, L0303 when it measures something else.
+    std::optional<double> real(const Node& node, const Unit& unit) const;
+
+    /// Whole nanoseconds, not negative.
+    std::optional<std::int64_t> time(const Node& node) const;
+
+    /// A time, or a percentage of `whole` [ns].
+    std::optional<std::int64_t> time_or_share(const Node& node, std::int64_t whole) const;
+
+    Diagnostics& diagnostics() const { return out_; }
+
+  private:
+    Diagnostics& out_;
+};
+
+/// A unit that a plain number has as well: none, `mm/mm`.
+bool is_plain(const Unit& unit);
+
+bool is_identifier(std::string_view text);
+
+/// `a.b`, both identifiers.
+bool is_signal_name(std::string_view text);
+
+}  // namespace lineshaft

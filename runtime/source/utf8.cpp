@@ -1,0 +1,52 @@
+#include "runtime/source/utf8.hpp"
+
+#include <array>
+#include <cassert>
+
+namespace lineshaft {
+namespace {
+
+constexpr Utf8Character invalid{0xFFFD, 1, false};
+
+std::size_t sequence_length(unsigned char lead) {
+    if (lead < 0x80) return 1;
+    if (lead >= 0xC2 && lead <= 0xDF) return 2;
+    if (lead >= 0xE0 && lead <= 0xEF) return 3;
+    if (lead >= 0xF0 && lead <= 0xF4) return 4;
+    return 0;
+}
+
+}  // namespace
+
+Utf8Character first_character(std::string_view text) {
+    assert(!text.empty());
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const std::size_t length = sequence_length(byte(0));
+    if (length == 1) return {byte(0), 1, true};
+    if (length == 0 || length > text.size()) return invalid;
+
+    char32_t code = byte(0) & (0x7Fu >> length);
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xC0u) != 0x80u) return invalid;
+        code = (code << 6) | (byte(i) & 0x3Fu);
+    }
+    constexpr std::array<char32_t, 5> smallest{0, 0, 0x80, 0x800, 0x10000};
+    const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
+    if (code < smallest[length] || code > 0x10FFFF || surrogate) return invalid;
+    return {code, length, true};
+}
+
+std::size_t count_characters(std::string_view text) {
+    std::size_t count = 0;
+    while (!text.empty()) {
+        text.remove_prefix(first_character(text).bytes);
+        ++count;
+    }
+    return count;
+}
+
+bool is_control(char32_t code) {
+    return code < 0x20 || (code >= 0x7F && code < 0xA0);
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,28 @@
+#include "runtime/source/yaml_files.hpp"
+
+namespace lineshaft {
+
+std::shared_ptr<const SourceFile> YamlFiles::source(const std::string& path, Diagnostics& out,
+                                                    Mark where) {
+    if (const auto it = sources_.find(path); it != sources_.end()) return it->second;
+    auto file = read_source(path, out, std::move(where));
+    if (file) sources_.emplace(path, file);
+    return file;
+}
+
+std::optional<Node> YamlFiles::parse(const std::shared_ptr<const SourceFile>& file,
+                                     Diagnostics& out) {
+    if (const auto it = roots_.find(file); it != roots_.end()) return it->second;
+    const std::size_t before = out.list().size();
+    auto root = parse_yaml(file, out);
+    if (root && out.list().size() == before) roots_.emplace(file, *root);
+    return root;
+}
+
+std::vector<std::shared_ptr<const SourceFile>> YamlFiles::sources() const {
+    std::vector<std::shared_ptr<const SourceFile>> all;
+    for (const auto& [path, file] : sources_) all.push_back(file);
+    return all;
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,137 @@
+#include "runtime/run/single_run.hpp"
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+
+#include <catch2/catch.hpp>
+
+#include "blocks/catalog.hpp"
+#include "tests/folder.hpp"
+
+using namespace lineshaft;
+using namespace lineshaft::test;
+
+namespace {
+
+constexpr const char* program = R"(lineshaft: 1
+title: One axis
+parameters: {speed: 10 mm/s, acceleration: 100 mm/s^2}
+tasks: {main: {every: 10 ms}}
+blocks:
+  axis: {type: virtual_axis, task: main, velocity: $speed, acceleration: inputs.limit}
+inputs: {limit: 100 mm/s^2}
+stimulus:
+  - {at: 0.5 s, set: {inputs.limit: $acceleration}}
+run: {for: 1 s}
+trace: {task: main, every: 50, signals: [axis.velocity, axis.moving]}
+expect:
+  - {at: end, axis.velocity: 10 mm/s}
+)";
+
+class File {
+  public:
+    explicit File(const std::string& text = program) : path(folder / "program.yaml") {
+        std::ofstream(path) << text;
+    }
+
+    std::optional<Loaded> load(const std::vector<Setting>& settings = {}) {
+        return load_program(path, {.settings = settings, .include_dirs = {}}, catalog, diagnostics);
+    }
+
+    const Catalog catalog = standard_blocks();
+    Diagnostics diagnostics;
+    Folder folder;
+    const std::string path;
+};
+
+}  // namespace
+
+TEST_CASE("a program runs to its end and its expectations are judged") {
+    File file;
+    auto loaded = file.load();
+    REQUIRE(loaded);
+    const RunReport report = run(*loaded, {});
+    CHECK(report.result.outcome == Outcome::completed);
+    CHECK(report.result.scans == std::vector<std::int64_t>{101});
+    CHECK(report.expectations_hold());
+    CHECK_FALSE(report.faulted());
+    CHECK(as_real(loaded->linked.machine.find("axis.velocity")->value()) == 10);
+}
+
+TEST_CASE("a setting changes the run, and the verdict with it") {
+    File file;
+    auto loaded = file.load({{.name = "speed", .value = "20 mm/s"}});
+    REQUIRE(loaded);
+    const RunReport report = run(*loaded, {});
+    CHECK_FALSE(report.expectations_hold());
+    CHECK_FALSE(report.faulted());
+    CHECK(report.verdicts[0].deviation ==
+          "axis.velocity is 20 mm/s at 1 s, scan 100; expected 10 mm/s");
+}
+
+TEST_CASE("a trace is written while the program runs") {
+    File file;
+    auto loaded = file.load();
+    REQUIRE(loaded);
+    const std::string trace = file.folder / "t.csv";
+    const RunReport report = run(*loaded, {.trace_path = trace, .interrupt = {}, .progress = {}});
+    CHECK(report.trace_error.empty());
+    CHECK(read(trace) ==
+          "time,scan,axis.velocity,axis.moving\n"
+          "0,0,0,0\n"
+          "0.5,50,10,1\n"
+          "1,100,10,1\n");
+    CHECK(std::filesystem::exists(trace + "-metadata.json"));
+}
+
+TEST_CASE("a trace that cannot be written is a fault and ends the run") {
+    File file;
+    auto loaded = file.load();
+    REQUIRE(loaded);
+    const RunReport report =
+        run(*loaded, {.trace_path = file.folder / "none/t.csv", .interrupt = {}, .progress = {}});
+    CHECK(report.result.message == "the run stopped at 0 s");
+    CHECK(report.faulted());
+    CHECK_THAT(report.trace_error, Catch::EndsWith("No such file or directory"));
+}
+
+TEST_CASE("a block's error is a fault, and what was traced until then is kept") {
+    File file;
+    auto loaded = file.load({{.name = "acceleration", .value = "0 mm/s^2"}});
+    REQUIRE(loaded);
+    const std::string trace = file.folder / "t.csv";
+    const RunReport report = run(*loaded, {.trace_path = trace, .interrupt = {}, .progress = {}});
+    CHECK(report.result.outcome == Outcome::block_error);
+    CHECK(report.faulted());
+    CHECK(report.result.message ==
+          "block 'axis' (virtual_axis) reports error 2 (limit_not_positive) in scan 50 of task "
+          "'main' at 0.5 s");
+    CHECK(read(trace) == "time,scan,axis.velocity,axis.moving\n0,0,0,0\n0.5,50,10,1\n");
+}
+
+TEST_CASE("an interrupted run stops before its end, and its trace says so") {
+    File file;
+    auto loaded = file.load();
+    REQUIRE(loaded);
+    const std::atomic<bool> interrupt = true;
+    const std::string trace = file.folder / "t.csv";
+    const RunReport report =
+        run(*loaded, {.trace_path = trace, .interrupt = &interrupt, .progress = {}});
+    CHECK(report.result.outcome == Outcome::interrupted);
+    CHECK(report.result.time < 1'000'000'000);
+    CHECK(read(trace) == "time,scan,axis.velocity,axis.moving\n0,0,0,0\n");
+    CHECK_THAT(read(trace + "-metadata.json"),
+               Catch::Contains(R"("lineshaft:stopped": "interrupted at 0 s")"));
+}
+
+TEST_CASE("a program with mistakes is not loaded") {
+    File wrong("lineshaft: 1\ntasks: {main: {every: 1}}\nblocks: {}\nrun: {for: 1 s}\n");
+    CHECK_FALSE(wrong.load());
+    CHECK_FALSE(wrong.diagnostics.empty());
+    File missing;
+    std::filesystem::remove(missing.path);
+    CHECK_FALSE(missing.load());
+    REQUIRE_FALSE(missing.diagnostics.empty());
+    CHECK(missing.diagnostics.list().front().code == "L0001");
+}

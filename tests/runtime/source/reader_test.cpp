@@ -1,0 +1,169 @@
+#include "runtime/source/reader.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace lineshaft;
+
+namespace {
+
+Node scalar(std::string text, bool quoted = false) {
+    Node node;
+    node.text = std::move(text);
+    node.quoted = quoted;
+    return node;
+}
+
+/// The code and message of the first diagnostic; empty when there is none.
+std::string first(const Diagnostics& out) {
+    if (out.empty()) return {};
+    return out.list().front().code + ": " + out.list().front().message;
+}
+
+std::string help(const Diagnostics& out) {
+    return out.empty() ? "" : out.list().front().help;
+}
+
+const Unit mm_s = *Unit::parse("mm/s");
+const Unit plain;
+
+}  // namespace
+
+TEST_CASE("reader: names") {
+    CHECK(is_identifier("slave_x2"));
+    CHECK(is_identifier("_"));
+    for (const char* bad : {"", "2nd", "slave-x", "a b", "a.b", "Ä"})
+        CHECK_FALSE(is_identifier(bad));
+    CHECK(is_signal_name("a.b"));
+    for (const char* bad : {"a", "a.", ".b", "a.b.c", "NOT a.b"}) CHECK_FALSE(is_signal_name(bad));
+}
+
+TEST_CASE("reader: booleans are true and false only") {
+    Diagnostics out;
+    const Reader read(out);
+    CHECK(read.boolean(scalar("true")) == true);
+    CHECK(read.boolean(scalar("false")) == false);
+    CHECK(out.empty());
+    const std::string bad = GENERATE("yes", "on", "True", "1", "0");
+    CHECK(read.boolean(scalar(bad)) == std::nullopt);
+    CHECK(first(out) == "L0307: '" + bad + "' is no boolean");
+}
+
+TEST_CASE("reader: a boolean in quotes is a text") {
+    Diagnostics out;
+    CHECK(Reader(out).boolean(scalar("true", true)) == std::nullopt);
+    CHECK(out.list().size() == 1);
+}
+
+TEST_CASE("reader: real numbers are converted to the unit that is due") {
+    Diagnostics out;
+    const Reader read(out);
+    CHECK(read.real(scalar("2 cm/s"), mm_s) == 20);
+    CHECK(read.real(scalar("1.5"), plain) == 1.5);
+    CHECK(read.real(scalar("20 %"), plain) == 0.2);
+    CHECK(read.real(scalar("3"), *Unit::parse("mm/mm")) == 3);
+    CHECK(out.empty());
+}
+
+TEST_CASE("reader: what is wrong with a real number") {
+    struct Row {
+        std::string text, message, help;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"10", "L0302: '10' has no unit", "did you mean '10 mm/s'?"},
+        {"10 mm", "L0303: '10 mm' is in mm (length), mm/s (length/time) is due", ""},
+        {"20 %", "L0303: '20 %' is a plain number, mm/s (length/time) is due", ""},
+        {"fast", "L0301: 'fast' is no number", "a number in mm/s is due"},
+        {"nan", "L0301: 'nan' is no number", "a number in mm/s is due"},
+        {"010 mm/s", "L0301: '010 mm/s' is no number", "a number has no leading zero"},
+        {"1,5 mm/s", "L0301: '1,5 mm/s' is no number", "a number has a decimal point, not a comma"},
+        {"1.2.3", "L0304: unknown unit '.3' in '1.2.3'", ""},
+        {"10 MM/s", "L0304: unknown unit 'MM' in '10 MM/s'", "did you mean 'mm'?"},
+        {"1e999 mm/s", "L0305: '1e999 mm/s' is beyond a 64-bit number's range", ""},
+        {"1e308 m/s", "L0305: '1e308 m/s' is beyond a 64-bit number's range", ""},
+    }));
+    Diagnostics out;
+    CHECK(Reader(out).real(scalar(row.text), mm_s) == std::nullopt);
+    CHECK(first(out) == row.message);
+    if (!row.help.empty()) CHECK(help(out) == row.help);
+    CHECK(out.list().size() == 1);
+}
+
+TEST_CASE("reader: a bare number is no ratio of unlike units") {
+    Diagnostics out;
+    CHECK(Reader(out).real(scalar("1"), *Unit::parse("mm/rad")) == std::nullopt);
+    CHECK(Reader(out).real(scalar("1"), *Unit::parse("deg/rad")) == std::nullopt);
+    CHECK(out.list().size() == 2);
+}
+
+TEST_CASE("reader: whole numbers") {
+    Diagnostics out;
+    const Reader read(out);
+    CHECK(read.integer(scalar("-3")) == -3);
+    CHECK(read.integer(scalar("16#E0")) == 224);
+    CHECK(out.empty());
+    const std::string bad = GENERATE("3.0", "3 mm", "1e3");
+    CHECK(read.integer(scalar(bad)) == std::nullopt);
+    CHECK(first(out) == "L0309: '" + bad + "' is no whole number");
+}
+
+TEST_CASE("reader: times are whole nanoseconds") {
+    Diagnostics out;
+    const Reader read(out);
+    CHECK(read.time(scalar("2 ms")) == 2'000'000);
+    CHECK(read.time(scalar("0.1 s")) == 100'000'000);
+    CHECK(read.time(scalar("0 s")) == 0);
+    CHECK(out.empty());
+}
+
+TEST_CASE("reader: what is wrong with a time") {
+    struct Row {
+        std::string text, message;
+    };
+    const auto row = GENERATE(values<Row>({
+        {"2", "L0302: '2' has no time unit"},
+        {"2 mm", "L0308: '2 mm' is in mm (length), a time is due"},
+        {"-2 ms", "L0308: '-2 ms' is below 0"},
+        {"0.5 ns", "L0308: '0.5 ns' is no whole number of nanoseconds"},
+        {"300000 h", ""},
+        {"3000000 h", "L0308: '3000000 h' is no whole number of nanoseconds"},
+        {"soon", "L0301: 'soon' is no number"},
+    }));
+    Diagnostics out;
+    CHECK(Reader(out).time(scalar(row.text)).has_value() == row.message.empty());
+    CHECK(first(out) == row.message);
+}
+
+TEST_CASE("reader: a share of a time") {
+    Diagnostics out;
+    const Reader read(out);
+    CHECK(read.time_or_share(scalar("1 %"), 5'000'000) == 50'000);
+    CHECK(read.time_or_share(scalar("3 us"), 5'000'000) == 3'000);
+    CHECK(out.empty());
+    CHECK(read.time_or_share(scalar("120 %"), 5'000'000) == std::nullopt);
+    CHECK(first(out) == "L0305: '120 %' is not between 0 % and 100 %");
+}
+
+TEST_CASE("reader: kinds of nodes") {
+    Diagnostics out;
+    const Reader read(out);
+    Node list;
+    list.kind = Node::Kind::sequence;
+    CHECK(read.expect_sequence(list, "'signals'"));
+    CHECK(out.empty());
+    CHECK_FALSE(read.expect_map(list, "'tasks'"));
+    CHECK(first(out) == "L0209: 'tasks' is a map, not a list");
+    CHECK_FALSE(read.expect_scalar(scalar(""), "'until'"));
+    CHECK(out.list().back().message == "'until' has no value");
+    CHECK(read.expect_scalar(scalar("", true), "the title"));
+}
+
+TEST_CASE("reader: an unknown parameter is reported once") {
+    Diagnostics out;
+    Node node = scalar("$speed");
+    node.parameter = "speed";
+    CHECK(Reader(out).real(node, mm_s) == std::nullopt);
+    CHECK(out.empty());
+    node.text = "10";
+    CHECK(Reader(out).real(node, mm_s) == std::nullopt);
+    CHECK(first(out) == "L0302: '10' has no unit (parameter 'speed' is '10')");
+}
