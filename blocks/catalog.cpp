@@ -25,7 +25,9 @@
 
 namespace lineshaft {
 
-Catalog standard_blocks() {
+namespace {
+
+Catalog make_catalog() {
     Catalog blocks;
     blocks.add<VirtualAxis>();
     blocks.add<GearAxis>();
@@ -77,6 +79,13 @@ Catalog standard_blocks() {
     blocks.add<LrealToTime>();
     blocks.add<Scale>();
     blocks.add<FilterPt1>();
+    return blocks;
+}
+
+}  // namespace
+
+const Catalog& standard_blocks() {
+    static const Catalog blocks = make_catalog();
     return blocks;
 }
 

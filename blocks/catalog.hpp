@@ -5,6 +5,6 @@
 namespace lineshaft {
 
 /// Every block a program may use.
-Catalog standard_blocks();
+const Catalog& standard_blocks();
 
 }  // namespace lineshaft

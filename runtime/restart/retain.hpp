@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "runtime/scan/machine.hpp"
+#include "runtime/net/machine.hpp"
 #include "runtime/source/diagnostic.hpp"
 
 namespace lineshaft {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/net/link.hpp"
+#include "runtime/run/link.hpp"
 #include "runtime/trace/csv_writer.hpp"
 
 namespace lineshaft {

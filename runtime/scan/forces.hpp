@@ -6,7 +6,7 @@
 
 #include "runtime/model/state.hpp"
 #include "runtime/scan/event.hpp"
-#include "runtime/scan/machine.hpp"
+#include "runtime/net/machine.hpp"
 
 namespace lineshaft {
 

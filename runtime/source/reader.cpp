@@ -69,10 +69,12 @@ bool is_identifier(std::string_view text) {
            std::ranges::all_of(text, [](char c) { return is_letter(c) || is_digit(c); });
 }
 
-bool is_signal_name(std::string_view text) {
+std::optional<SignalName> split_signal(std::string_view text) {
     const auto dot = text.find('.');
-    return dot != std::string_view::npos && is_identifier(text.substr(0, dot)) &&
-           is_identifier(text.substr(dot + 1));
+    if (dot == std::string_view::npos) return {};
+    const SignalName name{text.substr(0, dot), text.substr(dot + 1)};
+    if (!is_identifier(name.owner) || !is_identifier(name.port)) return {};
+    return name;
 }
 
 void Reader::fail(const char* code, const Node& node, std::string message, std::string help) const {

@@ -62,7 +62,13 @@ bool is_plain(const Unit& unit);
 
 bool is_identifier(std::string_view text);
 
-/// `a.b`, both identifiers.
-bool is_signal_name(std::string_view text);
+/// `shaft.position` taken apart.
+struct SignalName {
+    std::string_view owner;  ///< a block, `inputs` or `outputs`
+    std::string_view port;
+};
+
+/// Empty unless the text is two identifiers with a dot between.
+std::optional<SignalName> split_signal(std::string_view text);
 
 }  // namespace lineshaft

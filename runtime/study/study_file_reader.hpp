@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/net/link.hpp"
+#include "runtime/run/link.hpp"
 #include "runtime/source/reader.hpp"
 #include "runtime/study/study_reader.hpp"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "runtime/scan/event.hpp"
-#include "runtime/scan/machine.hpp"
+#include "runtime/net/machine.hpp"
 #include "runtime/trace/output_file.hpp"
 
 namespace lineshaft {

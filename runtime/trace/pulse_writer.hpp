@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runtime/model/device.hpp"
-#include "runtime/scan/machine.hpp"
+#include "runtime/net/machine.hpp"
 #include "runtime/trace/csv_writer.hpp"
 
 namespace lineshaft {

@@ -4,7 +4,7 @@
 
 #include "runtime/model/state.hpp"
 #include "runtime/program/program.hpp"
-#include "runtime/scan/machine.hpp"
+#include "runtime/net/machine.hpp"
 
 namespace lineshaft {
 

@@ -6,7 +6,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/fit/fit.hpp"
-#include "runtime/net/link.hpp"
+#include "runtime/run/link.hpp"
 #include "runtime/study/study_reader.hpp"
 
 using namespace lineshaft;

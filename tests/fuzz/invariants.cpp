@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/net/link.hpp"
+#include "runtime/run/link.hpp"
 #include "runtime/scan/executive.hpp"
 
 namespace lineshaft::test {

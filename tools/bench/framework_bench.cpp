@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/net/link.hpp"
+#include "runtime/run/link.hpp"
 #include "runtime/scan/executive.hpp"
 #include "tools/bench/hand_small_blocks.hpp"
 #include "tools/bench/quickest.hpp"

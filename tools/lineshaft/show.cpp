@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/net/linker.hpp"
 #include "runtime/run/single_run.hpp"
 #include "tools/lineshaft/command.hpp"
 
@@ -17,59 +16,54 @@ struct ShowCommand {
     bool dot = false, signals = false;
 };
 
-/// A wire as it is written, with its ends taken apart.
-struct Wire {
-    std::string block, port;    ///< the input it feeds
-    std::string source, value;  ///< `shaft`, `velocity`; `inputs` for what comes from outside
-    std::string text;           ///< `NOT previous(shaft.velocity)`
-    bool previous = false;
-};
-
-/// A program with the wires of each block.
+/// A program with its net.
 struct Drawing {
     const Program& program;
+    const Net& net;
     const Machine& machine;
-    std::vector<Wire> wires;
 
-    explicit Drawing(const Loaded& loaded);
-    std::string task_of(const std::string& block) const;
-    std::vector<const BlockPlan*> blocks_of(const std::string& task) const;
-    std::vector<const Wire*> wires_of(const std::string& block) const;
+    explicit Drawing(const Loaded& loaded)
+        : program(loaded.program), net(loaded.linked.net), machine(loaded.linked.machine) {}
+
+    std::vector<int> blocks_of(const Task& task) const;
+    std::vector<const Wire*> wires_of(int block) const;
+    std::string_view source(const Wire& wire) const;
+    std::string_view value(const Wire& wire) const;
+    std::string_view input(const Wire& wire) const { return net.field(wire.to).name; }
+    std::string text(const Wire& wire) const;
 };
 
-Drawing::Drawing(const Loaded& loaded) : program(loaded.program), machine(loaded.linked.machine) {
-    for (const BlockPlan& block : program.blocks)
-        for (const auto& [key, value] : block.ports) {
-            const auto wire = parse_wire(value);
-            if (!wire) continue;
-            const std::size_t dot = wire->signal.find('.');
-            wires.push_back({.block = block.name.text,
-                             .port = key.text,
-                             .source = wire->signal.substr(0, dot),
-                             .value = wire->signal.substr(dot + 1),
-                             .text = value.text,
-                             .previous = wire->previous});
-        }
-}
-
-std::string Drawing::task_of(const std::string& block) const {
-    const auto it = std::ranges::find_if(
-        program.blocks, [&](const BlockPlan& plan) { return plan.name.text == block; });
-    return it == program.blocks.end() ? "" : it->task.text;
-}
-
-std::vector<const BlockPlan*> Drawing::blocks_of(const std::string& task) const {
-    std::vector<const BlockPlan*> found;
-    for (const BlockPlan& block : program.blocks)
-        if (block.task.text == task) found.push_back(&block);
+std::vector<int> Drawing::blocks_of(const Task& task) const {
+    std::vector<int> found;
+    for (int i = 0; i < static_cast<int>(net.instances.size()); ++i)
+        if (machine.tasks[static_cast<std::size_t>(net.instance(i).task)].name == task.name)
+            found.push_back(i);
     return found;
 }
 
-std::vector<const Wire*> Drawing::wires_of(const std::string& block) const {
+std::vector<const Wire*> Drawing::wires_of(int block) const {
     std::vector<const Wire*> found;
-    for (const Wire& wire : wires)
-        if (wire.block == block) found.push_back(&wire);
+    for (const Wire& wire : net.wires)
+        if (wire.to.instance == block) found.push_back(&wire);
     return found;
+}
+
+/// `shaft`; `inputs` for what comes from outside.
+std::string_view Drawing::source(const Wire& wire) const {
+    return wire.from.instance < 0 ? "inputs" : std::string_view(net.instance(wire.from).name);
+}
+
+/// `velocity`
+std::string_view Drawing::value(const Wire& wire) const {
+    if (wire.from.instance >= 0) return net.field(wire.from).name;
+    return net.inputs[static_cast<std::size_t>(wire.from.field)].name;
+}
+
+/// `NOT previous(shaft.velocity)`
+std::string Drawing::text(const Wire& wire) const {
+    const bool previous = wire.late == Late::previous;
+    return fmt::format("{}{}{}.{}{}", wire.negated ? "NOT " : "", previous ? "previous(" : "",
+                       source(wire), value(wire), previous ? ")" : "");
 }
 
 std::string timing(const Drawing& drawing, const Task& task) {
@@ -88,12 +82,16 @@ std::string timing(const Drawing& drawing, const Task& task) {
     return text;
 }
 
-void print_block(const Drawing& drawing, const BlockPlan& block, std::size_t number) {
-    fmt::print("  {:>2} {:18} {}\n", number, block.name.text, block.type.text);
-    for (const Wire* wire : drawing.wires_of(block.name.text)) {
-        const std::string from = drawing.task_of(wire->source);
-        const std::string task = from.empty() || from == block.task.text ? "" : "  of " + from;
-        fmt::print("       {:18} <- {}{}\n", wire->port, wire->text, task);
+void print_block(const Drawing& drawing, int number, std::size_t place) {
+    const Instance& block = drawing.net.instance(number);
+    fmt::print("  {:>2} {:18} {}\n", place, block.name, block.type->name);
+    for (const Wire* wire : drawing.wires_of(number)) {
+        const int from = wire->from.instance < 0 ? -1 : drawing.net.instance(wire->from).task;
+        const std::string task =
+            from < 0 || from == block.task
+                ? ""
+                : "  of " + drawing.machine.tasks[static_cast<std::size_t>(from)].name;
+        fmt::print("       {:18} <- {}{}\n", drawing.input(*wire), drawing.text(*wire), task);
     }
 }
 
@@ -103,10 +101,9 @@ void print_text(const Drawing& drawing) {
     for (const auto& [name, value] : program.parameters) fmt::print("  {:20} {}\n", name, value);
     for (const Task& task : drawing.machine.tasks) {
         fmt::print("\ntask {}: {}\n", task.name, timing(drawing, task));
-        std::size_t number = 0;
-        for (const BlockPlan* block : drawing.blocks_of(task.name))
-            print_block(drawing, *block, ++number);
-        if (number == 0) fmt::print("     no blocks\n");
+        std::size_t place = 0;
+        for (const int block : drawing.blocks_of(task)) print_block(drawing, block, ++place);
+        if (place == 0) fmt::print("     no blocks\n");
     }
     if (!program.inputs.empty()) fmt::print("\ninputs from outside\n");
     for (const auto& [name, value] : program.inputs)
@@ -133,17 +130,22 @@ void print_dot(const Drawing& drawing) {
     for (const Task& task : drawing.machine.tasks) {
         fmt::print("  subgraph {} {{\n    label={};\n", dot_text("cluster_" + task.name),
                    dot_text(task.name + ": " + timing(drawing, task)));
-        std::size_t number = 0;
-        for (const BlockPlan* block : drawing.blocks_of(task.name))
-            fmt::print("    {} [label=\"{} {}\\n{}\"];\n", dot_text(block->name.text), ++number,
-                       block->name.text, block->type.text);
+        std::size_t place = 0;
+        for (const int number : drawing.blocks_of(task)) {
+            const Instance& block = drawing.net.instance(number);
+            fmt::print("    {} [label=\"{} {}\\n{}\"];\n", dot_text(block.name), ++place,
+                       block.name, block.type->name);
+        }
         fmt::print("  }}\n");
     }
     if (!drawing.program.inputs.empty()) fmt::print("  inputs [shape=cds];\n");
-    for (const Wire& wire : drawing.wires)
-        fmt::print("  {} -> {} [label={}{}];\n", dot_text(wire.source), dot_text(wire.block),
-                   dot_text(wire.value == wire.port ? wire.value : wire.value + " > " + wire.port),
-                   wire.previous ? ", style=dashed" : "");
+    for (const Wire& wire : drawing.net.wires) {
+        const std::string value(drawing.value(wire)), input(drawing.input(wire));
+        fmt::print("  {} -> {} [label={}{}];\n", dot_text(drawing.source(wire)),
+                   dot_text(drawing.net.instance(wire.to).name),
+                   dot_text(value == input ? value : value + " > " + input),
+                   wire.late == Late::previous ? ", style=dashed" : "");
+    }
     fmt::print("}}\n");
 }
 
@@ -156,12 +158,12 @@ nlohmann::ordered_json to_json(const Drawing& drawing) {
     auto tasks = nlohmann::ordered_json::array();
     for (const Task& task : drawing.machine.tasks) {
         auto blocks = nlohmann::ordered_json::array();
-        for (const BlockPlan* block : drawing.blocks_of(task.name)) {
+        for (const int number : drawing.blocks_of(task)) {
+            const Instance& block = drawing.net.instance(number);
             auto wires = nlohmann::ordered_json::object();
-            for (const Wire* wire : drawing.wires_of(block->name.text))
-                wires[wire->port] = wire->text;
-            blocks.push_back(
-                {{"name", block->name.text}, {"type", block->type.text}, {"wires", wires}});
+            for (const Wire* wire : drawing.wires_of(number))
+                wires[std::string(drawing.input(*wire))] = drawing.text(*wire);
+            blocks.push_back({{"name", block.name}, {"type", block.type->name}, {"wires", wires}});
         }
         tasks.push_back(
             {{"name", task.name}, {"timing", timing(drawing, task)}, {"blocks", blocks}});

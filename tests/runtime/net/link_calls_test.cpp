@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/net/link.hpp"
+#include "runtime/run/link.hpp"
 #include "runtime/scan/executive.hpp"
 #include "tests/runtime/net/small_blocks.hpp"
 

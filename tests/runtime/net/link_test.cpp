@@ -1,4 +1,4 @@
-#include "runtime/net/link.hpp"
+#include "runtime/run/link.hpp"
 
 #include "runtime/scan/executive.hpp"
 #include "tests/runtime/net/small_blocks.hpp"

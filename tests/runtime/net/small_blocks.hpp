@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "runtime/model/catalog.hpp"
-#include "runtime/net/link.hpp"
+#include "runtime/run/link.hpp"
 
 namespace lineshaft {
 

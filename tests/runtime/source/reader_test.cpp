@@ -33,8 +33,10 @@ TEST_CASE("reader: names") {
     CHECK(is_identifier("_"));
     for (const char* bad : {"", "2nd", "slave-x", "a b", "a.b", "Ä"})
         CHECK_FALSE(is_identifier(bad));
-    CHECK(is_signal_name("a.b"));
-    for (const char* bad : {"a", "a.", ".b", "a.b.c", "NOT a.b"}) CHECK_FALSE(is_signal_name(bad));
+    REQUIRE(split_signal("a.b"));
+    CHECK(split_signal("a.b")->owner == "a");
+    CHECK(split_signal("a.b")->port == "b");
+    for (const char* bad : {"a", "a.", ".b", "a.b.c", "NOT a.b"}) CHECK_FALSE(split_signal(bad));
 }
 
 TEST_CASE("reader: booleans are true and false only") {

@@ -3,8 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "runtime/csv/csv_reader.hpp"
 #include "runtime/model/literal.hpp"
-#include "runtime/net/linker.hpp"
+#include "runtime/net/outside.hpp"
 
 namespace lineshaft {
 
@@ -55,58 +56,40 @@ std::optional<Value> cell(const CsvColumn& column, std::size_t row, const Field&
     return std::isfinite(converted) ? std::optional<Value>(converted) : std::nullopt;
 }
 
-}  // namespace
-
-void Linker::connect_replays() {
-    std::size_t room = most_memory / sizeof(Replay::Point);
-    for (const ReplayPlan& plan : program_.replays) connect_replay(plan, room);
+/// What the file says, else `wanted`; both measure the same, or it is L0303.
+std::optional<Unit> column_unit(Connecting& to, const CsvColumn& column, const std::string& wanted,
+                                const Node& place) {
+    const Unit& due = to.net.unit(wanted);
+    const auto found = column.unit.empty() ? std::optional(due) : Unit::parse(column.unit);
+    if (found && found->same_dimension(due)) return found;
+    to.read.fail("L0303", place,
+                 fmt::format("column '{}' is in {}, not in {}", column.name, column.unit,
+                             wanted.empty() ? "plain numbers" : wanted));
+    return {};
 }
 
-/// `room` is for so many points more.
-void Linker::connect_replay(const ReplayPlan& plan, std::size_t& room) {
-    std::vector<std::optional<Target>> targets;
-    for (const auto& [key, column] : plan.set) targets.push_back(replayed(plan, key));
-    if (plan.path.empty() || plan.set.empty()) return;
-    CsvOptions csv{.columns = {"time"}, .most_rows = room / plan.set.size()};
-    for (const auto& [key, column] : plan.set) csv.columns.push_back(column.text);
-    const auto table = read_csv(plan.path, read_.diagnostics(), csv);
-    if (!table) return;
-    room -= table->rows * plan.set.size();
-    const auto times = replay_times(plan, *table);
-    if (!times) return;
-    using enum Replay::Between;
-    for (std::size_t i = 0; i < targets.size(); ++i) {
-        if (!targets[i]) continue;
-        auto points = replay_points(*targets[i], plan.set[i].second, *table, *times);
-        if (!points.empty())
-            out_.machine.replays.emplace_back(targets[i]->live, targets[i]->field.type,
-                                              plan.interpolated ? interpolated : held,
-                                              std::move(points));
-    }
-}
-
-std::optional<Target> Linker::replayed(const ReplayPlan& plan, const Node& key) {
-    auto input = settable(key);
+std::optional<Target> replayed(Connecting& to, const ReplayPlan& plan, const Node& key) {
+    auto input = find_settable(to, key);
     if (!input || !plan.interpolated || input->field.type == Type::real) return input;
-    read_.fail("L0213", key,
-               fmt::format("'{}' is {}: there is nothing between two values", key.text,
-                           kind(input->field.type, input->field.names)),
-               "only reals are interpolated: between: held");
+    to.read.fail("L0213", key,
+                 fmt::format("'{}' is {}: there is nothing between two values", key.text,
+                             kind(input->field.type, input->field.names)),
+                 "only reals are interpolated: between: held");
     return {};
 }
 
 /// In ns of the run, a row each.
-std::optional<std::vector<std::int64_t>> Linker::replay_times(const ReplayPlan& plan,
-                                                              const CsvTable& table) {
+std::optional<std::vector<std::int64_t>> replay_times(Connecting& to, const ReplayPlan& plan,
+                                                      const CsvTable& table) {
     const CsvColumn& time = *table.find("time");
     const auto fail = [&](const char* code, const std::string& message, const char* help) {
-        read_.fail(code, plan.file, message, help);
+        to.read.fail(code, plan.file, message, help);
         return std::nullopt;
     };
     if (table.rows == 0)
         return fail("L0721", fmt::format("'{}' has no rows", plan.file.text),
                     "there is nothing to replay");
-    const auto unit = column_unit(time, "s", plan.file);
+    const auto unit = column_unit(to, time, "s", plan.file);
     if (!unit) return {};
     std::vector<std::int64_t> times;
     times.reserve(table.rows);
@@ -117,7 +100,7 @@ std::optional<std::vector<std::int64_t>> Linker::replay_times(const ReplayPlan& 
                         fmt::format("the time in line {} of '{}' {}", line(row), plan.file.text,
                                     missing ? "is missing" : "is before that of the line above"),
                         "rows stand in the order of time");
-        const double at = std::round(convert(time.values[row], *unit, parsed("ns")));
+        const double at = std::round(convert(time.values[row], *unit, to.net.unit("ns")));
         if (!(std::abs(at) + static_cast<double>(plan.at) < most_time))
             return fail("L0308",
                         fmt::format("the time in line {} of '{}' lies more than 146 years away",
@@ -128,63 +111,81 @@ std::optional<std::vector<std::int64_t>> Linker::replay_times(const ReplayPlan& 
     return times;
 }
 
+void wrong_cell(Connecting& to, const Target& input, const Node& name, const CsvColumn& column,
+                std::size_t row, bool is_out_of_range) {
+    const std::string what = fmt::format("'{}' in line {} of column '{}'",
+                                         format_number(column.values[row]), line(row), name.text);
+    if (is_out_of_range)
+        to.read.fail("L0305", name,
+                     fmt::format("{} is out of range for '{}'", what, input.signal.name),
+                     "it must be " + describe_limits(input.field, input.signal.unit));
+    else
+        to.read.fail("L0705", name, fmt::format("{} is no value of '{}'", what, input.signal.name),
+                     "it takes " + kind(input.field.type, input.field.names));
+}
+
 /// Those of the rows that have a value; none when anything is wrong.
-std::vector<Replay::Point> Linker::replay_points(const Target& input, const Node& name,
-                                                 const CsvTable& table,
-                                                 const std::vector<std::int64_t>& times) {
+std::vector<Replay::Point> replay_points(Connecting& to, const Target& input, const Node& name,
+                                         const CsvTable& table,
+                                         const std::vector<std::int64_t>& times) {
     const CsvColumn& column = *table.find(name.text);
     const bool is_typed = table.metadata && table.metadata->find(column.title);
     const std::vector<std::string_view> names(column.names.begin(), column.names.end());
     if (!fits(column, is_typed, input.field)) {
-        read_.fail(
+        to.read.fail(
             "L0401", name,
             fmt::format("column '{}' is {}, '{}' takes {}", name.text, kind(column.type, names),
                         input.signal.name, kind(input.field.type, input.field.names)));
         return {};
     }
-    const auto unit = column_unit(column, input.signal.unit, name);
+    const auto unit = column_unit(to, column, input.signal.unit, name);
     if (!unit) return {};
     std::vector<Replay::Point> points;
     points.reserve(table.rows);
     for (std::size_t row = 0; row < table.rows; ++row) {
         if (column.is_missing(row)) continue;
-        const auto value = cell(column, row, input.field, *unit, parsed(input.signal.unit));
+        const auto value = cell(column, row, input.field, *unit, to.net.unit(input.signal.unit));
         if (!value || !input.field.admits(as_real(*value))) {
-            wrong_cell(input, name, column, row, value.has_value());
+            wrong_cell(to, input, name, column, row, value.has_value());
             return {};
         }
         points.push_back({.time = times[row]});
         store(input.field.type, points.back().value.data(), *value);
     }
     if (points.empty())
-        read_.fail("L0721", name, fmt::format("column '{}' has no values", name.text),
-                   "there is nothing to replay");
+        to.read.fail("L0721", name, fmt::format("column '{}' has no values", name.text),
+                     "there is nothing to replay");
     return points;
 }
 
-void Linker::wrong_cell(const Target& input, const Node& name, const CsvColumn& column,
-                        std::size_t row, bool is_out_of_range) {
-    const std::string what = fmt::format("'{}' in line {} of column '{}'",
-                                         format_number(column.values[row]), line(row), name.text);
-    if (is_out_of_range)
-        read_.fail("L0305", name,
-                   fmt::format("{} is out of range for '{}'", what, input.signal.name),
-                   "it must be " + describe_limits(input.field, input.signal.unit));
-    else
-        read_.fail("L0705", name, fmt::format("{} is no value of '{}'", what, input.signal.name),
-                   "it takes " + kind(input.field.type, input.field.names));
+/// `room` is for so many points more.
+void add_replay(Connecting& to, const ReplayPlan& plan, std::size_t& room) {
+    std::vector<std::optional<Target>> targets;
+    for (const auto& [key, column] : plan.set) targets.push_back(replayed(to, plan, key));
+    if (plan.path.empty() || plan.set.empty()) return;
+    CsvOptions csv{.columns = {"time"}, .most_rows = room / plan.set.size()};
+    for (const auto& [key, column] : plan.set) csv.columns.push_back(column.text);
+    const auto table = read_csv(plan.path, to.read.diagnostics(), csv);
+    if (!table) return;
+    room -= table->rows * plan.set.size();
+    const auto times = replay_times(to, plan, *table);
+    if (!times) return;
+    using enum Replay::Between;
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        if (!targets[i]) continue;
+        auto points = replay_points(to, *targets[i], plan.set[i].second, *table, *times);
+        if (!points.empty())
+            to.machine.replays.emplace_back(targets[i]->live, targets[i]->field.type,
+                                            plan.interpolated ? interpolated : held,
+                                            std::move(points));
+    }
 }
 
-/// What the file says, else `wanted`; both measure the same, or it is L0303.
-std::optional<Unit> Linker::column_unit(const CsvColumn& column, const std::string& wanted,
-                                        const Node& place) {
-    const Unit& due = parsed(wanted);
-    const auto found = column.unit.empty() ? std::optional(due) : Unit::parse(column.unit);
-    if (found && found->same_dimension(due)) return found;
-    read_.fail("L0303", place,
-               fmt::format("column '{}' is in {}, not in {}", column.name, column.unit,
-                           wanted.empty() ? "plain numbers" : wanted));
-    return {};
+}  // namespace
+
+void connect_replays(Connecting& to) {
+    std::size_t room = most_memory / sizeof(Replay::Point);
+    for (const ReplayPlan& plan : to.program.replays) add_replay(to, plan, room);
 }
 
 }  // namespace lineshaft

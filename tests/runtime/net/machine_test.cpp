@@ -1,4 +1,4 @@
-#include "runtime/scan/machine.hpp"
+#include "runtime/net/machine.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -10,7 +10,7 @@
 
 #include "runtime/model/catalog.hpp"
 #include "runtime/model/value.hpp"
-#include "runtime/scan/replay.hpp"
+#include "runtime/net/replay.hpp"
 
 namespace lineshaft {
 
@@ -109,25 +109,35 @@ struct BlockInfo {
     std::int64_t cost = 0;  ///< the block's own share of its task's cost [ns]
 };
 
-/// A task ready to run: one flat list. Times in ns.
-struct Task {
+/// What a program says of a task. Times in ns.
+struct TaskSettings {
     std::string name;
     bool on_event = false;  ///< not cyclic: released by triggers, or by other tasks' overruns
     bool motion = false;    ///< an overrun is STOP whatever the program says
     std::int64_t every = 0, offset = 0, priority = 1, jitter = 0, cost = 0, cost_jitter = 0;
     std::int64_t maximum_cycle_time = never;  ///< from the start of a scan to its end
     int on_overrun = -1;                      ///< index of the time-error task; -1: STOP
+    std::vector<CostStimulus> costs;          ///< sorted
+
+    bool takes_time() const { return cost > 0 || cost_jitter > 0 || !costs.empty(); }
+};
+
+/// A task ready to run: one flat list.
+struct Task : TaskSettings {
     std::vector<Call> calls;
     std::vector<BlockInfo> infos;  ///< in the order of the file
     Wires wires;
     std::vector<ErrorFlag> errors;
-    std::vector<Stimulus> stimuli;    ///< by scan, sorted
-    std::vector<CostStimulus> costs;  ///< sorted
-    std::byte* live = nullptr;        ///< the task's blocks
-    std::byte* published = nullptr;   ///< what others see of them: the same place when cost is 0
-    std::size_t size = 0;             ///< bytes of either
+    std::vector<Stimulus> stimuli;   ///< by scan, sorted
+    std::byte* live = nullptr;       ///< the task's blocks
+    std::byte* published = nullptr;  ///< what others see of them: the same place without cost
+    std::size_t size = 0;            ///< bytes of either
+};
 
-    bool takes_time() const { return cost > 0 || cost_jitter > 0 || !costs.empty(); }
+/// A value by number: a field of an instance, or an input of the program.
+struct Port {
+    int instance = -1;  ///< -1: an input of the program
+    int field = -1;     ///< of the instance's type, or number of the input
 };
 
 /// A named value that can be traced, expected, compared: as the world outside its task sees it.
@@ -136,8 +146,9 @@ struct Signal {
     Type type = Type::real;
     std::string unit;
     std::span<const std::string_view> names;  ///< of an enumeration
-    const std::byte* slot = nullptr;
+    const std::byte* slot = nullptr;          ///< null until it is laid out
     int task = -1;  ///< index of the task that writes it; -1: from outside
+    Port port = {};
 
     Value value() const { return load(type, slot); }
     std::string describe(const Value& v) const { return lineshaft::describe(v, type, names, unit); }
@@ -170,10 +181,19 @@ struct Retained {
     std::byte* published = nullptr;  ///< may be the live one
 };
 
+/// Where an instance stands.
+struct BlockPlace {
+    std::string name;
+    const BlockType* type = nullptr;
+    std::byte* live = nullptr;
+    std::byte* published = nullptr;  ///< may be the live one
+};
+
 /// A checked and wired program in memory. Owns the blocks; movable, not copyable.
 struct Machine {
     std::vector<std::byte> memory;  ///< all blocks and inputs; zeroed, then constructed
     std::vector<Task> tasks;  ///< in scan order of equal instants: priority, then place in the file
+    std::vector<BlockPlace> blocks;  ///< in the order of the file
     std::vector<Signal> signals;
     std::vector<Stimulus> stimuli;  ///< sorted by time
     std::vector<Replay> replays;    ///< in the order of the file: of one input the last wins
@@ -190,6 +210,13 @@ struct Machine {
     bool continue_on_error = false;
 
     const Signal* find(std::string_view name) const;
+
+    /// Where the value stands: for its own task, and for all others.
+    std::byte* live(Port port);
+    std::byte* published(Port port);
+
+    /// The signal with its place, as all others see it.
+    Signal placed(Signal signal);
 };
 
 }  // namespace lineshaft

@@ -1,4 +1,4 @@
-#include "runtime/scan/replay.hpp"
+#include "runtime/net/replay.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,15 +3,16 @@
 #include <vector>
 
 #include "runtime/model/catalog.hpp"
+#include "runtime/net/net.hpp"
 #include "runtime/program/program.hpp"
 #include "runtime/scan/judge.hpp"
-#include "runtime/scan/machine.hpp"
 #include "runtime/trace/recorder.hpp"
 
 namespace lineshaft {
 
 /// A program that can run.
 struct Linked {
+    Net net;
     Machine machine;
     std::vector<TraceSetup> traces;
     std::vector<Expectation> expectations;

@@ -1,0 +1,31 @@
+#include "runtime/net/machine.hpp"
+
+#include <algorithm>
+
+namespace lineshaft {
+
+const Signal* Machine::find(std::string_view name) const {
+    const auto it = std::ranges::find(signals, name, &Signal::name);
+    return it == signals.end() ? nullptr : &*it;
+}
+
+std::byte* Machine::live(Port port) {
+    const auto field = static_cast<std::size_t>(port.field);
+    if (port.instance < 0) return memory.data() + 8 * field;
+    const BlockPlace& block = blocks[static_cast<std::size_t>(port.instance)];
+    return block.live + block.type->fields[field].offset;
+}
+
+std::byte* Machine::published(Port port) {
+    const auto field = static_cast<std::size_t>(port.field);
+    if (port.instance < 0) return live(port);
+    const BlockPlace& block = blocks[static_cast<std::size_t>(port.instance)];
+    return block.published + block.type->fields[field].offset;
+}
+
+Signal Machine::placed(Signal signal) {
+    signal.slot = published(signal.port);
+    return signal;
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,120 @@
+#include "runtime/net/net.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace lineshaft {
+
+namespace {
+
+template <class Node>
+std::vector<std::string> names(const std::vector<Node>& nodes) {
+    std::vector<std::string> names;
+    for (const Node& node : nodes) names.push_back(node.name);
+    return names;
+}
+
+}  // namespace
+
+std::string kind(Type type, std::span<const std::string_view> names) {
+    return type == Type::enumeration ? fmt::format("one of {}", fmt::join(names, ", "))
+                                     : std::string(name_of(type));
+}
+
+std::string Instance::described() const {
+    return fmt::format("'{}' ({})", name, type->name);
+}
+
+std::optional<Signal> Net::find(const Reader& read, const Node& node, std::string_view text) const {
+    const auto name = split_signal(text);
+    if (!name) {
+        read.fail("L0208", node, fmt::format("'{}' is no signal", text),
+                  "a signal is written block.port, inputs.name or outputs.name");
+        return {};
+    }
+    if (name->owner == "inputs") return find_input(read, node, name->port);
+    if (name->owner == "outputs") return find_output(read, node, name->port);
+    const auto it = instance_numbers.find(std::string(name->owner));
+    if (it == instance_numbers.end()) {
+        read.fail("L0204", node, fmt::format("unknown block '{}'", name->owner),
+                  suggest(name->owner, names(instances)));
+        return {};
+    }
+    const Instance& block = instance(it->second);
+    if (!block.known()) return {};
+    if (const Field* field = block.type->find_readable(name->port))
+        return signal(port(it->second, *field));
+    std::vector<std::string> readable;
+    for (const Field& f : block.type->fields)
+        readable.push_back(fmt::format("{}.{}", block.name, f.name));
+    read.fail("L0203", node, fmt::format("unknown port '{}' on {}", name->port, block.described()),
+              suggest(text, readable));
+    return {};
+}
+
+std::optional<Signal> Net::find_input(const Reader& read, const Node& node,
+                                      std::string_view name) const {
+    const auto it = std::ranges::find(inputs, name, &InputNode::name);
+    if (it != inputs.end()) return it->signal;
+    read.fail("L0208", node, fmt::format("the program has no input '{}'", name),
+              inputs.empty() ? "it has no 'inputs:'" : suggest(name, names(inputs)));
+    return {};
+}
+
+std::optional<Signal> Net::find_output(const Reader& read, const Node& node,
+                                       std::string_view name) const {
+    const auto it = std::ranges::find(outputs, name, &OutputNode::name);
+    if (it == outputs.end()) {
+        read.fail("L0208", node, fmt::format("the program has no output '{}'", name),
+                  outputs.empty() ? "it has no 'outputs:'" : suggest(name, names(outputs)));
+        return {};
+    }
+    auto shown = it->shows;
+    if (shown) shown->name = "outputs." + it->name;
+    return shown;
+}
+
+int Net::find_task(const Reader& read, const Node& node, std::string_view name) const {
+    const auto it = std::ranges::find(tasks, name, &TaskSettings::name);
+    if (it != tasks.end()) return static_cast<int>(it - tasks.begin());
+    if (tasks_known && !name.empty())
+        read.fail("L0206", node, fmt::format("unknown task '{}'", name),
+                  suggest(name, names(tasks)));
+    return -1;
+}
+
+Port Net::port(int number, const Field& field) const {
+    return {number, static_cast<int>(&field - instance(number).type->fields.data())};
+}
+
+Signal Net::signal(Port port) const {
+    const Field& field = this->field(port);
+    return {.name = fmt::format("{}.{}", instance(port).name, field.name),
+            .type = field.type,
+            .unit = unit_of(port).text,
+            .names = field.names,
+            .task = instance(port).task,
+            .port = port};
+}
+
+const Unit& Net::unit_of(Port port) const {
+    const Instance& block = instance(port);
+    std::string text(field(port).unit);
+    for (auto open = text.find('{'); open != std::string::npos; open = text.find('{')) {
+        const auto close = text.find('}', open);
+        const Field& chosen = *block.type->find_settable(text.substr(open + 1, close - open - 1));
+        const Value value = load(chosen.type, block.image.data() + chosen.offset);
+        text.replace(open, close - open + 1,
+                     describe(value, chosen.type, chosen.names, chosen.unit));
+    }
+    return unit(text);
+}
+
+const Unit& Net::unit(const std::string& text) const {
+    const auto it = units_.find(text);
+    if (it != units_.end()) return it->second;
+    return units_.emplace(text, Unit::parse(text).value()).first->second;
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,112 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "runtime/model/literal.hpp"
+#include "runtime/net/resolve.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+/// A parameter whose value other fields' units may depend on.
+bool is_choice(const Field& field) {
+    return field.direction == Direction::parameter && field.type == Type::enumeration;
+}
+
+/// What is neither a wire nor a constant, but was meant as a wire.
+bool resembles_wire(const Node& node) {
+    return !node.quoted && !node.text.empty() && is_identifier(node.text.substr(0, 1)) &&
+           node.text.find_first_of(".(") != std::string::npos;
+}
+
+/// `every(servo)`: the interval of a task, for blocks that reckon with a clock. Times that are
+/// integers are in ns.
+std::optional<Value> interval_of(const Resolving& to, const Node& value, const Field& field,
+                                 const Unit& unit) {
+    static const Unit second = *Unit::parse("s");
+    if (!value.text.starts_with("every(") || !value.text.ends_with(')') ||
+        !unit.same_dimension(second))
+        return {};
+    const std::string name = value.text.substr(6, value.text.size() - 7);
+    const int number = to.net.find_task(to.read, value, name);
+    if (number < 0) return 0.0;
+    const TaskSettings& task = to.net.tasks[static_cast<std::size_t>(number)];
+    if (task.on_event) {
+        to.read.fail("L0213", value,
+                     fmt::format("'{}' is an event task: it has no interval", name));
+        return 0.0;
+    }
+    if (field.type == Type::integer) return task.every;
+    return convert(seconds(task.every), second, unit);
+}
+
+void set_constant(Resolving& to, const Assignment& assignment) {
+    const auto& [number, field, value, wire] = assignment;
+    const Unit& unit = to.net.unit_of(to.net.port(number, *field));
+    std::optional<Value> constant = interval_of(to, *value, *field, unit);
+    if (!constant && field->direction == Direction::input && resembles_wire(*value))
+        return to.read.fail("L0208", *value,
+                            fmt::format("'{}' is neither a constant nor a wire", value->text),
+                            "a wire is written block.port, NOT block.port or previous(block.port)");
+    if (!constant) constant = read_literal(to.read, *value, *field, unit);
+    if (constant)
+        store(field->type, to.instance(assignment).image.data() + field->offset, *constant);
+}
+
+void set_row(Resolving& to, const TableField& table, const Node& row, std::byte* slot) {
+    if (!to.read.expect_sequence(row, fmt::format("a row of '{}'", table.name))) return;
+    if (row.items.size() != table.columns.size()) {
+        std::vector<std::string_view> names;
+        for (const Field& column : table.columns) names.push_back(column.name);
+        return to.read.fail("L0214", row,
+                            fmt::format("a row of '{}' has {} numbers, not {}", table.name,
+                                        table.columns.size(), row.items.size()),
+                            fmt::format("write [{}]", fmt::join(names, ", ")));
+    }
+    for (std::size_t i = 0; i < row.items.size(); ++i, slot += sizeof(std::int64_t)) {
+        const Field& column = table.columns[i];
+        if (!to.read.expect_scalar(row.items[i], fmt::format("'{}'", column.name))) continue;
+        const auto number =
+            read_literal(to.read, row.items[i], column, to.net.unit(std::string(column.unit)));
+        if (number) store(Type::integer, slot, *number);
+    }
+}
+
+void set_table(Resolving& to, Instance& block, const TableField& table, const Node& value) {
+    if (!to.read.expect_sequence(value, fmt::format("'{}'", table.name))) return;
+    if (value.items.size() > table.capacity)
+        return to.read.fail("L0305", value,
+                            fmt::format("'{}' has {} rows, more than its {}", table.name,
+                                        value.items.size(), table.capacity));
+    std::byte* row = block.image.data() + table.rows_offset;
+    for (const Node& items : value.items) {
+        set_row(to, table, items, row);
+        row += table.columns.size() * sizeof(std::int64_t);
+    }
+    store(Type::integer, block.image.data() + table.size_offset,
+          static_cast<std::int64_t>(value.items.size()));
+}
+
+void set_tables(Resolving& to) {
+    for (std::size_t i = 0; i < to.program.blocks.size(); ++i) {
+        Instance& block = to.net.instances[i];
+        if (!block.known()) continue;
+        for (const auto& [key, value] : to.program.blocks[i].ports)
+            if (const TableField* table = block.type->find_table(key.text))
+                set_table(to, block, *table, value);
+    }
+}
+
+}  // namespace
+
+/// Choices first, because other units may depend on them.
+void resolve_constants(Resolving& to) {
+    for (const bool choices : {true, false})
+        for (const Assignment& assignment : to.assignments)
+            if (!assignment.wire && is_choice(*assignment.field) == choices)
+                set_constant(to, assignment);
+    set_tables(to);
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,116 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "runtime/net/resolve.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+void add_cost(Resolving& to, const BlockPlan& plan, Instance& block) {
+    if (!plan.cost || block.task < 0 || !to.read.expect_scalar(*plan.cost, "'cost'")) return;
+    TaskSettings& task = to.net.tasks[static_cast<std::size_t>(block.task)];
+    block.cost = to.read.time(*plan.cost).value_or(0);
+    task.cost += block.cost;
+    if (!task.on_event && task.cost - task.cost_jitter > task.every)
+        to.read.fail("L0305", *plan.cost,
+                     fmt::format("the costs of task '{}' and its blocks are above its interval: it "
+                                 "never ends in time",
+                                 task.name));
+}
+
+void find_type(Resolving& to, const Node& name, Instance& block) {
+    if (name.text.empty()) return;
+    block.type = to.catalog.find(name.text);
+    if (!block.type)
+        return to.read.fail("L0205", name, fmt::format("unknown block type '{}'", name.text),
+                            suggest(name.text, to.catalog.names()));
+    block.image.resize(block.type->size);
+    block.wired.resize(block.type->fields.size());
+    block.type->construct(block.image.data());
+}
+
+std::optional<WireText> parse_wire(const Node& node) {
+    if (!node.is_scalar() || node.quoted) return {};
+    std::string_view text = node.text;
+    WireText wire;
+    if (text.starts_with("NOT ")) {
+        wire.negated = true;
+        text.remove_prefix(4);
+    }
+    if (text.starts_with("previous(") && text.ends_with(')')) {
+        wire.previous = true;
+        text = text.substr(9, text.size() - 10);
+    }
+    wire.signal = text;
+    if (!split_signal(text) && !wire.negated && !wire.previous) return {};
+    return wire;
+}
+
+void refuse_port(Resolving& to, const Instance& block, const Node& key) {
+    if (block.type->find_readable(key.text))
+        return to.read.fail(
+            "L0405", key,
+            fmt::format("'{}' is an output of {} and cannot be set", key.text, block.described()),
+            fmt::format("'lineshaft blocks {}' lists its inputs", block.type->name));
+    std::vector<std::string> settable{"type", "task"};
+    for (const Field& f : block.type->fields)
+        if (f.direction != Direction::output) settable.emplace_back(f.name);
+    for (const TableField& t : block.type->tables) settable.emplace_back(t.name);
+    to.read.fail("L0203", key,
+                 fmt::format("{} has no parameter or input '{}'", block.described(), key.text),
+                 suggest(key.text, settable));
+}
+
+void check_required(const Resolving& to, const BlockPlan& plan, const Instance& block) {
+    for (const Field& field : block.type->fields) {
+        const auto is_field = [&](const auto& port) { return port.first.text == field.name; };
+        if (!field.required || std::ranges::any_of(plan.ports, is_field)) continue;
+        to.read.fail("L0403", plan.name,
+                     fmt::format("{} needs its {} '{}': {}", block.described(),
+                                 name_of(field.direction), field.name, field.doc));
+    }
+}
+
+void assign(Resolving& to, int number, const Node& key, const Node& value) {
+    const Instance& block = to.net.instance(number);
+    if (block.type->find_table(key.text)) return;
+    const Field* field = block.type->find_settable(key.text);
+    if (!field) return refuse_port(to, block, key);
+    if (!to.read.expect_scalar(value, fmt::format("'{}'", key.text))) return;
+    Assignment assignment{number, field, &value, parse_wire(value)};
+    if (assignment.wire && field->direction == Direction::parameter)
+        return to.read.fail(
+            "L0406", value,
+            fmt::format("'{}' is a parameter of {} and takes no wire", key.text, block.described()),
+            "a parameter is constant while the program runs");
+    to.assignments.push_back(std::move(assignment));
+}
+
+}  // namespace
+
+void resolve_instances(Resolving& to) {
+    for (const BlockPlan& plan : to.program.blocks) {
+        Instance block{.name = plan.name.text};
+        find_type(to, plan.type, block);
+        block.task = to.net.find_task(to.read, plan.task, plan.task.text);
+        add_cost(to, plan, block);
+        to.net.instance_numbers.emplace(block.name, static_cast<int>(to.net.instances.size()));
+        to.net.instances.push_back(std::move(block));
+    }
+}
+
+void resolve_assignments(Resolving& to) {
+    int number = 0;
+    for (const BlockPlan& plan : to.program.blocks) {
+        const Instance& block = to.net.instance(number);
+        if (block.known()) {
+            for (const auto& [key, value] : plan.ports) assign(to, number, key, value);
+            check_required(to, plan, block);
+        }
+        ++number;
+    }
+}
+
+}  // namespace lineshaft
