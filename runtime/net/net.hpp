@@ -30,6 +30,12 @@ struct Wire {
     double factor = 1, divisor = 1;
 };
 
+/// `axis: shaft`: a block that acts on another one.
+struct Reference {
+    Port from;
+    int to = -1;  ///< the other's number, which stands in the field, too
+};
+
 /// Of two blocks of a task, the one that is scanned first.
 struct Order {
     int before = 0, after = 0;
@@ -69,8 +75,10 @@ struct Net {
     std::vector<OutputNode> outputs;
     std::vector<Instance> instances;
     std::vector<Wire> wires;  ///< block by block, each in the order of the file
+    std::vector<Reference> references;
     std::vector<Order> orders;
     std::unordered_map<std::string, int> instance_numbers;
+    std::shared_ptr<const Catalog> kinds;  ///< that the program brings along; may be null
 
     const Instance& instance(int number) const {
         return instances[static_cast<std::size_t>(number)];

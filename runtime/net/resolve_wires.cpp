@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -148,6 +150,20 @@ void connect(Resolving& to, const Assignment& wire) {
                             .divisor = given.denominator * wanted.numerator});
 }
 
+/// All that act on one block, and it itself, are scanned in the order of the file.
+void add_reference_orders(Net& net) {
+    std::map<std::pair<int, int>, std::set<int>> groups;  // by task and by the block referred to
+    for (const Reference& reference : net.references) {
+        const int task = net.instance(reference.from).task;
+        auto& group = groups[{task, reference.to}];
+        group.insert(reference.from.instance);
+        if (net.instance(reference.to).task == task) group.insert(reference.to);
+    }
+    for (const auto& [key, group] : groups)
+        for (auto at = group.begin(); std::next(at) != group.end(); ++at)
+            net.orders.push_back({*at, *std::next(at)});
+}
+
 /// A block waits for its sources, and what takes its last scan's outputs comes before it.
 void add_orders(Net& net) {
     for (const Wire& wire : net.wires) {
@@ -166,6 +182,7 @@ void resolve_wires(Resolving& to) {
     for (const Assignment& assignment : to.assignments)
         if (assignment.wire) connect(to, assignment);
     add_orders(to.net);
+    add_reference_orders(to.net);
 }
 
 }  // namespace lineshaft

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/model/device.hpp"
+#include "runtime/model/catalog.hpp"
 #include "runtime/source/diagnostic.hpp"
 #include "runtime/source/reader.hpp"
 #include "runtime/source/yaml_files.hpp"
@@ -128,6 +128,7 @@ struct Program {
     std::vector<TaskPlan> tasks;
     bool tasks_known = true;  ///< false: not all could be read, a name may be one of the missing
     std::vector<BlockPlan> blocks;
+    std::shared_ptr<const Catalog> kinds;  ///< of block that the program brings along; may be null
     std::vector<std::pair<Node, Node>> inputs;
     std::vector<std::pair<Node, Node>> outputs;  ///< name and the signal it shows
     std::vector<Node> retain;                    ///< signals
