@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <new>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,6 +20,16 @@ namespace lineshaft {
 /// Scans `count` blocks of a kind that stand one behind the other. True when one has an error.
 using ScanBlocks = bool (*)(std::byte* first, std::size_t count, const Scan& now);
 
+/// A constant that comes to nothing together with the other constants of its block, as a rate above
+/// what the chosen mode puts out.
+struct Misfit {
+    std::string_view field;
+    std::string why;
+};
+
+/// True of a field that has one value all the time: neither wired nor set from outside.
+using IsConstant = std::function<bool(std::string_view field)>;
+
 /// What the runtime knows of a kind of block: how to make one, how to call it, what it is made of.
 struct BlockType {
     std::string_view name;
@@ -29,6 +41,8 @@ struct BlockType {
     void (*construct)(std::byte* place) = nullptr;
     ScanBlocks scan = nullptr;
     DeviceCalls device;
+    std::optional<Misfit> (*misfit)(const std::byte* block,
+                                    const IsConstant& is_constant) = nullptr;  ///< or null
 
     bool is_device() const { return device.advance != nullptr; }
 
@@ -45,7 +59,8 @@ class Catalog {
   public:
     /// A block is a struct with `type`, `doc`, `fields()` and `scan(const Scan&)`. It is plain
     /// data, so that a machine's state can be kept and restored as bytes. An output `error` is its
-    /// member `error`.
+    /// member `error`. It may have `misfit(const IsConstant&) const`, for what its limits cannot
+    /// say.
     template <class Block>
     Catalog& add() {
         static_assert(std::is_trivially_copyable_v<Block>);
@@ -53,7 +68,7 @@ class Catalog {
         if constexpr (requires { Block::tables(); }) tables = Block::tables();
         types_.push_back({Block::type, Block::doc, Block::fields(), tables, sizeof(Block),
                           alignof(Block), [](std::byte* place) { new (place) Block{}; },
-                          scan_blocks<Block>, device_calls<Block>()});
+                          scan_blocks<Block>, device_calls<Block>(), misfit<Block>()});
         return *this;
     }
 
@@ -62,6 +77,15 @@ class Catalog {
     std::vector<std::string> names() const;
 
   private:
+    template <class Block>
+    static constexpr auto misfit() -> decltype(BlockType::misfit) {
+        if constexpr (requires(const Block& block, const IsConstant& f) { block.misfit(f); })
+            return [](const std::byte* block, const IsConstant& is_constant) {
+                return std::launder(reinterpret_cast<const Block*>(block))->misfit(is_constant);
+            };
+        return nullptr;
+    }
+
     template <class Block>
     static bool scan_blocks(std::byte* first, std::size_t count, const Scan& now) {
         bool error = false;

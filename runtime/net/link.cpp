@@ -46,6 +46,9 @@ Linked Linker::link() {
     connect_retained();
     connect_traces();
     connect_expectations();
+    for (const Instance& block : blocks_) check_misfit(block);
+    warn_of_what_comes_late();
+    warn_of_unused_inputs();
     return std::move(out_);
 }
 

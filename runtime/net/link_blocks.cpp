@@ -55,7 +55,7 @@ void Linker::set_port(Instance& block, const Node& key, const Node& value) {
         return read_.fail("L0203", key,
                           fmt::format("'{}' ({}) has no parameter or input '{}'",
                                       block.plan->name.text, block.type->name, key.text),
-                          suggest(key.text, settable));
+                          suggest(misspelt(key.text), settable));
     }
     if (!read_.expect_scalar(value, fmt::format("'{}'", key.text))) return;
     const auto wire_text = parse_wire(value);
@@ -73,6 +73,9 @@ void Linker::set_port(Instance& block, const Node& key, const Node& value) {
 
 void Linker::set_table(Instance& block, const TableField& table, const Node& value) {
     if (!read_.expect_sequence(value, fmt::format("'{}'", table.name))) return;
+    if (value.items.empty())
+        return read_.fail("L0305", value, fmt::format("'{}' has no rows", table.name),
+                          fmt::format("it has from 1 to {} rows", table.capacity));
     if (value.items.size() > table.capacity)
         return read_.fail("L0305", value,
                           fmt::format("'{}' has {} rows, more than its {}", table.name,
@@ -108,8 +111,28 @@ void Linker::set_constant(Instance& block, const Field& field, const Node& value
         return read_.fail("L0208", value,
                           fmt::format("'{}' is neither a constant nor a wire", value.text),
                           "a wire is written block.port, NOT block.port or previous(block.port)");
+    if (const std::string meant = meant_by(value.text);
+        !constant && !value.quoted && !meant.empty() &&
+        std::ranges::find(field.names, value.text) == field.names.end())
+        return read_.fail("L0208", value,
+                          fmt::format("'{}' is neither a constant nor a wire", value.text), meant);
     if (!constant) constant = read_literal(read_, value, field, unit);
     if (constant) store(field.type, block.live + field.offset, *constant);
+}
+
+/// Where `word` is a name of the program and no value: how what it names is written.
+std::string Linker::meant_by(const std::string& word) const {
+    if (std::ranges::any_of(program_.parameters, [&](const auto& p) { return p.first == word; }))
+        return fmt::format("did you mean the parameter '${}'?", word);
+    if (inputs_.contains(word)) return fmt::format("did you mean the input 'inputs.{}'?", word);
+    const auto it = by_name_.find(word);
+    if (it == by_name_.end()) return {};
+    std::string outputs;
+    const Instance& block = blocks_[static_cast<std::size_t>(it->second)];
+    for (const Field& field : block.known() ? block.type->fields : std::span<const Field>())
+        if (field.direction == Direction::output)
+            outputs += fmt::format("{}{}.{}", outputs.empty() ? "" : ", ", word, field.name);
+    return fmt::format("'{}' is a block; a wire names its output: {}", word, outputs);
 }
 
 /// `every(servo)`: the interval of a task, for blocks that reckon with a clock. Times that are
@@ -131,6 +154,26 @@ std::optional<Value> Linker::interval_of(const Node& value, const Field& field, 
     if (!program_.tasks_known) return 0.0;
     read_.fail("L0206", value, fmt::format("unknown task '{}'", name), suggest(name, task_names_));
     return 0.0;
+}
+
+void Linker::check_misfit(const Instance& block) {
+    if (!block.known() || !block.type->misfit) return;
+    const std::string& name = block.plan->name.text;
+    const auto misfit = block.type->misfit(block.live, [&](std::string_view field) {
+        const std::string port = fmt::format("{}.{}", name, field);
+        return !wired_.contains(port) && !set_.contains(port);
+    });
+    if (!misfit) return;
+    const auto& ports = block.plan->ports;
+    const auto at =
+        std::ranges::find(ports, misfit->field, [](const auto& port) { return port.first.text; });
+    const Node& place = at != ports.end() ? at->second : block.plan->name;
+    if (place.is_scalar())
+        read_.fail("L0305", place,
+                   fmt::format("'{}' is out of range for '{}'", place.text, misfit->field),
+                   misfit->why);
+    else
+        read_.fail("L0305", place, fmt::format("'{}' is not used", misfit->field), misfit->why);
 }
 
 void Linker::check_required(const Instance& block) {

@@ -67,19 +67,34 @@ void Linker::connect_outputs() {
     }
 }
 
+/// What is a name in some kind of block is written as it is meant: then there is nothing to guess.
+std::string_view Linker::misspelt(std::string_view port) const {
+    const bool known = std::ranges::any_of(catalog_.types(), [&](const BlockType& type) {
+        return type.find_readable(port) != nullptr;
+    });
+    return known ? std::string_view() : port;
+}
+
 void Linker::unknown_port(const Node& node, const Instance& block, std::string_view port) {
     std::vector<std::string> names;
-    for (const Field& f : block.type->fields)
-        names.push_back(fmt::format("{}.{}", block.plan->name.text, f.name));
+    for (const Direction d : {Direction::output, Direction::input, Direction::parameter})
+        for (const Field& f : block.type->fields)
+            if (f.direction == d && std::ranges::find(names, f.name) == names.end())
+                names.emplace_back(f.name);
     read_.fail("L0203", node,
                fmt::format("unknown port '{}' on '{}' ({})", port, block.plan->name.text,
                            block.type->name),
-               suggest(fmt::format("{}.{}", block.plan->name.text, port), names));
+               suggest(misspelt(port), names, block.plan->name.text + "."));
 }
 
 std::optional<Signal> Linker::signal(const Node& node, const std::string& name) {
+    if (name.starts_with("inputs.")) used_inputs_.insert(name.substr(7));
+    return find_signal(node, name);
+}
+
+std::optional<Signal> Linker::find_signal(const Node& node, const std::string& name) {
     if (!is_signal_name(name)) {
-        read_.fail("L0208", node, fmt::format("'{}' is no signal", name),
+        read_.fail("L0208", node, fmt::format("'{}' is not a signal", name),
                    "a signal is written block.port, inputs.name or outputs.name");
         return {};
     }
@@ -95,7 +110,7 @@ std::optional<Signal> Linker::signal(const Node& node, const std::string& name) 
     }
     if (owner == "outputs") {
         if (const auto it = outputs_.find(port); it != outputs_.end()) {
-            auto shown = signal(node, it->second);
+            auto shown = find_signal(node, it->second);
             shown->name = name;
             return shown;
         }

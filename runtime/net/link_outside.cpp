@@ -10,10 +10,11 @@ namespace lineshaft {
 /// The readable signal, so an output before an input of the same name; of an output of the program
 /// the signal that it shows.
 std::optional<Target> Linker::target(const Node& node) {
-    auto found = signal(node);
+    auto found = find_signal(node, node.text);
     if (!found) return {};
     if (found->name.starts_with("outputs."))
-        found = signal(node, outputs_.at(found->name.substr(8)));
+        found = find_signal(node, outputs_.at(found->name.substr(8)));
+    set_.insert(found->name);
     Target out{.signal = std::move(*found)};
     out.field.name = node.text;
     out.field.type = out.signal.type;
@@ -119,6 +120,44 @@ void Linker::connect_force(const ForcePlan& plan) {
                       .value = *value,
                       .name = name,
                       .text = fmt::format("force {} = {}", name, plan.value.text)});
+}
+
+/// The run may end sooner still, by `until`.
+void Linker::warn_of_what_comes_late() {
+    const std::int64_t end = out_.machine.duration;
+    if (end == 0) return;
+    const auto warn = [&](const char* code, const Mark& mark, const std::string& what) {
+        read_.diagnostics().warn(
+            code, mark, fmt::format("{} after the end of the run, {}", what, format_time(end)),
+            "let the run be longer: run: {for: ...}");
+    };
+    for (const StimulusPlan& plan : program_.stimuli)
+        if (begin_of(plan) > end) warn("L0801", plan.mark, "the stimulus comes");
+    for (const ReplayPlan& plan : program_.replays)
+        if (plan.at > end) warn("L0801", plan.file.mark, "the replay begins");
+    for (const ForcePlan& plan : program_.forces)
+        if (plan.from > end) warn("L0801", plan.mark, "the force begins");
+    for (const ExpectPlan& plan : program_.expectations)
+        if (plan.at && *plan.at > end)
+            warn("L0802", plan.mark, "the expectation would be looked at");
+}
+
+/// The soonest, where it is that of a scan.
+std::int64_t Linker::begin_of(const StimulusPlan& plan) const {
+    if (!plan.task) return plan.at;
+    const auto task = std::ranges::find(out_.machine.tasks, plan.task->text, &Task::name);
+    if (task == out_.machine.tasks.end() || task->on_event) return 0;
+    __extension__ using Wide = __int128;
+    const Wide time = static_cast<Wide>(plan.at) * task->every + task->offset - task->jitter;
+    return static_cast<std::int64_t>(std::min<Wide>(time, never));
+}
+
+void Linker::warn_of_unused_inputs() {
+    for (const auto& [name, value] : program_.inputs)
+        if (!used_inputs_.contains(name.text))
+            read_.diagnostics().warn(
+                "L0803", name.mark, fmt::format("nothing uses the input '{}'", name.text),
+                fmt::format("wire inputs.{} where it is meant, or remove it", name.text));
 }
 
 void Linker::connect_retained() {

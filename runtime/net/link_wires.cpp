@@ -46,8 +46,6 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
                                           name_of(port.direction)),
                               "a wire comes from an output");
     }
-    if (!check_order(index, value, text, source_index)) return;
-
     const std::byte* from_slot = source->slot;
     const bool same_task = source_index >= 0 && source->task == block.task;
     if (same_task) {
@@ -74,6 +72,7 @@ void Linker::wire(int index, const Field& field, const Node& value, const WireTe
                           fmt::format("'{}' is in {}, '{}' takes {}", text.signal,
                                       given.text.empty() ? "plain numbers" : given.text, field.name,
                                       wanted.text.empty() ? "plain numbers" : wanted.text));
+    if (!check_order(index, value, text, source_index)) return;
     BlockWires& wires = wires_[static_cast<std::size_t>(index)];
     const Copy copy{.source = from_slot, .target = block.live + field.offset};
     if (text.negated) return wires.negated.push_back(copy);

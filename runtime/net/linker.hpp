@@ -105,9 +105,12 @@ class Linker {
     void connect_events();
 
     std::optional<Signal> signal(const Node& node, const std::string& name);
+    std::optional<Signal> find_signal(const Node& node, const std::string& name);
     std::optional<Signal> signal(const Node& node) { return signal(node, node.text); }
     Signal field_signal(const Instance& block, const Field& field) const;
     void unknown_port(const Node& node, const Instance& block, std::string_view port);
+    std::string_view misspelt(std::string_view port) const;
+    std::string meant_by(const std::string& word) const;
     void connect_run();
     void connect_outputs();
     void connect_overruns();
@@ -135,6 +138,10 @@ class Linker {
     TraceSetup connect_trace(const TracePlan& plan);
     TraceTrigger connect_trigger(const TriggerPlan& plan);
     void connect_expectations();
+    void warn_of_what_comes_late();
+    std::int64_t begin_of(const StimulusPlan& plan) const;
+    void warn_of_unused_inputs();
+    void check_misfit(const Instance& block);
     std::optional<double> bound(const Signal& signal, const Node& node);
     std::optional<double> tolerance(const Signal& signal, const Node& node, double around);
 
@@ -154,6 +161,8 @@ class Linker {
     std::unordered_map<std::string, Unit> units_;
     std::vector<BlockWires> wires_;          ///< per block
     std::unordered_set<std::string> wired_;  ///< `block.port` of every wire
+    std::unordered_set<std::string> set_;    ///< `block.port` of all that is set from outside
+    std::unordered_set<std::string> used_inputs_;
 };
 
 }  // namespace lineshaft
