@@ -122,6 +122,7 @@ void Linker::set_constant(Instance& block, const Field& field, const Node& value
 
 /// Where `word` is a name of the program and no value: how what it names is written.
 std::string Linker::meant_by(const std::string& word) const {
+    if (word == "true" || word == "false") return {};
     if (std::ranges::any_of(program_.parameters, [&](const auto& p) { return p.first == word; }))
         return fmt::format("did you mean the parameter '${}'?", word);
     if (inputs_.contains(word)) return fmt::format("did you mean the input 'inputs.{}'?", word);
