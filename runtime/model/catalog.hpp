@@ -3,8 +3,10 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <new>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +23,16 @@ namespace lineshaft {
 using ScanBlocks = bool (*)(std::byte* first, std::size_t count, const Scan& now,
                             const Context& context);
 
+/// A constant that comes to nothing together with the other constants of its block, as a rate above
+/// what the chosen mode puts out.
+struct Misfit {
+    std::string_view field;
+    std::string why;
+};
+
+/// True of a field that has one value all the time: neither wired nor set from outside.
+using IsConstant = std::function<bool(std::string_view field)>;
+
 /// What the runtime knows of a kind of block: how to make one, how to call it, what it is made of.
 /// What its texts and fields point to is static, or kept by `owner`.
 struct BlockType {
@@ -33,6 +45,8 @@ struct BlockType {
     void (*make)(std::byte* place, const void* context) = nullptr;
     ScanBlocks scan_blocks = nullptr;
     DeviceCalls device = {};
+    std::optional<Misfit> (*misfit)(const std::byte* block,
+                                    const IsConstant& is_constant) = nullptr;  ///< or null
     const void* context = nullptr;           ///< what all blocks of the kind share; may be null
     std::shared_ptr<const void> owner = {};  ///< of a kind that a program brings along
 
@@ -68,7 +82,8 @@ concept PlainData = std::is_trivially_copyable_v<Block> && requires {
 class Catalog {
   public:
     /// A block is a struct with `type`, `doc`, `fields()` and `scan(const Scan&)`, or
-    /// `scan(const Scan&, const Context&)`. An output `error` is its member `error`.
+    /// `scan(const Scan&, const Context&)`. An output `error` is its member `error`. It may have
+    /// `misfit(const IsConstant&) const`, for what its limits cannot say.
     template <class Block>
     Catalog& add() {
         static_assert(PlainData<Block>);
@@ -82,7 +97,8 @@ class Catalog {
                     .alignment = alignof(Block),
                     .make = [](std::byte* place, const void*) { new (place) Block{}; },
                     .scan_blocks = scan_blocks<Block>,
-                    .device = device_calls<Block>()});
+                    .device = device_calls<Block>(),
+                    .misfit = misfit<Block>()});
     }
 
     Catalog& add(BlockType type) {
@@ -95,6 +111,15 @@ class Catalog {
     std::vector<std::string> names() const;
 
   private:
+    template <class Block>
+    static constexpr auto misfit() -> decltype(BlockType::misfit) {
+        if constexpr (requires(const Block& block, const IsConstant& f) { block.misfit(f); })
+            return [](const std::byte* block, const IsConstant& is_constant) {
+                return std::launder(reinterpret_cast<const Block*>(block))->misfit(is_constant);
+            };
+        return nullptr;
+    }
+
     template <class Block>
     static bool scan_blocks(std::byte* first, std::size_t count, const Scan& now,
                             const Context& context) {

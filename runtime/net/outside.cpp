@@ -157,6 +157,8 @@ void connect_outside(Connecting& to) {
     connect_replays(to);
     connect_forces(to);
     connect_retained(to);
+    check_constants(to);
+    warn_of_what_comes_late(to);
 }
 
 }  // namespace lineshaft

@@ -68,7 +68,7 @@ void refuse_port(Resolving& to, const Instance& block, const Node& key) {
     for (const TableField& t : block.type->tables) settable.emplace_back(t.name);
     to.read.fail("L0203", key,
                  fmt::format("{} has no parameter or input '{}'", block.described(), key.text),
-                 suggest(key.text, settable));
+                 suggest(to.net.misspelt(key.text), settable));
 }
 
 void check_required(const Resolving& to, const BlockPlan& plan, const Instance& block) {

@@ -130,12 +130,12 @@ void connect(Resolving& to, const Assignment& wire) {
     if (!source) return;
     const Port target = to.net.port(number, *field);
     to.instance(wire).wired[static_cast<std::size_t>(target.field)] = true;
-    if (!check_source(to, wire, *source) || !check_order(to, wire, source->port.instance) ||
-        !check_type(to, wire, *source))
-        return;
+    if (!check_source(to, wire, *source) || !check_type(to, wire, *source)) return;
     const Unit& given = to.net.unit(source->unit);
     const Unit& wanted = to.net.unit_of(target);
-    if (!check_unit(to, wire, *source, given, wanted)) return;
+    if (!check_unit(to, wire, *source, given, wanted) ||
+        !check_order(to, wire, source->port.instance))
+        return;
     const bool same_task =
         source->port.instance >= 0 && source->task == to.net.instance(number).task;
     to.net.wires.push_back({.from = source->port,

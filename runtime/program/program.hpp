@@ -58,6 +58,7 @@ struct RunPlan {
 };
 
 struct StimulusPlan {
+    Mark mark = {};
     std::int64_t at = 0;  ///< [ns]; with `task` the index of its scan
     std::optional<Node> task = {};
     std::vector<std::pair<Node, Node>> set = {};
@@ -75,6 +76,7 @@ struct ReplayPlan {
 
 /// A value that a signal keeps for [from, until), whatever the program writes. Times in ns.
 struct ForcePlan {
+    Mark mark = {};
     std::int64_t from = 0;
     std::int64_t until = never;
     Node signal, value;

@@ -58,7 +58,7 @@ void ProgramReader::stimuli(const Node& node) {
 
 void ProgramReader::stimulus(const Node& item) {
     read_.only_keys(item, "a stimulus", {"at", "scan", "task", "set", "cost"});
-    StimulusPlan plan;
+    StimulusPlan plan{.mark = item.mark};
     const Node* scan = item.find("scan");
     const Node* task = item.find("task");
     const Node* cost = item.find("cost");
@@ -120,7 +120,7 @@ void ProgramReader::forces(const Node& node) {
     for (const Node& item : node.items) {
         if (!read_.expect_map(item, "a force")) continue;
         read_.only_keys(item, "a force", {"from", "until", "set"});
-        ForcePlan plan;
+        ForcePlan plan{.mark = item.mark, .signal = {}, .value = {}};
         const Node* from = item.find("from");
         const Node* until = item.find("until");
         if (from) plan.from = read_.time(*from).value_or(0);

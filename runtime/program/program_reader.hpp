@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "runtime/program/program.hpp"
@@ -10,13 +11,9 @@ namespace lineshaft {
 
 inline constexpr const char* task_help = "add tasks such as tasks: {servo: {every: 2 ms}}";
 
-/// A parameter's text in force, and where a study sets it.
-struct ParameterValue {
-    Node node;
-    Mark set_at;
-};
-
-using ParameterValues = std::map<std::string, ParameterValue>;
+/// The parameters' texts in force, where they are declared or where a study sets them; from the
+/// command line they have no place, and what cannot be read (it is reported) is no scalar.
+using ParameterValues = std::map<std::string, Node>;
 
 /// Makes a Program of a file, see read_program(). Its functions stand in program.cpp (the file,
 /// parameters, blocks), program_tasks.cpp, program_outside.cpp (stimuli, replays, forces, retained
@@ -30,6 +27,7 @@ class ProgramReader {
   private:
     std::optional<Node> parse(const std::shared_ptr<const SourceFile>& file) const;
     void parameters(const Node& root);
+    void unused_parameters(const Node& root, const std::set<std::string>& used);
     void settings(ParameterValues& values);
     void controller(const Node& node);
     void tasks(const Node& node);

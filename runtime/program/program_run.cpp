@@ -11,6 +11,13 @@ namespace {
 constexpr const char* expectation_help =
     "write it as {at: end, axis.position: 20 mm, within: 1e-9 mm}";
 
+/// The bounds that only `value` is within.
+std::string as_bounds(const Node& value) {
+    if (value.text == "false") return "write at_most: false";
+    if (value.text == "true") return "write at_least: true";
+    return fmt::format("write at_least: {0}, at_most: {0}", value.text);
+}
+
 }  // namespace
 
 void ProgramReader::run(const Node& node) {
@@ -65,6 +72,9 @@ void ProgramReader::expectation(const Node& item) {
         if (key.text == "at" || key.text == "always" || key.text == "within" ||
             key.text == "at_least" || key.text == "at_most")
             continue;
+        if (always && key.text == "equals")
+            return read_.fail("L0213", key, "'always' takes bounds, not 'equals'",
+                              as_bounds(value));
         if (always || !plan.signal.text.empty()) {
             read_.fail("L0201", key,
                        fmt::format("an expectation has one signal, '{}' is a second", key.text));

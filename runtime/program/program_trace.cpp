@@ -50,7 +50,9 @@ void ProgramReader::trace(const Node& name, const Node& node) {
         n && read_.expect_scalar(*n, "a task's name"))
         plan.task = *n;
     check_attached(plan.task);
-    plan.every = count(node, "every", 1, "1 records every scan, 10 every tenth").value_or(1);
+    plan.every = count(node, "every", 1,
+                       "'every' counts scans: 1 records every scan of the task, 10 every tenth")
+                     .value_or(1);
     const Node* signals = read_.require(node, "signals", what);
     if (signals && read_.expect_sequence(*signals, "'signals'")) traced(*signals, plan);
     if (const Node* n = node.find("trigger")) trigger(*n, plan.trigger);
@@ -69,7 +71,7 @@ void ProgramReader::trace(const Node& name, const Node& node) {
 std::optional<std::int64_t> ProgramReader::count(const Node& map, const char* key,
                                                  std::int64_t least, const char* help) {
     const Node* node = map.find(key);
-    const auto number = node ? read_.integer(*node) : std::nullopt;
+    const auto number = node ? read_.integer(*node, help) : std::nullopt;
     if (!number || *number >= least) return number;
     read_.fail("L0305", *node, fmt::format("'{}' is below {}", node->text, least), help);
     return {};

@@ -92,14 +92,6 @@ class Feeder {
 
 }  // namespace
 
-std::string format_time(std::int64_t nanoseconds) {
-    constexpr std::int64_t second = 1'000'000'000;
-    std::string text = fmt::format("{}", nanoseconds / second);
-    if (nanoseconds % second != 0) text += fmt::format(".{:09}", nanoseconds % second);
-    if (text.find('.') != std::string::npos) text.erase(text.find_last_not_of('0') + 1);
-    return text + " s";
-}
-
 Executive::Executive(Machine& machine) : machine_(machine), forces_(machine.forces) {
     for (const BlockSeed& seed : machine.block_seeds) sow(seed, machine.seed);
     for (const Task& task : machine.tasks) {

@@ -216,7 +216,4 @@ inline std::int64_t later(std::int64_t time, std::int64_t by) {
     return by > 0 && time > never - by ? never : time + by;
 }
 
-/// `12.345 s`, exact from integer nanoseconds.
-std::string format_time(std::int64_t nanoseconds);
-
 }  // namespace lineshaft
