@@ -135,8 +135,8 @@ class Linker {
     TraceSetup connect_trace(const TracePlan& plan);
     TraceTrigger connect_trigger(const TriggerPlan& plan);
     void connect_expectations();
-    std::optional<double> bound(const Signal& signal, const Node& node);
-    std::optional<double> tolerance(const Signal& signal, const Node& node, double around);
+    std::optional<Value> bound(const Signal& signal, const Node& node);
+    std::optional<Value> tolerance(const Signal& signal, const Node& node, const Value& around);
 
     Unit unit_of(const Instance& block, const Field& field);
     const Unit& parsed(const std::string& text);
