@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "runtime/model/catalog.hpp"
@@ -10,11 +11,18 @@
 
 namespace lineshaft {
 
+/// A file that a program replays.
+struct ReplayedFile {
+    std::string name;   ///< as the program has it
+    std::string crc32;  ///< Checksum of its bytes
+};
+
 /// A program that can run.
 struct Linked {
     Machine machine;
     std::vector<TraceSetup> traces;
     std::vector<Expectation> expectations;
+    std::vector<ReplayedFile> replayed;
 };
 
 /// Checks every name, type, unit, limit and wire of `program` and lays its blocks out in memory.

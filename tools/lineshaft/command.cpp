@@ -10,8 +10,6 @@
 
 namespace lineshaft {
 
-std::atomic<bool> interrupt_requested = false;
-
 namespace {
 
 std::int64_t now_ms() {
@@ -59,14 +57,15 @@ LoadOptions CommonOptions::load_options(Diagnostics& out) const {
 }
 
 Exit report(const Diagnostics& diagnostics, bool json) {
+    const Exit exit = interrupt_requested ? Exit::interrupted : Exit::wrong;
     if (!json) {
         fmt::print(stderr, "{}", diagnostics.render());
-        return Exit::wrong;
+        return exit;
     }
     auto list = nlohmann::ordered_json::array();
     for (const Diagnostic& d : diagnostics.list()) list.push_back(to_json(d));
     fmt::print("{}\n", nlohmann::ordered_json{{"diagnostics", list}}.dump(2));
-    return Exit::wrong;
+    return exit;
 }
 
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "runtime/model/catalog.hpp"
 #include "runtime/program/program.hpp"
+#include "runtime/source/input_file.hpp"
 
 namespace lineshaft {
 
@@ -22,9 +22,6 @@ enum class Exit : int {
     fault = 3,   ///< something went wrong while running: a block's error, a full disk
     interrupted = 130,
 };
-
-/// Set by SIGINT and SIGTERM.
-extern std::atomic<bool> interrupt_requested;
 
 /// What most commands share.
 struct CommonOptions {
@@ -38,7 +35,8 @@ struct CommonOptions {
     LoadOptions load_options(Diagnostics& out) const;
 };
 
-/// Prints what is wrong, as a compiler does on stderr, or as JSON on stdout. Always Exit::wrong.
+/// Prints what is wrong, as a compiler does on stderr, or as JSON on stdout. Exit::wrong,
+/// or Exit::interrupted when reading was.
 Exit report(const Diagnostics& diagnostics, bool json);
 
 /// L0509 for each of `outputs` that is one of the files `inputs`, by whatever name, or that is

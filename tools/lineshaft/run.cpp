@@ -56,39 +56,45 @@ void print_json(const Loaded& loaded, const RunReport& report) {
                                     {"measurements", trace.measurements},
                                     {"rows", trace.rows}});
     if (report.faulted())
-        object["fault"] = !report.trace_error.empty()     ? report.trace_error
-                          : !report.pulses_error.empty()  ? report.pulses_error
+        object["fault"] = !report.output_error.empty()    ? report.output_error
                           : !report.restart_error.empty() ? report.restart_error
                                                           : report.result.message;
     fmt::print("{}\n", object.dump(2));
 }
 
+/// What stands on the standard output when a file was to go there.
+bool writes_to_stdout(const RunCommand& command) {
+    return command.trace == "-" || command.pulses == "-";
+}
+
 void print_text(const RunCommand& command, const Loaded& loaded, const RunReport& report) {
+    std::FILE* const out = writes_to_stdout(command) ? stderr : stdout;
     for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
         const Verdict& verdict = report.verdicts[i];
-        fmt::print("{}  {}\n", verdict.ok ? "ok    " : "FAILED",
+        fmt::print(out, "{}  {}\n", verdict.ok ? "ok    " : "FAILED",
                    loaded.linked.expectations[i].text);
-        if (!verdict.ok) fmt::print("        {}\n", verdict.deviation);
+        if (!verdict.ok) fmt::print(out, "        {}\n", verdict.deviation);
     }
     if (command.common.quiet) return;
     const double machine_seconds = seconds(report.result.time);
     fmt::print(
-        "{}: machine time {:.3f} s, wall time {:.3f} s, {:.0f} times faster than the clock\n",
+        out, "{}: machine time {:.3f} s, wall time {:.3f} s, {:.0f} times faster than the clock\n",
         loaded.program.title, machine_seconds, report.wall_seconds,
         machine_seconds / report.wall_seconds);
-    if (report.result.time_errors > 0) fmt::print("time errors: {}\n", report.result.time_errors);
-    if (report.trace_error.empty())
-        for (const TraceReport& trace : report.traces)
-            for (const std::string& path : trace.paths) fmt::print("trace: {}\n", path);
-    if (!report.traces.empty() && report.trace_error.empty())
-        fmt::print("events: {}\n", events_path(command.trace));
-    if (!command.pulses.empty() && report.pulses_error.empty())
-        fmt::print("pulses: {}\n", command.pulses);
+    if (report.result.time_errors > 0)
+        fmt::print(out, "time errors: {}\n", report.result.time_errors);
+    if (!report.output_error.empty()) return;
+    const auto tell = [out](const char* what, const std::string& path) {
+        if (path != "-") fmt::print(out, "{}: {}\n", what, path);
+    };
+    for (const TraceReport& trace : report.traces)
+        for (const std::string& path : trace.paths) tell("trace", path);
+    if (!report.traces.empty() && command.trace != "-") tell("events", events_path(command.trace));
+    if (!command.pulses.empty()) tell("pulses", command.pulses);
 }
 
 Exit exit_code(const RunReport& report) {
-    const bool files_failed = !report.trace_error.empty() || !report.pulses_error.empty() ||
-                              !report.restart_error.empty();
+    const bool files_failed = !report.output_error.empty() || !report.restart_error.empty();
     if (files_failed) return Exit::fault;
     if (report.result.outcome == Outcome::interrupted) return Exit::interrupted;
     if (report.faulted()) return Exit::fault;
@@ -131,6 +137,25 @@ RunOptions run_options(const RunCommand& command, Diagnostics& out) {
     return options;
 }
 
+/// What else would go to the standard output.
+void check_stdout(const RunCommand& command, const std::optional<Loaded>& loaded,
+                  Diagnostics& out) {
+    const auto fail = [&](const char* message, const char* help) {
+        out.add("L0509", {}, message, help);
+    };
+    if (command.common.json)
+        fail("'-' and --json would both write to the standard output", "name a file");
+    if (command.checkpoint_every.empty() && !command.resume && command.restart != Restart::hot) {
+        const bool many =
+            loaded && command.trace == "-" &&
+            (loaded->linked.traces.size() > 1 ||
+             (!loaded->linked.traces.empty() && loaded->linked.traces.front().repeat > 1));
+        if (many) fail("the program records more than one trace", "name a file: --trace FILE.csv");
+    } else {
+        fail("a run that goes on later needs files", "name a file instead of '-'");
+    }
+}
+
 Exit execute(const RunCommand& command) {
     Diagnostics out;
     YamlFiles files;
@@ -155,6 +180,7 @@ Exit execute(const RunCommand& command) {
     for (const auto& file : files.sources()) inputs.push_back(file->path);
     if (loaded)
         for (const ReplayPlan& replay : loaded->program.replays) inputs.push_back(replay.path);
+    if (writes_to_stdout(command)) check_stdout(command, loaded, out);
     check_outputs({command.trace, command.pulses, command.retain, command.checkpoint}, inputs, out);
     if (!out.empty()) return report(out, command.common.json);
 
@@ -177,8 +203,7 @@ Exit execute(const RunCommand& command) {
             spdlog::warn("the trigger of trace '{}' did not come: {} has no rows",
                          trace.name.empty() ? "trace" : trace.name, trace.paths.front());
     if (!result.result.message.empty()) spdlog::error("{}", result.result.message);
-    if (!result.trace_error.empty()) spdlog::error("{}", result.trace_error);
-    if (!result.pulses_error.empty()) spdlog::error("{}", result.pulses_error);
+    if (!result.output_error.empty()) spdlog::error("{}", result.output_error);
     if (!result.restart_error.empty()) spdlog::error("{}", result.restart_error);
     return exit_code(result);
 }
@@ -189,13 +214,16 @@ void add_run(CLI::App& app, Exit& result) {
     auto command = std::make_shared<RunCommand>();
     CLI::App* sub = app.add_subcommand("run", "Run a program and judge its expectations");
     sub->add_option("program", command->program, "The program, a YAML file")->required();
-    sub->add_option("--trace", command->trace,
-                    "Write the program's trace to this CSV file; the trace NAME of its 'traces:' "
-                    "to FILE.NAME.csv")
+    sub->add_option(
+           "--trace", command->trace,
+           "Write the program's trace to this CSV file, the trace NAME of its 'traces:' to "
+           "FILE.NAME.csv; - is the standard output")
         ->type_name("FILE.csv");
     add_style(*sub, command->style);
-    sub->add_option("--pulses", command->pulses,
-                    "Write the rising edges of all pulse channels to this CSV file")
+    sub->add_option(
+           "--pulses", command->pulses,
+           "Write the rising edges of all pulse channels to this CSV file; - is the standard "
+           "output")
         ->type_name("FILE");
     sub->add_option("--force", command->forces,
                     "Keep a signal at a value, whatever the program writes: slave.ratio=2@1s..2s")
