@@ -19,9 +19,14 @@ std::int64_t ordinal(double value) {
     return bits < 0 ? std::numeric_limits<std::int64_t>::min() - bits : bits;
 }
 
+double distance(std::int64_t a, std::int64_t b) {
+    const auto x = static_cast<std::uint64_t>(a), y = static_cast<std::uint64_t>(b);
+    return static_cast<double>(a > b ? x - y : y - x);
+}
+
 bool deviates(const CsvColumn& a, const CsvColumn& b, std::size_t row, double tolerance) {
     if (a.is_missing(row) || b.is_missing(row)) return a.is_missing(row) != b.is_missing(row);
-    if (a.type == Type::integer && tolerance == 0) return a.integers[row] != b.integers[row];
+    if (a.type == Type::integer) return distance(a.integers[row], b.integers[row]) > tolerance;
     return std::abs(a.values[row] - b.values[row]) > tolerance;
 }
 

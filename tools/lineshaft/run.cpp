@@ -137,23 +137,15 @@ RunOptions run_options(const RunCommand& command, Diagnostics& out) {
     return options;
 }
 
-/// What else would go to the standard output.
-void check_stdout(const RunCommand& command, const std::optional<Loaded>& loaded,
-                  Diagnostics& out) {
-    const auto fail = [&](const char* message, const char* help) {
-        out.add("L0509", {}, message, help);
-    };
+/// L0509 for what else would go to the standard output.
+void check_stdout(const RunCommand& command, const Loaded& loaded, Diagnostics& out) {
+    const auto& traces = loaded.linked.traces;
     if (command.common.json)
-        fail("'-' and --json would both write to the standard output", "name a file");
-    if (command.checkpoint_every.empty() && !command.resume && command.restart != Restart::hot) {
-        const bool many =
-            loaded && command.trace == "-" &&
-            (loaded->linked.traces.size() > 1 ||
-             (!loaded->linked.traces.empty() && loaded->linked.traces.front().repeat > 1));
-        if (many) fail("the program records more than one trace", "name a file: --trace FILE.csv");
-    } else {
-        fail("a run that goes on later needs files", "name a file instead of '-'");
-    }
+        out.add("L0509", {}, "'-' and --json would both write to the standard output",
+                "name a file");
+    if (command.trace == "-" && (traces.size() > 1 || (traces.size() == 1 && traces[0].repeat > 1)))
+        out.add("L0509", {}, "the program records more than one trace",
+                "name a file: --trace FILE.csv");
 }
 
 Exit execute(const RunCommand& command) {
@@ -180,7 +172,7 @@ Exit execute(const RunCommand& command) {
     for (const auto& file : files.sources()) inputs.push_back(file->path);
     if (loaded)
         for (const ReplayPlan& replay : loaded->program.replays) inputs.push_back(replay.path);
-    if (writes_to_stdout(command)) check_stdout(command, loaded, out);
+    if (loaded && writes_to_stdout(command)) check_stdout(command, *loaded, out);
     check_outputs({command.trace, command.pulses, command.retain, command.checkpoint}, inputs, out);
     if (!out.empty()) return report(out, command.common.json);
 
