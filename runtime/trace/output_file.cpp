@@ -81,7 +81,8 @@ void OutputFile::open(std::int64_t keep) {
 }
 
 OutputFile::Taken OutputFile::take_part() {
-    while (true) {
+    constexpr int most = 1000;  // on a file system whose numbers of files are not to be trusted
+    for (int attempt = 1;; ++attempt) {
         descriptor_ = ::open(part().c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
         if (descriptor_ < 0) {
             fail("open");
@@ -89,7 +90,7 @@ OutputFile::Taken OutputFile::take_part() {
         }
         // A file system that cannot lock has one writer at a time.
         const bool busy = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-        if (!busy && is_name_of(descriptor_, part())) return Taken::yes;
+        if (!busy && (is_name_of(descriptor_, part()) || attempt == most)) return Taken::yes;
         ::close(descriptor_);
         descriptor_ = -1;
         if (busy) return Taken::busy;
