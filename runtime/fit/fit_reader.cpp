@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/csv/csv_reader.hpp"
+#include "runtime/csv/csv_time.hpp"
 #include "runtime/fit/fit.hpp"
 #include "runtime/source/reader.hpp"
 #include "runtime/study/study_reader.hpp"
@@ -304,13 +304,15 @@ void FitReader::samples(const PendingCell& pending, const CsvTable& table, const
     }
     const Unit seconds = unit_of(time, "s", pending.trace);
     if (!out.empty()) return;
+    const Node* const named = pending.trace.find("file");
     const Node* offset = pending.trace.find("offset");
     const std::int64_t shift = offset ? read_.time(*offset).value_or(0) : 0;
     for (std::size_t row = 0; row < table.rows; ++row) {
         const auto missing = [row](const CsvColumn* c) { return c->is_missing(row); };
         if (time.is_missing(row) || std::ranges::any_of(columns, missing)) continue;
-        const double at = convert(time.values[row], seconds, Unit::parse("ns").value());
-        cell.times.push_back(static_cast<std::int64_t>(std::round(at)) + shift);
+        const auto at = time_of(time, row, seconds, shift, read_, named ? *named : pending.trace);
+        if (!at) return;
+        cell.times.push_back(*at);
         for (std::size_t k = 0; k < columns.size(); ++k)
             cell.targets[k].given.push_back(
                 convert(columns[k]->values[row], units[k],

@@ -121,6 +121,7 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     if (const Node* n = root->find("trace")) trace({}, *n);
     if (const Node* n = root->find("traces")) traces(*n);
     if (const Node* n = root->find("expect")) expectations(*n);
+    program_.root = std::move(*root);
     return std::move(program_);
 }
 
@@ -180,7 +181,7 @@ void ProgramReader::controller(const Node& node) {
     const auto file = options_.files ? options_.files->source(*path, out, node.mark)
                                      : read_source(*path, out, node.mark);
     if (!file) return;
-    const auto root = parse(file);
+    auto root = parse(file);
     if (!root || !check_kind(read_, *root, "lineshaft_controller")) return;
     program_.tasks_known = true;
     read_.only_keys(*root, "a controller", {"lineshaft_controller", "title", "tasks"});
@@ -189,6 +190,8 @@ void ProgramReader::controller(const Node& node) {
         tasks(*n);
         in_controller_ = false;
     }
+    program_.controller_name = node;
+    program_.controller = std::move(*root);
 }
 
 void ProgramReader::blocks(const Node& node) {
@@ -275,6 +278,13 @@ std::optional<std::string> resolve_path(const std::string& named, const std::str
     bool allowed = lies_below(real, project_root(from));
     for (const std::string& folder : include_dirs)
         allowed = allowed || lies_below(real, real_path(folder, error));
+    const fs::file_status status = fs::status(real, error);
+    if (allowed && fs::exists(status) && !fs::is_regular_file(status) &&
+        !fs::is_directory(status)) {
+        out.add("L0001", std::move(where), fmt::format("'{}' is not a regular file", named),
+                "only the command line may name a pipe or a device");
+        return {};
+    }
     if (allowed) return path.string();
     out.add("L0002", std::move(where),
             fmt::format("'{}' lies outside of the program's project", named),
