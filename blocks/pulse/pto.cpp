@@ -49,9 +49,10 @@ std::span<const Field> Pto::fields() {
         input("stop", &P::stop, "", "rising edge: ends the output at once"),
         output("busy", &P::busy, "", "a train is under way"),
         output("queued", &P::queued, "", "another one waits"),
-        output("done", &P::done, "", "a train has ended since the last scan of this block"),
+        output("done", &P::done, "",
+               "a train has ended; for one whole scan of this block at least"),
         output("active_segment", &P::active_segment, "", "from 1, as SMB166; 0: idle"),
-        output("trains", &P::trains, "", "trains that have ended"),
+        output("trains", &P::trains, "", "trains that have ended, stopped ones too"),
         output("pulses", &P::pulses, "", "rising edges so far"),
         output("position", &P::position, "", "forward less reverse pulses so far"),
         output("lost", &P::lost, "", "pulses loaded and not made, because the output was ended"),
@@ -78,7 +79,8 @@ std::span<const TableField> Pto::tables() {
 }
 
 void Pto::scan(const Scan&) {
-    done = false;
+    done = done && !told;
+    told = done;
     const bool executed = risen(execute, last_execute);
     const bool ordered = job != last_job;
     last_job = job;
@@ -109,7 +111,7 @@ void Pto::take_instruction() {
 
 void Pto::publish(std::int64_t time) {
     if (command == Command::load) load(time);
-    if (command == Command::halt) halt();
+    if (command == Command::halt) halt({time, 0});
     command = Command::none;
 }
 
@@ -127,16 +129,14 @@ void Pto::load(std::int64_t time) {
     }
 }
 
-void Pto::halt() {
+void Pto::halt(PulseTime time) {
     if (busy) {
         lost += train.segment().count - train.emitted();
-        lose_from(active, active_segment);
         stopped = true;
+        end_train(time);
     }
     if (queued) lose_from(waiting, 0);
-    busy = queued = false;
-    active_segment = 0;
-    rate = 0;
+    queued = false;
 }
 
 void Pto::begin_train(const Train& next, PulseTime start) {
@@ -172,14 +172,33 @@ PulseSegment Pto::clamp(const PulseSegment& wanted, bool multi) {
     return segment;
 }
 
+bool Pto::is_too_short() const {
+    const PulseSegment& s = train.segment();
+    const auto rates = static_cast<double>(s.start_rate + s.end_rate);
+    return 2 * static_cast<double>(s.count) < shortest_segment * rates;
+}
+
+bool Pto::in_last_segment() const {
+    return active_segment >= active.segments || (underflow_ends && is_too_short());
+}
+
+/// At the end of this segment `done` must rise, and is still true.
+bool Pto::renews_done() const {
+    return done && interrupt && in_last_segment();
+}
+
 std::int64_t Pto::next_event_time() const {
-    return busy ? train.end_not_before() : never;
+    if (!busy) return never;
+    const std::int64_t end = train.end_not_before();
+    return renews_done() ? std::max(end - 1, advanced + 1) : end;
 }
 
 void Pto::advance(std::int64_t time, PulseSink* sink) {
+    advanced = time;
     while (busy) {
         emit(time, sink);
         rate = train.rate(time);
+        if (renews_done() && train.ends(time + 1)) done = false;
         if (!train.ends(time)) return;
         end_segment();
     }
@@ -202,22 +221,23 @@ void Pto::emit(std::int64_t time, PulseSink* sink) {
 }
 
 void Pto::end_segment() {
-    const PulseSegment& s = train.segment();
-    const auto rates = static_cast<double>(s.start_rate + s.end_rate);
-    const bool too_short = 2 * static_cast<double>(s.count) < shortest_segment * rates;
-    underflow = underflow || too_short;
-    const bool cut = too_short && underflow_ends;
-    if (active_segment < active.segments && !cut) return begin_segment(train.end());
-    lose_from(active, active_segment);
-    ++trains;
-    end_time = seconds(train.end().rounded());
-    done = done || interrupt;
-    busy = false;
-    active_segment = 0;
-    rate = 0;
+    underflow = underflow || is_too_short();
+    if (!in_last_segment()) return begin_segment(train.end());
+    end_train(train.end());
     if (!queued) return;
     queued = false;
     begin_train(waiting, train.end());
+}
+
+void Pto::end_train(PulseTime end) {
+    lose_from(active, active_segment);
+    ++trains;
+    end_time = seconds(end.rounded());
+    done = done || interrupt;
+    told = told && !interrupt;
+    busy = false;
+    active_segment = 0;
+    rate = 0;
 }
 
 }  // namespace lineshaft

@@ -33,8 +33,12 @@ struct PulseProfile {
 /// `overflow` and is ignored. Refusals are counted in `refused`, with the last reason beside it;
 /// none is an error of the program. A segment shorter than 500 us sets `underflow` (SM66.6), and
 /// ends the train there if `underflow_ends` is true: the manual leaves it open. Executing with
-/// `enable` false, or a rising edge of `stop`, ends the output at once; the pulses not made are in
-/// `lost`.
+/// `enable` false, or a rising edge of `stop`, ends the train at once, and drops the one that
+/// waits; the pulses not made are in `lost`.
+///
+/// `done` rises at the end of a train, in between two scans, and stays true until the second scan
+/// of the block from there: the first one, and what comes after it in the task, sees it. It falls 1
+/// ns before the end of the next train if that comes sooner, so that each end is a rising edge.
 ///
 /// `control` as in SMB67 stands for the named fields if it is 0 or more: bit 7 enable, bit 6 PTO
 /// (0, pulse width modulation, is refused), bit 5 multi-segment, bit 2 update count, bit 0 update
@@ -79,7 +83,9 @@ struct Pto {
     PulseTrain train;
     PulseSegment last_single;
     bool last_execute = false, last_stop = false;
+    bool told = false;  ///< a scan has seen `done`
     std::int64_t last_job = 0;
+    std::int64_t advanced = 0;  ///< the time of the last advance [ns]
 
     static constexpr std::string_view type = "pto";
     static constexpr std::string_view doc = "pulse train output of an S7-200 SMART, one channel";
@@ -94,10 +100,14 @@ struct Pto {
   private:
     void take_instruction();
     void load(std::int64_t time);
-    void halt();
+    void halt(PulseTime time);
     void begin_train(const Train& next, PulseTime start);
     void begin_segment(PulseTime start);
     void end_segment();
+    void end_train(PulseTime end);
+    bool is_too_short() const;
+    bool in_last_segment() const;
+    bool renews_done() const;
     PulseSegment segment_of(const Train& of, std::int64_t index) const;
     void lose_from(const Train& of, std::int64_t first_segment);
     void emit(std::int64_t time, PulseSink* sink);
