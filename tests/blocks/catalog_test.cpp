@@ -234,14 +234,16 @@ double any_command(Random& random) {
     return values[random.next() % std::size(values)];
 }
 
-/// Other commands now and then; limits of acceleration and jerk stay, `home` is not used. Returns
-/// the greatest of the velocities commanded one input after the other: a master that changes with
-/// the ratio has moved the axis by the old one.
+/// The limits of acceleration and jerk stay, and the master has constant velocities.
+constexpr std::string_view not_commanded[] = {"acceleration", "jerk", "home", "master_position",
+                                              "master_acceleration"};
+
+/// Other commands now and then. Returns the greatest of the velocities commanded one input after
+/// the other: a master that changes with the ratio has moved the axis by the old one.
 double command_axis(Instance& axis, const BlockType& type, Random& random) {
     double most = commanded_velocity(axis, type);
     for (const Field& f : type.fields) {
-        const bool given = f.name == "acceleration" || f.name == "jerk" || f.name == "home" ||
-                           f.name == "master_position";
+        const bool given = std::ranges::count(not_commanded, f.name) > 0;
         if (f.direction != Direction::input || given || random.next() % 50 != 0) continue;
         const Value value =
             f.type == Type::boolean ? Value(random.next() % 2 == 0) : Value(any_command(random));
