@@ -12,7 +12,9 @@ constexpr double shortest_segment = 500e-6;  // [s]
 constexpr std::size_t edges_at_once = 1024;
 
 constexpr std::string_view rate_update_names[] = {"continuous", "per_pulse"};
-constexpr std::string_view refusal_names[] = {"none", "overflow", "no_segments", "not_pto"};
+constexpr std::string_view warning_names[] = {"none",    "overflow",          "no_segments",
+                                              "not_pto", "rate_out_of_range", "count_out_of_range"};
+constexpr std::span refusal_names = std::span(warning_names).first(4);
 
 bool bit(std::int64_t byte, int number) {
     return (byte >> number & 1) != 0;
@@ -65,6 +67,8 @@ std::span<const Field> Pto::fields() {
         output("stopped", &P::stopped, "", "the output was ended by the program"),
         output("refused", &P::refused, "", "instructions that were ignored"),
         output("refusal", &P::refusal, "", "why the last of them was").one_of(refusal_names),
+        output("warnings", &P::warnings, "", "what was clamped or refused so far"),
+        output("warning_id", &P::warning_id, "", "why the last of it was").one_of(warning_names),
     };
     return list;
 }
@@ -121,12 +125,18 @@ void Pto::load(std::int64_t time) {
         refusal = command_refused;
         overflow = overflow || refusal == Refusal::overflow;
         ++refused;
+        warn(static_cast<Warning>(refusal));
     } else if (busy) {
         waiting = commanded;
         queued = true;
     } else {
         begin_train(commanded, {time, 0});
     }
+}
+
+void Pto::warn(Warning why) {
+    ++warnings;
+    warning_id = why;
 }
 
 void Pto::halt(PulseTime time) {
@@ -149,8 +159,12 @@ void Pto::begin_train(const Train& next, PulseTime start) {
 }
 
 void Pto::begin_segment(PulseTime start) {
-    train.begin(clamp(segment_of(active, active_segment), active.multi_segment), rate_update,
-                start);
+    const PulseSegment wanted = segment_of(active, active_segment);
+    const PulseSegment segment = clamp(wanted, active.multi_segment);
+    if (segment.start_rate != wanted.start_rate || segment.end_rate != wanted.end_rate)
+        warn(Warning::rate_out_of_range);
+    if (segment.count != wanted.count) warn(Warning::count_out_of_range);
+    train.begin(segment, rate_update, start);
     ++active_segment;
 }
 

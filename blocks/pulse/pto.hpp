@@ -22,7 +22,8 @@ struct PulseProfile {
 /// inputs and takes effect when the outputs of the task are published. From then on the output
 /// goes by itself; its edges do not depend on any scan. Rates are in whole Hz and are clamped:
 /// below 1 Hz to 1 Hz, above 65,535 Hz (single segment) or 100,000 Hz (multi-segment) to that; a
-/// count of 0 becomes 1, above 2,147,483,647 that. `clamped` says so.
+/// count of 0 becomes 1, above 2,147,483,647 that. `clamped` says so. What is clamped or refused is
+/// counted in `warnings`, the reason of the last beside it: events of the run, and said at its end.
 ///
 /// Single segment: `count` pulses at `start_rate`; `end_rate` is not used. Multi-segment: the
 /// segments of `profile`, or the one of `start_rate`, `end_rate` and `count` if `profile` is not
@@ -45,6 +46,15 @@ struct PulseProfile {
 /// rate. The last two are for single segments: without them the last train's value stays.
 struct Pto {
     enum class Refusal : std::int64_t { none, overflow, no_segments, not_pto };
+    /// The refusals, then what is clamped as a segment begins.
+    enum class Warning : std::int64_t {
+        none,
+        overflow,
+        no_segments,
+        not_pto,
+        rate_out_of_range,
+        count_out_of_range,
+    };
 
     RateUpdate rate_update = RateUpdate::continuous;
     bool underflow_ends = false;
@@ -66,6 +76,8 @@ struct Pto {
     bool clamped = false, overflow = false, underflow = false, stopped = false;
     std::int64_t refused = 0;
     Refusal refusal = Refusal::none;
+    std::int64_t warnings = 0;
+    Warning warning_id = Warning::none;
 
     /// What an instruction has taken: one segment, or the first `segments` of `profile`.
     struct Train {
@@ -100,6 +112,7 @@ struct Pto {
   private:
     void take_instruction();
     void load(std::int64_t time);
+    void warn(Warning why);
     void halt(PulseTime time);
     void begin_train(const Train& next, PulseTime start);
     void begin_segment(PulseTime start);

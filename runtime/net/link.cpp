@@ -223,13 +223,24 @@ void Linker::collect_errors() {
     }
 }
 
+WarningCount Linker::warnings_of(const Instance& block) const {
+    const Field* count = block.type->find_readable("warnings");
+    const Field* id = block.type->find_readable("warning_id");
+    if (!count || !id) return {};
+    return {.count = reinterpret_cast<const std::int64_t*>(block.live + count->offset),
+            .id = reinterpret_cast<const std::int64_t*>(block.live + id->offset),
+            .names = id->names,
+            .block = info(block).block};
+}
+
 void Linker::collect_devices() {
     for (const Instance& block : blocks_)
         if (block.known() && block.type->is_device())
             out_.machine.devices.push_back({.calls = block.type->device,
                                             .block = block.live,
                                             .name = block.plan->name.text,
-                                            .task = block.task});
+                                            .task = block.task,
+                                            .warnings = warnings_of(block)});
     if (out_.machine.devices.empty()) return;
     for (const ExpectPlan& plan : program_.expectations)
         if (plan.at) out_.machine.looks.push_back(*plan.at);

@@ -102,6 +102,7 @@ class Linker {
     void collect_signals();
     void collect_errors();
     void collect_devices();
+    WarningCount warnings_of(const Instance& block) const;
     void connect_events();
 
     std::optional<Signal> signal(const Node& node, const std::string& name);

@@ -108,6 +108,7 @@ RunReport SingleRun::run() {
             executive_->run(observers_, &stop_, [this](std::int64_t time) { look(time); });
         if (report_.result.outcome == Outcome::interrupted && writing_fails())
             report_.result.message = "the run stopped at " + format_time(report_.result.time);
+        report_.warnings = executive_->warnings();
         judge_.finish(report_.result);
         report_.verdicts = judge_.verdicts();
         finish();

@@ -50,12 +50,13 @@ struct TraceReport {
 /// What came of one run. Final values stand in the machine's signals.
 struct RunReport {
     RunResult result;
-    std::vector<Verdict> verdicts;    ///< one per expectation of the program
-    std::vector<TraceReport> traces;  ///< that were recorded
-    std::string trace_error;          ///< why the trace is not there, if one was wanted
-    std::string pulses_error;         ///< likewise of the pulses
-    std::string restart_error;        ///< why retained values or checkpoints were not written
-    Diagnostics refused;              ///< why the run could not begin, if so; nothing has run then
+    std::vector<Verdict> verdicts;      ///< one per expectation of the program
+    std::vector<TraceReport> traces;    ///< that were recorded
+    std::vector<std::string> warnings;  ///< what devices have put up with, a sentence each
+    std::string trace_error;            ///< why the trace is not there, if one was wanted
+    std::string pulses_error;           ///< likewise of the pulses
+    std::string restart_error;          ///< why retained values or checkpoints were not written
+    Diagnostics refused;  ///< why the run could not begin, if so; nothing has run then
     double wall_seconds = 0;
 
     bool expectations_hold() const;

@@ -394,6 +394,22 @@ TEST_CASE("errors are a boolean with the reason beside it") {
     }
 }
 
+TEST_CASE("warnings are a device's count with the reason of the last beside it") {
+    const Catalog catalog = standard_blocks();
+    for (const BlockType& type : catalog.types()) {
+        INFO("block " << type.name);
+        const Field* count = type.find_readable("warnings");
+        const Field* id = type.find_readable("warning_id");
+        CHECK((count != nullptr) == (id != nullptr));
+        if (!count || !id) continue;
+        CHECK(type.is_device());
+        CHECK(count->direction == Direction::output);
+        CHECK(count->type == Type::integer);
+        CHECK(id->type == Type::enumeration);
+        CHECK(id->names.front() == "none");
+    }
+}
+
 TEST_CASE("equal inputs give equal bytes, whatever was in memory before") {
     const Catalog catalog = standard_blocks();
     for (const BlockType& type : catalog.types()) {

@@ -48,6 +48,7 @@ void print_json(const Loaded& loaded, const RunReport& report) {
                                   {"wall_time_s", report.wall_seconds},
                                   {"scans", scans},
                                   {"time_errors", report.result.time_errors},
+                                  {"warnings", report.warnings},
                                   {"signals", signals},
                                   {"expect", expect}};
     for (const TraceReport& trace : report.traces)
@@ -176,6 +177,7 @@ Exit execute(const RunCommand& command) {
         if (trace.measurements == 0)
             spdlog::warn("the trigger of trace '{}' did not come: {} has no rows",
                          trace.name.empty() ? "trace" : trace.name, trace.paths.front());
+    for (const std::string& text : result.warnings) spdlog::warn("{}", text);
     if (!result.result.message.empty()) spdlog::error("{}", result.result.message);
     if (!result.trace_error.empty()) spdlog::error("{}", result.trace_error);
     if (!result.pulses_error.empty()) spdlog::error("{}", result.pulses_error);
