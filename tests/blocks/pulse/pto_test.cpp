@@ -115,6 +115,8 @@ TEST_CASE("what is out of range is clamped and says so") {
     fast.execute(200'000, 0, -5);
     CHECK(fast.pto.train.segment() == PulseSegment{65'535, 65'535, 1});
     CHECK(fast.pto.clamped);
+    CHECK(fast.pto.warnings == 2);
+    CHECK(fast.pto.warning_id == Pto::Warning::count_out_of_range);
 
     Output multi;
     multi.pto.multi_segment = true;
@@ -124,6 +126,7 @@ TEST_CASE("what is out of range is clamped and says so") {
     Output good;
     good.execute(65'535, 1, 1);
     CHECK_FALSE(good.pto.clamped);
+    CHECK(good.pto.warnings == 0);
 }
 
 TEST_CASE("a table of no segments, or of more than there are, puts nothing out") {
