@@ -32,6 +32,8 @@ ANSWERS = [
     ("quotes", '"Vs","Ve","Vm","A","J","L"\n"0","0",100,500,5000,"30"\n', [PLANNED], []),
     ("columns in another order", "L,J,A,Vm,Ve,Vs\n30,5000,500,100,0,0\n", [PLANNED], []),
     ("signs and exponents", HEADER + "-0,+0,1e2,+5e+2,5.0E3,.3e2\n", [PLANNED], []),
+    ("a negative zero", HEADER + "-0,40,50,100,100,-0\n-0,0,100,500,5000,30\n",
+     ["1,accelerate_triangular,2,0,0,0,0,0,0,0,0", PLANNED], []),
     ("end velocity out of reach", HEADER + "10,200,200,500,5000,0\n",
      ["1,accelerate_triangular,2,0,0,0,0,0,0,0,10"], []),
     ("negative length", HEADER + "0,0,100,500,5000,-1\n" + GOOD, [NOT_PLANNED, PLANNED], []),

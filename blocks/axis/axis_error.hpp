@@ -15,10 +15,11 @@ enum class AxisError : std::int64_t {
     not_finite,          ///< an input is NaN or infinite, or what it asks for is
     limit_not_positive,  ///< velocity, acceleration or jerk limit is zero or negative
     not_standing,        ///< positioning asked for while the axis is coupled or moves
+    not_enabled,         ///< a move asked for without `enable`
 };
 
 inline constexpr std::string_view axis_error_names[] = {"none", "not_finite", "limit_not_positive",
-                                                        "not_standing"};
+                                                        "not_standing", "not_enabled"};
 
 constexpr AxisError axis_error(PlanResult result) {
     if (result == PlanResult::ok) return AxisError::none;

@@ -19,6 +19,8 @@ std::span<const Field> GearAxis::fields() {
             .must_be_set(),
         input("master_velocity", &A::master_velocity, "{master_unit}/s", "velocity of the master")
             .must_be_set(),
+        input("master_acceleration", &A::master_acceleration, "{master_unit}/s^2",
+              "acceleration of the master; 0 if it is not known"),
         input("ratio", &A::ratio, "{unit}/{master_unit}",
               "slave velocity / master velocity; each change is a new job"),
         input("acceleration", &A::acceleration_limit, "{unit}/s^2", "limit, taken with each job")
@@ -33,7 +35,7 @@ std::span<const Field> GearAxis::fields() {
         output("position", &A::position, "{unit}", "set-point"),
         output("velocity", &A::velocity, "{unit}/s", "of the set-point"),
         output("acceleration", &A::acceleration, "{unit}/s^2", "of the set-point"),
-        output("in_gear", &A::in_gear, "", "velocity = ratio * master velocity"),
+        output("in_gear", &A::in_gear, "", "synchronous: velocity = ratio * master velocity"),
         output("moving", &A::moving, "", "positioning by `move` is under way"),
         output("error", &A::error, "", "an input cannot be followed; outputs are held"),
         output("error_id", &A::error_id, "", "why").one_of(axis_error_names),
@@ -65,8 +67,8 @@ AxisError GearAxis::command(std::int64_t time) {
 }
 
 AxisError GearAxis::check() const {
-    if (!all_finite(master_position, master_velocity, ratio, acceleration_limit, jerk_limit,
-                    home_position, target, move_velocity))
+    if (!all_finite(master_position, master_velocity, master_acceleration, ratio,
+                    acceleration_limit, jerk_limit, home_position, target, move_velocity))
         return AxisError::not_finite;
     return acceleration_limit > 0 && jerk_limit > 0 && move_velocity > 0
                ? AxisError::none
@@ -93,7 +95,7 @@ AxisError GearAxis::advance(std::int64_t time) {
         anchor(ramp_position + ramp.end.position, master_then);
     }
     return set({anchor_position + job.ratio * (master_position - anchor_master),
-                job.ratio * master_velocity, 0, 0});
+                job.ratio * master_velocity, job.ratio * master_acceleration + 0.0, 0});
 }
 
 AxisError GearAxis::ride_ramp(std::int64_t time, double t) {
@@ -144,7 +146,8 @@ void GearAxis::anchor(double at_position, double at_master) {
 
 /// What no double can hold is not set.
 AxisError GearAxis::set(const MotionState& state) {
-    if (!all_finite(state.position, state.velocity)) return AxisError::not_finite;
+    if (!all_finite(state.position, state.velocity, state.acceleration))
+        return AxisError::not_finite;
     position = state.position;
     velocity = state.velocity;
     acceleration = state.acceleration;

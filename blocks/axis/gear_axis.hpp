@@ -13,9 +13,15 @@ namespace lineshaft {
 ///
 /// Every change of `ratio` is a new gear-in job that takes the acceleration and jerk of that scan
 /// with it. The job ramps the *slave's* velocity by an S-curve, from whatever velocity and
-/// acceleration it has, to ratio * master velocity; so also in mid-transition. A master that
-/// changes its velocity meanwhile is followed by a new ramp. Synchronous, the position is rigid:
-/// anchor + ratio * (master - anchor's master).
+/// acceleration it has, to ratio * master velocity; so also in mid-transition. Synchronous, the
+/// position is rigid: anchor + ratio * (master - anchor's master), and so are velocity and
+/// acceleration. Where `master_acceleration` is not wired it counts as 0: a ratio that changes
+/// while the master accelerates then starts its ramp from a false state, with a step in the
+/// acceleration.
+///
+/// A ramp ends at a constant velocity. In a transition, a master that changes its velocity is
+/// followed by a new ramp each scan; while it accelerates the slave lags behind and does not get in
+/// gear, but at the end of a ramp after the master's acceleration has ended.
 ///
 /// The coupling is relative: against a slave that changed at once, a transition of duration T loses
 ///     d = -dv T / 2            (Wei et al. 2025, eq. (11))
@@ -27,7 +33,7 @@ struct GearAxis {
     AxisUnit unit = AxisUnit::mm, master_unit = AxisUnit::mm;
     double start_position = 0;
 
-    double master_position = 0, master_velocity = 0;
+    double master_position = 0, master_velocity = 0, master_acceleration = 0;
     double ratio = 0;
     double acceleration_limit = 100, jerk_limit = 5e4;  // set as `acceleration`, `jerk`
     bool home = false;

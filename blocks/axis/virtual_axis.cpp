@@ -16,12 +16,16 @@ std::span<const Field> VirtualAxis::fields() {
             .one_of(motion_names),
         parameter("immediate", &A::immediate, "", "velocity changes take no time"),
         parameter("start_position", &A::start_position, "{unit}", "position at the first scan"),
-        input("enable", &A::enable, "", "false: ramp to standstill"),
+        input("enable", &A::enable, "", "false: ramp to standstill, and no move begins"),
         input("velocity", &A::wanted_velocity, "{unit}/s",
               "velocity to hold; of an absolute move its greatest, above 0")
             .must_be_set(),
-        input("acceleration", &A::acceleration_limit, "{unit}/s^2", "limit, both ways").above(0),
-        input("jerk", &A::jerk_limit, "{unit}/s^3", "limit, both ways").above(0),
+        input("acceleration", &A::acceleration_limit, "{unit}/s^2",
+              "limit, both ways; taken when a ramp or a move begins")
+            .above(0),
+        input("jerk", &A::jerk_limit, "{unit}/s^3",
+              "limit, both ways; taken when a ramp or a move begins")
+            .above(0),
         input("execute", &A::execute, "", "rising edge: move to `target`"),
         input("target", &A::target, "{unit}", "end of an absolute move"),
         input("home", &A::home, "", "rising edge: set the position"),
@@ -55,9 +59,10 @@ void VirtualAxis::scan(const Scan& now) {
 AxisError VirtualAxis::command(std::int64_t time) {
     if (rising_edge(home, last_home) && !moving) begin_constant(time, home_position, 0);
     const bool edge = rising_edge(execute, last_execute);
-    if (!enable) return follow_velocity(time, 0);
-    if (motion == Motion::velocity) return follow_velocity(time, wanted_velocity);
-    return edge ? begin_move(time) : AxisError::none;
+    if (motion == Motion::velocity) return follow_velocity(time, enable ? wanted_velocity : 0);
+    if (enable) return edge ? begin_move(time) : AxisError::none;
+    const AxisError result = follow_velocity(time, 0);
+    return edge && result == AxisError::none ? AxisError::not_enabled : result;
 }
 
 AxisError VirtualAxis::check() const {

@@ -310,6 +310,12 @@ Move solve(const SevenSegment& p) {
     return p.L >= L2 * (1 - epsilon) ? with_cruise(p, m) : with_peak(p, f);
 }
 
+/// 0 for -0, of which a quotient would be infinite on the wrong side.
+SevenSegment without_negative_zeros(SevenSegment p) {
+    for (double* quantity : {&p.Vs, &p.Ve, &p.L}) *quantity += 0.0;
+    return p;
+}
+
 PlanResult check(const SevenSegment& p) {
     if (!is_limit(p.Vm) || !is_limit(p.A) || !is_limit(p.J)) return PlanResult::limit_not_positive;
     if (!std::isfinite(p.Vs) || !std::isfinite(p.Ve) || !std::isfinite(p.L))
@@ -346,7 +352,7 @@ void fill_states(const SevenSegment& p, const Move& m, SevenSegmentPlan& out) {
 PlanResult plan(const SevenSegment& problem, SevenSegmentPlan& out) {
     const PlanResult result = check(problem);
     if (result != PlanResult::ok) return result;
-    const Move m = solve(problem);
+    const Move m = solve(without_negative_zeros(problem));
     const double up = 2 * m.ramps[0].half_time();
     const double down = 2 * m.ramps[1].half_time();
     const double duration = up + m.cruise + down;

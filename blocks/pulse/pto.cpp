@@ -12,7 +12,9 @@ constexpr double shortest_segment = 500e-6;  // [s]
 constexpr std::size_t edges_at_once = 1024;
 
 constexpr std::string_view rate_update_names[] = {"continuous", "per_pulse"};
-constexpr std::string_view refusal_names[] = {"none", "overflow", "no_segments", "not_pto"};
+constexpr std::string_view warning_names[] = {"none",    "overflow",          "no_segments",
+                                              "not_pto", "rate_out_of_range", "count_out_of_range"};
+constexpr std::span refusal_names = std::span(warning_names).first(4);
 
 bool bit(std::int64_t byte, int number) {
     return (byte >> number & 1) != 0;
@@ -54,9 +56,10 @@ std::span<const Field> Pto::fields() {
         input("stop", &P::stop, "", "rising edge: ends the output at once"),
         output("busy", &P::busy, "", "a train is under way"),
         output("queued", &P::queued, "", "another one waits"),
-        output("done", &P::done, "", "a train has ended since the last scan of this block"),
+        output("done", &P::done, "",
+               "a train has ended; for one whole scan of this block at least"),
         output("active_segment", &P::active_segment, "", "from 1, as SMB166; 0: idle"),
-        output("trains", &P::trains, "", "trains that have ended"),
+        output("trains", &P::trains, "", "trains that have ended, stopped ones too"),
         output("pulses", &P::pulses, "", "rising edges so far"),
         output("position", &P::position, "", "forward less reverse pulses so far"),
         output("lost", &P::lost, "", "pulses loaded and not made, because the output was ended"),
@@ -69,6 +72,8 @@ std::span<const Field> Pto::fields() {
         output("stopped", &P::stopped, "", "the output was ended by the program"),
         output("refused", &P::refused, "", "instructions that were ignored"),
         output("refusal", &P::refusal, "", "why the last of them was").one_of(refusal_names),
+        output("warnings", &P::warnings, "", "what was clamped or refused so far"),
+        output("warning_id", &P::warning_id, "", "why the last of it was").one_of(warning_names),
     };
     return list;
 }
@@ -101,7 +106,8 @@ std::optional<Misfit> Pto::misfit(const IsConstant& is_constant) const {
 }
 
 void Pto::scan(const Scan&) {
-    done = false;
+    done = done && !told;
+    told = done;
     const bool executed = risen(execute, last_execute);
     const bool ordered = job != last_job;
     last_job = job;
@@ -132,7 +138,7 @@ void Pto::take_instruction() {
 
 void Pto::publish(std::int64_t time) {
     if (command == Command::load) load(time);
-    if (command == Command::halt) halt();
+    if (command == Command::halt) halt({time, 0});
     command = Command::none;
 }
 
@@ -142,6 +148,7 @@ void Pto::load(std::int64_t time) {
         refusal = command_refused;
         overflow = overflow || refusal == Refusal::overflow;
         ++refused;
+        warn(static_cast<Warning>(refusal));
     } else if (busy) {
         waiting = commanded;
         queued = true;
@@ -150,16 +157,19 @@ void Pto::load(std::int64_t time) {
     }
 }
 
-void Pto::halt() {
+void Pto::warn(Warning why) {
+    ++warnings;
+    warning_id = why;
+}
+
+void Pto::halt(PulseTime time) {
     if (busy) {
         lost += train.segment().count - train.emitted();
-        lose_from(active, active_segment);
         stopped = true;
+        end_train(time);
     }
     if (queued) lose_from(waiting, 0);
-    busy = queued = false;
-    active_segment = 0;
-    rate = 0;
+    queued = false;
 }
 
 void Pto::begin_train(const Train& next, PulseTime start) {
@@ -172,8 +182,12 @@ void Pto::begin_train(const Train& next, PulseTime start) {
 }
 
 void Pto::begin_segment(PulseTime start) {
-    train.begin(clamp(segment_of(active, active_segment), active.multi_segment), rate_update,
-                start);
+    const PulseSegment wanted = segment_of(active, active_segment);
+    const PulseSegment segment = clamp(wanted, active.multi_segment);
+    if (segment.start_rate != wanted.start_rate || segment.end_rate != wanted.end_rate)
+        warn(Warning::rate_out_of_range);
+    if (segment.count != wanted.count) warn(Warning::count_out_of_range);
+    train.begin(segment, rate_update, start);
     ++active_segment;
 }
 
@@ -195,14 +209,33 @@ PulseSegment Pto::clamp(const PulseSegment& wanted, bool multi) {
     return segment;
 }
 
+bool Pto::is_too_short() const {
+    const PulseSegment& s = train.segment();
+    const auto rates = static_cast<double>(s.start_rate + s.end_rate);
+    return 2 * static_cast<double>(s.count) < shortest_segment * rates;
+}
+
+bool Pto::in_last_segment() const {
+    return active_segment >= active.segments || (underflow_ends && is_too_short());
+}
+
+/// At the end of this segment `done` must rise, and is still true.
+bool Pto::renews_done() const {
+    return done && interrupt && in_last_segment();
+}
+
 std::int64_t Pto::next_event_time() const {
-    return busy ? train.end_not_before() : never;
+    if (!busy) return never;
+    const std::int64_t end = train.end_not_before();
+    return renews_done() ? std::max(end - 1, advanced + 1) : end;
 }
 
 void Pto::advance(std::int64_t time, PulseSink* sink) {
+    advanced = time;
     while (busy) {
         emit(time, sink);
         rate = train.rate(time);
+        if (renews_done() && train.ends(time + 1)) done = false;
         if (!train.ends(time)) return;
         end_segment();
     }
@@ -225,22 +258,23 @@ void Pto::emit(std::int64_t time, PulseSink* sink) {
 }
 
 void Pto::end_segment() {
-    const PulseSegment& s = train.segment();
-    const auto rates = static_cast<double>(s.start_rate + s.end_rate);
-    const bool too_short = 2 * static_cast<double>(s.count) < shortest_segment * rates;
-    underflow = underflow || too_short;
-    const bool cut = too_short && underflow_ends;
-    if (active_segment < active.segments && !cut) return begin_segment(train.end());
-    lose_from(active, active_segment);
-    ++trains;
-    end_time = seconds(train.end().rounded());
-    done = done || interrupt;
-    busy = false;
-    active_segment = 0;
-    rate = 0;
+    underflow = underflow || is_too_short();
+    if (!in_last_segment()) return begin_segment(train.end());
+    end_train(train.end());
     if (!queued) return;
     queued = false;
     begin_train(waiting, train.end());
+}
+
+void Pto::end_train(PulseTime end) {
+    lose_from(active, active_segment);
+    ++trains;
+    end_time = seconds(end.rounded());
+    done = done || interrupt;
+    told = told && !interrupt;
+    busy = false;
+    active_segment = 0;
+    rate = 0;
 }
 
 }  // namespace lineshaft

@@ -30,6 +30,10 @@ class PulseSink {
 /// `advance(time, sink)`, never beyond an announced time: the block's outputs are then those of the
 /// hardware at that time, seen at once by all tasks, and its rising edges up to that time go to the
 /// sink, if there is one. After an advance the announced time is later than it.
+///
+/// Outputs `warnings`, a count, and `warning_id`, an enumeration, say what the device clamps or
+/// refuses and goes on from: each time the count has grown is an event of the run, and its sum a
+/// warning at the end.
 template <class Block>
 concept Device = requires(Block block, const Block& constant, std::int64_t time, PulseSink* sink) {
     { constant.next_event_time() } -> std::same_as<std::int64_t>;

@@ -99,6 +99,16 @@ void add_error_flag(const Instance& block, std::byte* live, Task& task) {
     task.errors.push_back(std::move(flag));
 }
 
+WarningCount warnings_of(const Instance& block, std::byte* live) {
+    const Field* count = block.type->find_readable("warnings");
+    const Field* id = block.type->find_readable("warning_id");
+    if (!count || !id) return {};
+    return {.count = reinterpret_cast<const std::int64_t*>(live + count->offset),
+            .id = reinterpret_cast<const std::int64_t*>(live + id->offset),
+            .names = id->names,
+            .block = block.described()};
+}
+
 void add_seed(const Instance& block, std::byte* live, Machine& machine) {
     const Field* seed = block.type->find_settable("seed");
     if (seed && seed->direction == Direction::parameter && seed->type == Type::integer)
@@ -125,7 +135,8 @@ void fill_blocks(Layout& layout) {
             machine.devices.push_back({.calls = block.type->device,
                                        .block = place.live,
                                        .name = block.name,
-                                       .task = block.task});
+                                       .task = block.task,
+                                       .warnings = warnings_of(block, place.live)});
     }
     for (const InputNode& input : layout.net.inputs)
         if (input.signal)

@@ -73,6 +73,15 @@ struct ErrorFlag {
     std::string block;                        ///< `'slave' (gear_axis)`
 };
 
+/// What a device puts up with and goes on from: its outputs `warnings`, a count, and `warning_id`,
+/// the reason of the last. Both null in a device without.
+struct WarningCount {
+    const std::int64_t* count = nullptr;
+    const std::int64_t* id = nullptr;
+    std::span<const std::string_view> names = {};  ///< of id
+    std::string block = {};                        ///< `'x' (pto)`
+};
+
 /// A block that lives between scans, see runtime/model/device.hpp. Its memory is not published with
 /// its task: what others see of it is always the live block.
 struct DeviceCall {
@@ -81,6 +90,7 @@ struct DeviceCall {
     std::string name;  ///< of the block in the program
     int task = 0;
     PulseSink* sink = nullptr;  ///< set before a run to record its pulses
+    WarningCount warnings = {};
 };
 
 /// A rising edge of a published boolean releases an event task.

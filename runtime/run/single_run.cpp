@@ -113,6 +113,7 @@ RunReport SingleRun::run() {
         const bool broke_off = report_.result.outcome == Outcome::interrupted && writing_fails();
         if (broke_off)
             report_.result.message = "the run stopped at " + format_time(report_.result.time);
+        report_.warnings = executive_->warnings();
         judge_.finish(report_.result);
         if (!broke_off) report_.verdicts = judge_.verdicts();
         for (const Expectation& e : judge_.expectations())

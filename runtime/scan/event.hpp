@@ -9,16 +9,17 @@ namespace lineshaft {
 enum class EventKind : std::uint8_t {
     restart,
     stimulus,
-    force,        ///< begins or ends
-    block_error,  ///< a block's `error` becomes true
-    overrun,      ///< a time error: a scan took too long, or was due again too early
-    trigger,      ///< of a trace
-    stop,         ///< the run ends for another reason than its time or `until`
+    force,          ///< begins or ends
+    block_error,    ///< a block's `error` becomes true
+    block_warning,  ///< a device's `warnings` grow
+    overrun,        ///< a time error: a scan took too long, or was due again too early
+    trigger,        ///< of a trace
+    stop,           ///< the run ends for another reason than its time or `until`
 };
 
 constexpr std::string_view name_of(EventKind kind) {
-    constexpr std::string_view names[] = {"restart", "stimulus", "force", "block_error",
-                                          "overrun", "trigger",  "stop"};
+    constexpr std::string_view names[] = {"restart",       "stimulus", "force",   "block_error",
+                                          "block_warning", "overrun",  "trigger", "stop"};
     return names[static_cast<std::size_t>(kind)];
 }
 

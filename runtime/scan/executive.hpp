@@ -102,6 +102,9 @@ class Executive {
     /// stimulus in its file does the same.
     void post(Stimulus value);
 
+    /// After run(): what the devices have put up with, a sentence for each that has.
+    std::vector<std::string> warnings() const;
+
     /// All that the run depends on, the machine's memory too: a machine of the same program, with
     /// restore() before run(), goes on as if there had been no end. The reader tells whether it
     /// fits.
@@ -131,6 +134,13 @@ class Executive {
         Random cost_jitter;
 
         void set_next(const Task& task);
+    };
+
+    /// Of a device's warnings.
+    struct Warned {
+        std::int64_t count = 0;      ///< told so far
+        std::int64_t first = never;  ///< when [ns]
+        std::int64_t id = 0;         ///< of the first
     };
 
     void settle(std::int64_t last);
@@ -172,6 +182,7 @@ class Executive {
     void time_error(int task, std::string what);
     std::string running_block(int task) const;
     void report_errors(int task);
+    void report_warnings(const DeviceCall& device, int task);
     void tell(EventKind kind, int task, const std::string& text);
     void stop(Outcome outcome, std::string message, int task = -1);
 
@@ -185,6 +196,7 @@ class Executive {
     std::vector<State> states_;
     std::vector<std::uint8_t> trigger_levels_;  ///< of each trigger's signal when last looked at
     std::vector<std::uint8_t> error_levels_;    ///< of each task's error flags, likewise
+    std::vector<Warned> warned_;                ///< by device
     std::vector<int> running_;       ///< stack of started scans, the interrupted ones below
     int pending_ = 0;                ///< number of tasks
     std::int64_t next_due_ = 0;      ///< the first release of all [ns]

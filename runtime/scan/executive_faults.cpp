@@ -115,6 +115,38 @@ void Executive::report_errors(int index) {
     }
 }
 
+void Executive::report_warnings(const DeviceCall& device, int index) {
+    const WarningCount& warnings = device.warnings;
+    if (!warnings.count) return;
+    Warned& warned = warned_[static_cast<std::size_t>(&device - machine_.devices.data())];
+    const std::int64_t more = *warnings.count - warned.count;
+    if (more == 0) return;
+    if (warned.count == 0) {
+        warned.first = now_;
+        warned.id = *warnings.id;
+    }
+    warned.count = *warnings.count;
+    if (!events_) return;
+    tell(EventKind::block_warning, index,
+         fmt::format("block {} warns of {}{}", warnings.block,
+                     warnings.names[static_cast<std::size_t>(*warnings.id)],
+                     more > 1 ? fmt::format(", the last of {} warnings", more) : ""));
+}
+
+std::vector<std::string> Executive::warnings() const {
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i < warned_.size(); ++i) {
+        const Warned& warned = warned_[i];
+        const WarningCount& warnings = machine_.devices[i].warnings;
+        if (warned.count == 0) continue;
+        texts.push_back(fmt::format(
+            "block {} warned {}, first of {} at {}", warnings.block,
+            warned.count == 1 ? "once" : fmt::format("{} times", warned.count),
+            warnings.names[static_cast<std::size_t>(warned.id)], format_time(warned.first)));
+    }
+    return texts;
+}
+
 void Executive::tell(EventKind kind, int index, const std::string& text) {
     if (!events_) return;
     events_->happened({.time = now_,

@@ -14,6 +14,7 @@ void Executive::advance_devices() {
 void Executive::advance_device(const DeviceCall& device) {
     if (forces_.active()) forces_.release_outputs(device.block);
     device.calls.advance(device.block, now_, device.sink);
+    report_warnings(device, -1);
     if (forces_.active()) forces_.impose_outputs(device.block);
 }
 
@@ -22,6 +23,7 @@ void Executive::publish_device(const DeviceCall& device) {
     device.calls.publish(device.block, now_);
     device.calls.advance(device.block, now_, device.sink);
     state(device.task).may_err = true;
+    report_warnings(device, device.task);
     if (forces_.active()) forces_.impose_outputs(device.block);
 }
 

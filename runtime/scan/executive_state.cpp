@@ -8,6 +8,7 @@ void Executive::save(StateWriter& out) const {
     out.put(states_);
     out.put(trigger_levels_);
     out.put(error_levels_);
+    out.put(warned_);
     out.put(std::uint64_t{running_.size()});
     for (const int index : running_) out.put(index);
     out.put(next_stimulus_);
@@ -25,6 +26,7 @@ void Executive::restore(StateReader& in) {
     in.get(states_);
     in.get(trigger_levels_);
     in.get(error_levels_);
+    in.get(warned_);
     in.get(running);
     for (; in.ok() && running > 0; --running) in.get(running_.emplace_back());
     in.get(next_stimulus_);

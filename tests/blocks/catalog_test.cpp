@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -191,6 +192,100 @@ void check_extreme(Instance block, std::int64_t scan, const BlockType& type, con
     CHECK_FALSE(block.is_in_error());
 }
 
+/// Outputs that are equal; 0 and -0 are, and so are what two errors hold.
+bool agree(const Instance& a, const Instance& b, const BlockType& type) {
+    return std::ranges::all_of(type.fields, [&](const Field& f) {
+        return f.direction != Direction::output || a.get(f) == b.get(f);
+    });
+}
+
+/// Two of a block, alike but for the sign of a zero in `inputs`.
+void check_zeros(const Instance& block, std::int64_t scan, const BlockType& type,
+                 std::span<const Field* const> inputs) {
+    constexpr std::int64_t a_while = 100;
+    Instance positive = block, negative = block;
+    for (const Field* input : inputs) {
+        positive.set(*input, 0.0);
+        negative.set(*input, -0.0);
+    }
+    for (const std::int64_t end = scan + a_while; scan < end; ++scan) {
+        INFO("scan " << scan);
+        positive.scan(scan);
+        negative.scan(scan);
+        REQUIRE(agree(positive, negative, type));
+    }
+}
+
+/// A scan's length in the tests of axes [s].
+constexpr double scan_interval = 1e-3;
+
+/// What bounds the set-point of an axis that is commanded as it is now [u/s].
+double commanded_velocity(const Instance& axis, const BlockType& type) {
+    const auto value = [&](std::string_view name) {
+        const Field* field = type.find_settable(name);
+        return field ? std::abs(as_real(axis.get(*field))) : 0;
+    };
+    return std::max({value("velocity"), value("start_velocity"), value("move_velocity"),
+                     value("ratio") * value("master_velocity")});
+}
+
+double any_command(Random& random) {
+    constexpr double values[] = {0, -0.0, 0.001, -0.1, 1, -1, 3, -10, 20, 40, -100};
+    return values[random.next() % std::size(values)];
+}
+
+/// The limits of acceleration and jerk stay, and the master has constant velocities.
+constexpr std::string_view not_commanded[] = {"acceleration", "jerk", "home", "master_position",
+                                              "master_acceleration"};
+
+/// Other commands now and then. Returns the greatest of the velocities commanded one input after
+/// the other: a master that changes with the ratio has moved the axis by the old one.
+double command_axis(Instance& axis, const BlockType& type, Random& random) {
+    double most = commanded_velocity(axis, type);
+    for (const Field& f : type.fields) {
+        const bool given = std::ranges::count(not_commanded, f.name) > 0;
+        if (f.direction != Direction::input || given || random.next() % 50 != 0) continue;
+        const Value value =
+            f.type == Type::boolean ? Value(random.next() % 2 == 0) : Value(any_command(random));
+        if (f.admits(as_real(value))) axis.set(f, value);
+        most = std::max(most, commanded_velocity(axis, type));
+    }
+    return most;
+}
+
+void follow_master(Instance& axis, const BlockType& type) {
+    const Field* position = type.find_settable("master_position");
+    const Field* velocity = type.find_settable("master_velocity");
+    if (!position || !velocity) return;
+    const double moved = as_real(axis.get(*velocity)) * scan_interval;
+    axis.set(*position, as_real(axis.get(*position)) + moved);
+}
+
+/// An axis holds its outputs while it is in error and catches up afterwards.
+void check_velocity_limit(const BlockType& type, std::uint64_t seed) {
+    Instance axis(type);
+    Random random(seed, type.name);
+    set_parameters(axis, type, random);
+    for (const std::string_view name : {"acceleration", "jerk"})
+        axis.set(*type.find_settable(name),
+                 std::pow(10.0, 1 + static_cast<double>(random.next() % 4)));
+    const Field& position = *type.find_readable("position");
+    double most = 0, held = 0;
+    std::int64_t held_at = -1;
+    for (std::int64_t i = 0; i < 3000; ++i) {
+        most = std::max(most, command_axis(axis, type, random));
+        follow_master(axis, type);
+        axis.scan(i);
+        if (axis.is_in_error()) continue;
+        const double now = as_real(axis.get(position));
+        const double way = most * scan_interval * static_cast<double>(i - held_at);
+        INFO("scan " << i << ": from " << held << " to " << now << ", at most " << most << " u/s");
+        if (held_at >= 0) REQUIRE(std::abs(now - held) <= way * (1 + 1e-9) + 1e-9);
+        held = now;
+        held_at = i;
+    }
+}
+
 std::string replaced(std::string text, std::string_view parameter, std::string_view value) {
     const std::string place = fmt::format("{{{}}}", parameter);
     for (auto at = text.find(place); at != std::string::npos; at = text.find(place))
@@ -299,6 +394,22 @@ TEST_CASE("errors are a boolean with the reason beside it") {
     }
 }
 
+TEST_CASE("warnings are a device's count with the reason of the last beside it") {
+    const Catalog catalog = standard_blocks();
+    for (const BlockType& type : catalog.types()) {
+        INFO("block " << type.name);
+        const Field* count = type.find_readable("warnings");
+        const Field* id = type.find_readable("warning_id");
+        CHECK((count != nullptr) == (id != nullptr));
+        if (!count || !id) continue;
+        CHECK(type.is_device());
+        CHECK(count->direction == Direction::output);
+        CHECK(count->type == Type::integer);
+        CHECK(id->type == Type::enumeration);
+        CHECK(id->names.front() == "none");
+    }
+}
+
 TEST_CASE("equal inputs give equal bytes, whatever was in memory before") {
     const Catalog catalog = standard_blocks();
     for (const BlockType& type : catalog.types()) {
@@ -368,6 +479,36 @@ TEST_CASE("an extreme input is reported or held off the outputs, and over when i
                 for (const Instance& block : moving)
                     check_extreme(block, scans_of_motion, type, input, extreme);
             }
+        }
+    }
+}
+
+TEST_CASE("the sign of a zero changes no output") {
+    const Catalog catalog = standard_blocks();
+    for (const BlockType& type : catalog.types()) {
+        const Instance at_rest(type);
+        const std::vector<Instance> moving = in_motion(type, 0);
+        std::vector<const Field*> inputs;
+        for (const Field& f : type.fields)
+            if (f.direction == Direction::input && f.type == Type::real) inputs.push_back(&f);
+        for (std::size_t i = 0; i <= inputs.size(); ++i) {
+            const auto some =
+                i < inputs.size() ? std::span(inputs).subspan(i, 1) : std::span(inputs);
+            INFO(type.name << "." << (some.size() == 1 ? some[0]->name : "all its inputs"));
+            check_zeros(at_rest, 0, type, some);
+            for (const Instance& block : moving) check_zeros(block, scans_of_motion, type, some);
+        }
+    }
+}
+
+TEST_CASE("no set-point of an axis moves further in one scan than its velocity limit allows") {
+    const Catalog catalog = standard_blocks();
+    for (const std::string_view name : {"virtual_axis", "gear_axis", "move"}) {
+        const BlockType* type = catalog.find(name);
+        REQUIRE(type);
+        for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+            INFO(name << ", seed " << seed);
+            check_velocity_limit(*type, seed);
         }
     }
 }

@@ -48,6 +48,7 @@ void print_json(const Loaded& loaded, const RunReport& report) {
                                   {"wall_time_s", report.wall_seconds},
                                   {"scans", scans},
                                   {"time_errors", report.result.time_errors},
+                                  {"warnings", report.warnings},
                                   {"signals", signals},
                                   {"expect", expect}};
     for (const TraceReport& trace : report.traces)
@@ -196,6 +197,7 @@ Exit execute(const RunCommand& command) {
         if (trace.measurements == 0)
             spdlog::warn("the trigger of trace '{}' did not come: {} has no rows",
                          trace.name.empty() ? "trace" : trace.name, trace.paths.front());
+    for (const std::string& text : result.warnings) spdlog::warn("{}", text);
     for (const std::string& text : result.never_looked_at)
         spdlog::log(command.strict ? spdlog::level::err : spdlog::level::warn,
                     "'{}' is never looked at: no scan of its task", text);

@@ -66,6 +66,9 @@ class Limits {
             const double dx = axis.position - last_.position;
             const double mean = (axis.velocity + last_.velocity) / 2;
             REQUIRE(std::abs(dv) <= acceleration_ * (dt + rounding) + 4 * epsilon * 20);
+            const double mean_acceleration = (axis.acceleration + last_.acceleration) / 2;
+            REQUIRE(std::abs(dv - mean_acceleration * dt) <=
+                    jerk_ * dt * (dt / 4 + rounding) + 4 * epsilon * 200);
             REQUIRE(std::abs(da) <= jerk_ * (dt + rounding) + 4 * epsilon * acceleration_);
             REQUIRE(std::abs(axis.acceleration) <= acceleration_ * (1 + 4 * epsilon));
             REQUIRE(std::abs(dx - mean * dt) <=
@@ -193,6 +196,54 @@ TEST_CASE("a master that ramps is followed rigidly while in gear") {
         REQUIRE(rig.axis.position == 3 + 1.5 * (20 * t * t));
         REQUIRE(rig.axis.velocity == 1.5 * (40 * t));
     }
+}
+
+TEST_CASE("in gear, the acceleration is the master's times the ratio") {
+    Rig rig;
+    rig.axis.ratio = -1.5;
+    for (int i = 0; i <= 100; ++i) {
+        const double t = i * 1e-3;
+        rig.axis.master_acceleration = i == 50 ? 0 : 40;
+        rig.scan_at(20 * t * t, 40 * t);
+        if (i == 0) continue;  // takes up its position
+        REQUIRE(rig.axis.in_gear);
+        REQUIRE(rig.axis.acceleration == -1.5 * rig.axis.master_acceleration);
+        REQUIRE_FALSE(std::signbit(i == 50 ? rig.axis.acceleration : 0));
+    }
+}
+
+TEST_CASE("a new ratio under an accelerating master leaves no step in the acceleration") {
+    for (const double ratio : {1.5, 1.001, 0.5, -1.0}) {
+        INFO("ratio " << ratio);
+        Rig rig;
+        rig.axis.ratio = 1;
+        rig.axis.acceleration_limit = 400;
+        rig.axis.jerk_limit = 1000;
+        Limits limits(400, 1000);
+        for (int i = 0; i <= 1500; ++i) {
+            const double t = i * 1e-3;
+            if (i == 500) rig.axis.ratio = ratio;
+            rig.axis.master_acceleration = 100;
+            rig.scan_at(50 * t * t, 100 * t);
+            if (i > 0) limits.see(rig.axis, rig.clock.interval);
+        }
+    }
+}
+
+TEST_CASE("a slave whose master accelerates gets in gear when the master no longer does") {
+    Rig rig;
+    rig.clock.interval = 2 * millisecond;
+    rig.axis.ratio = 1;
+    rig.axis.master_acceleration = 50;
+    for (int i = 0; i < 2500; ++i) {
+        const double t = i * 2e-3;
+        if (i == 250) rig.axis.ratio = 1.1;
+        if (i == 2000) rig.axis.master_acceleration = 0;
+        const double speed = 50 * std::min(t, 4.0);
+        rig.scan_at(speed * t - speed * speed / 100, speed);
+        REQUIRE((rig.axis.in_gear || (i >= 250 && i < 2100)));
+    }
+    CHECK(rig.axis.velocity == 1.1 * 200);
 }
 
 TEST_CASE("a constant ratio does not drift in a million scans") {
@@ -396,6 +447,7 @@ TEST_CASE("bad inputs hold the outputs and are named, good ones are followed aga
     };
     const Bad all[] = {{&GearAxis::master_position, not_a_number, AxisError::not_finite},
                        {&GearAxis::master_velocity, infinite, AxisError::not_finite},
+                       {&GearAxis::master_acceleration, infinite, AxisError::not_finite},
                        {&GearAxis::ratio, not_a_number, AxisError::not_finite},
                        {&GearAxis::ratio, -infinite, AxisError::not_finite},
                        {&GearAxis::home_position, not_a_number, AxisError::not_finite},

@@ -398,3 +398,22 @@ TEST_CASE("the cycle does not change a move") {
     CHECK(coarse.displacement_error == fine.displacement_error);
     CHECK(coarse.duration == fine.duration);
 }
+
+TEST_CASE("a way too short for the end velocity takes its time in either direction") {
+    for (const double sign : {1.0, -1.0}) {
+        INFO("direction " << sign);
+        Move axis;
+        axis.velocity_limit = 50;
+        axis.acceleration_limit = 100;
+        axis.jerk_limit = 100;
+        Clock clock;
+        clock.scan(axis);
+        start(axis, clock, sign * 10, 40);
+        CHECK(axis.position == 0);
+        CHECK(axis.busy);
+        CHECK(axis.duration == Approx(2 * std::cbrt(0.1)));  // J s^3 = L, eq. (13) with Vs = 0
+        finish(axis, clock);
+        CHECK_FALSE(axis.in_end_velocity);
+        CHECK(axis.velocity == Approx(sign * 100 * std::pow(0.1, 2.0 / 3)));
+    }
+}

@@ -300,6 +300,46 @@ TEST_CASE("a move by S-curve of an axis that moves is refused; the move under wa
     CHECK(axis.position == 5);
 }
 
+TEST_CASE("a move without enable is refused, and not made up for") {
+    for (const bool immediate : {true, false}) {
+        VirtualAxis axis = absolute(immediate);
+        axis.enable = false;
+        Clock clock;
+        start_move(axis, clock, 5);
+        CHECK(axis.error);
+        CHECK(axis.error_id == AxisError::not_enabled);
+        axis.enable = true;
+        for (int i = 0; i < 10; ++i) clock.scan(axis);
+        CHECK_FALSE(axis.error);
+        CHECK(axis.position == 0);
+        start_move(axis, clock, 5);
+        finish_move(axis, clock);
+        CHECK(axis.position == 5);
+    }
+}
+
+TEST_CASE("limits that change in mid-ramp count from the next change of velocity on") {
+    VirtualAxis axis;
+    axis.wanted_velocity = 10;
+    Clock clock;
+    for (int i = 0; i < 20; ++i) clock.scan(axis);
+    VirtualAxis changed = axis;
+    Clock other = clock;
+    changed.acceleration_limit = 10;
+    changed.jerk_limit = 100;
+    while (axis.acceleration != 0) {
+        clock.scan(axis);
+        other.scan(changed);
+        REQUIRE(changed.velocity == axis.velocity);
+    }
+    changed.wanted_velocity = 20;
+    for (int i = 0; i < 500; ++i) {
+        other.scan(changed);
+        REQUIRE(changed.acceleration <= 10 * (1 + 4 * epsilon));
+    }
+    CHECK(changed.acceleration == Approx(10));
+}
+
 TEST_CASE("home sets the position of a standing axis only") {
     VirtualAxis axis;
     axis.home_position = -7;

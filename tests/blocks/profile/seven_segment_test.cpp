@@ -643,3 +643,26 @@ TEST_CASE("numbers of any size are planned without harm or refused") {
     }
     CHECK(plans > 0);
 }
+
+TEST_CASE("the sign of a zero makes no difference to a plan") {
+    for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+        INFO("seed " << seed);
+        Random random(seed);
+        SevenSegment positive = random_problem(random);
+        SevenSegment negative = positive;
+        for (double SevenSegment::*zero :
+             {&SevenSegment::Vs, &SevenSegment::Ve, &SevenSegment::L}) {
+            if (random.one_in(2)) continue;
+            positive.*zero = 0.0;
+            negative.*zero = -0.0;
+        }
+        SevenSegmentPlan expected, got;
+        REQUIRE(plan(positive, expected) == PlanResult::ok);
+        REQUIRE(plan(negative, got) == PlanResult::ok);
+        CHECK(got.T == expected.T);
+        CHECK(got.duration == expected.duration);
+        CHECK(got.end.velocity == expected.end.velocity);
+        CHECK(got.kind == expected.kind);
+        CHECK(got.reaches_Ve == expected.reaches_Ve);
+    }
+}

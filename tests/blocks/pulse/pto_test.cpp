@@ -81,6 +81,8 @@ TEST_CASE("a profile runs its segments without a gap and then is done") {
     CHECK(out.pto.active_segment == 0);
     CHECK(out.tape.list.size() == 4000);
     out.pto.scan({.time = out.now});
+    CHECK(out.pto.done);
+    out.pto.scan({.time = out.now + ms});
     CHECK_FALSE(out.pto.done);
 }
 
@@ -113,6 +115,8 @@ TEST_CASE("what is out of range is clamped and says so") {
     fast.execute(200'000, 0, -5);
     CHECK(fast.pto.train.segment() == PulseSegment{65'535, 65'535, 1});
     CHECK(fast.pto.clamped);
+    CHECK(fast.pto.warnings == 2);
+    CHECK(fast.pto.warning_id == Pto::Warning::count_out_of_range);
 
     Output multi;
     multi.pto.multi_segment = true;
@@ -122,6 +126,7 @@ TEST_CASE("what is out of range is clamped and says so") {
     Output good;
     good.execute(65'535, 1, 1);
     CHECK_FALSE(good.pto.clamped);
+    CHECK(good.pto.warnings == 0);
 }
 
 TEST_CASE("a table of no segments, or of more than there are, puts nothing out") {
@@ -166,10 +171,33 @@ TEST_CASE("the output ends at once when it is stopped, and no pulse is lost in s
     out.pto.publish(out.now);
     CHECK_FALSE(out.pto.busy);
     CHECK(out.pto.stopped);
-    CHECK_FALSE(out.pto.done);
+    CHECK(out.pto.done);
+    CHECK(out.pto.end_time == 0.02);
+    CHECK(out.pto.trains == 1);
     CHECK(out.pto.pulses == 21);
     CHECK(out.pto.lost == 300 - 21);
     CHECK(out.pto.next_event_time() == never);
+}
+
+TEST_CASE("each end of a train is a rising edge, scanned or not") {
+    for (const bool scanned : {true, false}) {
+        for (const RateUpdate update : {RateUpdate::continuous, RateUpdate::per_pulse}) {
+            Output out = with_profile({{1000, 3000, 10}, {3000, 1000, 10}});
+            out.pto.rate_update = update;
+            out.execute();
+            for (int train = 1; train <= 20; ++train) {
+                out.execute();
+                bool fell = false;
+                while (out.pto.trains < train) {
+                    fell = fell || !out.pto.done;
+                    out.advance_to(out.pto.next_event_time());
+                }
+                CHECK(fell);
+                CHECK(out.pto.done);
+                if (scanned) out.pto.scan({.time = out.now});
+            }
+        }
+    }
 }
 
 TEST_CASE("direction belongs to the train, not to the moment") {
