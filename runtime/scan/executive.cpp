@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/units.hpp"
+
 namespace lineshaft {
 
 namespace {
@@ -143,10 +145,11 @@ void Executive::begin() {
 bool Executive::run_until(std::int64_t time) {
     const std::int64_t last = std::min(time, machine_.duration);
     std::int64_t next = next_event();
-    if (known_until_ > 0 && known_until_ <= last) settle(std::min(next - 1, last));
+    if (has_run_ && known_until_ <= last) settle(std::min(next - 1, last));
     while (!ended_ && next <= last) {
         advance(next);
         instant();
+        has_run_ = true;
         next = next_event();
         ended_ = stopped_ || (machine_.until && read<bool>(machine_.until->slot));
         settle(ended_ ? now_ : std::min(next - 1, last));
@@ -158,6 +161,7 @@ bool Executive::run_until(std::int64_t time) {
         }
         if (--until_look_ == 0) look();
     }
+    if (!ended_) known_until_ = std::max(known_until_, last + 1);
     return !ended_ && last < machine_.duration;
 }
 

@@ -206,6 +206,7 @@ class Executive {
     std::vector<Observer*> observers_;
     std::vector<Stimulus> mail_;    ///< posted, counts from the same instant on
     std::int64_t known_until_ = 0;  ///< observers know that nothing changes before [ns]
+    bool has_run_ = false;          ///< at least one instant
     bool ended_ = false;
     const std::atomic<bool>* interrupt_ = nullptr;
     std::function<void(std::int64_t)> progress_;

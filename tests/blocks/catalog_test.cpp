@@ -29,9 +29,9 @@ class Instance {
     }
 
     void scan(std::int64_t index) {
-        const bool error =
-            type_.scan(memory_.data(), 1,
-                       {.time = index * millisecond, .interval = millisecond, .index = index});
+        const bool error = type_.scan_blocks(
+            memory_.data(), 1,
+            {.time = index * millisecond, .interval = millisecond, .index = index}, {});
         if (error != is_in_error()) FAIL("the scan says something else than the output");
     }
     void set(const Field& field, const Value& value) {

@@ -79,7 +79,7 @@ class Driven {
         for (std::size_t i = 0; i < row.size(); ++i)
             if (columns_[i] && is_input(i) && row[i] != ".")
                 store(columns_[i]->type, slot(*columns_[i]), value_of(*columns_[i], row[i]));
-        for (int call = 0; call < calls; ++call) type_.scan(memory_.data(), 1, now_);
+        for (int call = 0; call < calls; ++call) type_.scan_blocks(memory_.data(), 1, now_, {});
         ++now_.index;
         for (std::size_t i = 0; i < row.size(); ++i) {
             if (!columns_[i] || is_input(i)) continue;

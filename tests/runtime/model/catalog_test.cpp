@@ -71,6 +71,6 @@ TEST_CASE("a block is made with its defaults and scanned by its type alone") {
     const Field& out = *type.find_readable("value");
     CHECK(load(in.type, memory + in.offset) == Value(3.0));
     store(in.type, memory + in.offset, 5.0);
-    type.scan(memory, 1, {.time = 0, .interval = 1, .index = 100});
+    type.scan_blocks(memory, 1, {.time = 0, .interval = 1, .index = 100}, {});
     CHECK(load(out.type, memory + out.offset) == Value(110.0));
 }

@@ -146,7 +146,7 @@ TEST_CASE("a local is seen, forced and retained, and neither set nor wired") {
     Diagnostics out;
     Linked program =
         linked("  t: {type: ticker, task: a}\n", out,
-               "force: [{from: 4 ms, until: 6 ms, t.ticks: 100}]\nretain: [t.ticks]\n"
+               "force: [{from: 4 ms, until: 6 ms, set: {t.ticks: 100}}]\nretain: [t.ticks]\n"
                "trace: {task: a, signals: [t.ticks]}\nexpect: [{at: end, t.ticks: 10}]\n");
     INFO(out.render());
     REQUIRE(out.empty());

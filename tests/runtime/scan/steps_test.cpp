@@ -17,10 +17,10 @@ std::vector<TaskSpec> random_tasks(std::mt19937_64& random) {
     };
     return {{.name = "a",
              .every = 4 + below(5),
-             .offset = below(3),
              .priority = 1 + below(3),
-             .jitter = below(2),
-             .cost = below(3)},
+             .offset = below(3),
+             .cost = below(3),
+             .jitter = below(2)},
             {.name = "b", .every = 3 + below(9), .priority = 1 + below(3), .cost = below(2)},
             {.name = "c", .priority = 9, .on_event = true}};
 }

@@ -367,3 +367,13 @@ TEST_CASE("the locale changes nothing") {
     CHECK(in(1.005, "m", "mm") == 1005);
     std::setlocale(LC_ALL, before.c_str());
 }
+
+TEST_CASE("times are written in seconds, exactly") {
+    CHECK(format_time(0) == "0 s");
+    CHECK(format_time(12'345'000'000) == "12.345 s");
+    CHECK(format_time(1) == "0.000000001 s");
+    CHECK(format_time(10'000'000'000) == "10 s");
+    CHECK(format_time(100'000'000) == "0.1 s");
+    CHECK(format_time(9'007'199'254'740'993) == "9007199.254740993 s");
+    CHECK(format_time(9'200'000'000'000'000'001) == "9200000000.000000001 s");
+}
