@@ -85,7 +85,7 @@ struct FitRow {
     bool ok = true;              ///< within the comparison's bounds; a trace has none
 };
 
-/// What the other cells say of one cell. The search begins at the values of the identification.
+/// What the other cells say of one cell, searched from the parameters' `start`.
 struct FitLeftOut {
     const FitCell* cell = nullptr;
     std::vector<double> values;  ///< found without the cell, one a parameter

@@ -69,7 +69,7 @@ class Fitter {
 
     bool stopped() const { return options_.interrupt && *options_.interrupt; }
     LeastSquares identify();
-    void leave_out_each(const LeastSquares& best);
+    void leave_out_each();
     LeastSquaresOptions search(std::int64_t index);
     LeastSquares minimise_from(const LeastSquaresOptions& options);
     std::vector<VectorXd> residuals(const std::vector<VectorXd>& points);
@@ -117,7 +117,7 @@ FitReport Fitter::run() {
     const LeastSquares best = identify();
     take_values(best);
     take_rows(best);
-    if (plan_.hold_out_each && best.residuals.size() > 0) leave_out_each(best);
+    if (plan_.hold_out_each && best.residuals.size() > 0) leave_out_each();
     report_.interrupted = stopped();
     report_.runs = progress_.runs;
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
@@ -144,9 +144,7 @@ LeastSquares Fitter::identify() {
     return best;
 }
 
-void Fitter::leave_out_each(const LeastSquares& best) {
-    LeastSquaresOptions options = search(0);
-    options.start = best.point;
+void Fitter::leave_out_each() {
     for (const FitCell& cell : plan_.cells) {
         if (stopped()) return;
         ++progress_.left_out;
@@ -154,7 +152,7 @@ void Fitter::leave_out_each(const LeastSquares& best) {
         identification_.clear();
         for (const FitCell& other : plan_.cells)
             if (&other != &cell) identification_.push_back(&other);
-        const LeastSquares found = minimise_from(options);
+        const LeastSquares found = minimise_from(search(0));
         report_.left_out.push_back({.cell = &cell,
                                     .values = values_at(plan_, found.point),
                                     .rows = rows({&cell}, found.point),

@@ -76,7 +76,7 @@ constexpr const char* parameters = "parameters: {a: {from: -5, to: 5}, b: {from:
 
 TEST_CASE("left out in turn, each case of a line is off by its residual over 1 - leverage",
           "[fit]") {
-    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         const Line line = noisy_line(seed);
         const FitReport report = fit(parameters + std::string("hold_out: each\ncases:\n") +
                                      cases_of(line, static_cast<Eigen::Index>(seed % 3)));
@@ -97,11 +97,17 @@ TEST_CASE("left out in turn, each case of a line is off by its residual over 1 -
     }
 }
 
-TEST_CASE("the values of the identification do not depend on what is left out in turn", "[fit]") {
+TEST_CASE("the identification and the cases left out in turn do not depend on each other",
+          "[fit]") {
     const std::string cases = "cases:\n" + cases_of(noisy_line(1), 2);
     const FitReport alone = fit(parameters + cases);
     const FitReport each = fit(parameters + std::string("hold_out: each\n") + cases,
                                {.jobs = 3, .interrupt = nullptr, .progress = {}});
+    const FitReport other =
+        fit(parameters + std::string("hold_out: each\ncases:\n") + cases_of(noisy_line(1), 0));
+    CHECK(each.values[0].value != other.values[0].value);
+    for (std::size_t i = 0; i < each.left_out.size(); ++i)
+        CHECK(each.left_out[i].values == other.left_out[i].values);
     CHECK(alone.left_out.empty());
     CHECK(alone.runs < each.runs);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -140,7 +146,7 @@ TEST_CASE("a bound that a left-out case breaks fails the fit", "[fit]") {
 
 TEST_CASE("a spread is fitted as any figure", "[fit]") {
     const FitReport report = fit(R"(
-repeat: 400
+repeat: 100
 parameters: {noise: {from: 0 mm, to: 0.1 mm, start: 0.08 mm}}
 cases:
   - compare: {drive.position: {paper: 0 mm, uncertainty: 1 mm, spread: {paper: 0.03 mm, uncertainty: 0.001 mm}}}
@@ -148,5 +154,5 @@ cases:
     REQUIRE(report.rows.size() == 2);
     CHECK(report.rows[1].comparison->name() == "drive.position.spread");
     CHECK(report.rows[1].ours == Approx(0.03).margin(1e-5));
-    CHECK(report.values[0].value == Approx(0.03).epsilon(0.15));
+    CHECK(report.values[0].value == Approx(0.03).epsilon(0.3));
 }
