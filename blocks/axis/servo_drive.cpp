@@ -100,7 +100,7 @@ void ServoDrive::check() {
     checked = true;
     in_simulation = kv == 0 && delay == 0 && resolution == 0 && noise == 0 && t.backlash == 0 &&
                     t.windup == 0 && t.breakaway_windup == 0;
-    if (kv == 0 && (loop.kind != Kind::ideal || velocity_feed_forward > 0))
+    if (kv == 0 && (loop.kind != Kind::ideal || velocity_feed_forward > 0 || integral_time > 0))
         contradiction = ServoError::no_position_loop;
     else if (loop.kind == Kind::ideal && (loop.coulomb > 0 || loop.viscous > 0))
         contradiction = ServoError::no_velocity_loop;

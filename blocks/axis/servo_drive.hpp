@@ -16,7 +16,7 @@ namespace lineshaft {
 enum class ServoError : std::int64_t {
     none,
     not_finite,        ///< an input is NaN or infinite, or the motion leaves the range of numbers
-    no_position_loop,  ///< velocity loop or feed-forward without `kv`: the axis would drift away
+    no_position_loop,  ///< velocity loop, feed-forward or integral action without `kv`
     no_velocity_loop,  ///< friction without a velocity loop that it could act on
     no_time_constant,  ///< a velocity loop without its `time_constant` or `natural_frequency`
 };

@@ -267,6 +267,10 @@ TEST_CASE("settings that contradict each other are an error", "[servo]") {
     drifting.scan({});
     stiff.scan({});
     untimed.scan({});
+    ServoDrive integrating;
+    integrating.integral_time = 1;
+    integrating.scan({});
+    CHECK(integrating.error_id == ServoError::no_position_loop);
     CHECK(drifting.error_id == ServoError::no_position_loop);
     CHECK(stiff.error_id == ServoError::no_velocity_loop);
     CHECK(untimed.error_id == ServoError::no_time_constant);
