@@ -22,6 +22,9 @@ std::span<const Field> ServoDrive::fields() {
             .at_most(longest_delay),
         parameter("kv", &D::kv, "1/s", "gain of the position loop; 0: motor at its set-point")
             .at_least(0),
+        parameter("integral_time", &D::integral_time, "s",
+                  "of the position loop's integral action; 0: none")
+            .at_least(0),
         parameter("velocity_feed_forward", &D::velocity_feed_forward, "",
                   "share of the set velocity; 1: all of it")
             .at_least(0),
@@ -52,8 +55,8 @@ std::span<const Field> ServoDrive::fields() {
         parameter("presliding_travel", &D::transmission, &Transmission::presliding_travel, "{unit}",
                   "within which a reversal winds up")
             .at_least(0),
-        parameter("breakaway_travel", &D::transmission, &Transmission::breakaway_travel, "{unit}",
-                  "over which `breakaway_windup` decays")
+        parameter("breakaway_time", &D::transmission, &Transmission::breakaway_time, "s",
+                  "in which `breakaway_windup` decays, also at standstill")
             .at_least(0),
         parameter("encoder", &D::encoder, "", "where it sits").one_of(encoder_names),
         parameter("resolution", &D::resolution, "{unit}", "of the encoder; 0: no steps")
@@ -64,6 +67,8 @@ std::span<const Field> ServoDrive::fields() {
             .at_least(0),
         input("set_position", &D::set_position, "{unit}", "set-point of the axis").must_be_set(),
         input("set_velocity", &D::set_velocity, "{unit}/s", "of the set-point"),
+        input("home", &D::home, "", "rising edge: position := home_position"),
+        input("home_position", &D::home_position, "{unit}", "actual position at home"),
         output("position", &D::position, "{unit}", "actual position, read from the encoder"),
         output("velocity", &D::velocity, "{unit}/s", "of the motor"),
         output("motor_position", &D::motor_position, "{unit}", "where the motor is"),
@@ -78,8 +83,12 @@ std::span<const Field> ServoDrive::fields() {
 
 void ServoDrive::scan(const Scan& now) {
     if (!checked) check();
-    error_id = all_finite(set_position, set_velocity) ? contradiction : ServoError::not_finite;
-    if (error_id == ServoError::none) error_id = in_simulation ? copy() : follow(now.time);
+    error_id = all_finite(set_position, set_velocity, home_position) ? contradiction
+                                                                     : ServoError::not_finite;
+    const bool homing = home && !last_home;
+    last_home = home;
+    in_simulation = in_simulation && !homing;
+    if (error_id == ServoError::none) error_id = in_simulation ? copy() : follow(now.time, homing);
     last_time = now.time;
     error = error_id != ServoError::none;
 }
@@ -91,7 +100,7 @@ void ServoDrive::check() {
     checked = true;
     in_simulation = kv == 0 && delay == 0 && resolution == 0 && noise == 0 && t.backlash == 0 &&
                     t.windup == 0 && t.breakaway_windup == 0;
-    if (kv == 0 && (loop.kind != Kind::ideal || velocity_feed_forward > 0))
+    if (kv == 0 && (loop.kind != Kind::ideal || velocity_feed_forward > 0 || integral_time > 0))
         contradiction = ServoError::no_position_loop;
     else if (loop.kind == Kind::ideal && (loop.coulomb > 0 || loop.viscous > 0))
         contradiction = ServoError::no_velocity_loop;
@@ -107,11 +116,11 @@ ServoError ServoDrive::copy() {
     return ServoError::none;
 }
 
-ServoError ServoDrive::follow(std::int64_t time) {
+ServoError ServoDrive::follow(std::int64_t time, bool homing) {
     if (first_scan) start();
     const double elapsed = first_scan ? 0 : seconds(time - last_time);
     first_scan = false;
-    return move(transported(), elapsed);
+    return move(transported(), elapsed, homing);
 }
 
 void ServoDrive::start() {
@@ -129,20 +138,27 @@ ServoDrive::SetPoint ServoDrive::transported() {
 }
 
 /// What no double can hold is not set.
-ServoError ServoDrive::move(const SetPoint& wanted, double elapsed) {
+ServoError ServoDrive::move(const SetPoint& wanted, double elapsed, bool homing) {
     const VelocityLoop::State next = kv > 0
                                          ? loop.advance(motor, demand, elapsed)
                                          : VelocityLoop::State{wanted.position, wanted.velocity, 0};
-    const Transmission::State next_gear = transmission.advance(gear, next.position);
+    const Transmission::State next_gear = transmission.advance(gear, next.position, elapsed);
     const double table = transmission.table(next_gear);
-    const double reading = read_encoder(encoder == Encoder::motor ? next.position : table);
+    const double seen = read_encoder(encoder == Encoder::motor ? next.position : table);
+    const double next_offset = homing ? home_position - seen : home_offset;
+    const double reading = homing ? home_position : seen + next_offset;
     const double distance = wanted.position - reading;
-    const double next_demand = kv * distance + velocity_feed_forward * wanted.velocity;
+    const double next_integral =
+        integral_time > 0 ? integral + distance * elapsed / integral_time : 0;
+    const double next_demand =
+        kv * (distance + next_integral) + velocity_feed_forward * wanted.velocity;
     if (!all_finite(next.position, next.velocity, next.integral, table, reading, next_demand))
         return ServoError::not_finite;
     motor = next;
     gear = next_gear;
     demand = next_demand;
+    integral = next_integral;
+    home_offset = next_offset;
     motor_position = next.position;
     velocity = next.velocity;
     table_position = table;

@@ -16,7 +16,7 @@ namespace lineshaft {
 enum class ServoError : std::int64_t {
     none,
     not_finite,        ///< an input is NaN or infinite, or the motion leaves the range of numbers
-    no_position_loop,  ///< velocity loop or feed-forward without `kv`: the axis would drift away
+    no_position_loop,  ///< velocity loop, feed-forward or integral action without `kv`
     no_velocity_loop,  ///< friction without a velocity loop that it could act on
     no_time_constant,  ///< a velocity loop without its `time_constant` or `natural_frequency`
 };
@@ -28,24 +28,32 @@ enum class ServoError : std::int64_t {
 /// ago: what the user program then reads.
 ///
 ///     set-point       r(k) = set_position(k - delay), rv likewise             transport, in clocks
-///     position loop   u = kv (r - position) + velocity_feed_forward * rv      held for a clock
+///     position loop   u = kv (e + integral of e / integral_time) + velocity_feed_forward * rv,
+///                     e = r - position; held for a clock
 ///     velocity loop   u -> velocity of the motor, with Coulomb and viscous friction:
 ///                     see velocity_loop.hpp; without kv the motor is at r at once
 ///     transmission    motor -> table, with backlash and windup: see transmission.hpp
 ///     encoder         position = resolution * round((m + noise) / resolution), m of motor or
 ///                     table, noise normal with the standard deviation `noise`
+///     homing          the zero of the encoder is set so that the position read in the scan of the
+///                     rising edge of `home` is `home_position` (MC_Home, direct: modes 0, 1)
+///
+/// Homing moves nothing: without kv the motor stays at its set-point. With kv the drive follows its
+/// set-point by the homed position, so home the axis that makes the set-points to the same
+/// position.
 ///
 /// In steady motion at velocity V the first-order loop follows at a distance of
 ///     ((1 - velocity_feed_forward + d T) V + c T sign(V)) / kv
-/// and friction holds an axis at rest within c T / kv. The drive starts at rest on its first
-/// set-point. Elapsed time is that between the scans, also when the task's clock wanders.
+/// without integral action, and friction holds an axis at rest within c T / kv. The drive starts at
+/// rest on its first set-point. Elapsed time is that between the scans, also when the task's clock
+/// wanders.
 struct ServoDrive {
     enum class Encoder : std::int64_t { motor, table };
     static constexpr std::int64_t longest_delay = 64;  ///< [clocks]
 
     AxisUnit unit = AxisUnit::mm;
     std::int64_t delay = 0;
-    double kv = 0, velocity_feed_forward = 0;
+    double kv = 0, integral_time = 0, velocity_feed_forward = 0;
     VelocityLoop loop;
     Transmission transmission;
     Encoder encoder = Encoder::motor;
@@ -53,6 +61,8 @@ struct ServoDrive {
     std::int64_t seed = 0;
 
     double set_position = 0, set_velocity = 0;
+    bool home = false;
+    double home_position = 0;
 
     double position = 0, velocity = 0;
     double motor_position = 0, table_position = 0;
@@ -65,10 +75,12 @@ struct ServoDrive {
     };
     std::array<SetPoint, longest_delay + 1> transport{};  ///< a ring
     std::int64_t newest = 0;
-    bool checked = false, in_simulation = false, first_scan = true;
+    bool checked = false, in_simulation = false, first_scan = true, last_home = false;
+    double home_offset = 0;                       ///< position - what the encoder sees [u]
     ServoError contradiction = ServoError::none;  ///< of the parameters
     std::int64_t last_time = 0;
-    double demand = 0;  ///< u [u/s], since the last scan
+    double demand = 0;    ///< u [u/s], since the last scan
+    double integral = 0;  ///< of e / integral_time [u]
     VelocityLoop::State motor;
     Transmission::State gear;
     Random random{0, "noise"};
@@ -82,10 +94,10 @@ struct ServoDrive {
   private:
     void check();
     ServoError copy();
-    ServoError follow(std::int64_t time);
+    ServoError follow(std::int64_t time, bool homing);
     void start();
     SetPoint transported();
-    ServoError move(const SetPoint& wanted, double elapsed);
+    ServoError move(const SetPoint& wanted, double elapsed, bool homing);
     double read_encoder(double true_position);
 };
 

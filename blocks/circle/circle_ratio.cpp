@@ -43,6 +43,9 @@ std::span<const Field> CircleRatio::fields() {
             "lead", &C::lead, "",
             "motion clocks from the set-points that are read to the start of a job commanded now")
             .at_least(0),
+        parameter("settling_time", &C::settling_time, "s",
+                  "that the slaves stand on the start point before they are homed")
+            .at_least(0),
         input("start", &C::start, "", "rising edge: do the arc").must_be_set(),
         input("master_position", &C::master_position, "rad", "of the master axis").must_be_set(),
         input("x_position", &C::x_position, "mm", "of slave X").must_be_set(),
@@ -87,8 +90,11 @@ void CircleRatio::scan(const Scan& now) {
             enter(State::approach, now);
             break;
         case State::approach:
-            if (std::abs(x_position - start_x) > in_position) break;
-            if (std::abs(y_position - start_y) > in_position || !waited(now)) break;
+            if (!at_start()) {
+                standing_since = now.time;
+                break;
+            }
+            if (!waited(now) || seconds(now.time - standing_since) < settling_time) break;
             home = true;
             enter(State::home, now);
             break;
@@ -135,13 +141,18 @@ double CircleRatio::least_step_time(const Arc& wanted, const Scan& now) const {
            exact_time(speed * wanted.step_angle());
 }
 
+bool CircleRatio::at_start() const {
+    return std::abs(x_position - start_x) <= in_position &&
+           std::abs(y_position - start_y) <= in_position;
+}
+
 bool CircleRatio::waited(const Scan& now) const {
     return seconds(now.time - state_since) >= clocks_to_settle * motion_clock;
 }
 
 void CircleRatio::enter(State next, const Scan& now) {
     state = next;
-    state_since = now.time;
+    state_since = standing_since = now.time;
 }
 
 /// Steps 1 and 2: the arc, its start point, the master's way; the slaves are sent to the start.

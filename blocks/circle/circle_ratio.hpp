@@ -11,8 +11,8 @@
 namespace lineshaft {
 
 /// The user program of the synchronised circle (Wei et al. 2025, steps 1 to 10): positions the axes
-/// on the start point, homes them, couples them at standstill, starts the master, and changes the
-/// ratios on the way.
+/// on the start point, lets them settle there for `settling_time`, homes them, couples them at
+/// standstill, starts the master, and changes the ratios on the way.
 ///
 /// `immediate` (ref. [16]) and `early` (13), (14), (18) change from k_i to k_{i+1} when the read
 /// master position has passed theta_i, or theta_i - v_G T. `centred` calls when the job would start
@@ -49,6 +49,7 @@ struct CircleRatio {
     double acceleration = 100, jerk = 5e4;
     double motion_clock = 0.001;
     std::int64_t lead = 1;
+    double settling_time = 0;
 
     bool start = false;
     double master_position = 0;
@@ -78,7 +79,7 @@ struct CircleRatio {
     Axis x, y;
     bool last_start = false;
     Error arc_error = Error::none;
-    std::int64_t state_since = 0;
+    std::int64_t state_since = 0, standing_since = 0;
     std::int64_t knot = 0;        ///< balanced, ramp: steps begun
     std::int64_t next_clock = 0;  ///< balanced, ramp: motion clock of the next change
 
@@ -92,6 +93,7 @@ struct CircleRatio {
     bool inputs_finite() const;
     Error check_arc(const Scan& now) const;
     double least_step_time(const Arc& wanted, const Scan& now) const;
+    bool at_start() const;
     bool waited(const Scan& now) const;
     void enter(State next, const Scan& now);
     void begin();

@@ -55,6 +55,8 @@ struct FitPlan {
     std::vector<FitCell> cells;
     std::int64_t starts = 1;  ///< the first at the parameters' `start`, the others at random
     std::uint64_t seed = 1;   ///< of these
+    /// Beside the identification every cell, held out there or not, is predicted from all others.
+    bool hold_out_each = false;
 };
 
 /// Reads and checks a plan: its structure, its program with every cell's settings, its traces.
@@ -67,8 +69,9 @@ bool is_fit(const SourceFile& file);
 struct FitValue {
     const FitParameter* parameter = nullptr;
     double value = 0;
-    double standard_error = 0;  ///< NaN: not determined, see `standard_errors`
-    bool at_bound = false;      ///< within one step of a bound
+    double standard_error = 0;              ///< NaN: not determined, see `standard_errors`
+    bool at_bound = false;                  ///< within one step of a bound
+    std::vector<double> correlations = {};  ///< with every parameter; NaN: not determined
 };
 
 /// One comparison of one cell at the values found.
@@ -82,6 +85,18 @@ struct FitRow {
     bool ok = true;              ///< within the comparison's bounds; a trace has none
 };
 
+/// What the other cells say of one cell, searched from the parameters' `start`.
+struct FitLeftOut {
+    const FitCell* cell = nullptr;
+    std::vector<double> values;  ///< found without the cell, one a parameter
+    std::vector<FitRow> rows;    ///< the cell at these values; empty: it does not run there
+    bool converged = false;
+};
+
+/// Standard error of `parameter` by the jackknife: sqrt((n - 1)/n sum of (value - mean)^2) over the
+/// n cells left out in turn.
+double jackknife_error(const std::vector<FitLeftOut>& left_out, std::size_t parameter);
+
 struct FitStart {
     std::vector<double> values;  ///< where it ended, one a parameter
     double sum = 0;              ///< of squares; infinite: it could not even begin
@@ -89,8 +104,9 @@ struct FitStart {
 };
 
 struct FitReport {
-    std::vector<FitValue> values;  ///< of the best start; empty: none could begin
-    std::vector<FitRow> rows;      ///< in the order of the cells; empty when interrupted
+    std::vector<FitValue> values;      ///< of the best start; empty: none could begin
+    std::vector<FitRow> rows;          ///< in the order of the cells; empty when interrupted
+    std::vector<FitLeftOut> left_out;  ///< every cell in turn, if wanted
     std::vector<FitStart> starts;
     std::vector<std::string> faults;  ///< why cells did not run, at the values found
     std::size_t best = 0;             ///< index in `starts`
@@ -103,6 +119,7 @@ struct FitReport {
 
 struct FitProgress {
     std::size_t start = 1, runs = 0;  ///< counted from 1; so far
+    std::size_t left_out = 0;         ///< number of the cell that is left out in turn; 0: none
     double sum = 0;                   ///< least sum of squares so far; infinite: none yet
 };
 

@@ -20,6 +20,7 @@ constexpr double default_step = 1e-3;  // of the way between the bounds
 /// What a plan's case says beyond a study's.
 struct PendingTarget {
     Node signal;
+    Statistic statistic = Statistic::mean;
     Node uncertainty = {}, column = {};  ///< empty where it says nothing
 };
 
@@ -68,6 +69,7 @@ class FitReader {
     void parameter(const Node& name, const Node& body);
     std::optional<double> number(const Node& map, std::string_view key, const Unit& unit) const;
     void starts(const Node& starts, const Node& seed);
+    void hold_out(const Node& node);
     void take_cell(Node& node);
     void forbid_settings(const Node& map) const;
     void join(Study&& study);
@@ -97,9 +99,10 @@ FitPlan FitReader::read(std::shared_ptr<const SourceFile> file) {
     if (!root || !check_kind(read_, *root, "lineshaft_fit")) return std::move(plan_);
     keep_only(read_, *root, "a fit",
               {"lineshaft_fit", "title", "program", "notes", "set", "repeat", "parameters",
-               "starts", "seed", "cases"});
+               "starts", "seed", "hold_out", "cases"});
     take(*root, "lineshaft_fit");
     starts(take(*root, "starts"), take(*root, "seed"));
+    hold_out(take(*root, "hold_out"));
     read_.require(*root, "parameters", "a fit",
                   "say what is looked for: parameters: {lag: {from: 0 ms, to: 50 ms}}");
     parameters_ = take(*root, "parameters");
@@ -121,6 +124,14 @@ void FitReader::starts(const Node& starts, const Node& seed) {
     const std::int64_t value = seed.is_empty() ? 1 : read_.integer(seed).value_or(1);
     if (value < 0) read_.fail("L0305", seed, fmt::format("'{}' is below 0", seed.text));
     plan_.seed = static_cast<std::uint64_t>(value);
+}
+
+void FitReader::hold_out(const Node& node) {
+    if (node.is_empty() || !read_.expect_scalar(node, "'hold_out'")) return;
+    plan_.hold_out_each = node.text == "each";
+    if (!plan_.hold_out_each)
+        read_.fail("L0306", node, fmt::format("'{}' is not a way to hold out cases", node.text),
+                   "write hold_out: each, or hold_out: true at a case");
 }
 
 void FitReader::parameters(const Node& node) {
@@ -182,6 +193,11 @@ void FitReader::take_cell(Node& node) {
             target.uncertainty = take(body, "uncertainty");
             target.column = take(body, "column");
             pending.targets.push_back(std::move(target));
+            for (auto& [key_of_body, spread] : body.entries)
+                if (key_of_body.text == "spread")
+                    pending.targets.push_back({.signal = signal,
+                                               .statistic = Statistic::spread,
+                                               .uncertainty = take(spread, "uncertainty")});
         }
     }
     pending_.push_back(std::move(pending));
@@ -227,7 +243,7 @@ void FitReader::figures(const PendingCell& pending, FitCell& cell) const {
                        "name the file in the case: trace: measured.csv");
         else if (!comparison.bounds.paper)
             read_.fail("L0202", p.signal,
-                       fmt::format("'{}' has nothing to be compared with", comparison.signal),
+                       fmt::format("'{}' has nothing to be compared with", comparison.name()),
                        "write what was measured, {paper: VALUE}, or the case's trace: FILE");
         else if (const auto u = uncertainty(p, comparison, comparison.bounds.paper))
             cell.targets.push_back({{*comparison.bounds.paper}, *u});
@@ -292,9 +308,10 @@ void FitReader::samples(const PendingCell& pending, const CsvTable& table, const
     for (std::size_t k = 0; k < pending.targets.size(); ++k) {
         const PendingTarget& p = pending.targets[k];
         const Comparison& comparison = cell.run.comparisons[k];
-        if (comparison.bounds.paper || comparison.bounds.judged())
+        if (comparison.bounds.paper || comparison.bounds.judged() ||
+            p.statistic == Statistic::spread)
             read_.fail("L0213", p.signal, "a signal of a trace is compared sample by sample",
-                       "leave out paper, within, at_least and at_most");
+                       "leave out paper, within, at_least, at_most and spread");
         const Node& place = p.column.is_empty() ? p.signal : p.column;
         const CsvColumn* column = table.require(column_name(p), out, place.mark);
         if (!column) continue;
@@ -350,17 +367,22 @@ void FitReader::check_units() const {
                            "write how exact the figure is: uncertainty: 5 %");
 }
 
+/// Figures of the identification, and of the largest case when each is left out in turn.
 void FitReader::check_count() const {
-    std::size_t figures = 0;
-    for (const FitCell& cell : plan_.cells)
-        if (!cell.hold_out)
-            for (const FitTarget& target : cell.targets) figures += target.given.size();
-    if (figures >= plan_.parameters.size()) return;
-    read_.fail(
-        "L0604", parameters_.entries.front().first,
-        fmt::format("{} parameters are looked for, but only {} {} not held out",
-                    plan_.parameters.size(), figures, figures == 1 ? "figure is" : "figures are"),
-        "compare more, or look for less");
+    std::size_t all = 0, kept = 0, largest = 0;
+    for (const FitCell& cell : plan_.cells) {
+        std::size_t figures = 0;
+        for (const FitTarget& target : cell.targets) figures += target.given.size();
+        all += figures;
+        if (!cell.hold_out) kept += figures;
+        largest = std::max(largest, figures);
+    }
+    if (plan_.hold_out_each) kept = std::min(kept, all - largest);
+    if (kept >= plan_.parameters.size()) return;
+    read_.fail("L0604", parameters_.entries.front().first,
+               fmt::format("{} parameters are looked for, but only {} {} not held out",
+                           plan_.parameters.size(), kept, kept == 1 ? "figure is" : "figures are"),
+               "compare more, or look for less");
 }
 
 /// At the beginning of a line.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 #include "runtime/model/random.hpp"
 #include "runtime/run/side_by_side.hpp"
 #include "runtime/run/single_run.hpp"
+#include "runtime/study/scatter.hpp"
 
 namespace lineshaft {
 
@@ -66,7 +68,10 @@ class Fitter {
     };
 
     bool stopped() const { return options_.interrupt && *options_.interrupt; }
+    LeastSquares identify();
+    void leave_out_each();
     LeastSquaresOptions search(std::int64_t index);
+    LeastSquares minimise_from(const LeastSquaresOptions& options);
     std::vector<VectorXd> residuals(const std::vector<VectorXd>& points);
     std::vector<Figures> figures(const std::vector<const FitCell*>& cells,
                                  const std::vector<VectorXd>& points);
@@ -74,7 +79,7 @@ class Fitter {
     Figures run_one(const Job& job, YamlFiles& files) const;
     void take_values(const LeastSquares& best);
     void take_rows(const LeastSquares& best);
-    void tell();
+    std::vector<FitRow> rows(const std::vector<const FitCell*>& cells, const VectorXd& point);
 
     const FitPlan& plan_;
     const Catalog& catalog_;
@@ -109,14 +114,26 @@ std::vector<Signal> compared_signals(const FitCell& cell, const Machine& machine
 
 FitReport Fitter::run() {
     const auto begin = std::chrono::steady_clock::now();
+    const LeastSquares best = identify();
+    take_values(best);
+    take_rows(best);
+    if (plan_.hold_out_each && best.residuals.size() > 0) leave_out_each();
+    report_.interrupted = stopped();
+    report_.runs = progress_.runs;
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+    report_.wall_seconds = wall.count();
+    return std::move(report_);
+}
+
+/// From every start, by the cells that are not held out.
+LeastSquares Fitter::identify() {
     for (const FitCell& cell : plan_.cells)
         if (!cell.hold_out) identification_.push_back(&cell);
     LeastSquares best;
     double least = infinity;
     for (std::int64_t i = 0; i < plan_.starts && !stopped(); ++i) {
         progress_.start = static_cast<std::size_t>(i) + 1;
-        const auto all = [this](const std::vector<VectorXd>& points) { return residuals(points); };
-        const LeastSquares found = minimise(all, search(i));
+        const LeastSquares found = minimise_from(search(i));
         const double sum = found.residuals.size() == 0 ? infinity : found.sum();
         report_.starts.push_back({values_at(plan_, found.point), sum, found.converged});
         if (!(sum < least)) continue;
@@ -124,13 +141,28 @@ FitReport Fitter::run() {
         best = found;
         report_.best = report_.starts.size() - 1;
     }
-    take_values(best);
-    take_rows(best);
-    report_.interrupted = stopped();
-    report_.runs = progress_.runs;
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-    report_.wall_seconds = wall.count();
-    return std::move(report_);
+    return best;
+}
+
+void Fitter::leave_out_each() {
+    for (const FitCell& cell : plan_.cells) {
+        if (stopped()) return;
+        ++progress_.left_out;
+        progress_.sum = infinity;
+        identification_.clear();
+        for (const FitCell& other : plan_.cells)
+            if (&other != &cell) identification_.push_back(&other);
+        const LeastSquares found = minimise_from(search(0));
+        report_.left_out.push_back({.cell = &cell,
+                                    .values = values_at(plan_, found.point),
+                                    .rows = rows({&cell}, found.point),
+                                    .converged = found.converged});
+    }
+}
+
+LeastSquares Fitter::minimise_from(const LeastSquaresOptions& options) {
+    return minimise([this](const std::vector<VectorXd>& points) { return residuals(points); },
+                    options);
 }
 
 LeastSquaresOptions Fitter::search(std::int64_t index) {
@@ -173,7 +205,21 @@ std::vector<VectorXd> Fitter::residuals(const std::vector<VectorXd>& points) {
     return out;
 }
 
-/// Of every cell at every point (points outside, cells inside), the mean over the repeats.
+/// What a cell's comparisons ask for, over its repeats; the first fault if there is one.
+Figures over_repeats(const FitCell& cell, std::span<const Figures> runs) {
+    for (const Figures& run : runs)
+        if (!run.fault.empty()) return run;
+    Figures out = runs.front();
+    for (std::size_t k = 0; k < out.values.size(); ++k)
+        for (std::size_t i = 0; i < out.values[k].size(); ++i) {
+            Scatter scatter;
+            for (const Figures& run : runs) scatter.add(run.values[k][i]);
+            out.values[k][i] = scatter.value(cell.run.comparisons[k].statistic);
+        }
+    return out;
+}
+
+/// Of every cell at every point (points outside, cells inside).
 std::vector<Figures> Fitter::figures(const std::vector<const FitCell*>& cells,
                                      const std::vector<VectorXd>& points) {
     std::vector<Job> jobs;
@@ -182,21 +228,14 @@ std::vector<Figures> Fitter::figures(const std::vector<const FitCell*>& cells,
             for (std::int64_t repeat = 0; repeat < cell->run.repeat; ++repeat)
                 jobs.push_back({cell, point, repeat});
     const std::vector<Figures> runs = run_all(jobs);
-    std::vector<Figures> means;
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-        if (jobs[i].repeat == 0) {
-            means.push_back(runs[i]);
-            continue;
-        }
-        Figures& mean = means.back();
-        if (!runs[i].fault.empty()) mean.fault = runs[i].fault;
-        if (!mean.fault.empty()) continue;
-        const double weight = 1 / static_cast<double>(jobs[i].repeat + 1);
-        for (std::size_t k = 0; k < mean.values.size(); ++k)
-            for (std::size_t s = 0; s < mean.values[k].size(); ++s)
-                mean.values[k][s] += (runs[i].values[k][s] - mean.values[k][s]) * weight;
+    std::vector<Figures> all;
+    for (std::size_t i = 0; i < jobs.size();) {
+        const FitCell& cell = *jobs[i].cell;
+        const auto repeats = static_cast<std::size_t>(cell.run.repeat);
+        all.push_back(over_repeats(cell, std::span(runs).subspan(i, repeats)));
+        i += repeats;
     }
-    return means;
+    return all;
 }
 
 std::vector<Figures> Fitter::run_all(const std::vector<Job>& jobs) {
@@ -253,12 +292,15 @@ Figures Fitter::run_one(const Job& job, YamlFiles& files) const {
 void Fitter::take_values(const LeastSquares& best) {
     if (best.residuals.size() == 0) return;
     const VectorXd errors = standard_errors(best);
+    const Eigen::MatrixXd related = correlations(best);
     const std::vector<double> values = values_at(plan_, best.point);
     for (std::size_t i = 0; i < values.size(); ++i) {
         const FitParameter& p = plan_.parameters[i];
         const bool at_bound = std::min(values[i] - p.from, p.to - values[i]) < p.step;
-        const double error = errors[static_cast<Eigen::Index>(i)] * (p.to - p.from);
-        report_.values.push_back({&p, values[i], error, at_bound});
+        const auto row = static_cast<Eigen::Index>(i);
+        const double error = errors[row] * (p.to - p.from);
+        const VectorXd with = related.row(row);
+        report_.values.push_back({&p, values[i], error, at_bound, {with.begin(), with.end()}});
     }
 }
 
@@ -285,16 +327,22 @@ void Fitter::take_rows(const LeastSquares& best) {
     std::vector<const FitCell*> cells;
     for (const FitCell& cell : plan_.cells) cells.push_back(&cell);
     const bool any = best.residuals.size() > 0;
-    const std::vector<Figures> all = figures(cells, {any ? best.point : search(0).start});
+    report_.rows = rows(cells, any ? best.point : search(0).start);
+    if (any) return;
+    report_.rows.clear();
+    if (report_.faults.empty() && !first_fault_.empty()) report_.faults.push_back(first_fault_);
+}
+
+/// Of the cells that run.
+std::vector<FitRow> Fitter::rows(const std::vector<const FitCell*>& cells, const VectorXd& point) {
+    std::vector<FitRow> made;
+    const std::vector<Figures> all = figures(cells, {point});
     for (std::size_t c = 0; c < cells.size(); ++c) {
-        if (!all[c].fault.empty())
-            report_.faults.push_back(all[c].fault);
-        else if (any)
-            for (std::size_t k = 0; k < all[c].values.size(); ++k)
-                report_.rows.push_back(make_row(*cells[c], k, all[c].values[k]));
+        if (!all[c].fault.empty()) report_.faults.push_back(all[c].fault);
+        for (std::size_t k = 0; k < all[c].values.size(); ++k)
+            made.push_back(make_row(*cells[c], k, all[c].values[k]));
     }
-    if (!any && report_.faults.empty() && !first_fault_.empty())
-        report_.faults.push_back(first_fault_);
+    return made;
 }
 
 }  // namespace
@@ -310,9 +358,19 @@ std::string FitParameter::text(double value) const {
     return format_number(value) + (unit.text.empty() ? "" : " " + unit.text);
 }
 
+double jackknife_error(const std::vector<FitLeftOut>& left_out, std::size_t parameter) {
+    Scatter scatter;
+    for (const FitLeftOut& one : left_out) scatter.add(one.values[parameter]);
+    const double n = static_cast<double>(left_out.size());
+    return scatter.spread() * (n - 1) / std::sqrt(n);
+}
+
 bool FitReport::ok() const {
+    const auto holds = [](const FitLeftOut& one) {
+        return std::ranges::all_of(one.rows, &FitRow::ok);
+    };
     return !values.empty() && faults.empty() && !interrupted &&
-           std::ranges::all_of(rows, &FitRow::ok);
+           std::ranges::all_of(rows, &FitRow::ok) && std::ranges::all_of(left_out, holds);
 }
 
 FitReport run(const FitPlan& plan, const Catalog& catalog, const FitOptions& options) {

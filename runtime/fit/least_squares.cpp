@@ -75,6 +75,21 @@ MatrixXd Problem::derivatives(const VectorXd& x) const {
     return out;
 }
 
+/// W, where W W^T = (J^T J)^-1 with the columns of J scaled to the norm 1; empty where J has not
+/// full rank.
+MatrixXd inverse_root(const LeastSquares& minimum) {
+    const MatrixXd& J = minimum.jacobian;
+    const Eigen::Index n = minimum.point.size(), m = minimum.residuals.size();
+    if (J.rows() != m || m < n) return {};
+    const VectorXd scale = J.colwise().norm();
+    if (!(scale.minCoeff() > 0)) return {};
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(J * scale.cwiseInverse().asDiagonal());
+    if (qr.rank() < n) return {};
+    const MatrixXd R = qr.matrixR().topLeftCorner(n, n);
+    const MatrixXd root = R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(n, n));
+    return qr.colsPermutation() * root;
+}
+
 }  // namespace
 
 LeastSquares minimise(const Residuals& residuals, const LeastSquaresOptions& options) {
@@ -100,20 +115,19 @@ LeastSquares minimise(const Residuals& residuals, const LeastSquaresOptions& opt
 }
 
 VectorXd standard_errors(const LeastSquares& minimum) {
-    const MatrixXd& J = minimum.jacobian;
     const Eigen::Index n = minimum.point.size(), m = minimum.residuals.size();
-    const VectorXd unknown = VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN());
-    if (J.rows() != m || m < n) return unknown;
-    const VectorXd scale = J.colwise().norm();
-    if (!(scale.minCoeff() > 0)) return unknown;
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(J * scale.cwiseInverse().asDiagonal());
-    if (qr.rank() < n) return unknown;
-    const MatrixXd R = qr.matrixR().topLeftCorner(n, n);
-    const MatrixXd root =
-        qr.colsPermutation() *
-        MatrixXd(R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(n, n)));
+    const MatrixXd root = inverse_root(minimum);
+    if (root.size() == 0) return VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN());
     const double s = m > n ? std::sqrt(minimum.sum() / static_cast<double>(m - n)) : 1;
-    return s * root.rowwise().norm().cwiseQuotient(scale);
+    return s * root.rowwise().norm().cwiseQuotient(minimum.jacobian.colwise().norm().transpose());
+}
+
+MatrixXd correlations(const LeastSquares& minimum) {
+    const Eigen::Index n = minimum.point.size();
+    const MatrixXd root = inverse_root(minimum);
+    if (root.size() == 0) return MatrixXd::Constant(n, n, std::numeric_limits<double>::quiet_NaN());
+    const MatrixXd unit = root.rowwise().normalized();
+    return unit * unit.transpose();
 }
 
 }  // namespace lineshaft

@@ -41,4 +41,7 @@ LeastSquares minimise(const Residuals& residuals, const LeastSquaresOptions& opt
 /// coordinate (J has not full rank).
 Eigen::VectorXd standard_errors(const LeastSquares& minimum);
 
+/// Correlations of the coordinates' errors, -1..1: the scaled (J^T J)^-1. NaN as above.
+Eigen::MatrixXd correlations(const LeastSquares& minimum);
+
 }  // namespace lineshaft

@@ -379,9 +379,16 @@ void add_bounds(Json& properties) {
     properties["at_most"] = reference("number");
 }
 
+/// Of the repeats' values.
+Json spread(Json properties) {
+    return described("standard deviation over the repeats",
+                     any_of({of_type("null"), map_of(std::move(properties))}));
+}
+
 Json comparisons() {
     Json properties;
     add_bounds(properties);
+    properties["spread"] = spread(properties);
     Json map = of_type("object");
     map["patternProperties"]["^" + signal_pattern + "$"] =
         any_of({of_type("null"), map_of(properties)});
@@ -459,6 +466,7 @@ Json fit_comparisons() {
     add_bounds(properties);
     properties["uncertainty"] = described(
         "differences are counted in it, in the signal's unit or in %", reference("number"));
+    properties["spread"] = spread(properties);
     properties["column"] =
         described("of the trace, by default named as the signal", reference("scalar"));
     Json map = of_type("object");
@@ -499,6 +507,8 @@ Json fit_file() {
         described("of the program, whose values are looked for", named(fit_parameter()));
     properties["starts"] = described("searches from other points", reference("count"));
     properties["seed"] = described("of their points", reference("count"));
+    properties["hold_out"] = described("leaves each case out in turn, predicted from all others",
+                                       keyword("const", "each"));
     properties["cases"] = list_of(fit_case());
     return map_of(properties, {"lineshaft_fit", "program", "parameters", "cases"});
 }

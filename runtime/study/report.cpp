@@ -54,13 +54,14 @@ void ReportBuilder::note(const CaseResult& result) {
     add(result.deviations, report_.deviations);
 }
 
-/// Names of a formula: each case's signals, and the errors relative to the paper over all rows.
+/// Names of a formula: each case's signals, and the errors relative to the paper over all means.
 void ReportBuilder::learn(const CaseResult& result) {
     const StudyCase& of = *result.of;
     for (std::size_t k = 0; k < result.values.size(); ++k) {
         const double ours = result.values[k].ours;
-        const auto& paper = of.comparisons[k].bounds.paper;
-        if (paper && *paper != 0) {
+        const Comparison& comparison = of.comparisons[k];
+        const auto& paper = comparison.bounds.paper;
+        if (comparison.statistic == Statistic::mean && paper && *paper != 0) {
             const double error = std::abs(ours - *paper) / std::abs(*paper);
             error_sum_ += error;
             greatest_error_ = std::max(greatest_error_, error);
@@ -68,7 +69,7 @@ void ReportBuilder::learn(const CaseResult& result) {
         }
         if (of.name.empty()) continue;
         names_.emplace(of.name, ours);
-        names_.emplace(of.name + "." + of.comparisons[k].signal, ours);
+        names_.emplace(of.name + "." + comparison.name(), ours);
     }
 }
 

@@ -13,7 +13,7 @@ namespace lineshaft {
 struct StudyRow {
     std::shared_ptr<const StudyCase> of;
     const Comparison* comparison = nullptr;
-    double ours = 0;  ///< mean over the repeats
+    double ours = 0;  ///< mean over the repeats, or their spread
     double least = 0, greatest = 0;
     bool ok = true;
 };

@@ -37,6 +37,10 @@ bool Bounds::hold(double value) const {
            });
 }
 
+std::string Comparison::name() const {
+    return statistic == Statistic::mean ? signal : signal + ".spread";
+}
+
 std::string describe(const StudyCase& c) {
     if (!c.name.empty()) return c.name;
     std::string text;

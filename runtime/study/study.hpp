@@ -22,11 +22,18 @@ struct Bounds {
     bool hold(double value) const;
 };
 
+/// What of the repeats' values is compared.
+enum class Statistic { mean, spread };
+
 /// One signal of one case, to be set beside the paper's figure.
 struct Comparison {
     std::string signal;
     std::string unit;
     Bounds bounds;
+    Statistic statistic = Statistic::mean;
+
+    /// As rows, columns and formulas have it: the signal, or `fit.offset.spread`.
+    std::string name() const;
 };
 
 /// One run, or `repeat` runs with seeds that follow each other.
@@ -66,8 +73,9 @@ struct CaseGroup {
 
 /// A formula over the rows' values.
 struct Claim {
-    std::string text;     ///< what is claimed
-    std::string formula;  ///< see formula.hpp; names are `case` (its first signal) or `case.signal`
+    std::string text;      ///< what is claimed
+    std::string formula;   ///< see formula.hpp; names are `case` (its first signal), `case.signal`,
+                           ///< `case.signal.spread`
     bool percent = false;  ///< shown in percent
     Bounds bounds;
 };

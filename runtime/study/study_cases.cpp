@@ -274,7 +274,7 @@ void StudyFileReader::check(CaseGroup& group, const std::vector<PendingCompariso
         return;
     }
     for (const PendingComparison& comparison : pending) {
-        auto made = compare(comparison, linked->machine);
+        auto made = compare(comparison, linked->machine, kept.repeat);
         if (!made)
             cases_known_ = false;
         else

@@ -12,7 +12,7 @@ namespace {
 
 bool has_paper(const CaseGroup& group) {
     return std::ranges::any_of(group.comparisons, [](const Comparison& comparison) {
-        return comparison.bounds.paper.value_or(0) != 0;
+        return comparison.statistic == Statistic::mean && comparison.bounds.paper.value_or(0) != 0;
     });
 }
 
@@ -27,13 +27,21 @@ void StudyFileReader::comparisons(const Node& node, std::vector<PendingCompariso
     if (!read_.expect_map(node, "'compare'")) return;
     for (const auto& [signal, body] : node.entries) {
         if (!body.is_empty() && !read_.expect_map(body, "a comparison")) continue;
-        read_.only_keys(body, "a comparison", {"paper", "within", "at_least", "at_most"});
+        read_.only_keys(body, "a comparison", {"paper", "within", "at_least", "at_most", "spread"});
         into.push_back({signal, body});
+        const Node* spread = body.find("spread");
+        if (!spread || !(spread->is_empty() || read_.expect_map(*spread, "a spread"))) continue;
+        read_.only_keys(*spread, "a spread", {"paper", "within", "at_least", "at_most"});
+        into.push_back({signal, *spread, Statistic::spread});
     }
 }
 
 std::optional<Comparison> StudyFileReader::compare(const PendingComparison& pending,
-                                                   const Machine& machine) {
+                                                   const Machine& machine, std::int64_t repeat) {
+    if (pending.statistic == Statistic::spread && repeat < 2)
+        read_.fail("L0213", pending.signal,
+                   "'spread' is the standard deviation over the repeats, and there is one run",
+                   "write repeat: 4");
     const Signal* signal = machine.find(pending.signal.text);
     if (!signal) {
         std::vector<std::string> names;
@@ -43,7 +51,8 @@ std::optional<Comparison> StudyFileReader::compare(const PendingComparison& pend
                    suggest(pending.signal.text, names));
         return {};
     }
-    Comparison comparison{.signal = signal->name, .unit = signal->unit, .bounds = {}};
+    Comparison comparison{
+        .signal = signal->name, .unit = signal->unit, .bounds = {}, .statistic = pending.statistic};
     if (pending.body.is_map())
         comparison.bounds = bounds(pending.body, Unit::parse(signal->unit).value());
     return comparison;
@@ -121,7 +130,7 @@ void StudyFileReader::check_formula(const Node& formula) const {
     for (const CaseGroup& c : study_.groups) {
         if (c.name.empty() || c.comparisons.empty()) continue;
         known.push_back(c.name);
-        for (const Comparison& k : c.comparisons) known.push_back(c.name + "." + k.signal);
+        for (const Comparison& k : c.comparisons) known.push_back(c.name + "." + k.name());
     }
     if (std::ranges::any_of(study_.groups, has_paper))
         known.insert(known.end(), {"mean_relative_error", "greatest_relative_error"});

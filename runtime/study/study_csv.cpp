@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -42,7 +43,7 @@ std::string message(const CaseResult& result) {
     all.insert(all.end(), result.deviations.begin(), result.deviations.end());
     for (std::size_t k = 0; k < result.values.size(); ++k)
         if (!result.holds(k))
-            all.push_back(result.of->comparisons[k].signal + std::string(out_of_bounds));
+            all.push_back(result.of->comparisons[k].name() + std::string(out_of_bounds));
     return one_line(fmt::format("{}", fmt::join(all, separator)));
 }
 
@@ -102,8 +103,8 @@ void StudyCsv::learn(const CaseGroup& group) {
     for (const RandomParameter& p : group.random)
         for (const std::string& value : probes(p)) see(p.name, value);
     for (const Comparison& c : group.comparisons)
-        if (std::ranges::find(signals_, c.signal, &SignalColumn::name) == signals_.end())
-            signals_.push_back({c.signal, c.unit});
+        if (std::ranges::find(signals_, c.name(), &SignalColumn::name) == signals_.end())
+            signals_.push_back({c.name(), c.unit, c.statistic});
 }
 
 void StudyCsv::see(const std::string& name, const std::string& value) {
@@ -127,7 +128,7 @@ std::vector<std::string> StudyCsv::titles() const {
     for (const Parameter& p : parameters_) titles.push_back(p.title);
     for (const SignalColumn& s : signals_) {
         titles.push_back(s.name);
-        if (!repeats_) continue;
+        if (width(s) == 1) continue;
         titles.push_back(s.name + ".least");
         titles.push_back(s.name + ".greatest");
     }
@@ -156,11 +157,11 @@ std::string StudyCsv::row(const CaseResult& result) const {
     if (named_) cells.push_back(of.name);
     for (const Parameter& p : parameters_) cells.push_back(cell(p, of));
     for (const SignalColumn& s : signals_) {
-        const auto it = std::ranges::find(of.comparisons, s.name, &Comparison::signal);
+        const auto it = std::ranges::find(of.comparisons, s.name, &Comparison::name);
         const auto k = static_cast<std::size_t>(it - of.comparisons.begin());
         const bool known = k < result.values.size();
         cells.push_back(known ? number(result.values[k].ours) : "");
-        if (!repeats_) continue;
+        if (width(s) == 1) continue;
         cells.push_back(known ? number(result.values[k].least) : "");
         cells.push_back(known ? number(result.values[k].greatest) : "");
     }
@@ -173,7 +174,12 @@ std::string StudyCsv::row(const CaseResult& result) const {
 std::optional<CaseResult> StudyCsv::parse(std::string_view row) const {
     const auto cells = split_cells(row);
     const std::size_t signals = 1 + (named_ ? 1 : 0) + parameters_.size();
-    const std::size_t time = signals + signals_.size() * signal_width();
+    std::map<std::string, std::size_t> at;
+    std::size_t time = signals;
+    for (const SignalColumn& s : signals_) {
+        at[s.name] = time;
+        time += width(s);
+    }
     if (cells.size() != time + 3) return {};
     const auto index = parse_number(cells[0]);
     const double count = static_cast<double>(study_.case_count());
@@ -188,12 +194,11 @@ std::optional<CaseResult> StudyCsv::parse(std::string_view row) const {
     (fault ? result.faults : result.deviations) = split_message(cells[time + 2]);
     if (fault) return result;
     for (const Comparison& c : result.of->comparisons) {
-        const auto it = std::ranges::find(signals_, c.signal, &SignalColumn::name);
-        const std::size_t at =
-            signals + static_cast<std::size_t>(it - signals_.begin()) * signal_width();
-        const auto ours = parse_number(cells[at]);
-        const auto least = repeats_ ? parse_number(cells[at + 1]) : ours;
-        const auto greatest = repeats_ ? parse_number(cells[at + 2]) : ours;
+        const std::size_t first = at[c.name()];
+        const bool alone = !repeats_ || c.statistic == Statistic::spread;
+        const auto ours = parse_number(cells[first]);
+        const auto least = alone ? ours : parse_number(cells[first + 1]);
+        const auto greatest = alone ? ours : parse_number(cells[first + 2]);
         if (!ours || !least || !greatest) return {};
         result.values.push_back({*ours, *least, *greatest});
     }

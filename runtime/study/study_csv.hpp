@@ -18,8 +18,9 @@ namespace lineshaft {
 ///                 dimension, in the unit of the first; else the text. `$name` where a parameter
 ///                 has the name of another column
 ///   fit.offset ... every signal that is compared, at the end of the run, the mean of its repeats;
-///                 with repeats also fit.offset.least and fit.offset.greatest; empty for a case
-///                 that did not run to its end, or does not compare it
+///                 with repeats also fit.offset.least and fit.offset.greatest, and where it is
+///                 compared their standard deviation fit.offset.spread; empty for a case that did
+///                 not run to its end, or does not compare it
 ///   machine_time  virtual time of all repeats in s
 ///   outcome       ok, failed (a bound or an expectation), fault (it did not run to its end)
 ///   message       what failed, ' | ' between several
@@ -44,8 +45,10 @@ class StudyCsv {
         bool numeric = true;
         Unit unit;
     };
+    /// A column, or three: the mean of repeats stands with the least and the greatest.
     struct SignalColumn {
         std::string name, unit;
+        Statistic statistic = Statistic::mean;
     };
 
     void learn(const CaseGroup& group);
@@ -53,7 +56,9 @@ class StudyCsv {
     Parameter& parameter(const std::string& name);
     std::vector<std::string> titles() const;
     std::string cell(const Parameter& parameter, const StudyCase& of) const;
-    std::size_t signal_width() const { return repeats_ ? 3 : 1; }
+    std::size_t width(const SignalColumn& s) const {
+        return repeats_ && s.statistic == Statistic::mean ? 3 : 1;
+    }
 
     const Study& study_;
     std::vector<Parameter> parameters_;

@@ -18,6 +18,7 @@ namespace lineshaft {
 struct PendingComparison {
     Node signal;
     Node body;  ///< map, or empty for a bare report
+    Statistic statistic = Statistic::mean;
 };
 
 /// Makes a Study of a file, see read_study(). Its functions stand in study_reader.cpp (the file,
@@ -59,7 +60,8 @@ class StudyFileReader {
     bool enough() const;
 
     void comparisons(const Node& node, std::vector<PendingComparison>& into) const;
-    std::optional<Comparison> compare(const PendingComparison& pending, const Machine& machine);
+    std::optional<Comparison> compare(const PendingComparison& pending, const Machine& machine,
+                                      std::int64_t repeat);
     void claims(const Node& node);
     void claim(const Node& node);
     void check_formula(const Node& formula) const;

@@ -10,6 +10,7 @@
 
 #include "runtime/run/side_by_side.hpp"
 #include "runtime/run/single_run.hpp"
+#include "runtime/study/scatter.hpp"
 
 namespace lineshaft {
 
@@ -34,7 +35,7 @@ class CaseRunner {
     const Catalog& catalog_;
     const std::atomic<bool>* interrupt_;
     YamlFiles files_;
-    std::vector<double> sums_;
+    std::vector<Scatter> scatters_;
     bool interrupted_ = false;
 };
 
@@ -45,14 +46,18 @@ std::optional<CaseResult> CaseRunner::run(std::int64_t index) {
     const double infinity = std::numeric_limits<double>::infinity();
     result.values.assign(of->comparisons.size(),
                          Measured{.least = infinity, .greatest = -infinity});
-    sums_.assign(of->comparisons.size(), 0);
+    scatters_.assign(of->comparisons.size(), {});
     bool whole = true;
     for (std::int64_t repeat = 0; whole && repeat < of->repeat; ++repeat)
         whole = run_once(repeat, result);
     if (interrupted_) return {};
     if (!whole) result.values.clear();
-    for (std::size_t k = 0; k < result.values.size(); ++k)
-        result.values[k].ours = sums_[k] / static_cast<double>(of->repeat);
+    for (std::size_t k = 0; k < result.values.size(); ++k) {
+        const Statistic statistic = of->comparisons[k].statistic;
+        const double ours = scatters_[k].value(statistic);
+        if (statistic == Statistic::spread) result.values[k] = {ours, ours, ours};
+        result.values[k].ours = ours;
+    }
     return result;
 }
 
@@ -91,7 +96,7 @@ bool CaseRunner::measure(const Machine& machine, CaseResult& result) {
         }
         const double value = as_real(signal->value());
         Measured& measured = result.values[k];
-        sums_[k] += value;
+        scatters_[k].add(value);
         measured.least = std::min(measured.least, value);
         measured.greatest = std::max(measured.greatest, value);
     }

@@ -15,8 +15,8 @@ namespace lineshaft {
 
 /// What a compared signal came to at the end of a case.
 struct Measured {
-    double ours = 0;  ///< mean over the repeats
-    double least = 0, greatest = 0;
+    double ours = 0;                 ///< mean over the repeats, or their spread
+    double least = 0, greatest = 0;  ///< of the repeats; a spread itself
 };
 
 struct CaseResult {

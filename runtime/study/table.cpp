@@ -89,7 +89,7 @@ std::string row_table(const Study& study, const StudyReport& report) {
         const Bounds& bounds = row.comparison->bounds;
         Cells cells;
         for (const std::string& name : names) cells.push_back(setting(*row.of, name));
-        cells.push_back(row.comparison->signal);
+        cells.push_back(row.comparison->name());
         cells.push_back(paper(bounds, false));
         cells.push_back(short_number(row.ours) +
                         (row.comparison->unit.empty() ? "" : " " + row.comparison->unit));
@@ -150,7 +150,7 @@ std::string first_failure(const StudyReport& report) {
     };
     for (const StudyRow& row : report.rows) {
         if (row.ok) continue;
-        std::string what = row.comparison->signal;
+        std::string what = row.comparison->name();
         for (const Setting& s : row.of->settings) what += fmt::format(", {} {}", s.name, s.value);
         return text(what, row.ours, row.comparison->bounds, false);
     }
@@ -165,13 +165,13 @@ nlohmann::ordered_json study_json(const Study& study, const StudyReport& report)
         nlohmann::ordered_json set = nlohmann::ordered_json::object();
         for (const Setting& s : row.of->settings) set[s.name] = s.value;
         nlohmann::ordered_json object{{"set", set},
-                                      {"signal", row.comparison->signal},
+                                      {"signal", row.comparison->name()},
                                       {"unit", row.comparison->unit},
                                       {"paper", paper_json(row.comparison->bounds, 1)},
                                       {"ours", finite(row.ours)},
                                       {"ok", row.ok}};
-        if (row.of->repeat > 1) {
-            object["repeats"] = row.of->repeat;
+        if (row.of->repeat > 1) object["repeats"] = row.of->repeat;
+        if (row.of->repeat > 1 && row.comparison->statistic == Statistic::mean) {
             object["least"] = finite(row.least);
             object["greatest"] = finite(row.greatest);
         }

@@ -24,8 +24,11 @@ constexpr const char* fit_help =
     "  cases:\n"
     "    - {set: {x: 7.5 cm}, compare: {line.time: {paper: 8.449 s}}}\n"
     "    - {set: {x: 6 cm}, hold_out: true, compare: {line.time: {paper: 7.443 s, within: 5 ms}}}\n"
-    "Cases with hold_out are only compared with what the others have found. programs/README.md\n"
-    "describes the form. Exit code 1: a value is outside of its 'within'.";
+    "Cases with hold_out are only compared with what the others have found; hold_out: each, in "
+    "the\n"
+    "plan, also leaves out each case in turn. programs/README.md describes the form. Exit code 1: "
+    "a\n"
+    "value is outside of its 'within'.";
 
 struct FitCommand {
     CommonOptions common;
@@ -37,8 +40,11 @@ FitReport search(const FitPlan& plan, const Catalog& catalog, const FitCommand& 
     ProgressLine line(command.common.quiet || command.common.json);
     const auto progress = [&](const FitProgress& p) {
         line.show([&](double elapsed) {
-            return fmt::format("start {} of {}, {} runs, {:.1f} a second, {}", p.start, plan.starts,
-                               p.runs, static_cast<double>(p.runs) / elapsed,
+            const std::string where =
+                p.left_out > 0 ? fmt::format("without case {} of {}", p.left_out, plan.cells.size())
+                               : fmt::format("start {} of {}", p.start, plan.starts);
+            return fmt::format("{}, {} runs, {:.1f} a second, {}", where, p.runs,
+                               static_cast<double>(p.runs) / elapsed,
                                std::isfinite(p.sum)
                                    ? fmt::format("least sum of squares {:.6g}", p.sum)
                                    : "no sum of squares yet");

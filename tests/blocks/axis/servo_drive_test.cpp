@@ -154,19 +154,76 @@ TEST_CASE("a motor's encoder does not see the backlash, the table's does", "[ser
     CHECK(drive.position == 9.75);
 }
 
-TEST_CASE("a reversal of the axis deviates the table by k exp(-travel / l), at any speed",
-          "[servo]") {
+TEST_CASE("a reversal of the axis deviates the table by k exp(-t / T), at any speed", "[servo]") {
     for (const double speed : {5.0, 50.0}) {
         ServoDrive drive;
         Clock clock;
         drive.transmission.breakaway_windup = 0.22;
-        drive.transmission.breakaway_travel = 2;
+        drive.transmission.breakaway_time = 1.4;
         clock.scan(drive);
-        ride(drive, clock, speed, 100 / speed);
-        ride(drive, clock, -speed, 3 / speed);
+        ride(drive, clock, speed, 20);
+        ride(drive, clock, -speed, 0.7);
         CHECK(drive.table_position - drive.motor_position ==
-              Approx(0.22 * std::exp(-3.0 / 2)).epsilon(1e-9));
+              Approx(0.22 * std::exp(-0.5)).epsilon(1e-5));
+        drive.set_position = drive.motor_position;
+        ride(drive, clock, 0, 0.7);
+        CHECK(drive.table_position - drive.motor_position ==
+              Approx(0.22 * std::exp(-1.0)).epsilon(1e-5));
     }
+}
+
+TEST_CASE("homing sets the actual position and moves nothing", "[servo]") {
+    for (const bool simulated : {true, false}) {
+        ServoDrive drive;
+        Clock clock;
+        if (!simulated) drive.transmission.windup = 0.015;
+        drive.encoder = ServoDrive::Encoder::table;
+        clock.scan(drive);
+        ride(drive, clock, 10, 2);
+        const double motor = drive.motor_position;
+        CHECK(motor == drive.set_position);
+        CHECK(drive.position == (simulated ? motor : motor - 0.015));
+        drive.home = true;
+        drive.home_position = 20;
+        clock.scan(drive);
+        CHECK(drive.position == 20);
+        CHECK(drive.motor_position == motor);
+        ride(drive, clock, 10, 1);
+        CHECK(drive.position == Approx(30).epsilon(1e-12));
+        drive.home_position = 7;  // no edge
+        ride(drive, clock, 10, 1);
+        CHECK(drive.position == Approx(40).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("a position loop homed with its set-point stays where it is", "[servo]") {
+    ServoDrive drive = servo(50);
+    Clock clock;
+    clock.scan(drive);
+    ride(drive, clock, 10, 2);
+    ride(drive, clock, 0, 5);
+    const double motor = drive.motor_position;
+    drive.home = true;
+    drive.home_position = drive.set_position = 0;
+    clock.scan(drive);
+    for (int i = 0; i < 100; ++i) clock.scan(drive);
+    CHECK(drive.position == 0);
+    CHECK(drive.motor_position == motor);
+}
+
+TEST_CASE("integral action makes up friction: the following error decays to 0", "[servo]") {
+    ServoDrive drive = first_order_servo(20, 0.002);
+    Clock clock;
+    drive.integral_time = 0.5;
+    drive.velocity_feed_forward = 1;
+    drive.loop.coulomb = 1500;
+    clock.scan(drive);
+    ride(drive, clock, 10, 10);
+    CHECK(std::abs(drive.following_error) < 1e-6);
+    ride(drive, clock, -10, 0.2);
+    CHECK(drive.following_error < -0.1);
+    ride(drive, clock, -10, 10);
+    CHECK(std::abs(drive.following_error) < 1e-6);
 }
 
 TEST_CASE("an encoder reads whole steps", "[servo]") {
@@ -210,6 +267,10 @@ TEST_CASE("settings that contradict each other are an error", "[servo]") {
     drifting.scan({});
     stiff.scan({});
     untimed.scan({});
+    ServoDrive integrating;
+    integrating.integral_time = 1;
+    integrating.scan({});
+    CHECK(integrating.error_id == ServoError::no_position_loop);
     CHECK(drifting.error_id == ServoError::no_position_loop);
     CHECK(stiff.error_id == ServoError::no_velocity_loop);
     CHECK(untimed.error_id == ServoError::no_time_constant);

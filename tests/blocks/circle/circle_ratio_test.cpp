@@ -155,6 +155,27 @@ TEST_CASE("the circle goes from idle over approach, home and engage to run and d
     CHECK(c.state == State::done);
 }
 
+TEST_CASE("the slaves stand on the start point for the settling time before they are homed") {
+    CircleRatio c = circle(Method::early);
+    Clock clock;
+    c.settling_time = 0.5;
+    c.start = true;
+    scan(c, clock, 1000);
+    CHECK(c.state == State::approach);
+    c.x_position = c.start_x;
+    c.y_position = c.start_y;
+    scan(c, clock, 300);
+    c.y_position = c.start_y + 0.001;
+    scan(c, clock, 1);
+    c.y_position = c.start_y;
+    scan(c, clock, 499);
+    CHECK(c.state == State::approach);
+    CHECK_FALSE(c.home);
+    scan(c, clock, 1);
+    CHECK(c.state == State::home);
+    CHECK(c.home);
+}
+
 TEST_CASE("start held true does one arc, a new rising edge does another") {
     CircleRatio c = circle(Method::immediate);
     Clock clock;

@@ -38,7 +38,7 @@ std::string result_of(const RunReport& report, const Folder& folder) {
     return text;
 }
 
-void check_resumed(const std::string& program, bool pulses) {
+void check_resumed(const std::string& program, bool pulses, int rounds = 100) {
     const Folder whole, parted;
     RunOptions options = options_in(whole);
     if (pulses) options.pulses_path = whole / "pulses.csv";
@@ -48,7 +48,7 @@ void check_resumed(const std::string& program, bool pulses) {
     REQUIRE(report.result.outcome == Outcome::completed);
     const std::int64_t end = report.result.time;
     std::mt19937_64 random(1);
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < rounds; ++i) {
         options = options_in(parted);
         if (pulses) options.pulses_path = parted / "pulses.csv";
         // From here to the end there is one checkpoint.
@@ -70,6 +70,10 @@ void check_resumed(const std::string& program, bool pulses) {
 
 TEST_CASE("a resumed run leaves the same bytes: the circle", "[resume]") {
     check_resumed("paper/wei2025_circle.yaml", false);
+}
+
+TEST_CASE("a resumed run leaves the same bytes: mechanics", "[resume]") {
+    check_resumed("paper/wei2025_platform.yaml", false, 10);
 }
 
 TEST_CASE("a resumed run leaves the same bytes: pulses", "[resume]") {

@@ -55,6 +55,25 @@ TEST_CASE("repeats have their mean, least and greatest value") {
     CHECK(back->values[0].greatest == 3);
 }
 
+TEST_CASE("a spread has one column") {
+    Study study = example();
+    study.groups[0].repeat = 2;
+    Comparison spread = study.groups[0].comparisons[0];
+    spread.statistic = Statistic::spread;
+    study.groups[0].comparisons.push_back(spread);
+    const StudyCsv csv(study);
+    CHECK_THAT(csv.header(),
+               Catch::Contains("fit.offset.least,fit.offset.greatest,fit.offset.spread,machine"));
+    CaseResult made = result(study, 0);
+    made.values = {{2, 1, 3}, {1.5, 1.5, 1.5}};
+    const std::string row = csv.row(made);
+    const auto back = csv.parse(row.substr(0, row.size() - 1));
+    REQUIRE(back);
+    CHECK(back->values[0].greatest == 3);
+    CHECK(back->values[1].ours == 1.5);
+    CHECK(csv.row(*back) == row);
+}
+
 TEST_CASE("a row reads back as the result it was written of") {
     Study study = example();
     study.groups[0].comparisons[0].bounds.at_most = 0.05;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <fstream>
 #include <limits>
 
@@ -171,6 +172,31 @@ cases: [{}]
     CHECK(row.ours == (single[0] + single[1] + single[2]) / 3);
     CHECK(row.least == *std::min_element(single.begin(), single.end()));
     CHECK(row.greatest == *std::max_element(single.begin(), single.end()));
+}
+
+TEST_CASE("a spread is the standard deviation over the repeats") {
+    StudyFile file(R"(
+set: {jitter: 5 ms}
+compare: {axis.position: {paper: 10 mm, spread: {paper: 0.1 mm, at_most: 1 mm}}}
+cases:
+  - {name: two, repeat: 2}
+  - {name: many, repeat: 50}
+claims:
+  - {claim: of two, formula: two.axis.position.spread}
+  - {claim: mean, formula: mean_relative_error}
+)");
+    const StudyReport report = file.report();
+    REQUIRE(report.rows.size() == 4);
+    const StudyRow &mean = report.rows[0], &spread = report.rows[1];
+    CHECK(spread.ours == Approx((mean.greatest - mean.least) / std::sqrt(2)));
+    CHECK(spread.ours > 0);
+    CHECK(spread.ok);
+    CHECK(report.claims[0].ours == spread.ours);
+    CHECK(report.rows[3].ours > 0);
+    CHECK(report.rows[3].ours < report.rows[2].greatest - report.rows[2].least);
+    // Of the means only.
+    CHECK(report.claims[1].ours ==
+          Approx((std::abs(mean.ours - 10) + std::abs(report.rows[2].ours - 10)) / 20));
 }
 
 TEST_CASE("the number of jobs changes neither values nor order") {
