@@ -121,7 +121,9 @@ void check(const Problem& p, const Family& family, Figures& figures) {
 TEST_CASE("from any state to any goal in the least time", "[any_state]") {
     const long count = wanted("LINESHAFT_PROBLEMS", 4500);
     const auto seed = static_cast<std::uint64_t>(wanted("LINESHAFT_SEED", 21));
+    const char* const chosen = std::getenv("LINESHAFT_FAMILY");
     for (const Family& family : families()) {
+        if (chosen != nullptr && std::string(chosen) != family.name) continue;
         Random random{seed};
         Figures figures;
         for (long i = 0; i < count; ++i) check(family.make(random), family, figures);
