@@ -278,6 +278,7 @@ Peak timed(const Frame& f, double u) {
 /// What rounding takes from one jerk time the later ones make up for, so that little acceleration
 /// is left over in a hold, in a cruise and at the end; and a hold lasts by what it is.
 void fit(const Frame& f, double a_rest, Peak& p) {
+    if (!(p.up_hold > 0 || p.down_hold > 0 || p.cruise > 0)) return;
     const double product = f.J * f.tau;
     const double tau_rest =
         ((f.a - product) - product_error(f.J, f.tau, product) + f.sign * a_rest) * f.per_J;
@@ -368,9 +369,18 @@ struct Return {
     }
 };
 
+bool is_inside(const MotionLimits& limits, const MotionState& s) {
+    const MotionLimits::Side &up = limits.side[0], &down = limits.side[1];
+    const double v = s.velocity, a = s.acceleration;
+    const double turned = v + 0.5 * a * std::abs(a) * limits.per_J;
+    return a <= up.A && -a <= down.A && std::max(v, turned) <= up.V &&
+           -std::min(v, turned) <= down.V;
+}
+
 /// The state from which the motion is planned, after the steps that bring it inside the limits.
 MotionState enter(const MotionLimits& limits, const MotionState& from, const PlanOptions& options,
                   Steps& steps, double& a_rest) {
+    if (is_inside(limits, from)) return {0, from.velocity, from.acceleration, 0};
     const double slack = options.tolerance * ulp;
     Return back{limits, steps, {0, from.velocity, from.acceleration, 0}, 0};
     for (const double sign : {1.0, -1.0}) {
