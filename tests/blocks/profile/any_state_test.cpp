@@ -51,7 +51,7 @@ Run run(const Problem& p, const MotionPlan& out, bool outside, bool timed = fals
     look(v, a);
     for (std::size_t i = 0; i < out.count; ++i) {
         const Quad d = out.phases[i].duration, j = out.phases[i].start.jerk;
-        result.over = std::max(result.over, std::abs(static_cast<double>(j)) / p.J - 1);
+        if (std::abs(static_cast<double>(j)) > p.J * (1 + 1e-9)) result.over = 1;
         const Quad from = x;
         if (const Quad turn = j == 0 ? Quad(0) : -a / j; turn > 0 && turn < d)
             look(v + turn * (a + turn * j / 2), 0);
