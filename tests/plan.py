@@ -16,6 +16,10 @@ NOT_PLANNED = "0,,,,,,,,,,"
 GOOD = "0,0,100,500,5000,30"
 PLANNED = "1,cruise_rising_both,5,0.1,0.1,0.1,0,0.1,0.1,0.1,0"
 NAMES = "Vs, Ve, Vm, A, J, L"
+MOTION_NAMES = "p0, v0, a0, pf, vf, V, A, D, J[, Vmin][, T]"
+ALL_NAMES = f"{NAMES} or {MOTION_NAMES}"
+MOTION = "p0,v0,a0,pf,vf,V,A,D,J\n"
+MOTION_OUTPUT_HEADER = "row,ok,error,T," + ",".join(f"j{i},t{i}" for i in range(1, 17))
 SIGNS = (1, 0, -1, 0, -1, 0, 1)
 
 # What it is, the input, the rows of output after the header, what stands on stderr after `stdin:`.
@@ -62,12 +66,30 @@ ANSWERS = [
      ["2: error: a line of 65536 characters or more"]),
     ("a last line too long", HEADER + GOOD + "\n" + " " * 65536, [PLANNED, NOT_PLANNED],
      ["3: error: a line of 65536 characters or more"]),
-    ("empty", "", None, ["1: error: no header; the first line names " + NAMES]),
-    ("no header", GOOD + "\n", None, ["1: error: unknown column '0'; the header names " + NAMES]),
+    ("empty", "", None, ["1: error: no header; the first line names " + ALL_NAMES]),
+    ("no header", GOOD + "\n", None, ["1: error: unknown column '0'; the header names " + ALL_NAMES]),
     ("a column missing", "Vs,Ve,Vm,A,L\n", None, ["1: error: no column 'J'; the header names " + NAMES]),
     ("a column twice", "Vs,Ve,Vm,A,J,L,L\n", None, ["1: error: a second column 'L'"]),
     ("a header in capitals", "\nVS,Ve,Vm,A,J,L\n", None,
-     ["2: error: unknown column 'VS'; the header names " + NAMES]),
+     ["2: error: unknown column 'VS'; the header names " + ALL_NAMES]),
+]
+
+
+# The same for motions from any state: what follows the row's number, without the empty cells at the end.
+MOTIONS = [
+    ("from rest to rest", MOTION, ["0,0,0,1,0,10,10,10,1"], ["1,,3.1748021039363987,1,0.7937005259840997,-1,1.5874010519681994,1,0.7937005259840997"], []),
+    ("nothing to do", MOTION, ["3,0,0,3,0,1,1,1,1"], ["1,,0"], []),
+    ("a duration", MOTION.replace("J", "J,T"), ["0,0,0,0,0,1,1,1,1,2.5", "0,1,0,1,1,1,1,1,1,"], ["1,,2.5,0,0.625,0,1.25,0,0.625", "1,,1,0,1"], []),
+    ("limits", MOTION.replace("J", "J,Vmin"),
+     ["0,0,0,1,0,0,1,1,1,-1", "0,0,0,1,0,1,1,1,1,1", "0,0,0,1,0,1,1,-1,1,", "0,0,0,1,2,1,1,1,1,", "0,0,0,1,-1,2,1,1,1,-0.5"],
+     ["0,limit_not_positive"] * 3 + ["0,velocity_above_limit"] * 2, []),
+    ("no numbers", MOTION, ["nan,0,0,1,0,1,1,1,1", "0,inf,0,1,0,1,1,1,1", "0,0,0,1e308,0,1e-308,1,1,1"], ["0,not_finite"] * 3, []),
+    ("bad lines", MOTION, ["0,0,0,1", "0,0,0,x,0,1,1,1,1"], ["0,bad_line"] * 2,
+     ["2: error: 4 cells instead of 9", "3: error: 'x' in column pf is not a number"]),
+    ("an unknown column", MOTION.replace("D", "d"), [], None,
+     ["1: error: unknown column 'd'; the header names " + MOTION_NAMES]),
+    ("a column missing", MOTION.replace("D,", ""), [], None,
+     ["1: error: no column 'D'; the header names " + MOTION_NAMES]),
 ]
 
 
@@ -88,6 +110,26 @@ def check_answers(lineshaft):
             yield f"{what}: said {err!r} instead of {said!r}"
         if code != (2 if mistakes else 0):
             yield f"{what}: exit code {code}"
+
+
+def check_motions(lineshaft):
+    for what, header, lines, rows, mistakes in MOTIONS:
+        code, out, err = run(lineshaft, text=header + "\n".join(lines))
+        got = out.splitlines()
+        wanted = [] if rows is None else [MOTION_OUTPUT_HEADER] + [f"{i + 1},{row}" for i, row in enumerate(rows)]
+        if got[:1] != wanted[:1] or [row.rstrip(",") for row in got[1:]] != wanted[1:]:
+            yield f"{what}: {got[1:]} instead of {wanted[1:]}"
+        if any(row.count(",") != MOTION_OUTPUT_HEADER.count(",") for row in got):
+            yield f"{what}: rows of unequal numbers of cells"
+        if err != "".join(f"stdin:{mistake}\n" for mistake in mistakes) or code != (2 if mistakes else 0):
+            yield f"{what}: exit code {code}, said {err!r}"
+    lowered = MOTION + "0,3,0,20,0,1,2,2,2\n"
+    gentle, soonest = (float(run(lineshaft, *arguments, text=lowered)[1].splitlines()[1].split(",")[3])
+                       for arguments in ([], ["--soonest"]))
+    if abs(gentle - 18.71) > 0.01 or abs(soonest - 20.16) > 0.01:
+        yield f"a velocity lowered takes {gentle} s and {soonest} s"
+    if run(lineshaft, "--tolerance", "-1", text=lowered)[0] != 2:
+        yield "a negative tolerance is accepted"
 
 
 def length(problem, times):
@@ -173,12 +215,12 @@ def check_dialogue(lineshaft):
 
 def main():
     lineshaft = str(pathlib.Path(sys.argv[1]).resolve())
-    failures = [*check_answers(lineshaft), *check_many(lineshaft), *check_dialogue(lineshaft)]
+    failures = [*check_answers(lineshaft), *check_motions(lineshaft), *check_many(lineshaft), *check_dialogue(lineshaft)]
     with tempfile.TemporaryDirectory() as folder:
         failures += check_files(lineshaft, pathlib.Path(folder))
     for failure in failures:
         print(failure)
-    print(f"{len(ANSWERS)} inputs, {len(failures)} failures")
+    print(f"{len(ANSWERS) + len(MOTIONS)} inputs, {len(failures)} failures")
     return 1 if failures else 0
 
 

@@ -1,14 +1,14 @@
 #include "blocks/axis/move.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lineshaft {
 
 namespace {
 
-constexpr std::string_view error_names[] = {
-    "none",         "not_finite",     "limit_not_positive", "velocity_above_limit",
-    "accelerating", "wrong_direction"};
+constexpr std::string_view error_names[] = {"none", "not_finite", "limit_not_positive",
+                                            "velocity_above_limit"};
 
 /// A distance has no sign: there is no negative length.
 MoveError move_error(PlanResult result) {
@@ -49,7 +49,8 @@ std::span<const Field> Move::fields() {
         output("error", &M::error, "", "an input cannot be followed, or a move is refused"),
         output("error_id", &M::error_id, "", "why").one_of(error_names),
         output("case", &M::kind, "", "ramps of the move").one_of(move_kind_names),
-        output("equation", &M::equation, "", "1 to 11, that gave the move its times"),
+        output("equation", &M::equation, "",
+               "1 to 11, that gave the move its times; 0: from any state"),
         output("duration", &M::duration, "s", "of the move"),
         output("displacement_error", &M::displacement_error, "{unit}",
                "what the segments' times miss the distance by"),
@@ -96,11 +97,8 @@ void Move::command(std::int64_t time) {
 
 /// From the state set by advance().
 MoveError Move::begin(std::int64_t time) {
-    if (acceleration != 0) return MoveError::accelerating;
-    if ((velocity < 0 && target > position) || (velocity > 0 && target < position))
-        return MoveError::wrong_direction;
     const PlanResult result = positioning.begin(
-        {.position = position, .velocity = velocity}, target,
+        {position, velocity, acceleration, 0}, target,
         {.Ve = end_velocity, .Vm = velocity_limit, .A = acceleration_limit, .J = jerk_limit}, time);
     if (result != PlanResult::ok) return move_error(result);
     started = true;
@@ -111,18 +109,26 @@ MoveError Move::begin(std::int64_t time) {
 
 void Move::publish_plan() {
     const SevenSegmentPlan& plan = positioning.plan;
-    kind = plan.kind;
-    equation = lineshaft::equation(plan.kind);
-    duration = plan.duration;
-    displacement_error = plan.displacement_error();
-    greatest_velocity = plan.peak;
-    greatest_acceleration = std::max(plan.start[1].acceleration, -plan.start[5].acceleration);
+    duration = positioning.duration();
+    if (positioning.from_any_state) {
+        const MotionPlan& motion = positioning.motion;
+        kind = MoveKind::from_any_state;
+        displacement_error = std::abs(motion.drift * motion.duration);
+        greatest_velocity = motion.greatest_velocity();
+        greatest_acceleration = motion.greatest_acceleration();
+    } else {
+        kind = plan.kind;
+        displacement_error = plan.displacement_error();
+        greatest_velocity = plan.peak;
+        greatest_acceleration = std::max(plan.start[1].acceleration, -plan.start[5].acceleration);
+    }
+    equation = lineshaft::equation(kind);
 }
 
 void Move::publish_state(std::int64_t time) {
     error = error_id != MoveError::none;
     const bool ended = started && positioning.finished(time);
-    in_end_velocity = ended && positioning.plan.reaches_Ve;
+    in_end_velocity = ended && positioning.reaches_Ve();
     busy = started && !ended && !error;
     done = ended && !error && (execute || !told);
     told = ended && (told || done);

@@ -16,20 +16,19 @@ enum class MoveError : std::int64_t {
     none,
     not_finite,            ///< an input is NaN or infinite, or what it asks for is
     limit_not_positive,    ///< velocity, acceleration or jerk limit is zero or negative
-    velocity_above_limit,  ///< the end velocity, or the velocity the axis has, is not in
-                           ///< 0..`velocity`
-    accelerating,          ///< the axis accelerates: a move starts at constant velocity only
-    wrong_direction,       ///< the axis moves away from the wanted position
+    velocity_above_limit,  ///< the end velocity is not in 0..`velocity`
 };
 
 /// An axis that moves in seven segments (Liu 2023, see profile/seven_segment.hpp), from `position`
 /// to the wanted one in the shortest time (PLCopen MC_MoveContinuousAbsolute; with `end_velocity` 0
 /// MC_MoveAbsolute).
 ///
-/// A rising edge of `execute` takes the inputs and starts the move from the position and velocity
-/// that the axis then has: at standstill, in the cruise of a move, or after its end, also in
-/// mid-move. `end_velocity` counts in the direction of the move. If the way is too short for it the
-/// axis passes the wanted position with the velocity that it can reach; `in_end_velocity` tells.
+/// A rising edge of `execute` takes the inputs and starts the move from whatever state the axis
+/// then has: at standstill, in the cruise of a move or after its end in seven segments; in
+/// mid-ramp, away from the wanted position or above the velocity limit in the least time from that
+/// state (profile/any_state.hpp; its case is `from_any_state`, its equation 0). `end_velocity`
+/// counts in the direction of the move. If the way of seven segments is too short for it the axis
+/// passes the wanted position with the velocity that it can reach; `in_end_velocity` tells.
 ///
 /// After the end the axis keeps the velocity that it has: with `end_velocity` 0 it stands exactly
 /// at the wanted position; above 0 it has passed it between two scans and moves on until the next

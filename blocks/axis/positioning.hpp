@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "blocks/profile/any_state.hpp"
 #include "blocks/profile/seven_segment.hpp"
 
 namespace lineshaft {
@@ -9,6 +10,8 @@ namespace lineshaft {
 /// An absolute move in virtual time. After its end the velocity that it has there stays.
 struct Positioning {
     SevenSegmentPlan plan;
+    MotionPlan motion;  ///< in place of `plan` if `from_any_state`
+    bool from_any_state = false;
     double start_position = 0;  ///< [u]
     double target = 0;          ///< [u], reached exactly
     double direction = 1;       ///< -1 towards lesser positions
@@ -19,12 +22,19 @@ struct Positioning {
     PlanResult begin(double position, double goal, double velocity, double acceleration,
                      double jerk, std::int64_t time);
 
-    /// From the position and velocity of `from`, whose acceleration is 0, to `goal`. Of `problem`
-    /// Ve, Vm, A, J count. A velocity away from the goal is refused as velocity_above_limit.
+    /// From the state `from` to `goal`. Of `problem` Ve, Vm, A, J count; Ve in the direction of the
+    /// goal. In seven segments at constant velocity towards the goal, within Vm; in the least time
+    /// from any other state, which always reaches Ve.
     PlanResult begin(const MotionState& from, double goal, SevenSegment problem, std::int64_t time);
 
+    double duration() const { return from_any_state ? motion.duration : plan.duration; }  ///< [s]
+    bool reaches_Ve() const { return from_any_state || plan.reaches_Ve; }
     bool finished(std::int64_t time) const;
     MotionState at(std::int64_t time) const;
+
+  private:
+    PlanResult begin_from_any_state(const MotionState& from, double goal,
+                                    const SevenSegment& problem, bool back);
 };
 
 }  // namespace lineshaft

@@ -124,9 +124,9 @@ AxisError VirtualAxis::follow_velocity(std::int64_t time, double goal) {
 
 AxisError VirtualAxis::begin_move(std::int64_t time) {
     if (!immediate) {
-        if (moving) return AxisError::not_standing;
         const PlanResult result =
-            move.begin(position, target, wanted_velocity, acceleration_limit, jerk_limit, time);
+            move.begin({position, velocity, acceleration, 0}, target,
+                       {.Vm = wanted_velocity, .A = acceleration_limit, .J = jerk_limit}, time);
         if (result != PlanResult::ok) return axis_error(result);
         phase = Phase::positioning;
     } else {

@@ -1,10 +1,10 @@
 #include "blocks/profile/seven_segment.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
+
+#include "blocks/profile/peak_equations.hpp"
 
 namespace lineshaft {
 namespace {
@@ -51,62 +51,11 @@ Ramp ramp(double dv, const Frame& f) {
     return {std::sqrt(dv / f.J), 0};
 }
 
-/// What rounding took from a product: a b = product + product_error, exactly (Dekker 1971).
-double product_error(double a, double b, double product) {
-    constexpr double split = 0x1p27 + 1;
-    const double aa = split * a;
-    const double a1 = aa - (aa - a);
-    const double a2 = a - a1;
-    const double bb = split * b;
-    const double b1 = bb - (bb - b);
-    const double b2 = b - b1;
-    return ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2;
-}
-
 /// What is missing to dv after a triangular ramp whose time t has been rounded.
 double shortfall(double dv, double t, double J) {
     const double tt = t * t;
     const double v = J * tt;
     return (dv - v) - (product_error(J, tt, v) + J * product_error(t, t, tt));
-}
-
-/// c4 x^4 + c3 x^3 + c2 x^2 + c1 x + c0
-struct Quartic {
-    double c4, c3, c2, c1, c0;
-};
-
-/// A relative step after which Householder's iteration of the fourth order leaves only rounding.
-constexpr double near = 3e-5;
-
-/// The root next to x in [low, high], by Householder's iteration of the fourth order, until a step
-/// is no greater than grain.
-double root(const Quartic& p, double x, double grain, double low, double high) {
-    for (int i = 0; i < 20; ++i) {
-        const double xx = x * x;
-        const double f0 = ((p.c4 * xx + p.c2) * x + (p.c3 * xx + p.c1)) * x + p.c0;
-        const double f1 = (4 * p.c4 * xx + 2 * p.c2) * x + (3 * p.c3 * xx + p.c1);
-        const double f2 = 6 * p.c4 * xx + (3 * p.c3 * x + p.c2);
-        const double f3 = 4 * p.c4 * x + p.c3;
-        const double newton = f1 * f1 - f0 * f2;
-        const double step = f0 * newton / (f1 * (newton - f0 * f2) + f0 * f0 * f3);
-        const double next = between(x - step, low, high);
-        const bool done = std::abs(next - x) <= grain;
-        x = next;
-        if (done) break;
-    }
-    return x;
-}
-
-/// Within 3 percent: a third of the exponent, the mantissa carried along.
-double rough_cube_root(double x) {
-    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) / 3 + 0x2A9F7893782DA1CEu);
-}
-
-/// Root of a s^3 + b s = r within some percent, k being about the root for b = 0: k (1 + 0.602 q) /
-/// (1 + 0.770 q + 0.602 q^2) with q = b / (a k^2), right for small and for great q.
-double rough_root(double a, double b, double k) {
-    const double g = a * k * k;
-    return k * g * (g + 0.602 * b) / (g * g + b * (0.770 * g + 0.602 * b));
 }
 
 Ramp accelerate(double V, const Frame& f) {
@@ -117,7 +66,7 @@ Ramp accelerate(double V, const Frame& f) {
     }
     const double high = f.L / (2 * V) < f.tm ? f.L / (2 * V) : f.tm;
     const double guess = rough_root(f.J, 2 * V, rough_cube_root(f.L / f.J));
-    return {root({0, f.J, 0, 2 * V, -f.L}, guess, near * guess, 0, high), 0};
+    return {rising_root({0, f.J, 0, 2 * V, -f.L}, guess, householder_near * guess, 0, high), 0};
 }
 
 /// Near the greatest length that a deceleration can cover the time changes with the square root of
@@ -163,8 +112,8 @@ Ramp decelerate(double V, const Frame& f) {
     const double high = std::sqrt(V / (1.5 * f.J));
     const double m = std::sqrt(above_zero(1 - 0.75 * f.L / (V * high)));
     const double guess = high * (1 - m) * (1 + m * (0.174 + 0.147 * m));
-    const double grain = near * std::min(guess, high - guess);
-    const double s = root({0, f.J, 0, -2 * V, f.L}, guess, grain, 0, high);
+    const double grain = householder_near * std::min(guess, high - guess);
+    const double s = rising_root({0, -f.J, 0, 2 * V, -f.L}, guess, grain, 0, high);
     return {m > 1e-2 ? s : refine_near_turn(s, V, f, high), 0};
 }
 
@@ -181,23 +130,13 @@ Ramps both_trapezoidal(const Frame& f) {
 }
 
 Ramps one_trapezoidal(const Frame& f) {
-    const double jj = 0.5 * f.J / f.tm;
     const double rest = f.L - 0.5 * (f.lo + f.hi) * (f.tm + f.D / f.A);
-    const double h = 1.7 * f.hi / f.c;
-    const double r = 2 * rest / (f.c * f.tm);
-    const double z = r / (h + std::sqrt(h * h + r));
-    const double guess = f.tm * between(2 * z / (1 + std::sqrt(1 + 4 * z)), 0, 1);
-    const double s =
-        root({jj, f.J, (f.hi + 0.5 * f.c) / f.tm, 2 * f.hi, -rest}, guess, near * guess, 0, f.tm);
+    const double s = mixed_time(f.J, f.hi, f.tm, f.c, rest, 0, f.tm);
     return {{s, 0}, {f.tm, above_zero((f.D + f.J * s * s) / f.A - f.tm)}};
 }
 
 Ramps neither_trapezoidal(const Frame& f) {
-    const double low = std::sqrt(f.D / f.J);
-    const double guess =
-        std::max(low, rough_root(0.25 * f.J, f.lo + f.hi, rough_cube_root(4 * f.L / f.J)));
-    const double sum = root({0.25 * f.J, 0, f.lo + f.hi, -f.L, -0.25 * f.D * f.D / f.J}, guess,
-                            near * guess, low, 2 * f.tm);
+    const double sum = triangular_sum(f.J, f.lo + f.hi, f.D, f.L, std::sqrt(f.D / f.J), 2 * f.tm);
     const double difference = f.D / (f.J * sum);
     return {{above_zero(0.5 * (sum - difference)), 0}, {0.5 * (sum + difference), 0}};
 }
@@ -394,8 +333,8 @@ std::string_view name(MoveKind kind) {
 }
 
 int equation(MoveKind kind) {
-    static constexpr std::array<int, move_kinds> equations = {1, 2, 3, 4,  5,  6, 8,  5,
-                                                              7, 8, 9, 10, 11, 9, 10, 11};
+    static constexpr std::array<int, move_kinds + 1> equations = {1, 2, 3,  4,  5, 6,  8,  5, 7,
+                                                                  8, 9, 10, 11, 9, 10, 11, 0};
     return equations[static_cast<std::size_t>(kind)];
 }
 

@@ -11,35 +11,6 @@ bool is_limit(double x) {
     return x > 0 && x <= std::numeric_limits<double>::max();
 }
 
-/// What is missing to v1 once a0 has been brought to zero, or 0 if that is mere rounding.
-double missing_velocity(double v0, double a0, double v1, double half_per_jerk) {
-    if (a0 == 0) return v1 - v0;
-    const double gained = a0 * std::abs(a0) * half_per_jerk;
-    const double e = (v1 - v0) - gained;
-    const double rounding = 2 * std::numeric_limits<double>::epsilon() *
-                            std::max({std::abs(v0), std::abs(v1), std::abs(gained)});
-    return std::abs(e) <= rounding ? 0 : e;
-}
-
-/// Times and accelerations along the direction of the ramp.
-struct Shape {
-    double to_peak, hold, to_zero;  // durations
-    double peak;
-    double jerk;  // towards the peak
-};
-
-/// Selects instead of branching: which case it is cannot be foreseen.
-Shape shape_of(double a, double e, double A, double J) {
-    const bool above = a > A;
-    const double peak_square = J * e + (a > 0 ? a * a : 0);
-    const bool held = above || peak_square > A * A;
-    const double peak = held ? A : std::sqrt(peak_square);
-    const bool cancels = a > 0 && !held;
-    const double to_peak = (cancels ? e : std::abs(peak - a)) / (cancels ? peak + a : J);
-    const double held_gain = above ? J * e : peak_square - A * A;
-    return {to_peak, held ? held_gain / (J * A) : 0, peak / J, peak, above ? -J : J};
-}
-
 /// A phase of no length leaves no trace: the next one takes its place.
 int put(std::array<VelocityRamp::Phase, 4>& phases, int count, double duration,
         const MotionState& start) {
@@ -49,8 +20,10 @@ int put(std::array<VelocityRamp::Phase, 4>& phases, int count, double duration,
 
 }  // namespace
 
-PlanResult VelocityRamp::plan(double v0, double a0, double v1, double acceleration, double jerk) {
-    if (!is_limit(acceleration) || !is_limit(jerk)) return PlanResult::limit_not_positive;
+PlanResult VelocityRamp::plan(double v0, double a0, double v1, double acceleration,
+                              double deceleration, double jerk) {
+    if (!is_limit(acceleration) || !is_limit(deceleration) || !is_limit(jerk))
+        return PlanResult::limit_not_positive;
     if (!std::isfinite(v0) || !std::isfinite(a0) || !std::isfinite(v1))
         return PlanResult::not_finite;
 
@@ -59,7 +32,7 @@ PlanResult VelocityRamp::plan(double v0, double a0, double v1, double accelerati
     const double missing = missing_velocity(v0, a0, v1, half_per_jerk);
     const double s = std::copysign(1.0, missing == 0 ? a0 : missing);
     const double a = s * a0;
-    const Shape shape = shape_of(a, s * missing, acceleration, J);
+    const RampShape shape = ramp_shape(a, s * missing, s > 0 ? acceleration : deceleration, J);
     const double peak = shape.peak;
 
     const MotionState rise{0, v0, a0, s * shape.jerk};

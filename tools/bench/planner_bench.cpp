@@ -8,6 +8,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "blocks/profile/any_state.hpp"
 #include "blocks/profile/seven_segment.hpp"
 #include "blocks/profile/velocity_ramp.hpp"
 #include "tools/bench/quickest.hpp"
@@ -155,6 +156,69 @@ void plan_all(benchmark::State& state, const std::vector<SevenSegment>& list) {
     });
 }
 
+struct Reach {
+    MotionLimits limits;
+    MotionState from;
+    Goal to;
+    double duration = 0;  ///< 1.2 times the least
+};
+
+enum class From : std::int64_t { any_state, rest, last_ramp };
+
+std::vector<Reach> reaches(From kind) {
+    Random random{2026};
+    std::vector<Reach> list;
+    MotionPlan out;
+    while (list.size() < 65536) {
+        Reach r;
+        const double A = random.decades(0, 4), J = A * random.decades(0, 3);
+        const double V = A * A / J * random.decades(-1.5, 1.5);
+        r.limits.set(V, -V * random.between(0.3, 1), A, A * random.between(0.3, 1), J);
+        const double way = V * ramp_duration(V, A, J) * random.decades(-3, 1);
+        r.to.position = random.next() % 2 ? way : -way;
+        if (kind == From::any_state) {
+            r.to.velocity = random.next() % 2 ? 0 : V * random.between(-0.3, 1);
+            r.from.velocity = V * random.between(-0.3, 1);
+            r.from.acceleration = random.next() % 3 ? A * random.between(-0.3, 1) : 0;
+        }
+        if (plan(r.limits, r.from, r.to, out) != PlanResult::ok) continue;
+        r.duration = 1.2 * out.duration;
+        if (kind == From::last_ramp && out.count > 2)
+            r.from = out.at(out.phases[out.count - 2].begin +
+                            out.phases[out.count - 2].duration * random.unit());
+        list.push_back(r);
+    }
+    return list;
+}
+
+/// In the least time, or in a given one.
+void plan_reaches(benchmark::State& state, const std::vector<Reach>& list, bool timed) {
+    constexpr std::size_t share = 512;
+    std::size_t next = 0;
+    MotionPlan out;
+    measure(state, share, [&] {
+        if (next + share > list.size()) next = 0;
+        for (const std::size_t last = next + share; next < last; ++next) {
+            const Reach& r = list[next];
+            benchmark::DoNotOptimize(timed ? plan(r.limits, r.from, r.to, r.duration, out)
+                                           : plan(r.limits, r.from, r.to, out));
+            benchmark::ClobberMemory();
+        }
+    });
+}
+
+void evaluate_reach(benchmark::State& state) {
+    const Reach r = reaches(From::any_state).front();
+    MotionPlan out;
+    plan(r.limits, r.from, r.to, out);
+    constexpr int points = 4096;
+    const double step = out.duration / points;
+    measure(state, points, [&] {
+        std::size_t phase = 0;
+        for (int i = 0; i < points; ++i) benchmark::DoNotOptimize(out.at(step * i, phase).position);
+    });
+}
+
 template <typename Motion>
 void evaluate(benchmark::State& state, const Motion& motion) {
     constexpr int points = 4096;
@@ -194,6 +258,12 @@ int main(int argc, char** argv) {
         const std::string title = "plan/" + std::string(name(kind));
         benchmark::RegisterBenchmark(title.c_str(), plan_all, problems_of(kind));
     }
+    const std::vector<Reach> any = reaches(From::any_state);
+    benchmark::RegisterBenchmark("reach/at", evaluate_reach);
+    benchmark::RegisterBenchmark("reach/any_state", plan_reaches, any, false);
+    benchmark::RegisterBenchmark("reach/rest_to_rest", plan_reaches, reaches(From::rest), false);
+    benchmark::RegisterBenchmark("reach/last_ramp", plan_reaches, reaches(From::last_ramp), false);
+    benchmark::RegisterBenchmark("reach/given_duration", plan_reaches, any, true);
     benchmark::RunSpecifiedBenchmarks();
     return 0;
 }

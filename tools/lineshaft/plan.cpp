@@ -11,6 +11,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "blocks/profile/any_state.hpp"
 #include "blocks/profile/seven_segment.hpp"
 #include "runtime/csv/number_text.hpp"
 #include "runtime/trace/output_file.hpp"
@@ -21,40 +22,147 @@ namespace lineshaft {
 namespace {
 
 constexpr const char* plan_help =
-    "One row of output for each line of input, blank lines aside:\n"
+    "The header says what is planned. Columns may stand in any order, units are the caller's: u,\n"
+    "u/s, u/s^2, u/s^3. Blank lines aside, each line gives one row:\n\n"
+    "Vs,Ve,Vm,A,J,L: seven-segment moves along a path\n"
     "  ok            1: planned; 0: cannot be planned, or a bad line: all other cells are empty\n"
     "  case          which ramps there are, and which of them hold the acceleration limit\n"
     "  equation      1 to 11, that gave the times\n"
     "  T1..T7        durations of the segments, jerk +J 0 -J 0 -J 0 +J\n"
     "  end_velocity  Ve, or what is reached at L if L is too short for Ve\n"
     "Cannot be planned: Vm, A or J not above 0, Vs or Ve outside of 0..Vm, L below 0, NaN or\n"
-    "infinite numbers. A bad line (cells missing, no number) is reported on stderr as\n"
-    "FILE:LINE: error: ...; the others are planned, and the exit code is 2. Columns may stand in\n"
-    "any order. Units are the caller's: u, u/s, u/s^2, u/s^3.";
-
-constexpr std::string_view output_header = "ok,case,equation,T1,T2,T3,T4,T5,T6,T7,end_velocity\n";
-constexpr std::string_view not_planned = "0,,,,,,,,,,\n";
+    "infinite numbers.\n\n"
+    "p0,v0,a0,pf,vf,V,A,D,J[,Vmin][,T]: from any state to the position pf with velocity vf and\n"
+    "acceleration 0, velocity in Vmin..V (without a cell -V..V), acceleration in -D..A, in the "
+    "least\n"
+    "time, or in the least feasible duration that is no less than T\n"
+    "  row           number of the row, from 1\n"
+    "  ok            1: planned; 0: not\n"
+    "  error         why not: not_finite, limit_not_positive (V, A, D, J above 0, Vmin below),\n"
+    "                velocity_above_limit (vf outside of Vmin..V), bad_line\n"
+    "  T             duration of the motion\n"
+    "  j1,t1,...     jerk and duration of each phase; cells after the last one are empty\n\n"
+    "A bad line (cells missing, no number) is reported on stderr as FILE:LINE: error: ...; the "
+    "others\n"
+    "are planned, and the exit code is 2.";
 
 constexpr std::size_t longest_line = 65536;
+constexpr std::size_t most_columns = 11;
 
-struct Column {
-    std::string_view name;
-    double SevenSegment::*member;
+/// The cells of a line in the order of the form's columns.
+struct Cells {
+    std::array<double, most_columns> value{};
+    std::array<bool, most_columns> given{};
 };
 
-constexpr std::array columns{Column{"Vs", &SevenSegment::Vs}, Column{"Ve", &SevenSegment::Ve},
-                             Column{"Vm", &SevenSegment::Vm}, Column{"A", &SevenSegment::A},
-                             Column{"J", &SevenSegment::J},   Column{"L", &SevenSegment::L}};
+/// One of the problems: the columns of its header, of which the last ones may be left out, and the
+/// rows that it answers with.
+struct Form {
+    std::vector<std::string_view> columns;
+    std::size_t needed;
+    std::string output_header;
+    void (*append)(std::string& rows, std::size_t row, const Cells* cells,
+                   const PlanOptions& options);
+};
 
 struct PlanCommand {
     std::string input = "-";
     std::string output;
+    PlanOptions options;
 };
 
-std::string column_names() {
+void append_number(std::string& text, double value) {
+    std::array<char, longest_number> digits;
+    text += ',';
+    text.append(digits.data(), write_real(digits.data(), value));
+}
+
+void append_move(std::string& text, std::size_t, const Cells* cells, const PlanOptions&) {
+    SevenSegmentPlan made;
+    if (cells != nullptr) {
+        const auto& [Vs, Ve, Vm, A, J, L, none1, none2, none3, none4, none5] = cells->value;
+        if (plan(SevenSegment{Vs, Ve, Vm, A, J, L}, made) != PlanResult::ok) cells = nullptr;
+    }
+    if (cells == nullptr) {
+        text += "0,,,,,,,,,,\n";
+        return;
+    }
+    text += "1,";
+    text += name(made.kind);
+    text += ',';
+    text += std::to_string(equation(made.kind));
+    for (const double T : made.T) append_number(text, T);
+    append_number(text, made.end.velocity);
+    text += '\n';
+}
+
+PlanResult plan_motion(const Cells& cells, const PlanOptions& options, MotionPlan& out) {
+    const auto& [p0, v0, a0, pf, vf, V, A, D, J, Vmin, T] = cells.value;
+    MotionLimits limits;
+    const PlanResult result = limits.set(V, cells.given[9] ? Vmin : -V, A, D, J);
+    if (result != PlanResult::ok) return result;
+    const MotionState from{p0, v0, a0, 0};
+    return cells.given[10] ? plan(limits, from, {pf, vf}, T, out, options)
+                           : plan(limits, from, {pf, vf}, out, options);
+}
+
+void append_motion(std::string& text, std::size_t row, const Cells* cells,
+                   const PlanOptions& options) {
+    MotionPlan out;
+    std::string_view error = "bad_line";
+    if (cells != nullptr) {
+        const PlanResult result = plan_motion(*cells, options, out);
+        error = result == PlanResult::ok ? "" : name(result);
+    }
+    text += std::to_string(row);
+    text += error.empty() ? ",1," : ",0,";
+    text += error;
+    if (error.empty())
+        append_number(text, out.duration);
+    else
+        text += ',';
+    for (std::size_t i = 0; i < out.count; ++i) {
+        append_number(text, out.phases[i].start.jerk);
+        append_number(text, out.phases[i].duration);
+    }
+    text.append(2 * (MotionPlan::most_phases - out.count), ',');
+    text += '\n';
+}
+
+std::string motion_header() {
+    std::string text = "row,ok,error,T";
+    for (std::size_t i = 1; i <= MotionPlan::most_phases; ++i) text += fmt::format(",j{0},t{0}", i);
+    return text + '\n';
+}
+
+const Form& move_form() {
+    static const Form form{{"Vs", "Ve", "Vm", "A", "J", "L"},
+                           6,
+                           "ok,case,equation,T1,T2,T3,T4,T5,T6,T7,end_velocity\n",
+                           append_move};
+    return form;
+}
+
+const Form& motion_form() {
+    static const Form form{{"p0", "v0", "a0", "pf", "vf", "V", "A", "D", "J", "Vmin", "T"},
+                           9,
+                           motion_header(),
+                           append_motion};
+    return form;
+}
+
+std::string column_names(const Form& form) {
     std::string text;
-    for (const Column& c : columns) text += (text.empty() ? "" : ", ") + std::string(c.name);
+    for (std::size_t i = 0; i < form.columns.size(); ++i) {
+        const bool left_out = i >= form.needed;
+        text += (left_out ? "[, " : text.empty() ? "" : ", ") + std::string(form.columns[i]);
+        if (left_out) text += ']';
+    }
     return text;
+}
+
+std::string all_names() {
+    return column_names(move_form()) + " or " + column_names(motion_form());
 }
 
 std::string_view without_blanks(std::string_view text) {
@@ -84,90 +192,83 @@ std::optional<std::string_view> next_cell(std::optional<std::string_view>& rest)
 }
 
 /// What is wrong with `cell` as a number; empty when nothing is.
-std::string read_number(std::string_view cell, const Column& column, double& value) {
-    if (cell.empty()) return fmt::format("column {} is empty", column.name);
+std::string read_number(std::string_view cell, std::string_view column, double& value) {
+    if (cell.empty()) return fmt::format("column {} is empty", column);
     const bool plus = cell.size() > 1 && cell[0] == '+' && cell[1] != '-';
     const char* const end = cell.data() + cell.size();
     const auto [stop, error] = std::from_chars(cell.data() + (plus ? 1 : 0), end, value);
     if (error == std::errc::result_out_of_range && stop == end)
-        return fmt::format("'{}' in column {} is beyond the range of numbers", cell, column.name);
+        return fmt::format("'{}' in column {} is beyond the range of numbers", cell, column);
     if (error != std::errc{} || stop != end)
-        return fmt::format("'{}' in column {} is not a number", cell, column.name);
+        return fmt::format("'{}' in column {} is not a number", cell, column);
     return {};
 }
 
-/// The order of a file's columns.
+/// The form that a file's header names, and the order of its columns there.
 struct Header {
-    std::vector<const Column*> order;
+    const Form* form = nullptr;
+    std::vector<std::size_t> order;
 
     /// What is wrong with the line; empty when nothing is.
     std::string read(std::string_view line);
 };
 
 std::string Header::read(std::string_view line) {
+    std::vector<std::string_view> cells;
     std::optional rest = line;
-    while (const auto cell = next_cell(rest)) {
-        const auto found = std::ranges::find(columns, *cell, &Column::name);
-        if (found == columns.end())
-            return fmt::format("unknown column '{}'; the header names {}", *cell, column_names());
-        if (std::ranges::find(order, &*found) != order.end())
-            return fmt::format("a second column '{}'", *cell);
-        order.push_back(&*found);
+    while (const auto cell = next_cell(rest)) cells.push_back(*cell);
+    const auto begins = motion_form().columns.begin();
+    const bool motion = std::ranges::any_of(cells, [&](std::string_view cell) {
+        return std::find(begins, begins + 5, cell) != begins + 5;
+    });
+    form = motion ? &motion_form() : &move_form();
+    for (const std::string_view cell : cells) {
+        const auto found = std::ranges::find(form->columns, cell);
+        if (found == form->columns.end())
+            return fmt::format("unknown column '{}'; the header names {}", cell,
+                               motion ? column_names(*form) : all_names());
+        const auto column = static_cast<std::size_t>(found - form->columns.begin());
+        if (std::ranges::find(order, column) != order.end())
+            return fmt::format("a second column '{}'", cell);
+        order.push_back(column);
     }
-    for (const Column& c : columns)
-        if (std::ranges::find(order, &c) == order.end())
-            return fmt::format("no column '{}'; the header names {}", c.name, column_names());
+    for (std::size_t i = 0; i < form->needed; ++i)
+        if (std::ranges::find(order, i) == order.end())
+            return fmt::format("no column '{}'; the header names {}", form->columns[i],
+                               column_names(*form));
     return {};
 }
 
 /// What is wrong with the line; empty when nothing is.
-std::string read_problem(std::string_view line, const Header& header, SevenSegment& problem) {
+std::string read_cells(std::string_view line, const Header& header, Cells& cells) {
     std::optional rest = line;
     std::size_t count = 0;
     std::string mistake;
     while (const auto cell = next_cell(rest)) {
         if (count < header.order.size() && mistake.empty()) {
-            const Column& column = *header.order[count];
-            mistake = read_number(*cell, column, problem.*column.member);
+            const std::size_t column = header.order[count];
+            cells.given[column] = !cell->empty() || column < header.form->needed;
+            if (cells.given[column])
+                mistake = read_number(*cell, header.form->columns[column], cells.value[column]);
         }
         ++count;
     }
-    if (count != columns.size())
-        return fmt::format("{} cells instead of {}", count, columns.size());
+    if (count != header.order.size())
+        return fmt::format("{} cells instead of {}", count, header.order.size());
     return mistake;
-}
-
-void append_number(std::string& text, double value) {
-    std::array<char, longest_number> digits;
-    text += ',';
-    text.append(digits.data(), write_real(digits.data(), value));
-}
-
-void append_row(std::string& text, const SevenSegment& problem) {
-    SevenSegmentPlan made;
-    if (plan(problem, made) != PlanResult::ok) {
-        text += not_planned;
-        return;
-    }
-    text += "1,";
-    text += name(made.kind);
-    text += ',';
-    text += std::to_string(equation(made.kind));
-    for (const double T : made.T) append_number(text, T);
-    append_number(text, made.end.velocity);
-    text += '\n';
 }
 
 /// Turns the lines of one file into rows.
 class Planner {
   public:
-    explicit Planner(std::string file) : file_(std::move(file)) {}
+    Planner(std::string file, const PlanOptions& options)
+        : file_(std::move(file)), options_(options) {}
 
     /// One line, without its newline. False when no further line can be understood.
     bool line(std::string_view text, bool too_long, std::string& rows);
     /// Without a header there is nothing to plan.
     void finish();
-    bool has_header() const { return !header_.order.empty(); }
+    bool has_header() const { return header_.form != nullptr; }
     bool any_mistake() const { return mistakes_; }
 
   private:
@@ -175,8 +276,9 @@ class Planner {
     void mistake(const std::string& what);
 
     std::string file_;
+    PlanOptions options_;
     Header header_;
-    std::size_t number_ = 0;
+    std::size_t number_ = 0, row_ = 0;
     bool mistakes_ = false;
 };
 
@@ -186,16 +288,12 @@ bool Planner::line(std::string_view text, bool too_long, std::string& rows) {
         text.remove_prefix(byte_order_mark.size());
     if (!too_long && without_blanks(text).empty()) return true;
     if (!has_header()) return header(text, rows);
-    SevenSegment problem;
+    Cells cells;
     const std::string wrong = too_long
                                   ? fmt::format("a line of {} characters or more", longest_line)
-                                  : read_problem(text, header_, problem);
-    if (wrong.empty()) {
-        append_row(rows, problem);
-    } else {
-        mistake(wrong);
-        rows += not_planned;
-    }
+                                  : read_cells(text, header_, cells);
+    if (!wrong.empty()) mistake(wrong);
+    header_.form->append(rows, ++row_, wrong.empty() ? &cells : nullptr, options_);
     return true;
 }
 
@@ -206,14 +304,14 @@ bool Planner::header(std::string_view text, std::string& rows) {
         return false;
     }
     header_ = std::move(read);
-    rows += output_header;
+    rows += header_.form->output_header;
     return true;
 }
 
 void Planner::finish() {
     if (has_header() || mistakes_) return;
     number_ = 1;
-    mistake("no header; the first line names " + column_names());
+    mistake("no header; the first line names " + all_names());
 }
 
 void Planner::mistake(const std::string& what) {
@@ -304,7 +402,7 @@ Exit execute(const PlanCommand& command) {
         return Exit::wrong;
     }
     Lines lines(file);
-    Planner planner(standard_input ? "stdin" : command.input);
+    Planner planner(standard_input ? "stdin" : command.input, command.options);
     OutputFile sink(command.output.empty() ? "-" : command.output);
     const Exit result = plan_lines(lines, planner, sink);
     if (!planner.has_header() || (result != Exit::fine && result != Exit::wrong)) return result;
@@ -319,11 +417,21 @@ Exit execute(const PlanCommand& command) {
 void add_plan(CLI::App& app, Exit& result) {
     auto command = std::make_shared<PlanCommand>();
     CLI::App* sub = app.add_subcommand(
-        "plan", "Plan seven-segment moves in bulk: CSV with the columns Vs,Ve,Vm,A,J,L -> CSV");
+        "plan",
+        "Plan motions in bulk, CSV -> CSV: seven-segment moves, or from any state to a goal");
     sub->add_option("input", command->input, "The CSV file; - is the standard input")
         ->capture_default_str();
     sub->add_option("-o,--output", command->output, "Write here instead of to the standard output")
         ->type_name("FILE");
+    PlanOptions& options = command->options;
+    sub->add_flag_callback(
+        "--soonest", [&options] { options.entry = Entry::soonest; },
+        "Bring a state outside its limits back as soon as possible, not tangentially");
+    sub->add_option("--tolerance", options.tolerance,
+                    "How near the end of the direct ramp counts as the goal")
+        ->type_name("ULP")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str();
     sub->footer(plan_help);
     sub->callback([command, &result] { result = execute(*command); });
 }

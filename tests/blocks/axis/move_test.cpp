@@ -251,62 +251,84 @@ TEST_CASE("a move in the cruise of another starts from there and leaves no step"
     CHECK(axis.position <= 200 + 10 * 1e-3);
 }
 
-TEST_CASE("a move in mid-ramp is refused; the one under way goes on") {
-    Move axis = axis_at(0), same = axis_at(0);
-    Clock clock, other;
-    start(axis, clock, 60);
-    start(same, other, 60);
-    for (int i = 0; i < 20; ++i) {
-        clock.scan(axis);
-        other.scan(same);
+TEST_CASE("a move starts in any state of another, without a step, and ends at its target") {
+    for (int scans = 1; scans < 600; scans += 7) {
+        for (const double target : {100.0, 60.0, 3.0, -40.0}) {
+            INFO("to " << target << " after " << scans << " scans");
+            Move axis = axis_at(0);
+            Clock clock;
+            start(axis, clock, 60);
+            for (int i = 0; i < scans; ++i) clock.scan(axis);
+            const MotionState before{axis.position, axis.velocity, axis.acceleration, 0};
+            start(axis, clock, target);
+            REQUIRE_FALSE(axis.error);
+            check_exclusive(axis);
+            REQUIRE(std::abs(axis.acceleration - before.acceleration) <=
+                    axis.jerk_limit * 2.001e-3);
+            REQUIRE(axis.greatest_velocity <= axis.velocity_limit * (1 + 1e-12));
+            REQUIRE(axis.greatest_acceleration <= axis.acceleration_limit * (1 + 1e-12));
+            for (int i = 0; axis.busy && i < 100000; ++i) {
+                clock.scan(axis);
+                REQUIRE(std::abs(axis.velocity) <= axis.velocity_limit * (1 + 1e-12));
+            }
+            REQUIRE(axis.done);
+            REQUIRE(axis.position == target);
+            REQUIRE(axis.velocity == 0);
+        }
     }
-    start(axis, clock, 100);
-    other.scan(same);
-    other.scan(same);
-    CHECK(axis.error);
-    CHECK(axis.error_id == MoveError::accelerating);
-    check_exclusive(axis);
-    CHECK(axis.position == same.position);
-    clock.scan(axis);
-    other.scan(same);
-    CHECK(axis.error);
-    axis.execute = false;
-    clock.scan(axis);
-    other.scan(same);
-    CHECK_FALSE(axis.error);
-    CHECK(axis.busy);
-    CHECK(axis.position == same.position);
-    axis.execute = false;
-    while (same.busy) {
-        clock.scan(axis);
-        other.scan(same);
-    }
-    CHECK(axis.done);
-    CHECK(axis.position == 60);
 }
 
-TEST_CASE("a move away from the axis' motion, or slower than it, is refused") {
+TEST_CASE("a move in mid-ramp is planned from that state; where it starts is no equation") {
+    Move axis = axis_at(0);
+    Clock clock;
+    start(axis, clock, 60);
+    for (int i = 0; i < 20; ++i) clock.scan(axis);
+    REQUIRE(axis.acceleration != 0);
+    start(axis, clock, 100, 30);
+    CHECK(axis.kind == MoveKind::from_any_state);
+    CHECK(axis.equation == 0);
+    CHECK(axis.displacement_error < 1e-12);
+    while (axis.busy) clock.scan(axis);
+    CHECK(axis.in_end_velocity);
+    CHECK(axis.velocity == 30);
+    CHECK(axis.position >= 100);
+}
+
+TEST_CASE("a move against the axis' motion turns round; one below its velocity slows down") {
     Move axis = axis_at(0, 20);
     Clock clock;
     start(axis, clock, -1);
-    CHECK(axis.error_id == MoveError::wrong_direction);
-    CHECK(axis.velocity == 20);
-    axis.velocity_limit = 10;
-    start(axis, clock, 50);
-    CHECK(axis.error_id == MoveError::velocity_above_limit);
-    axis.velocity_limit = 40;
-    start(axis, clock, 50, 41);
-    CHECK(axis.error_id == MoveError::velocity_above_limit);
-    start(axis, clock, 50, -1);
-    CHECK(axis.error_id == MoveError::velocity_above_limit);
-    CHECK(axis.velocity == 20);
-    start(axis, clock, 50, 40);
     CHECK_FALSE(axis.error);
-    CHECK(axis.busy);
+    while (axis.busy) clock.scan(axis);
+    CHECK(axis.position == -1);
 
-    Move back = axis_at(0, -20);
-    start(back, clock, 1);
-    CHECK(back.error_id == MoveError::wrong_direction);
+    Move slow = axis_at(0, 20);
+    Clock other;
+    slow.velocity_limit = 10;
+    start(slow, other, 50);
+    CHECK_FALSE(slow.error);
+    CHECK(slow.greatest_velocity == 20);
+    while (slow.busy) {
+        other.scan(slow);
+        if (slow.position < 45 && slow.position > 10) CHECK(slow.velocity == Approx(10));
+    }
+    CHECK(slow.position == 50);
+}
+
+TEST_CASE("an end velocity outside its limit is refused, in any state") {
+    for (const double velocity : {20.0, -20.0}) {
+        Move axis = axis_at(0, velocity);
+        Clock clock;
+        axis.velocity_limit = 40;
+        for (const double end : {41.0, -1.0}) {
+            start(axis, clock, 50, end);
+            CHECK(axis.error_id == MoveError::velocity_above_limit);
+            CHECK(axis.velocity == velocity);
+        }
+        start(axis, clock, 50, 40);
+        CHECK_FALSE(axis.error);
+        CHECK(axis.busy);
+    }
 }
 
 TEST_CASE("inputs that are no numbers, or no limits, hold a move and are named") {

@@ -73,14 +73,21 @@ TEST_CASE("a positioning with velocities at its ends keeps the one that it ends 
     }
 }
 
-TEST_CASE("a positioning away from the velocity that an axis has is refused") {
-    Positioning move = planned(0, 8);
-    const SevenSegment limits{.Vm = 20, .A = 100, .J = 5e3};
-    CHECK(move.begin({.velocity = 1}, -3, limits, start) == PlanResult::velocity_above_limit);
-    CHECK(move.begin({.velocity = -1}, 3, limits, start) == PlanResult::velocity_above_limit);
-    CHECK(move.target == 8);
-    CHECK(move.begin({.velocity = -1}, 0, limits, start) == PlanResult::ok);
-    CHECK(move.at(start).velocity == -1);
+TEST_CASE("a positioning from any state joins it and ends exactly at its target") {
+    for (const MotionState& from : {MotionState{.velocity = 1}, MotionState{.velocity = 30},
+                                    MotionState{.velocity = 5, .acceleration = 40},
+                                    MotionState{.velocity = -5, .acceleration = -70}}) {
+        Positioning move;
+        const SevenSegment limits{.Vm = 20, .A = 100, .J = 5e3};
+        REQUIRE(move.begin(from, -3, limits, start) == PlanResult::ok);
+        CHECK(move.from_any_state);
+        CHECK(move.at(start).velocity == from.velocity);
+        CHECK(move.at(start).acceleration == from.acceleration);
+        const auto end = start + static_cast<std::int64_t>(std::ceil(move.duration() * 1e9));
+        CHECK(move.finished(end));
+        CHECK(move.at(end).position == -3);
+        CHECK(move.at(end).velocity == 0);
+    }
 }
 
 TEST_CASE("a positioning that cannot be planned leaves the one before it") {

@@ -13,6 +13,7 @@
 #include "blocks/axis/move.hpp"
 #include "blocks/axis/virtual_axis.hpp"
 #include "runtime/model/random.hpp"
+#include "tests/blocks/profile/any_state_reference.hpp"
 #include "tests/blocks/scanning.hpp"
 
 using namespace lineshaft;
@@ -141,8 +142,13 @@ double shortest_ramp(const MotionState& from, double to, double acceleration, do
 }
 
 double shortest_move(const MotionState& from, double to, SevenSegment problem) {
+    const bool back = to < from.position || (to == from.position && from.velocity < 0);
     problem.L = std::abs(to - from.position);
-    problem.Vs = std::abs(from.velocity);
+    problem.Vs = back ? -from.velocity : from.velocity;
+    if (from.acceleration != 0 || problem.Vs < 0 || problem.Vs > problem.Vm)
+        return reference::duration({from.position, from.velocity, from.acceleration, to,
+                                    back ? -problem.Ve : problem.Ve, problem.Vm, -problem.Vm,
+                                    problem.A, problem.A, problem.J});
     SevenSegmentPlan shortest;
     return plan(problem, shortest) == PlanResult::ok ? shortest.duration : not_a_number;
 }
@@ -177,7 +183,7 @@ void give(Ride<VirtualAxis>& ride, const Command* c) {
     ride.allow(axis.wanted_velocity);
 }
 
-std::string judge(Ride<VirtualAxis>& ride, const VirtualAxis& undisturbed, const Command* c) {
+std::string judge(Ride<VirtualAxis>& ride, const VirtualAxis&, const Command* c) {
     const VirtualAxis& axis = ride.axis;
     if (!c) return axis.error ? "an error without a command" : "";
     const double A = ride.program.acceleration, J = ride.program.jerk;
@@ -191,7 +197,7 @@ std::string judge(Ride<VirtualAxis>& ride, const VirtualAxis& undisturbed, const
         ride.stops = true;
     }
     if (!ride.program.absolute || !c->execute) return axis.error ? "refused to go on" : "";
-    const bool may = c->enable && (ride.program.immediate || !undisturbed.moving);
+    const bool may = c->enable;
     if (axis.error == may) return may ? "a move is refused" : "a move is not refused";
     if (!may) return "";
     const double L = std::abs(c->target - axis.position);
@@ -274,12 +280,14 @@ void give(Ride<Move>& ride, const Command* c) {
 std::string judge(Ride<Move>& ride, const Move&, const Command* c) {
     const Move& axis = ride.axis;
     if (!axis.execute || !c) return axis.error ? "an error without a move" : "";
-    const double way = c->target - axis.position, Vm = axis.velocity_limit;
-    const bool may = axis.acceleration == 0 && way * axis.velocity >= 0 &&
-                     std::abs(axis.velocity) <= Vm && c->end_velocity <= Vm;
+    const double Vm = axis.velocity_limit;
+    const bool may = c->end_velocity <= Vm;
     if (axis.error == may) return may ? "a move is refused" : "a move is not refused";
     if (!may) return "";
-    ride.begin_under({Vm, c->acceleration, c->jerk});
+    const double a = axis.acceleration;
+    const double turned = std::abs(axis.velocity + a * std::abs(a) / (2 * c->jerk));
+    ride.begin_under({std::max({Vm, std::abs(axis.velocity), turned}),
+                      std::max(c->acceleration, std::abs(a)), c->jerk});
     ride.begin(shortest_move(state_of(axis), c->target,
                              {.Ve = c->end_velocity, .Vm = Vm, .A = c->acceleration, .J = c->jerk}),
                [](const Move& a) { return a.done; });

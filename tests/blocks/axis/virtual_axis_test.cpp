@@ -280,24 +280,23 @@ TEST_CASE("a move to where a moving immediate axis is stops it there") {
     CHECK(axis.position == ahead.position);
 }
 
-TEST_CASE("a move by S-curve of an axis that moves is refused; the move under way goes on") {
-    VirtualAxis axis = absolute(false);
-    Clock clock;
-    start_move(axis, clock, 5);
-    for (int i = 0; i < 100; ++i) clock.scan(axis);
-    VirtualAxis undisturbed = axis;
-    Clock other = clock;
-    start_move(axis, clock, 2);
-    CHECK(axis.error);
-    CHECK(axis.error_id == AxisError::not_standing);
-    undisturbed.execute = false;
-    other.scan(undisturbed);
-    other.scan(undisturbed);
-    CHECK(axis.position == undisturbed.position);
-    CHECK(axis.velocity == undisturbed.velocity);
-    finish_move(axis, clock);
-    CHECK_FALSE(axis.error);
-    CHECK(axis.position == 5);
+TEST_CASE("a move by S-curve takes a new target in mid-move, without a step") {
+    for (const double target : {2.0, 9.0, -3.0}) {
+        VirtualAxis axis = absolute(false);
+        Clock clock;
+        start_move(axis, clock, 5);
+        for (int i = 0; i < 100; ++i) clock.scan(axis);
+        REQUIRE(axis.moving);
+        const double acceleration = axis.acceleration, velocity = axis.velocity;
+        start_move(axis, clock, target);
+        CHECK_FALSE(axis.error);
+        CHECK_FALSE(axis.done);
+        CHECK(std::abs(axis.acceleration - acceleration) <= axis.jerk_limit * 2.001e-3);
+        CHECK(std::abs(axis.velocity - velocity) <= axis.acceleration_limit * 2.001e-3);
+        finish_move(axis, clock);
+        CHECK(axis.position == target);
+        CHECK(axis.velocity == 0);
+    }
 }
 
 TEST_CASE("a move without enable is refused, and not made up for") {

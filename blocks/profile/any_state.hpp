@@ -1,0 +1,119 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "blocks/profile/motion_limits.hpp"
+#include "blocks/profile/velocity_ramp.hpp"
+
+namespace lineshaft {
+
+/// From any state (p0, v0, a0) to a position pf with velocity vf and acceleration 0, in the least
+/// time: velocity in Vmin..V, acceleration in -D..A, jerk in -J..J.
+///
+/// The direct ramp brings (v0, a0) to vf in the least time (velocity_ramp.hpp) and ends at d0. Let
+/// F+ be the fullest motion towards V: jerk +J up to A, held, down to reach V, cruise; F- its
+/// mirror image towards Vmin. Leave F at some moment by the direct ramp from there. Then
+///     the sign of pf - d0 decides between F+ and F-, and
+///     the first moment at which that ends at pf is the optimum (README.md says why).
+///
+/// Mirrored so that pf > d0, and with tau = a0/J: the state lies on a parabola of jerk +J that
+/// begins at acceleration 0 in the virtual point
+///     vb = v0 - a0 tau/2,    the way left from there L = (pf - p0) + tau (v0 - a0 tau/3).
+/// q is the jerk time up from the virtual point, r the one down to vf, alpha = A/J, delta = D/J,
+/// Dv = vb - vf, S = vb + vf; the peak velocity is vp = vb + J q^2 = vf + J r^2 where no ramp
+/// holds. q < 0 is a dip: F is left before the acceleration has come to zero.
+///
+///     ramps up / down              equation
+///     triangular / triangular      J/4 m^4 + S m^2 - L m - Dv^2/(4J) = 0,  m = q + r,
+///                                  r - q = Dv/(J m)
+///     triangular / trapezoidal     J/(2 delta) q^4 + J q^3 + (vb + D^2/(2J))/delta q^2 + 2 vb q
+///                                  + S (delta + Dv/D)/2 - L = 0
+///     trapezoidal / triangular     the same in r, vb and vf, A and D exchanged
+///     trapezoidal / trapezoidal    quadratic in vp
+///     cruise at V                  (L - way of both ramps) / V
+///
+/// vp passes the borders vb + A^2/J (A is held), vf + D^2/J (D is held) and V; the way at them
+/// tells the shape. For vf >= 0 the way grows with the moment of leaving, and the root is the only
+/// one. For vf < 0 it has a greatest value in the dip at most,
+///     triangular     J m^2 = (-2 S - sqrt(4 S^2 - 3 Dv^2))/3
+///     trapezoidal    J q^2 + D q/2 + vb = 0, the smaller root
+/// before which the goal is hit or after which there is one crossing. Unknowns are m, q and r,
+/// never vp, which loses its digits beside vb. The quartics go by bracketed steps of the fourth
+/// order (peak_equations.hpp).
+///
+/// The optimum jumps at pf = d0, so a tolerance is part of the definition: the direct ramp is taken
+/// if |pf - d0| is within `tolerance` ulp of max(|p0|, |pf|, path), and a velocity or acceleration
+/// within as much of its limit keeps it. 64 is for one plan; a controller that plans anew each scan
+/// from its own rounded state takes 1024. What rounding leaves is spread over the duration, so that
+/// the end is exact.
+///
+/// For a given duration the motions of F+ and F- are closed forms: m = u/2 with u = T + tau, a
+/// quadratic in q or r, or linear in vp. All limits are convex, so a mean of both keeps them, and
+/// its weight is linear in pf. Where pf lies outside of both the duration is blocked; the next
+/// feasible one is the next crossing of the side that is short.
+
+/// How a state outside its limits comes back: `gentle` joins the velocity limit tangentially and
+/// does not fall below it on the way to a far goal; `soonest` brakes until the limit is kept, from
+/// where the velocity may fall further.
+enum class Entry : std::int64_t { gentle, soonest };
+
+struct Goal {
+    double position = 0;  ///< pf [u]
+    double velocity = 0;  ///< vf [u/s], in Vmin..V
+};
+
+struct PlanOptions {
+    Entry entry = Entry::gentle;
+    double tolerance = 64;  ///< [ulp], >= 0
+};
+
+/// Phases of constant jerk. A time-optimal one has 10 phases at most, one of given duration 16.
+struct MotionPlan {
+    struct Phase {
+        double begin = 0, duration = 0;  ///< [s]; duration > 0
+        MotionState start;               ///< its jerk lasts for the phase
+    };
+
+    static constexpr std::size_t most_phases = 16;
+
+    std::array<Phase, most_phases> phases{};
+    std::size_t count = 0;
+    double duration = 0;  ///< [s]
+    double drift = 0;     ///< what rounding has left of the way, over the duration [u/s]
+    MotionState end;      ///< exactly the goal
+
+    /// State t seconds after the start; t < 0 is taken as 0; after the end: constant velocity.
+    MotionState at(double t) const;
+
+    /// The same for times that mostly rise: `phase` is where the last one was found, 0 at first.
+    MotionState at(double t, std::size_t& phase) const;
+
+    double greatest_velocity() const;      ///< in either direction [u/s]
+    double greatest_acceleration() const;  ///< in either direction [u/s^2]
+};
+
+/// From any state to the goal in the least time. not_finite: a number is NaN or infinite, or what
+/// is planned is beyond a double; velocity_above_limit: vf is outside of Vmin..V. On failure `out`
+/// is unchanged.
+PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal& to,
+                MotionPlan& out, const PlanOptions& options = {});
+
+/// The same in the least feasible duration that is no less than `duration` [s].
+PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal& to,
+                double duration, MotionPlan& out, const PlanOptions& options = {});
+
+struct AxisMove {
+    const MotionLimits* limits = nullptr;
+    MotionState from;
+    Goal to;
+};
+
+/// Several axes together: each is planned for the least duration, no less than `least` [s], that
+/// is feasible for all. `out` has a plan for each axis; when one cannot be planned, none is
+/// written.
+PlanResult synchronise(std::span<const AxisMove> axes, std::span<MotionPlan> out, double least = 0,
+                       const PlanOptions& options = {});
+
+}  // namespace lineshaft
