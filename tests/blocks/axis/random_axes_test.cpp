@@ -290,7 +290,7 @@ std::string judge(Ride<Move>& ride, const Move&, const Command* c) {
                       std::max(c->acceleration, std::abs(a)), c->jerk});
     ride.begin(shortest_move(state_of(axis), c->target,
                              {.Ve = c->end_velocity, .Vm = Vm, .A = c->acceleration, .J = c->jerk}),
-               [](const Move& a) { return a.done; });
+               [](const Move& moved) { return moved.done; });
     return "";
 }
 
