@@ -1,0 +1,13 @@
+#pragma once
+
+#include "runtime/program/form.hpp"
+
+namespace lineshaft {
+
+inline constexpr const char* task_help = "add tasks such as tasks: {servo: {every: 2 ms}}";
+
+/// Both are read into a Program: tasks of a program change those of its controller.
+const Form& program_form();
+const Form& controller_form();
+
+}  // namespace lineshaft
