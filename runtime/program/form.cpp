@@ -26,10 +26,10 @@ bool says_default(const Key& key, const Node& node) {
            (node.text == key.word || node.text == key.otherwise);
 }
 
-/// What a list of this many items, or a map of this many entries, gets told.
+/// Of a list or a map. A limit without a message is for who reads it.
 bool check_size(const Reader& read, const Shape& s, const Node& node, std::size_t size) {
     const auto count = static_cast<std::int64_t>(size);
-    if (count >= s.least && count <= s.most) return true;
+    if (s.limit.empty() || (count >= s.least && count <= s.most)) return true;
     read.fail(s.least == 1 ? "L0202" : "L0214", node, std::string(s.limit), std::string(s.help));
     return false;
 }
@@ -113,6 +113,14 @@ void apply(const Form& form, const Rule& rule, const Reader& read, const Node& m
             if (const Node* n = map.find(other); node && n)
                 fail(other, "{0} says '{1}' or '{2}', not both",
                      rule.place == Rule::Place::the_key ? node : n);
+        return;
+    }
+    if (rule.kind == Rule::Kind::exactly_one) {
+        const auto counts = [&](const auto& entry) {
+            return !form.find(entry.first.text) ||
+                   std::ranges::find(rule.others, entry.first.text) != rule.others.end();
+        };
+        if (std::ranges::count_if(map.entries, counts) != 1) fail({}, {}, nullptr);
         return;
     }
     const bool conditional = rule.kind == Rule::Kind::only_with;

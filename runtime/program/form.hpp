@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/model/field.hpp"
 #include "runtime/source/reader.hpp"
 
 /// What `Field` is for a block, a key is for a form of YAML: declared once, with type, limits,
@@ -107,6 +108,7 @@ struct Rule {
         not_with,      ///< `key` stands beside none of `others`
         only_with,     ///< `key` stands beside one of `others`; what says the default is not there
         at_least_one,  ///< of `others` is there
+        exactly_one,   ///< of `others` is there; a misspelt key may have been it
     };
     enum class Place : std::uint8_t { the_map, the_key, the_other };  ///< what a message points at
 
@@ -133,8 +135,12 @@ struct Form {
     bool (*probe)(const Form&, const Reader&, const Node&) = nullptr;  ///< reads, and keeps nothing
 
     const Key* find(std::string_view key) const;
-    /// The keys and rules of `part`, whose plan lies at `offset` of this form's.
-    Form with(const Form& part, std::size_t offset) const;
+    /// The keys and rules of `part` as well, whose plan is this one's member.
+    template <auto Member>
+    Form with(const Form& part) const {
+        return with(part, detail::offset_of(Member));
+    }
+    Form with(const Form& part, std::size_t offset = 0) const;
 };
 
 namespace detail {

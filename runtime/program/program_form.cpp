@@ -323,21 +323,13 @@ const Form& trigger_form() {
                       "of a number: the lower and the upper bound"),
                   key<&TriggerPlan::values>("equals", a_value(), "of any type")},
          .rules = {{at_least_one, {}, {"signal"}, one_condition, trigger_help, the_map, "L0213"},
-                   {at_least_one,
+                   {exactly_one,
                     {},
                     {"edge", "above", "below", "inside", "equals"},
                     one_condition,
                     trigger_help,
                     the_map,
-                    "L0213"},
-                   {not_with,
-                    "edge",
-                    {"above", "below", "inside", "equals"},
-                    one_condition,
-                    trigger_help},
-                   {not_with, "above", {"below", "inside", "equals"}, one_condition, trigger_help},
-                   {not_with, "below", {"inside", "equals"}, one_condition, trigger_help},
-                   {not_with, "inside", {"equals"}, one_condition, trigger_help}},
+                    "L0213"}},
          .check = by<check_trigger>});
     return form;
 }
@@ -496,7 +488,7 @@ const Form& expectation_form() {
              .others = key("SIGNAL", either({a_form(expected_bounds), a_value()}),
                            "with 'at': its value, or its bounds"),
              .check = by<check_expectation>}
-            .with(expected_bounds(), 0));
+            .with(expected_bounds()));
     return form;
 }
 
