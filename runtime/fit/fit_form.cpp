@@ -72,6 +72,9 @@ void check_case(const Reader&, const Node& node, FitCasePlan& plan) {
 }
 
 const Form& case_form() {
+    static const Key compare = key<&CasePlan::comparisons>("compare", compared(comparison_form),
+                                                           "signals and what was measured of them")
+                                   .must();
     static const Form form = form_of<FitCasePlan>(
         Form{.name = "fit_case",
              .what = "a case of a fit",
@@ -83,14 +86,8 @@ const Form& case_form() {
                                       either({a_form(trace_form), a_value("the name of a trace")}),
                                       "a file, or more about it")},
              .check = by<check_case>}
-            .with<&FitCasePlan::run>(case_head())
-            .with<&FitCasePlan::run>(form_of<CasePlan>(
-                {.name = {},
-                 .what = {},
-                 .doc = {},
-                 .keys = {key<&CasePlan::comparisons>("compare", compared(comparison_form),
-                                                      "signals and what was measured of them")
-                              .must()}})));
+            .behind<&FitCasePlan::run>(form_of<CasePlan>(
+                case_head().with({.name = {}, .what = {}, .doc = {}, .keys = {compare}}))));
     return form;
 }
 
@@ -118,7 +115,7 @@ const Form& fit_form() {
             key<&FitFilePlan::cases>("cases",
                                      list_of(a_form(case_form)).filled("'cases' has no case"),
                                      "runs, and what was measured of them")
-                .must()}}.with<&FitFilePlan::study>(study_head()));
+                .must()}}.behind<&FitFilePlan::study>(study_head()));
     return form;
 }
 

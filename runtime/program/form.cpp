@@ -259,12 +259,13 @@ const Key* Form::find(std::string_view name_of_key) const {
     return it == keys.end() ? nullptr : &*it;
 }
 
-Form Form::with(const Form& part, std::size_t offset) const {
+Form Form::with(const Form& part, std::size_t offset, bool ahead) const {
     Form whole = *this;
-    for (Key k : part.keys) {
-        k.offset += offset;
-        whole.keys.push_back(std::move(k));
-    }
+    std::vector<Key> added = part.keys;
+    for (Key& k : added) k.offset += offset;
+    const bool versioned = !keys.empty() && keys.front().shape.kind == Kind::version;
+    const auto place = ahead ? whole.keys.begin() + (versioned ? 1 : 0) : whole.keys.end();
+    whole.keys.insert(place, added.begin(), added.end());
     whole.rules.insert(whole.rules.end(), part.rules.begin(), part.rules.end());
     return whole;
 }

@@ -135,12 +135,17 @@ struct Form {
     bool (*probe)(const Form&, const Reader&, const Node&) = nullptr;  ///< reads, and keeps nothing
 
     const Key* find(std::string_view key) const;
-    /// The keys and rules of `part` as well, whose plan is this one's member.
+    /// The keys and rules of `part` as well, whose plan is this one's or its member. They come
+    /// last, or `ahead` of this form's, but behind its version.
+    Form with(const Form& part, std::size_t offset = 0, bool ahead = false) const;
     template <auto Member>
     Form with(const Form& part) const {
         return with(part, detail::offset_of(Member));
     }
-    Form with(const Form& part, std::size_t offset = 0) const;
+    template <auto Member>
+    Form behind(const Form& part) const {
+        return with(part, detail::offset_of(Member), true);
+    }
 };
 
 namespace detail {

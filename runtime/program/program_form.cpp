@@ -137,26 +137,6 @@ Key tasks_key(std::string_view doc) {
 
 // Blocks
 
-/// The ports are those of the block's type.
-const Form& block_form() {
-    static const Form form = form_of<BlockPlan>(
-        {.name = "block",
-         .what = "a block",
-         .doc =
-             "a function block; its parameters and inputs are keys beside these, see "
-             "'lineshaft blocks TYPE'. An input is a constant or a wire: b.q, inputs.x, NOT b.q, "
-             "or previous(b.q) from the block itself or one behind it",
-         .keys = {key<&BlockPlan::type>("type", a_value("a type"),
-                                        "one of those that 'lineshaft blocks' lists")
-                      .must("'lineshaft blocks' lists the types"),
-                  key<&BlockPlan::task>("task", a_task(), "scans it, in the order of the file")
-                      .must("say which task scans it"),
-                  key<&BlockPlan::cost>("cost", a_time(), "adds to its task's execution time")
-                      .by_default("0 s")},
-         .others = key("PORT", a_value(), "a parameter or an input of the type")});
-    return form;
-}
-
 void read_block(const Reader& read, const Node& name, const Node& body, Program& program) {
     if (!read.identifier(name, "a block")) return;
     if (name.text == "inputs" || name.text == "outputs")
@@ -519,6 +499,25 @@ const Form& run_form() {
 }
 
 }  // namespace
+
+const Form& block_form() {
+    static const Form form = form_of<BlockPlan>(
+        {.name = "block",
+         .what = "a block",
+         .doc =
+             "a function block; its parameters and inputs are keys beside these, see "
+             "'lineshaft blocks TYPE'. An input is a constant or a wire: b.q, inputs.x, NOT b.q, "
+             "or previous(b.q) from the block itself or one behind it",
+         .keys = {key<&BlockPlan::type>("type", a_value("a type"),
+                                        "one of those that 'lineshaft blocks' lists")
+                      .must("'lineshaft blocks' lists the types"),
+                  key<&BlockPlan::task>("task", a_task(), "scans it, in the order of the file")
+                      .must("say which task scans it"),
+                  key<&BlockPlan::cost>("cost", a_time(), "adds to its task's execution time")
+                      .by_default("0 s")},
+         .others = key("PORT", a_value(), "a parameter or an input of the type")});
+    return form;
+}
 
 const Form& program_form() {
     static const Form form = form_of<Program>(

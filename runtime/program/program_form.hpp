@@ -10,4 +10,7 @@ inline constexpr const char* task_help = "add tasks such as tasks: {servo: {ever
 const Form& program_form();
 const Form& controller_form();
 
+/// What all blocks have in common.
+const Form& block_form();
+
 }  // namespace lineshaft

@@ -185,7 +185,7 @@ const Form& case_form() {
                         "leave the name out, or write the cases one by one",
                         the_key}},
              .check = by<check_case>}
-            .with(case_head()));
+            .with(case_head(), 0, true));
     return form;
 }
 
@@ -298,7 +298,7 @@ const Form& study_form() {
                      .must(),
                  key<&StudyPlan::claims>(
                      "claims", list_of(a_form(claim_form)),
-                     "formulas over the cases")}}.with(study_head()));
+                     "formulas over the cases")}}.with(study_head(), 0, true));
     return form;
 }
 
