@@ -2,22 +2,22 @@
 
 #include <fmt/format.h>
 
+// clang-format off: tables are laid out by hand
+
 namespace lineshaft {
 
 namespace {
 
 const Form& parameter_form() {
-    static const Form form = form_of<FitParameterPlan>(
-        {.name = "fit_parameter",
-         .what = "a parameter of a fit",
-         .doc = "a parameter of the program whose value is looked for; its unit is that of 'from'",
-         .keys = {key<&FitParameterPlan::from>("from", a_number(), "lower bound").must(),
-                  key<&FitParameterPlan::to>("to", a_number(), "upper bound").must(),
-                  key<&FitParameterPlan::start>("start", a_number(),
-                                                "of the first search; in the middle unless said"),
-                  key<&FitParameterPlan::step>(
-                      "step", a_number(),
-                      "of the difference quotients; 0.001 of the way unless said")}});
+    static const Form form = form_of<FitParameterPlan>({
+        .name = "fit_parameter", .what = "a parameter of a fit",
+        .doc = "a parameter of the program whose value is looked for; its unit is that of 'from'",
+        .keys = {
+            key<&FitParameterPlan::from>("from", a_number, "lower bound").must(),
+            key<&FitParameterPlan::to>("to", a_number, "upper bound").must(),
+            key<&FitParameterPlan::start>("start", a_number, "of the first search; in the middle unless said"),
+            key<&FitParameterPlan::step>("step", a_number,
+                "of the difference quotients; 0.001 of the way unless said")}});
     return form;
 }
 
@@ -35,27 +35,23 @@ const Form& comparison_form() {
             .what = "a comparison",
             .doc = "what was measured of a signal at the end of a case, or the samples of a trace",
             .keys = {key<&ComparisonPlan::uncertainty>(
-                         "uncertainty", a_number(),
+                         "uncertainty", a_number,
                          "differences are counted in it, in the signal's unit or in %; may be left "
                          "out where all values are of one unit"),
-                     key<&ComparisonPlan::column>("column", a_value(),
+                     key<&ComparisonPlan::column>("column", a_value,
                                                   "of the trace; named as the signal unless said")}}
                                     .with<&ComparisonPlan::bounds>(bounds_form()));
     return form;
 }
 
 const Form& trace_form() {
-    static const Form form = form_of<FitTracePlan>(
-        {.name = "fit_trace",
-         .what = "a trace",
-         .doc = "what was measured, sample by sample",
-         .keys = {
-             key<&FitTracePlan::file>("file", a_value("the name of a trace"),
-                                      "CSV, relative to this file")
-                 .must(),
-             key<&FitTracePlan::time>("time", a_value(), "its column of times").by_default("time"),
-             key<&FitTracePlan::offset>("offset", a_time(), "time of the run at its time 0")
-                 .by_default("0 s")}});
+    static const Form form = form_of<FitTracePlan>({
+        .name = "fit_trace", .what = "a trace",
+        .doc = "what was measured, sample by sample",
+        .keys = {
+            key<&FitTracePlan::file>("file", a_value.as("the name of a trace"), "CSV, relative to this file").must(),
+            key<&FitTracePlan::time>("time", a_value, "its column of times").by_default("time"),
+            key<&FitTracePlan::offset>("offset", a_time, "time of the run at its time 0").by_default("0 s")}});
     return form;
 }
 
@@ -75,19 +71,16 @@ const Form& case_form() {
     static const Key compare = key<&CasePlan::comparisons>("compare", compared(comparison_form),
                                                            "signals and what was measured of them")
                                    .must();
-    static const Form form = form_of<FitCasePlan>(
-        Form{.name = "fit_case",
-             .what = "a case of a fit",
-             .doc = "a run and what was measured of it",
-             .keys = {key<&FitCasePlan::hold_out>("hold_out", a_boolean(),
-                                                  "takes no part in the search, is only compared")
-                          .by_default("false"),
-                      key<read_trace>("trace",
-                                      either({a_form(trace_form), a_value("the name of a trace")}),
-                                      "a file, or more about it")},
-             .check = by<check_case>}
-            .behind<&FitCasePlan::run>(form_of<CasePlan>(
-                case_head().with({.name = {}, .what = {}, .doc = {}, .keys = {compare}}))));
+    static const Form form = form_of<FitCasePlan>(Form{
+        .name = "fit_case", .what = "a case of a fit",
+        .doc = "a run and what was measured of it",
+        .keys = {
+            key<&FitCasePlan::hold_out>("hold_out", a_boolean,
+                "takes no part in the search, is only compared").by_default("false"),
+            key<read_trace>("trace", either({a_form(trace_form), a_value.as("the name of a trace")}),
+                "a file, or more about it")},
+        .check = by<check_case>}
+        .behind<&FitCasePlan::run>(case_head().with({.name = {}, .what = {}, .doc = {}, .keys = {compare}})));
     return form;
 }
 
@@ -95,27 +88,20 @@ const Form& case_form() {
 
 const Form& fit_form() {
     static const Form form = form_of<FitFilePlan>(Form{
-        .name = "fit",
-        .what = "a fit",
-        .doc = "looks for the values of parameters that bring a program nearest to what was "
-               "measured, by least squares of (ours - given) / uncertainty",
+        .name = "fit", .what = "a fit",
+        .doc = "looks for the values of parameters that bring a program nearest to what was measured, by least "
+               "squares of (ours - given) / uncertainty",
         .keys = {
-            key("lineshaft_fit", a_version(), "version of this form").must(),
+            key("lineshaft_fit", a_version, "version of this form").must(),
             key<read_parameters>("parameters",
-                                 named("a parameter", a_form(parameter_form))
-                                     .filled("'parameters' names none to look for"),
-                                 "of the program, whose values are looked for")
-                .must("say what is looked for: parameters: {lag: {from: 0 ms, to: 50 "
-                      "ms}}"),
-            key<&FitFilePlan::starts>("starts",
-                                      an_integer().within(1, 1000, "'starts' is 1 to 1000"),
-                                      "searches: the first at each 'start', the others at random")
-                .by_default("1"),
-            key<&FitFilePlan::seed>("seed", an_integer().at_least(0), "of these").by_default("1"),
-            key<&FitFilePlan::cases>("cases",
-                                     list_of(a_form(case_form)).filled("'cases' has no case"),
-                                     "runs, and what was measured of them")
-                .must()}}.behind<&FitFilePlan::study>(study_head()));
+                named("a parameter", a_form(parameter_form)).filled("'parameters' names none to look for"),
+                "of the program, whose "
+                "values are looked for").must("say what is looked for: parameters: {lag: {from: 0 ms, to: 50 ms}}"),
+            key<&FitFilePlan::starts>("starts", an_integer.within(1, 1000, "'starts' is 1 to 1000"),
+                "searches: the first at each 'start', the others at random").by_default("1"),
+            key<&FitFilePlan::seed>("seed", an_integer.at_least(0), "of these").by_default("1"),
+            key<&FitFilePlan::cases>("cases", list_of(a_form(case_form)).filled("'cases' has no case"),
+                "runs, and what was measured of them").must()}}.behind<&FitFilePlan::study>(study_head()));
     return form;
 }
 

@@ -155,6 +155,20 @@ bool open(const Reader& read, const Key& key, const Node& node) {
     return true;
 }
 
+void collect(const Form& form, std::vector<const Form*>& into);
+
+void collect(const Shape& shape, std::vector<const Form*>& into) {
+    if (shape.form) collect(shape.form(), into);
+    for (const Shape& part : shape.of) collect(part, into);
+}
+
+void collect(const Form& form, std::vector<const Form*>& into) {
+    if (std::ranges::find(into, &form) != into.end()) return;
+    into.push_back(&form);
+    for (const Key& key : form.keys) collect(key.shape, into);
+    collect(form.others.shape, into);
+}
+
 }  // namespace
 
 Shape Shape::within(std::int64_t low, std::int64_t high, std::string_view message,
@@ -176,41 +190,14 @@ Shape Shape::unique(std::string_view message) const {
     return s;
 }
 
-Shape a_value(std::string_view what) {
-    return {.what = what};
+Shape Shape::as(std::string_view subject) const {
+    Shape s = *this;
+    s.what = subject;
+    return s;
 }
-Shape a_name(std::string_view what) {
-    return {.kind = Kind::name, .what = what};
-}
-Shape a_signal() {
-    return {.kind = Kind::signal, .what = "a signal"};
-}
-Shape a_task() {
-    return {.kind = Kind::task, .what = "a task's name"};
-}
-Shape a_number() {
-    return {.kind = Kind::number, .what = "a number"};
-}
-Shape a_boolean() {
-    return {.kind = Kind::boolean};
-}
-Shape an_integer() {
-    return {.kind = Kind::integer};
-}
-Shape a_time() {
-    return {.kind = Kind::time};
-}
-Shape a_time_or_share() {
-    return {.kind = Kind::share};
-}
-Shape nothing() {
-    return {.kind = Kind::nothing};
-}
-Shape a_version() {
-    return {.kind = Kind::version};
-}
-Shape a_block() {
-    return {.kind = Kind::block};
+
+Shape a_block(FormOf common) {
+    return {.kind = Kind::block, .form = common};
 }
 Shape a_form(FormOf form) {
     return {.kind = Kind::form, .form = form};
@@ -268,6 +255,12 @@ Form Form::with(const Form& part, std::size_t offset, bool ahead) const {
     whole.keys.insert(place, added.begin(), added.end());
     whole.rules.insert(whole.rules.end(), part.rules.begin(), part.rules.end());
     return whole;
+}
+
+std::vector<const Form*> forms_in(std::span<const FormOf> files) {
+    std::vector<const Form*> forms;
+    for (const FormOf file : files) collect(file(), forms);
+    return forms;
 }
 
 bool accept(const Reader& read, const Shape& s, const Node& node, std::string_view key) {

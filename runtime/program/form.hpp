@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -64,21 +65,22 @@ struct Shape {
     /// A list or a map that has something in it.
     Shape filled(std::string_view message, std::string_view advice = {}) const;
     Shape unique(std::string_view message) const;
+    Shape as(std::string_view subject) const;
 };
 
-Shape a_value(std::string_view what = {});
-Shape a_name(std::string_view what);
-Shape a_signal();
-Shape a_task();
-Shape a_number();
-Shape a_boolean();
-Shape an_integer();
-Shape a_time();
-Shape a_time_or_share();
-Shape nothing();
-Shape a_version();
-Shape a_block();
+inline const Shape a_value{};
+inline const Shape a_name{.kind = Shape::Kind::name};
+inline const Shape a_signal{.kind = Shape::Kind::signal, .what = "a signal"};
+inline const Shape a_task{.kind = Shape::Kind::task, .what = "a task's name"};
+inline const Shape a_number{.kind = Shape::Kind::number, .what = "a number"};
+inline const Shape a_boolean{.kind = Shape::Kind::boolean};
+inline const Shape an_integer{.kind = Shape::Kind::integer};
+inline const Shape a_time{.kind = Shape::Kind::time};
+inline const Shape a_time_or_share{.kind = Shape::Kind::share};
+inline const Shape nothing{.kind = Shape::Kind::nothing};
+inline const Shape a_version{.kind = Shape::Kind::version};
 Shape a_form(FormOf form);
+Shape a_block(FormOf common);  ///< `common` is what all types of block have
 Shape one_of(std::string_view what, std::vector<std::string_view> names);
 Shape list_of(Shape item);
 Shape one_or_list(Shape item);
@@ -142,11 +144,15 @@ struct Form {
     Form with(const Form& part) const {
         return with(part, detail::offset_of(Member));
     }
+    Form behind(const Form& part) const { return with(part, 0, true); }
     template <auto Member>
     Form behind(const Form& part) const {
         return with(part, detail::offset_of(Member), true);
     }
 };
+
+/// These, each followed by those that stand in it; each once.
+std::vector<const Form*> forms_in(std::span<const FormOf> files);
 
 namespace detail {
 

@@ -15,30 +15,6 @@ namespace {
 constexpr std::size_t line_width = 100;
 
 using Kind = Shape::Kind;
-using Forms = std::vector<const Form*>;
-
-void collect(const Form& form, Forms& into);
-
-void collect(const Shape& shape, Forms& into) {
-    if (shape.form) collect(shape.form(), into);
-    if (shape.kind == Kind::block) collect(block_form(), into);
-    for (const Shape& part : shape.of) collect(part, into);
-}
-
-/// `form`, then those that stand in it.
-void collect(const Form& form, Forms& into) {
-    if (std::ranges::find(into, &form) != into.end()) return;
-    into.push_back(&form);
-    for (const Key& key : form.keys) collect(key.shape, into);
-    if (!form.others.name.empty()) collect(form.others.shape, into);
-}
-
-Forms all_forms() {
-    Forms forms;
-    for (const FormOf file : files) collect(file(), forms);
-    return forms;
-}
-
 std::string limits_text(const Shape& s) {
     const bool low = s.least != Shape{}.least, high = s.most != Shape{}.most;
     if (s.kind == Kind::time) return low ? " above 0" : "";
@@ -160,7 +136,7 @@ nlohmann::ordered_json to_json(const Form& form) {
 }
 
 Exit execute(const std::string& name, bool json) {
-    const Forms forms = all_forms();
+    const std::vector<const Form*> forms = forms_in(files);
     if (name.empty()) {
         auto list = nlohmann::ordered_json::array();
         for (const Form* form : forms) {
