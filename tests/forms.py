@@ -86,13 +86,17 @@ def draw_map(of, objects, definition):
             return drawn
 
 
+def within(number, of):
+    return jsonschema.Draft7Validator(of).is_valid(number)
+
+
 DRAW = {
     "object": draw_map,
     "array": draw_list,
     "null": lambda *_: None,
     "boolean": lambda *_: rng.choice([True, False]),
     "string": lambda *_: rng.choice(NAMES),
-    "number": lambda *_: rng.choice([0, 1.5, -2e-3, 40]),
+    "number": lambda of, *_: rng.choice([n for n in (0, 0.5, 1.5, -2e-3, 40) if within(n, of)]),
     "integer": lambda of, *_: rng.randint(of.get("minimum", -5), min(of.get("maximum", 20), 20)),
 }
 
@@ -168,9 +172,11 @@ def misspell(drawn, of):
 
 
 def remove(drawn, of):
-    if not of.get("required"):
+    # A replay without its file is a stimulus.
+    keys = [key for key in of.get("required", []) if of is not definitions["replay"] or key != "file"]
+    if not keys:
         return None
-    key = rng.choice(of["required"])
+    key = rng.choice(keys)
     del drawn[key]
     return f"'{key}' is removed"
 

@@ -208,8 +208,9 @@ Shape one_of(std::string_view what, std::vector<std::string_view> names) {
 Shape list_of(Shape item) {
     return {.kind = Kind::list, .of = {std::move(item)}};
 }
-Shape one_or_list(Shape item) {
-    return either({list_of(item), item});
+Shape one_or_list(Shape item, std::string_view empty) {
+    const Shape list = list_of(item);
+    return either({empty.empty() ? list : list.filled(empty), item});
 }
 Shape named(std::string_view what, Shape value) {
     return {.kind = Kind::map, .what = what, .of = {std::move(value)}};

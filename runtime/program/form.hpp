@@ -83,7 +83,8 @@ Shape a_form(FormOf form);
 Shape a_block(FormOf common);  ///< `common` is what all types of block have
 Shape one_of(std::string_view what, std::vector<std::string_view> names);
 Shape list_of(Shape item);
-Shape one_or_list(Shape item);
+/// A list may be empty unless there is a message about that.
+Shape one_or_list(Shape item, std::string_view empty = {});
 Shape named(std::string_view what, Shape value);
 Shape signals_to(Shape value);
 Shape either(std::vector<Shape> shapes);

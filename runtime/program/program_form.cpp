@@ -67,10 +67,10 @@ const Form& task_form() {
         .doc = "scans its blocks, cyclically or at events; in a program it may change a task of the controller",
         .keys = {
             key<&TaskPlan::every>("every", a_time.above_zero("a task's interval must be above 0"), "interval"),
-            key<&TaskPlan::on>("on", one_or_list(a_signal).filled("'on' names no signal"),
+            key<&TaskPlan::on>("on", one_or_list(a_signal, "'on' names no signal"),
                 "boolean signals: each rising edge starts a scan, a pulse output's at its exact time; one that "
                 "comes while the task runs is remembered, a second one is a time error"),
-            key<&TaskPlan::on_overrun>("on_overrun", one_or_list(a_task).filled("'on_overrun' names no task"),
+            key<&TaskPlan::on_overrun>("on_overrun", one_or_list(a_task, "'on_overrun' names no task"),
                 "tasks: each of their time errors starts a scan, as OB80"),
             key<&TaskPlan::offset>("offset", a_time, "start of the first scan").by_default("0 s"),
             key<&TaskPlan::priority>("priority", an_integer, "a larger number wins").by_default("1"),
