@@ -3,7 +3,7 @@
 
 A folder holds a program.yaml with a mistake, and what else it needs:
     args          the command line, one argument a line; default: check, program.yaml
-    exit          the exit code; default: 2
+    exit          the exit code; default: 2; of warnings 0
     command_line  present when the mistake is in the command line or the machine: messages have no place
     expected.txt  what stands on stderr, byte for byte
 
@@ -18,8 +18,8 @@ import sys
 import time
 
 LONGEST_SECONDS = 2.0
-PLACED = re.compile(r"^[^:\s]+:\d+:\d+: error\[L\d{4}\]: ")
-HEAD = re.compile(r"error(\[L\d{4}\])?: ")
+PLACED = re.compile(r"^[^:\s]+:\d+:\d+: (error|warning)\[L\d{4}\]: ")
+HEAD = re.compile(r"(error|warning)(\[L\d{4}\])?: ")
 
 
 def read(path, default):
@@ -55,7 +55,7 @@ def check(lineshaft, folder, update):
         heads = [line for line in stderr.splitlines() if HEAD.search(line) and "|" not in line]
         wrong += ["no place: " + line for line in heads if not PLACED.match(line)]
         if not heads:
-            wrong.append("no error")
+            wrong.append("no message")
     return wrong
 
 

@@ -4,8 +4,12 @@
 
 namespace lineshaft {
 
+enum class Coordinate { x, y };
+
 struct Point {
     double x = 0, y = 0;
+
+    double along(Coordinate c) const { return c == Coordinate::x ? x : y; }
 };
 
 /// An arc about (0, 0), cut into n equal steps of the master's angle theta = 0 .. sweep:

@@ -154,8 +154,8 @@ void CircleRatio::begin() {
     start_y = from.y;
     master_target = arc.sweep;
     master_velocity = master_speed();
-    x = {.coordinate = &Point::x, .acceleration = acceleration};
-    y = {.coordinate = &Point::y, .acceleration = acceleration};
+    x = {.coordinate = Coordinate::x, .acceleration = acceleration};
+    y = {.coordinate = Coordinate::y, .acceleration = acceleration};
     done = execute = false;
     approach = true;
 }
@@ -173,12 +173,13 @@ void CircleRatio::engage() {
     }
 }
 
-double CircleRatio::first_ratio(double Point::*f) const {
+double CircleRatio::first_ratio(Coordinate f) const {
     const double half = arc.step_angle() / 2;
-    if (method == Method::ramp) return Sleef_cinz_tand1_u10purec(half) / half * (arc.slope(0).*f);
-    if (method != Method::balanced || arc.steps == 1) return arc.chord_ratio(1).*f;
+    if (method == Method::ramp)
+        return Sleef_cinz_tand1_u10purec(half) / half * arc.slope(0).along(f);
+    if (method != Method::balanced || arc.steps == 1) return arc.chord_ratio(1).along(f);
     const double theta = master_speed() * static_cast<double>(next_clock) * motion_clock;
-    return (arc.at(theta, radius + 0.75 * sagitta).*f - arc.at(0).*f) / theta;
+    return (arc.at(theta, radius + 0.75 * sagitta).along(f) - arc.at(0).along(f)) / theta;
 }
 
 /// Steps 8 to 10.
@@ -201,7 +202,7 @@ void CircleRatio::run(const Scan& now) {
 void CircleRatio::poll(Axis& axis, double angle) {
     if (axis.step >= arc.steps || angle < axis.switch_angle) return;
     ++axis.step;
-    axis.ratio = arc.chord_ratio(axis.step).*axis.coordinate;
+    axis.ratio = arc.chord_ratio(axis.step).along(axis.coordinate);
     plan_change(axis);
 }
 
@@ -209,7 +210,8 @@ void CircleRatio::poll(Axis& axis, double angle) {
 void CircleRatio::plan_change(Axis& axis) const {
     if (axis.step >= arc.steps) return;
     const double v_G = master_speed();
-    const double dv = std::abs(arc.chord_ratio(axis.step + 1).*axis.coordinate - axis.ratio) * v_G;
+    const double dv =
+        std::abs(arc.chord_ratio(axis.step + 1).along(axis.coordinate) - axis.ratio) * v_G;
     axis.switch_angle = arc.theta(axis.step);
     if (method == Method::early) axis.switch_angle -= v_G * time_for(dv);
     if (method == Method::centred) axis.switch_angle -= v_G * exact_time(dv) / 2;
@@ -256,7 +258,7 @@ void CircleRatio::balance(std::int64_t clock) {
 void CircleRatio::balance_axis(Axis& axis, double from, double t, double next, double rho) {
     const double v_G = master_speed();
     const double v_old = axis.ratio * v_G;
-    const double vertex = arc.at(v_G * next, rho).*axis.coordinate;
+    const double vertex = arc.at(v_G * next, rho).along(axis.coordinate);
     axis.step = knot + 1;
     double v_new = v_old;
     for (int i = 0; i < fixed_point_steps; ++i) {
@@ -292,8 +294,8 @@ void CircleRatio::ramp_axis(Axis& axis, double from, double t, double next) {
     if (!(dt > 0)) return;
     const double half = arc.step_angle() / 2;
     const double scale = Sleef_cinz_tand1_u10purec(half) / half;
-    const double missing = arc.at(v_G * t).*axis.coordinate - from;
-    const double v_new = scale * (arc.slope(v_G * next).*axis.coordinate) * v_G + missing / dt;
+    const double missing = arc.at(v_G * t).along(axis.coordinate) - from;
+    const double v_new = scale * arc.slope(v_G * next).along(axis.coordinate) * v_G + missing / dt;
     if (!std::isfinite(v_new / v_G)) return;
     const double dv = std::abs(v_new - axis.ratio * v_G);
     const double root = 1 - 4 * dv / (jerk * dt * dt);

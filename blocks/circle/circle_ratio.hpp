@@ -67,7 +67,7 @@ struct CircleRatio {
 
     /// One slave: its coordinate of the arc's points, and what it was told.
     struct Axis {
-        double Point::*coordinate = &Point::x;
+        Coordinate coordinate = Coordinate::x;
         std::int64_t step = 0;      ///< i of the ratio in force
         double ratio = 0;           ///< [mm/rad]
         double acceleration = 100;  ///< of its last job [mm/s^2]
@@ -96,7 +96,7 @@ struct CircleRatio {
     void enter(State next, const Scan& now);
     void begin();
     void engage();
-    double first_ratio(double Point::*coordinate) const;
+    double first_ratio(Coordinate coordinate) const;
     void run(const Scan& now);
     void poll(Axis& axis, double job_angle);
     void plan_change(Axis& axis) const;

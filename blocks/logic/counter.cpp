@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "blocks/inputs.hpp"
 
 namespace lineshaft {
@@ -39,6 +41,15 @@ std::int64_t preset(std::int64_t pv, CounterType type) {
     return std::clamp(pv, range(type).least, range(type).most);
 }
 
+/// A `pv` that cv never comes to.
+std::optional<Misfit> preset_misfit(std::int64_t pv, CounterType type,
+                                    const IsConstant& is_constant) {
+    if (preset(pv, type) == pv || !is_constant("pv")) return {};
+    const auto [least, most] = range(type);
+    return Misfit{"pv", fmt::format("data_type: {} counts from {} to {}",
+                                    type_names[static_cast<std::size_t>(type)], least, most)};
+}
+
 constexpr std::string_view data_type_doc = "type of cv: its limits";
 
 }  // namespace
@@ -53,6 +64,10 @@ std::span<const Field> Ctu::fields() {
         output("cv", &Ctu::cv, "", "counter value"),
     };
     return table;
+}
+
+std::optional<Misfit> Ctu::misfit(const IsConstant& is_constant) const {
+    return preset_misfit(pv, data_type, is_constant);
 }
 
 void Ctu::scan(const Scan&) {
@@ -74,6 +89,10 @@ std::span<const Field> Ctd::fields() {
         output("cv", &Ctd::cv, "", "counter value"),
     };
     return table;
+}
+
+std::optional<Misfit> Ctd::misfit(const IsConstant& is_constant) const {
+    return preset_misfit(pv, data_type, is_constant);
 }
 
 void Ctd::scan(const Scan&) {
@@ -98,6 +117,10 @@ std::span<const Field> Ctud::fields() {
         output("cv", &Ctud::cv, "", "counter value"),
     };
     return table;
+}
+
+std::optional<Misfit> Ctud::misfit(const IsConstant& is_constant) const {
+    return preset_misfit(pv, data_type, is_constant);
 }
 
 void Ctud::scan(const Scan&) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
+#include "runtime/model/catalog.hpp"
 #include "runtime/model/field.hpp"
 #include "runtime/model/scan.hpp"
 
@@ -29,6 +31,7 @@ struct Ctu {
     static constexpr std::string_view type = "ctu";
     static constexpr std::string_view doc = "up counter";
     static std::span<const Field> fields();
+    std::optional<Misfit> misfit(const IsConstant& is_constant) const;
     void scan(const Scan& now);
 };
 
@@ -46,6 +49,7 @@ struct Ctd {
     static constexpr std::string_view type = "ctd";
     static constexpr std::string_view doc = "down counter";
     static std::span<const Field> fields();
+    std::optional<Misfit> misfit(const IsConstant& is_constant) const;
     void scan(const Scan& now);
 };
 
@@ -64,6 +68,7 @@ struct Ctud {
     static constexpr std::string_view type = "ctud";
     static constexpr std::string_view doc = "up and down counter";
     static std::span<const Field> fields();
+    std::optional<Misfit> misfit(const IsConstant& is_constant) const;
     void scan(const Scan& now);
 };
 

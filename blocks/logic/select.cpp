@@ -61,6 +61,11 @@ std::span<const Field> Limit::fields() {
     return table;
 }
 
+std::optional<Misfit> Limit::misfit(const IsConstant& is_constant) const {
+    if (mn <= mx || !is_constant("mn") || !is_constant("mx")) return {};
+    return Misfit{"mn", "it must not be above mx"};
+}
+
 void Limit::scan(const Scan&) {
     settle(*this, std::min(std::max(in, mn), mx), finite_error(mn, in, mx));
 }

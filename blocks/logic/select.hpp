@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "blocks/logic/number.hpp"
+#include "runtime/model/catalog.hpp"
 #include "runtime/model/field.hpp"
 #include "runtime/model/scan.hpp"
 
@@ -55,6 +57,7 @@ struct Limit {
     static constexpr std::string_view type = "limit";
     static constexpr std::string_view doc = "a number held between mn and mx";
     static std::span<const Field> fields();
+    std::optional<Misfit> misfit(const IsConstant& is_constant) const;
     void scan(const Scan& now);
 };
 

@@ -47,15 +47,16 @@ std::span<const Field> ConstantJerkLine::fields() {
             .one_of(phases_names),
         parameter("chain", &L::chain, "", "whose completion sends the next sample")
             .one_of(chain_names),
-        parameter("period", &L::period, "s", "sampling period"),
+        parameter("period", &L::period, "s", "sampling period").above(0),
         parameter("pulses_per_length", &L::pulses_per_length, "pulses/cm", "of both axes").above(0),
         parameter("threshold_distance", &L::threshold_distance, "cm", "below it an axis stands")
             .at_least(0),
         parameter("threshold_pulses", &L::threshold_pulses, "", "likewise").at_least(0),
-        input("acceleration", &L::acceleration, "cm/s^2", "limit of the leading axis"),
-        input("jerk", &L::jerk, "cm/s^3", "of the leading axis"),
-        input("velocity", &L::velocity, "cm/s", "limit of the leading axis"),
-        input("interpolation_time", &L::interpolation_time, "s", "time allowed; 0: not said"),
+        input("acceleration", &L::acceleration, "cm/s^2", "limit of the leading axis").above(0),
+        input("jerk", &L::jerk, "cm/s^3", "of the leading axis").above(0),
+        input("velocity", &L::velocity, "cm/s", "limit of the leading axis").above(0),
+        input("interpolation_time", &L::interpolation_time, "s", "time allowed; 0: not said")
+            .at_least(0),
         input("start", &L::start, "", "rising edge: begin a line"),
         of(&L::x, input("x", &C::displacement, "cm", "displacement, signed")),
         of(&L::y, input("y", &C::displacement, "cm", "displacement, signed")),

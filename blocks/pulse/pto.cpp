@@ -37,11 +37,16 @@ std::span<const Field> Pto::fields() {
         input("multi_segment", &P::multi_segment, "", "true: by the profile table"),
         input("update_rate", &P::update_rate, "", "false: a single segment keeps the last rate"),
         input("update_count", &P::update_count, "", "false: it keeps the last count"),
-        input("control", &P::control, "", "SMB67 in place of these four, if 0 or more"),
-        input("start_rate", &P::start_rate, "Hz", "rate of a single segment, or at its start"),
-        input("end_rate", &P::end_rate, "Hz", "multi-segment: rate at the end of the one segment"),
-        input("count", &P::count, "", "pulses"),
-        input("segments", &P::segments, "", "of the profile to run; below 0: all"),
+        input("control", &P::control, "", "SMB67 in place of these four, if 0 or more")
+            .at_most(255),
+        input("start_rate", &P::start_rate, "Hz", "rate of a single segment, or at its start")
+            .at_least(1)
+            .at_most(most_multi),
+        input("end_rate", &P::end_rate, "Hz", "multi-segment: rate at the end of the one segment")
+            .at_least(1)
+            .at_most(most_multi),
+        input("count", &P::count, "", "pulses").at_least(1).at_most(most_pulses),
+        input("segments", &P::segments, "", "of the profile to run; below 0: all").at_most(255),
         input("reverse", &P::reverse, "", "direction of the next train"),
         input("interrupt", &P::interrupt, "", "the end of a train sets `done` (ATCH)"),
         input("execute", &P::execute, "", "rising edge: the PLS instruction"),
@@ -69,12 +74,30 @@ std::span<const Field> Pto::fields() {
 }
 
 std::span<const TableField> Pto::tables() {
-    static const Field columns[] = {column("start_rate", "Hz", "rate at the segment's start"),
-                                    column("end_rate", "Hz", "rate at its end"),
-                                    column("count", "", "pulses")};
+    static const Field columns[] = {
+        column("start_rate", "Hz", "rate at the segment's start").at_least(1).at_most(most_multi),
+        column("end_rate", "Hz", "rate at its end").at_least(1).at_most(most_multi),
+        column("count", "", "pulses").at_least(1).at_most(most_pulses)};
     static const TableField list[] = {
         table("profile", &Pto::profile, columns, "the profile table, a row a segment")};
     return list;
+}
+
+std::optional<Misfit> Pto::misfit(const IsConstant& is_constant) const {
+    if (!is_constant("control")) return {};
+    const bool by_byte = control >= 0;
+    if (by_byte && !bit(control, 6))
+        return Misfit{"control", "bit 6 chooses pulse train output; without it all is refused"};
+    if (!by_byte && !is_constant("multi_segment")) return {};
+    const bool multi = by_byte ? bit(control, 5) : multi_segment;
+    if (!multi && profile.size > 0)
+        return Misfit{"profile", "a profile is for multi-segment output: multi_segment: true"};
+    if (!multi && is_constant("start_rate") && start_rate > most_single)
+        return Misfit{"start_rate", "a single segment has at most 65535 Hz"};
+    const std::int64_t most = std::max<std::int64_t>(profile.size, 1);
+    if (multi && is_constant("segments") && (segments == 0 || segments > most))
+        return Misfit{"segments", "as many as the profile has, or -1 for all"};
+    return {};
 }
 
 void Pto::scan(const Scan&) {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "blocks/pulse/pulse_train.hpp"
+#include "runtime/model/catalog.hpp"
 #include "runtime/model/device.hpp"
 #include "runtime/model/field.hpp"
 #include "runtime/model/scan.hpp"
@@ -86,6 +88,7 @@ struct Pto {
     static std::span<const Field> fields();
     static std::span<const TableField> tables();
     void scan(const Scan& now);
+    std::optional<Misfit> misfit(const IsConstant& is_constant) const;
 
     std::int64_t next_event_time() const;
     void advance(std::int64_t time, PulseSink* sink);

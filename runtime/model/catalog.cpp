@@ -6,14 +6,18 @@ namespace lineshaft {
 
 const Field* BlockType::find_settable(std::string_view field) const {
     for (const Field& f : fields)
-        if (f.name == field && f.direction != Direction::output) return &f;
+        if (f.name == field && f.direction != Direction::output && f.direction != Direction::local)
+            return &f;
     return nullptr;
 }
 
 const Field* BlockType::find_readable(std::string_view field) const {
     for (const Field& f : fields)
-        if (f.name == field && f.direction == Direction::output) return &f;
-    return find_settable(field);
+        if (f.name == field &&
+            (f.direction == Direction::output || f.direction == Direction::local))
+            return &f;
+    const Field* settable = find_settable(field);
+    return settable && settable->direction == Direction::in_out ? nullptr : settable;
 }
 
 const TableField* BlockType::find_table(std::string_view table) const {

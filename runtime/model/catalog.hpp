@@ -1,8 +1,12 @@
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <new>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,9 +20,21 @@
 namespace lineshaft {
 
 /// Scans `count` blocks of a kind that stand one behind the other. True when one has an error.
-using ScanBlocks = bool (*)(std::byte* first, std::size_t count, const Scan& now);
+using ScanBlocks = bool (*)(std::byte* first, std::size_t count, const Scan& now,
+                            const Context& context);
+
+/// A constant that comes to nothing together with the other constants of its block, as a rate above
+/// what the chosen mode puts out.
+struct Misfit {
+    std::string_view field;
+    std::string why;
+};
+
+/// True of a field that has one value all the time: neither wired nor set from outside.
+using IsConstant = std::function<bool(std::string_view field)>;
 
 /// What the runtime knows of a kind of block: how to make one, how to call it, what it is made of.
+/// What its texts and fields point to is static, or kept by `owner`.
 struct BlockType {
     std::string_view name;
     std::string_view doc;
@@ -26,34 +42,67 @@ struct BlockType {
     std::span<const TableField> tables;  ///< a block with `tables()` has some
     std::size_t size = 0;
     std::size_t alignment = 0;
-    void (*construct)(std::byte* place) = nullptr;
-    ScanBlocks scan = nullptr;
-    DeviceCalls device;
+    void (*make)(std::byte* place, const void* context) = nullptr;
+    ScanBlocks scan_blocks = nullptr;
+    DeviceCalls device = {};
+    std::optional<Misfit> (*misfit)(const std::byte* block,
+                                    const IsConstant& is_constant) = nullptr;  ///< or null
+    const void* context = nullptr;           ///< what all blocks of the kind share; may be null
+    std::shared_ptr<const void> owner = {};  ///< of a kind that a program brings along
 
     bool is_device() const { return device.advance != nullptr; }
+    void construct(std::byte* place) const { make(place, context); }
 
-    /// What a program may set (a parameter or input), or what it may read (an output, else an input
-    /// or parameter). An output may bear an input's name: `velocity` is set as the wanted one and
-    /// read as the axis' own. Null when there is none.
+    /// What a program may set (a parameter, an input, a reference), or what it may read (an output
+    /// or a local, else an input or a parameter). An output may bear an input's name: `velocity` is
+    /// set as the wanted one and read as the axis' own. Null when there is none.
     const Field* find_settable(std::string_view field) const;
     const Field* find_readable(std::string_view field) const;
     const TableField* find_table(std::string_view name) const;
 };
 
+namespace detail {
+
+template <class Block>
+constexpr bool copied_as_bytes() {
+    (void)std::bit_cast<std::array<std::byte, sizeof(Block)>>(Block{});
+    return true;
+}
+
+}  // namespace detail
+
+/// Plain data: without pointers, references, unions, made by a constant expression, so that a
+/// machine's state can be kept and restored as bytes.
+template <class Block>
+concept PlainData = std::is_trivially_copyable_v<Block> && requires {
+    typename std::bool_constant<detail::copied_as_bytes<Block>()>;
+};
+
 /// The kinds of block a program may use, by name.
 class Catalog {
   public:
-    /// A block is a struct with `type`, `doc`, `fields()` and `scan(const Scan&)`. It is plain
-    /// data, so that a machine's state can be kept and restored as bytes. An output `error` is its
-    /// member `error`.
+    /// A block is a struct with `type`, `doc`, `fields()` and `scan(const Scan&)`, or
+    /// `scan(const Scan&, const Context&)`. An output `error` is its member `error`. It may have
+    /// `misfit(const IsConstant&) const`, for what its limits cannot say.
     template <class Block>
     Catalog& add() {
-        static_assert(std::is_trivially_copyable_v<Block>);
+        static_assert(PlainData<Block>);
         std::span<const TableField> tables;
         if constexpr (requires { Block::tables(); }) tables = Block::tables();
-        types_.push_back({Block::type, Block::doc, Block::fields(), tables, sizeof(Block),
-                          alignof(Block), [](std::byte* place) { new (place) Block{}; },
-                          scan_blocks<Block>, device_calls<Block>()});
+        return add({.name = Block::type,
+                    .doc = Block::doc,
+                    .fields = Block::fields(),
+                    .tables = tables,
+                    .size = sizeof(Block),
+                    .alignment = alignof(Block),
+                    .make = [](std::byte* place, const void*) { new (place) Block{}; },
+                    .scan_blocks = scan_blocks<Block>,
+                    .device = device_calls<Block>(),
+                    .misfit = misfit<Block>()});
+    }
+
+    Catalog& add(BlockType type) {
+        types_.push_back(std::move(type));
         return *this;
     }
 
@@ -63,11 +112,24 @@ class Catalog {
 
   private:
     template <class Block>
-    static bool scan_blocks(std::byte* first, std::size_t count, const Scan& now) {
+    static constexpr auto misfit() -> decltype(BlockType::misfit) {
+        if constexpr (requires(const Block& block, const IsConstant& f) { block.misfit(f); })
+            return [](const std::byte* block, const IsConstant& is_constant) {
+                return std::launder(reinterpret_cast<const Block*>(block))->misfit(is_constant);
+            };
+        return nullptr;
+    }
+
+    template <class Block>
+    static bool scan_blocks(std::byte* first, std::size_t count, const Scan& now,
+                            const Context& context) {
         bool error = false;
         Block* block = std::launder(reinterpret_cast<Block*>(first));
         for (; count > 0; --count, ++block) {
-            block->scan(now);
+            if constexpr (requires { block->scan(now, context); })
+                block->scan(now, context);
+            else
+                block->scan(now);
             if constexpr (requires { block->error; }) error |= block->error;
         }
         return error;

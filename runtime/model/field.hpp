@@ -16,10 +16,12 @@ enum class Direction : std::uint8_t {
     parameter,  ///< constant while the program runs
     input,      ///< constant, wired, or set by a stimulus; copied in before each scan
     output,     ///< written by the block; may be wired, traced, expected
+    local,      ///< of the block alone; may be traced, expected, forced, retained, not wired
+    in_out,     ///< a reference to another block, by its number: see Context
 };
 
 constexpr std::string_view name_of(Direction direction) {
-    constexpr std::string_view names[] = {"parameter", "input", "output"};
+    constexpr std::string_view names[] = {"parameter", "input", "output", "local", "reference"};
     return names[static_cast<std::size_t>(direction)];
 }
 
@@ -40,6 +42,7 @@ struct Field {
     bool minimum_excluded = false;
     bool maximum_excluded = false;
     bool required = false;
+    std::string_view refers = {};  ///< of a reference: the type that it takes
 
     /// Limits of a constant in the program file; a wired value is the block's own business.
     constexpr Field above(double limit) const {
@@ -164,6 +167,22 @@ Field input(std::string_view name, T Block::*member, std::string_view unit, std:
 template <class Block, class T>
 Field output(std::string_view name, T Block::*member, std::string_view unit, std::string_view doc) {
     return detail::field(Direction::output, name, member, unit, doc);
+}
+
+template <class Block, class T>
+Field local(std::string_view name, T Block::*member, std::string_view unit, std::string_view doc) {
+    return detail::field(Direction::local, name, member, unit, doc);
+}
+
+/// `axis: shaft`: the number of a block of type `refers`, which a program must give. The block is
+/// scanned in the order of the file with all that refer to the same one in its task.
+template <class Block>
+Field in_out(std::string_view name, std::int64_t Block::*member, std::string_view refers,
+             std::string_view doc) {
+    Field f = detail::field(Direction::in_out, name, member, "", doc);
+    f.refers = refers;
+    f.required = true;
+    return f;
 }
 
 template <class Block, class Part, class T>

@@ -15,7 +15,7 @@ std::optional<Value> read_name(const Reader& read, const Node& node, const Field
     if (it != field.names.end()) return Value(static_cast<std::int64_t>(it - field.names.begin()));
     std::vector<std::string> names(field.names.begin(), field.names.end());
     std::erase(names, "");
-    read.fail("L0306", node, fmt::format("'{}' is no value of '{}'", node.text, field.name),
+    read.fail("L0306", node, fmt::format("'{}' is not a value of '{}'", node.text, field.name),
               suggest(node.text, names));
     return {};
 }
@@ -36,22 +36,26 @@ std::optional<Value> read_integer(const Reader& read, const Node& node, const Fi
         return Value(static_cast<std::int64_t>(*value));
     read.fail(
         "L0309", node,
-        fmt::format("'{}' is no whole number of {} for '{}'", node.text, unit.text, field.name));
+        fmt::format("'{}' is not a whole number of {} for '{}'", node.text, unit.text, field.name));
     return {};
 }
 
 }  // namespace
 
 std::string describe_limits(const Field& field, const std::string& unit) {
+    const auto number = [](double limit) {
+        const bool whole = limit == std::trunc(limit) && std::abs(limit) < 9e15;
+        return whole ? std::to_string(static_cast<std::int64_t>(limit)) : format_number(limit);
+    };
     const std::string suffix = unit.empty() ? "" : " " + unit;
     std::string text;
     if (std::isfinite(field.minimum))
         text = fmt::format("{} {}{}", field.minimum_excluded ? "above" : "at least",
-                           format_number(field.minimum), suffix);
+                           number(field.minimum), suffix);
     if (std::isfinite(field.maximum))
         text += fmt::format("{}{} {}{}", text.empty() ? "" : ", ",
-                            field.maximum_excluded ? "below" : "at most",
-                            format_number(field.maximum), suffix);
+                            field.maximum_excluded ? "below" : "at most", number(field.maximum),
+                            suffix);
     return text;
 }
 

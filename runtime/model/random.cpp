@@ -6,11 +6,6 @@
 
 namespace lineshaft {
 
-Random::Random(std::uint64_t seed, std::string_view name) : state_(0xcbf29ce484222325) {
-    for (const char c : name) state_ = (state_ ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-    state_ ^= seed * 0x9e3779b97f4a7c15;
-}
-
 std::uint64_t Random::next() {
     std::uint64_t z = state_ += 0x9e3779b97f4a7c15;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;

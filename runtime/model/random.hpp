@@ -9,7 +9,10 @@ namespace lineshaft {
 /// change its draws. SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
 class Random {
   public:
-    Random(std::uint64_t seed, std::string_view name);
+    constexpr Random(std::uint64_t seed, std::string_view name) : state_(0xcbf29ce484222325) {
+        for (const char c : name) state_ = (state_ ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+        state_ ^= seed * 0x9e3779b97f4a7c15;
+    }
 
     std::uint64_t next();
 

@@ -107,6 +107,7 @@ void add_seed(const Instance& block, std::byte* live, Machine& machine) {
 
 void fill_blocks(Layout& layout) {
     Machine& machine = layout.machine;
+    machine.instances.resize(layout.net.instances.size());
     for (std::size_t i = 0; i < layout.net.instances.size(); ++i) {
         const Instance& block = layout.net.instances[i];
         BlockPlace& place = machine.blocks.emplace_back(BlockPlace{block.name, block.type});
@@ -116,6 +117,7 @@ void fill_blocks(Layout& layout) {
         place.live = task.live + layout.offsets[i];
         place.published = is_device ? place.live : task.published + layout.offsets[i];
         std::ranges::copy(block.image, place.live);
+        machine.instances[i] = place.live;
         task.infos.push_back({block.described(), block.cost});
         add_error_flag(block, place.live, task);
         add_seed(block, place.live, machine);

@@ -85,7 +85,8 @@ void append_call(const Net& net, std::span<const int> blocks, Machine& machine) 
     const Instance& first = net.instance(blocks.front());
     Task& task = machine.tasks[static_cast<std::size_t>(first.task)];
     Call& call = task.calls.emplace_back();
-    call.scan = first.type->scan;
+    call.scan = first.type->scan_blocks;
+    call.context = {first.type->context, machine.instances.data()};
     call.first = machine.blocks[static_cast<std::size_t>(blocks.front())].live;
     call.count = blocks.size();
     call.size = first.type->size;

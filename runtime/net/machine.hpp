@@ -56,6 +56,7 @@ struct Wires {
 /// other in memory. Their inputs are the next so many of the task's wires.
 struct Call {
     ScanBlocks scan = nullptr;
+    Context context = {};
     std::byte* first = nullptr;
     std::size_t count = 0, size = 0;  ///< of blocks; [bytes] of each
     std::uint32_t words = 0, booleans = 0, negated = 0, widened = 0;  ///< of copies
@@ -193,7 +194,8 @@ struct BlockPlace {
 struct Machine {
     std::vector<std::byte> memory;  ///< all blocks and inputs; zeroed, then constructed
     std::vector<Task> tasks;  ///< in scan order of equal instants: priority, then place in the file
-    std::vector<BlockPlace> blocks;  ///< in the order of the file
+    std::vector<BlockPlace> blocks;     ///< in the order of the file
+    std::vector<std::byte*> instances;  ///< their live memory, for references
     std::vector<Signal> signals;
     std::vector<Stimulus> stimuli;  ///< sorted by time
     std::vector<Replay> replays;    ///< in the order of the file: of one input the last wins

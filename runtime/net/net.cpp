@@ -29,7 +29,7 @@ std::string Instance::described() const {
 std::optional<Signal> Net::find(const Reader& read, const Node& node, std::string_view text) const {
     const auto name = split_signal(text);
     if (!name) {
-        read.fail("L0208", node, fmt::format("'{}' is no signal", text),
+        read.fail("L0208", node, fmt::format("'{}' is not a signal", text),
                   "a signal is written block.port, inputs.name or outputs.name");
         return {};
     }
@@ -45,12 +45,27 @@ std::optional<Signal> Net::find(const Reader& read, const Node& node, std::strin
     if (!block.known()) return {};
     if (const Field* field = block.type->find_readable(name->port))
         return signal(port(it->second, *field));
-    std::vector<std::string> readable;
-    for (const Field& f : block.type->fields)
-        readable.push_back(fmt::format("{}.{}", block.name, f.name));
-    read.fail("L0203", node, fmt::format("unknown port '{}' on {}", name->port, block.described()),
-              suggest(text, readable));
+    unknown_port(read, node, block, name->port);
     return {};
+}
+
+void Net::unknown_port(const Reader& read, const Node& node, const Instance& block,
+                       std::string_view port) const {
+    std::vector<std::string> names;
+    using enum Direction;
+    for (const Direction d : {output, input, parameter, local})
+        for (const Field& f : block.type->fields)
+            if (f.direction == d && std::ranges::find(names, f.name) == names.end())
+                names.emplace_back(f.name);
+    read.fail("L0203", node, fmt::format("unknown port '{}' on {}", port, block.described()),
+              suggest(misspelt(port), names, block.name + "."));
+}
+
+std::string_view Net::misspelt(std::string_view port) const {
+    const bool known = std::ranges::any_of(catalog->types(), [&](const BlockType& type) {
+        return type.find_readable(port) != nullptr;
+    });
+    return known ? std::string_view() : port;
 }
 
 std::optional<Signal> Net::find_input(const Reader& read, const Node& node,

@@ -30,6 +30,12 @@ struct Wire {
     double factor = 1, divisor = 1;
 };
 
+/// `axis: shaft`: a block that acts on another one.
+struct Reference {
+    Port from;
+    int to = -1;  ///< the other's number, which stands in the field, too
+};
+
 /// Of two blocks of a task, the one that is scanned first.
 struct Order {
     int before = 0, after = 0;
@@ -69,8 +75,11 @@ struct Net {
     std::vector<OutputNode> outputs;
     std::vector<Instance> instances;
     std::vector<Wire> wires;  ///< block by block, each in the order of the file
+    std::vector<Reference> references;
     std::vector<Order> orders;
     std::unordered_map<std::string, int> instance_numbers;
+    const Catalog* catalog = nullptr;
+    std::shared_ptr<const Catalog> kinds;  ///< that the program brings along; may be null
 
     const Instance& instance(int number) const {
         return instances[static_cast<std::size_t>(number)];
@@ -83,6 +92,10 @@ struct Net {
     /// The signal of that name, not yet laid out. L0204, L0203 or L0208 at `node` for one that is
     /// not there; nothing is said again of what could not be read.
     std::optional<Signal> find(const Reader& read, const Node& node, std::string_view name) const;
+
+    /// A port's name to look for similar ones of; empty where it is a name in some kind of block,
+    /// so written as it is meant: then there is nothing to guess.
+    std::string_view misspelt(std::string_view port) const;
 
     /// -1, and L0206, when there is no such task; -1 alone for an empty name.
     int find_task(const Reader& read, const Node& node, std::string_view name) const;
@@ -101,6 +114,8 @@ struct Net {
                                      std::string_view name) const;
     std::optional<Signal> find_output(const Reader& read, const Node& node,
                                       std::string_view name) const;
+    void unknown_port(const Reader& read, const Node& node, const Instance& block,
+                      std::string_view port) const;
 
     mutable std::unordered_map<std::string, Unit> units_;  ///< parsed once
 };

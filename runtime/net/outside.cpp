@@ -66,7 +66,7 @@ void add_force(Connecting& to, const ForcePlan& plan) {
                       .live = forced->live,
                       .published = split ? forced->published : nullptr,
                       .block = of_block,
-                      .is_output = of_block && forced->field.direction == Direction::output,
+                      .is_output = of_block && forced->field.direction != Direction::input,
                       .task = forced->signal.task,
                       .type = forced->field.type,
                       .value = *value,
@@ -104,10 +104,13 @@ std::optional<Target> find_settable(const Connecting& to, const Node& node) {
         return {};
     }
     const Field* field = settable_field(to.net, *target);
+    const Direction direction = to.net.field(target->signal.port).direction;
     if (!field || field->direction == Direction::parameter) {
         to.read.fail("L0405", node,
                      fmt::format("'{}' is {} and cannot be set", target->signal.name,
-                                 field ? "a parameter" : "an output"),
+                                 field                            ? "a parameter"
+                                 : direction == Direction::output ? "an output"
+                                                                  : "a local"),
                      field ? "a stimulus sets inputs"
                            : "a stimulus sets inputs; a force takes outputs, too");
         return {};
@@ -154,6 +157,8 @@ void connect_outside(Connecting& to) {
     connect_replays(to);
     connect_forces(to);
     connect_retained(to);
+    check_constants(to);
+    warn_of_what_comes_late(to);
 }
 
 }  // namespace lineshaft

@@ -23,6 +23,8 @@ void connect_stimuli(Connecting& to);  ///< outside.cpp
 void connect_replays(Connecting& to);  ///< outside_replays.cpp
 void connect_forces(Connecting& to);   ///< outside.cpp
 void connect_retained(Connecting& to);
+void check_constants(Connecting& to);                ///< outside_checks.cpp: what comes to nothing
+void warn_of_what_comes_late(const Connecting& to);  ///< likewise
 
 /// What a value from outside is written to.
 struct Target {

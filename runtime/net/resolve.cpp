@@ -59,6 +59,8 @@ void resolve_outputs(Resolving& to) {
 
 Net resolve(const Program& program, const Catalog& catalog, Diagnostics& out) {
     Resolving to{program, catalog, Reader(out)};
+    to.net.catalog = &catalog;
+    to.net.kinds = program.kinds;
     resolve_tasks(to);
     resolve_instances(to);
     resolve_inputs(to);

@@ -41,6 +41,26 @@ std::optional<Value> interval_of(const Resolving& to, const Node& value, const F
     return convert(seconds(task.every), second, unit);
 }
 
+/// Where `word` is a name of the program and no value: how what it names is written.
+std::string meant_by(const Resolving& to, const std::string& word) {
+    const Net& net = to.net;
+    if (word == "true" || word == "false") return {};
+    if (std::ranges::any_of(to.program.parameters,
+                            [&](const auto& parameter) { return parameter.first == word; }))
+        return fmt::format("did you mean the parameter '${}'?", word);
+    if (std::ranges::find(net.inputs, word, &InputNode::name) != net.inputs.end())
+        return fmt::format("did you mean the input 'inputs.{}'?", word);
+    const auto it = net.instance_numbers.find(word);
+    if (it == net.instance_numbers.end()) return {};
+    std::vector<std::string> outputs;
+    const Instance& block = net.instance(it->second);
+    for (const Field& field : block.known() ? block.type->fields : std::span<const Field>())
+        if (field.direction == Direction::output)
+            outputs.push_back(fmt::format("{}.{}", word, field.name));
+    return fmt::format("'{}' is a block; a wire names its output: {}", word,
+                       fmt::join(outputs, ", "));
+}
+
 void set_constant(Resolving& to, const Assignment& assignment) {
     const auto& [number, field, value, wire] = assignment;
     const Unit& unit = to.net.unit_of(to.net.port(number, *field));
@@ -49,6 +69,12 @@ void set_constant(Resolving& to, const Assignment& assignment) {
         return to.read.fail("L0208", *value,
                             fmt::format("'{}' is neither a constant nor a wire", value->text),
                             "a wire is written block.port, NOT block.port or previous(block.port)");
+    if (const std::string meant = meant_by(to, value->text);
+        !constant && !value->quoted && !meant.empty() &&
+        std::ranges::find(field->names, value->text) == field->names.end())
+        return to.read.fail("L0208", *value,
+                            fmt::format("'{}' is neither a constant nor a wire", value->text),
+                            meant);
     if (!constant) constant = read_literal(to.read, *value, *field, unit);
     if (constant)
         store(field->type, to.instance(assignment).image.data() + field->offset, *constant);
@@ -75,6 +101,9 @@ void set_row(Resolving& to, const TableField& table, const Node& row, std::byte*
 
 void set_table(Resolving& to, Instance& block, const TableField& table, const Node& value) {
     if (!to.read.expect_sequence(value, fmt::format("'{}'", table.name))) return;
+    if (value.items.empty())
+        return to.read.fail("L0305", value, fmt::format("'{}' has no rows", table.name),
+                            fmt::format("it has from 1 to {} rows", table.capacity));
     if (value.items.size() > table.capacity)
         return to.read.fail("L0305", value,
                             fmt::format("'{}' has {} rows, more than its {}", table.name,

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -22,10 +23,15 @@ void add_cost(Resolving& to, const BlockPlan& plan, Instance& block) {
 
 void find_type(Resolving& to, const Node& name, Instance& block) {
     if (name.text.empty()) return;
-    block.type = to.catalog.find(name.text);
-    if (!block.type)
+    if (to.program.kinds) block.type = to.program.kinds->find(name.text);
+    if (!block.type) block.type = to.catalog.find(name.text);
+    if (!block.type) {
+        auto names = to.catalog.names();
+        if (to.program.kinds)
+            std::ranges::copy(to.program.kinds->names(), std::back_inserter(names));
         return to.read.fail("L0205", name, fmt::format("unknown block type '{}'", name.text),
-                            suggest(name.text, to.catalog.names()));
+                            suggest(name.text, names));
+    }
     block.image.resize(block.type->size);
     block.wired.resize(block.type->fields.size());
     block.type->construct(block.image.data());
@@ -49,18 +55,20 @@ std::optional<WireText> parse_wire(const Node& node) {
 }
 
 void refuse_port(Resolving& to, const Instance& block, const Node& key) {
-    if (block.type->find_readable(key.text))
+    if (const Field* field = block.type->find_readable(key.text))
         return to.read.fail(
             "L0405", key,
-            fmt::format("'{}' is an output of {} and cannot be set", key.text, block.described()),
+            fmt::format("'{}' is {} {} of {} and cannot be set", key.text,
+                        field->direction == Direction::output ? "an" : "a",
+                        name_of(field->direction), block.described()),
             fmt::format("'lineshaft blocks {}' lists its inputs", block.type->name));
     std::vector<std::string> settable{"type", "task"};
     for (const Field& f : block.type->fields)
-        if (f.direction != Direction::output) settable.emplace_back(f.name);
+        if (block.type->find_settable(f.name) == &f) settable.emplace_back(f.name);
     for (const TableField& t : block.type->tables) settable.emplace_back(t.name);
     to.read.fail("L0203", key,
                  fmt::format("{} has no parameter or input '{}'", block.described(), key.text),
-                 suggest(key.text, settable));
+                 suggest(to.net.misspelt(key.text), settable));
 }
 
 void check_required(const Resolving& to, const BlockPlan& plan, const Instance& block) {
@@ -73,12 +81,34 @@ void check_required(const Resolving& to, const BlockPlan& plan, const Instance& 
     }
 }
 
+void refer(Resolving& to, int number, const Field& field, const Node& value) {
+    Instance& block = to.net.instances[static_cast<std::size_t>(number)];
+    const auto it = to.net.instance_numbers.find(value.text);
+    if (it == to.net.instance_numbers.end()) {
+        std::vector<std::string> fitting;
+        for (const Instance& other : to.net.instances)
+            if (other.type && other.type->name == field.refers) fitting.push_back(other.name);
+        return to.read.fail("L0204", value, fmt::format("unknown block '{}'", value.text),
+                            suggest(value.text, fitting));
+    }
+    const Instance& other = to.net.instance(it->second);
+    if (!other.known()) return;
+    if (other.type->name != field.refers)
+        return to.read.fail(
+            "L0401", value,
+            fmt::format("'{}' of {} refers to a block of type {}, {} is none", field.name,
+                        block.described(), field.refers, other.described()));
+    to.net.references.push_back({to.net.port(number, field), it->second});
+    store(field.type, block.image.data() + field.offset, std::int64_t{it->second});
+}
+
 void assign(Resolving& to, int number, const Node& key, const Node& value) {
     const Instance& block = to.net.instance(number);
     if (block.type->find_table(key.text)) return;
     const Field* field = block.type->find_settable(key.text);
     if (!field) return refuse_port(to, block, key);
     if (!to.read.expect_scalar(value, fmt::format("'{}'", key.text))) return;
+    if (field->direction == Direction::in_out) return refer(to, number, *field, value);
     Assignment assignment{number, field, &value, parse_wire(value)};
     if (assignment.wire && field->direction == Direction::parameter)
         return to.read.fail(

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -128,12 +130,12 @@ void connect(Resolving& to, const Assignment& wire) {
     if (!source) return;
     const Port target = to.net.port(number, *field);
     to.instance(wire).wired[static_cast<std::size_t>(target.field)] = true;
-    if (!check_source(to, wire, *source) || !check_order(to, wire, source->port.instance) ||
-        !check_type(to, wire, *source))
-        return;
+    if (!check_source(to, wire, *source) || !check_type(to, wire, *source)) return;
     const Unit& given = to.net.unit(source->unit);
     const Unit& wanted = to.net.unit_of(target);
-    if (!check_unit(to, wire, *source, given, wanted)) return;
+    if (!check_unit(to, wire, *source, given, wanted) ||
+        !check_order(to, wire, source->port.instance))
+        return;
     const bool same_task =
         source->port.instance >= 0 && source->task == to.net.instance(number).task;
     to.net.wires.push_back({.from = source->port,
@@ -146,6 +148,20 @@ void connect(Resolving& to, const Assignment& wire) {
                             .scaled = given.text != wanted.text,
                             .factor = given.numerator * wanted.denominator,
                             .divisor = given.denominator * wanted.numerator});
+}
+
+/// All that act on one block, and it itself, are scanned in the order of the file.
+void add_reference_orders(Net& net) {
+    std::map<std::pair<int, int>, std::set<int>> groups;  // by task and by the block referred to
+    for (const Reference& reference : net.references) {
+        const int task = net.instance(reference.from).task;
+        auto& group = groups[{task, reference.to}];
+        group.insert(reference.from.instance);
+        if (net.instance(reference.to).task == task) group.insert(reference.to);
+    }
+    for (const auto& [key, group] : groups)
+        for (auto at = group.begin(); std::next(at) != group.end(); ++at)
+            net.orders.push_back({*at, *std::next(at)});
 }
 
 /// A block waits for its sources, and what takes its last scan's outputs comes before it.
@@ -166,6 +182,7 @@ void resolve_wires(Resolving& to) {
     for (const Assignment& assignment : to.assignments)
         if (assignment.wire) connect(to, assignment);
     add_orders(to.net);
+    add_reference_orders(to.net);
 }
 
 }  // namespace lineshaft

@@ -34,6 +34,13 @@ bool check_size(const Reader& read, const Shape& s, const Node& node, std::size_
     return false;
 }
 
+/// About a map of names that was written as something else.
+std::string key_help(const Shape& s) {
+    if (s.what.empty()) return {};
+    return fmt::format("write the {}'s name as a key: NAME: {}",
+                       s.what.substr(s.what.find(' ') + 1), s.of[0].form ? "{...}" : "VALUE");
+}
+
 bool accept_list(const Reader& read, const Shape& s, const Node& node, std::string_view key) {
     if (!read.expect_sequence(node, key)) return false;
     bool good = check_size(read, s, node, node.items.size());
@@ -49,7 +56,7 @@ bool accept_list(const Reader& read, const Shape& s, const Node& node, std::stri
 }
 
 bool accept_map(const Reader& read, const Shape& s, const Node& node, std::string_view key) {
-    if (!read.expect_map(node, key)) return false;
+    if (!read.expect_map(node, key, key_help(s))) return false;
     bool good = check_size(read, s, node, node.entries.size());
     for (const auto& [name, value] : node.entries)
         good = (s.what.empty() || read.identifier(name, s.what)) &&
@@ -70,7 +77,7 @@ const Shape& meant(const std::vector<Shape>& shapes, const Node& node) {
 
 std::optional<std::int64_t> whole(const Reader& read, const Shape& s, const Node& node) {
     const bool time = s.kind == Kind::time;
-    const auto number = time ? read.time(node) : read.integer(node);
+    const auto number = time ? read.time(node) : read.integer(node, std::string(s.help));
     if (!number || (*number >= s.least && *number <= s.most)) return number;
     const bool below = *number < s.least;
     read.fail(time ? "L0308" : "L0305", node,
@@ -150,7 +157,7 @@ bool open(const Reader& read, const Key& key, const Node& node) {
         return read.expect_sequence(node, quoted(key.name)) &&
                check_size(read, s, node, node.items.size());
     if (s.kind == Kind::map)
-        return read.expect_map(node, quoted(key.name)) &&
+        return read.expect_map(node, quoted(key.name), key_help(s)) &&
                check_size(read, s, node, node.entries.size());
     return true;
 }

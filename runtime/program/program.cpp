@@ -39,36 +39,51 @@ std::vector<std::string> names_of(const ParameterValues& values) {
     return names;
 }
 
+Node unreadable() {
+    Node node;
+    node.kind = Node::Kind::map;
+    return node;
+}
+
 /// Replaces `$name` by the parameter's text throughout a tree.
 class Substitution {
   public:
-    Substitution(const ParameterValues& values, const Reader& read)
-        : values_(values), read_(read) {}
+    Substitution(const ParameterValues& values, const Node* declared, const Reader& read)
+        : values_(values), declared_(declared), read_(read) {}
 
-    void apply(Node& node) const {
+    const std::set<std::string>& used() const { return used_; }
+
+    void apply(Node& node) {
         for (auto& [key, value] : node.entries) apply(value);
         for (Node& item : node.items) apply(item);
         if (!node.is_scalar() || node.quoted || !node.text.starts_with('$')) return;
         const std::string name = node.text.substr(1);
         const auto it = values_.find(name);
         if (it == values_.end()) return unknown(node, name);
-        const auto& [value, set_at] = it->second;
+        const Node& value = it->second;
+        used_.insert(name);
+        node.parameter = name;
+        if (!value.is_scalar()) return;
         node.text = value.text;
         node.quoted = value.quoted;
-        node.parameter = name;
-        if (set_at.file) node.mark = set_at;
+        if (!value.mark.file) return;
+        node.used_in_line = value.mark.file == node.mark.file ? node.mark.line : 0;
+        node.mark = value.mark;
     }
 
   private:
     void unknown(Node& node, const std::string& name) const {
-        read_.fail("L0207", node, fmt::format("unknown parameter '{}'", name),
-                   values_.empty() ? "the program has no 'parameters:'"
-                                   : suggest(name, names_of(values_)));
+        if (!declared_ || declared_->is_map())
+            read_.fail("L0207", node, fmt::format("unknown parameter '{}'", name),
+                       values_.empty() ? "the program has no 'parameters:'"
+                                       : suggest(name, names_of(values_), "$"));
         node.parameter = name;
     }
 
     const ParameterValues& values_;
+    const Node* declared_;  ///< `parameters:`, which may be something else than a map; null: none
     const Reader& read_;
+    std::set<std::string> used_;
 };
 
 /// Whether all of them could be read.
@@ -93,7 +108,9 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     auto root = parse(file);
     if (!root || !check_kind(read_, *root, "lineshaft")) return std::move(program_);
     parameters(*root);
-    Substitution(values_, read_).apply(*root);
+    Substitution substitution(values_, root->find("parameters"), read_);
+    substitution.apply(*root);
+    unused_parameters(*root, substitution.used());
     const Node* tasks = root->find("tasks");
     const Node* named = root->find("controller");
     if (named) controller(*named);
@@ -118,13 +135,24 @@ void ProgramReader::parameters(const Node& root) {
     const Node* node = root.find("parameters");
     if (node)
         for (const auto& [key, value] : node->entries)
-            if (is_identifier(key.text) && value.is_scalar() && !value.is_empty())
-                values_.emplace(key.text, ParameterValue{value, {}});
+            if (is_identifier(key.text))
+                values_.emplace(key.text,
+                                value.is_scalar() && !value.is_empty() ? value : unreadable());
     settings(values_);
     if (node)
         for (const auto& [key, value] : node->entries)
             if (const auto it = values_.find(key.text); it != values_.end())
-                program_.parameters.emplace_back(key.text, it->second.node.text);
+                program_.parameters.emplace_back(key.text, it->second.text);
+}
+
+void ProgramReader::unused_parameters(const Node& root, const std::set<std::string>& used) {
+    const Node* declared = root.find("parameters");
+    if (!declared) return;
+    for (const auto& [key, value] : declared->entries)
+        if (values_.contains(key.text) && !used.contains(key.text))
+            read_.diagnostics().warn(
+                "L0803", key.mark, fmt::format("nothing uses the parameter '{}'", key.text),
+                fmt::format("write ${} where it is meant, or remove it", key.text));
 }
 
 void ProgramReader::settings(ParameterValues& values) {
@@ -138,9 +166,9 @@ void ProgramReader::settings(ParameterValues& values) {
                                : suggest(setting.name, names_of(values)));
             continue;
         }
-        it->second.node.text = setting.value;
-        it->second.node.quoted = false;
-        it->second.set_at = setting.value_mark;
+        it->second = {};
+        it->second.text = setting.value;
+        it->second.mark = setting.value_mark;
     }
 }
 

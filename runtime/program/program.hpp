@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/model/device.hpp"
+#include "runtime/model/catalog.hpp"
 #include "runtime/source/diagnostic.hpp"
 #include "runtime/source/reader.hpp"
 #include "runtime/source/yaml_files.hpp"
@@ -58,6 +58,7 @@ struct RunPlan {
 };
 
 struct StimulusPlan {
+    Mark mark = {};
     std::int64_t at = 0;  ///< [ns]; with `task` the index of its scan
     std::optional<Node> task = {};
     std::vector<std::pair<Node, Node>> set = {};
@@ -75,6 +76,7 @@ struct ReplayPlan {
 
 /// A value that a signal keeps for [from, until), whatever the program writes. Times in ns.
 struct ForcePlan {
+    Mark mark = {};
     std::int64_t from = 0;
     std::int64_t until = never;
     Node signal, value;
@@ -128,6 +130,7 @@ struct Program {
     std::vector<TaskPlan> tasks;
     bool tasks_known = true;  ///< false: not all could be read, a name may be one of the missing
     std::vector<BlockPlan> blocks;
+    std::shared_ptr<const Catalog> kinds;  ///< of block that the program brings along; may be null
     std::vector<std::pair<Node, Node>> inputs;
     std::vector<std::pair<Node, Node>> outputs;  ///< name and the signal it shows
     std::vector<Node> retain;                    ///< signals

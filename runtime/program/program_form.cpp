@@ -143,6 +143,10 @@ void read_blocks(const Reader& read, const Node& node, Program& program) {
 
 // What comes from outside
 
+void check_stimulus(const Reader&, const Node& item, StimulusPlan& stimulus) {
+    stimulus.mark = item.mark;
+}
+
 const Form& stimulus_form() {
     static const Form form = form_of<StimulusPlan>({
         .name = "stimulus", .what = "a stimulus",
@@ -161,7 +165,8 @@ const Form& stimulus_form() {
             {only_with, "scan", {"task"}, "a stimulus of a scan has no '{2}'"},
             {only_with, "task", {"scan"}, "a stimulus of a scan has no '{2}'"},
             {only_with, "cost", {"scan", "at"}, "a stimulus of a scan has no '{2}'"},
-            {only_with, "cost", {"task", "at"}, "a stimulus of a scan has no '{2}'"}}});
+            {only_with, "cost", {"task", "at"}, "a stimulus of a scan has no '{2}'"}},
+        .check = by<check_stimulus>});
     return form;
 }
 
@@ -200,7 +205,6 @@ void read_stimuli(const Reader& read, const Node& node, Program& program) {
 
 /// One for each of its signals.
 struct Forced {
-    ForcePlan force;
     std::int64_t from = 0, until = never;
     Pairs set;
 };
@@ -229,7 +233,7 @@ void read_forces(const Reader& read, const Node& node, Program& program) {
         Forced forced;
         read_form(force_form(), read, item, forced);
         for (const auto& [signal, value] : forced.set)
-            program.forces.push_back({forced.from, forced.until, signal, value});
+            program.forces.push_back({item.mark, forced.from, forced.until, signal, value});
     }
 }
 
@@ -298,7 +302,7 @@ const Form& trace_form() {
                "and 16 more, at most 256 MiB for all traces",
         .keys = {
             key<&TracePlan::task>("task", a_task, "whose scans are recorded").must(),
-            key<&TracePlan::every>("every", an_integer.at_least(1, {}, "1 records every scan, 10 every tenth"),
+            key<&TracePlan::every>("every", an_integer.at_least(1, {}, "'every' counts scans: 1 records every scan of the task, 10 every tenth"),
                 "records every n-th scan").by_default("1"),
             key<&TracePlan::signals>("signals",
                 list_of(a_signal).filled("'signals' has no signal").unique("'{}' is in this trace already"),
@@ -360,10 +364,21 @@ const Form& expected_bounds() {
 
 const Form& expectation_form();
 
-/// The key that is no other is the signal.
-void read_expected(const Reader& read, const Node& item, ExpectPlan& plan) {
+/// The bounds that only `value` is within.
+std::string as_bounds(const Node& value) {
+    if (value.text == "false") return "write at_most: false";
+    if (value.text == "true") return "write at_least: true";
+    return fmt::format("write at_least: {0}, at_most: {0}", value.text);
+}
+
+/// The key that is no other is the signal; false when nothing more is to be said.
+bool read_expected(const Reader& read, const Node& item, ExpectPlan& plan) {
     for (const auto& [name, value] : item.entries) {
         if (expectation_form().find(name.text)) continue;
+        if (plan.always && name.text == "equals") {
+            read.fail("L0213", name, "'always' takes bounds, not 'equals'", as_bounds(value));
+            return false;
+        }
         if (!plan.signal.text.empty()) {
             read.fail("L0201", name,
                       fmt::format("an expectation has one signal, '{}' is a second", name.text));
@@ -375,13 +390,14 @@ void read_expected(const Reader& read, const Node& item, ExpectPlan& plan) {
         else if (accept(read, a_value.as("an expected value"), value, {}))
             plan.equals = value;
     }
+    return true;
 }
 
 void check_expectation(const Reader& read, const Node& item, ExpectPlan& plan) {
     plan.mark = item.mark;
     plan.always = item.find("always") != nullptr;
     if (plan.always == (item.find("at") != nullptr)) return;
-    read_expected(read, item, plan);
+    if (!read_expected(read, item, plan)) return;
     if (plan.signal.text.empty())
         return read.fail("L0202", item, "an expectation names no signal", expectation_help);
     if (!plan.equals && !plan.at_least && !plan.at_most)

@@ -2,19 +2,16 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "runtime/program/program.hpp"
 
 namespace lineshaft {
 
-/// A parameter's text in force, and where a study sets it.
-struct ParameterValue {
-    Node node;
-    Mark set_at;
-};
-
-using ParameterValues = std::map<std::string, ParameterValue>;
+/// The parameters' texts in force, where they are declared or where a study sets them; from the
+/// command line they have no place, and what cannot be read (it is reported) is no scalar.
+using ParameterValues = std::map<std::string, Node>;
 
 /// Makes a Program of a file, see read_program(): parameters are replaced and the controller's
 /// tasks read before the form is; then what needs all of it, or other files.
@@ -27,6 +24,7 @@ class ProgramReader {
   private:
     std::optional<Node> parse(const std::shared_ptr<const SourceFile>& file) const;
     void parameters(const Node& root);
+    void unused_parameters(const Node& root, const std::set<std::string>& used);
     void settings(ParameterValues& values);
     void controller(const Node& node);
     void check_attached(const Node& task) const;

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "runtime/program/program.hpp"
 #include "runtime/net/machine.hpp"
+#include "runtime/program/program.hpp"
 
 namespace lineshaft {
 

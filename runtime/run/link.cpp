@@ -1,5 +1,9 @@
 #include "runtime/run/link.hpp"
 
+#include <set>
+
+#include <fmt/format.h>
+
 #include "runtime/net/lay_out.hpp"
 #include "runtime/net/outside.hpp"
 #include "runtime/net/resolve.hpp"
@@ -7,6 +11,39 @@
 #include "runtime/trace/trace_setup.hpp"
 
 namespace lineshaft {
+
+namespace {
+
+/// Where a value stands that something in the program takes.
+std::set<const std::byte*> places_read(Linked& linked) {
+    std::set<const std::byte*> places;
+    Machine& machine = linked.machine;
+    for (const Wire& wire : linked.net.wires) places.insert(machine.published(wire.from));
+    for (const OutputNode& output : linked.net.outputs)
+        if (output.shows) places.insert(machine.published(output.shows->port));
+    for (const Trigger& trigger : machine.triggers)
+        places.insert(reinterpret_cast<const std::byte*>(trigger.signal));
+    if (machine.until) places.insert(machine.until->slot);
+    for (const TraceSetup& trace : linked.traces) {
+        places.insert(trace.trigger.signal.slot);
+        for (const Signal& signal : trace.signals) places.insert(signal.slot);
+    }
+    for (const Expectation& expectation : linked.expectations)
+        places.insert(expectation.signal.slot);
+    return places;
+}
+
+void warn_of_unused_inputs(const Program& program, Linked& linked, Diagnostics& out) {
+    const auto read = places_read(linked);
+    for (std::size_t i = 0; i < program.inputs.size(); ++i) {
+        const Node& name = program.inputs[i].first;
+        if (!read.contains(linked.machine.live({-1, static_cast<int>(i)})))
+            out.warn("L0803", name.mark, fmt::format("nothing uses the input '{}'", name.text),
+                     fmt::format("wire inputs.{} where it is meant, or remove it", name.text));
+    }
+}
+
+}  // namespace
 
 Linked link(const Program& program, const Catalog& catalog, Diagnostics& out) {
     Linked linked;
@@ -16,6 +53,7 @@ Linked link(const Program& program, const Catalog& catalog, Diagnostics& out) {
     connect_outside(to);
     linked.traces = connect_traces(to);
     linked.expectations = connect_expectations(to);
+    warn_of_unused_inputs(program, linked, out);
     return linked;
 }
 

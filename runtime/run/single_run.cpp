@@ -110,6 +110,10 @@ RunReport SingleRun::run() {
             report_.result.message = "the run stopped at " + format_time(report_.result.time);
         judge_.finish(report_.result);
         report_.verdicts = judge_.verdicts();
+        for (const Expectation& e : judge_.expectations())
+            if (e.always && e.signal.task >= 0 &&
+                report_.result.scans[static_cast<std::size_t>(e.signal.task)] == 0)
+                report_.never_looked_at.push_back(e.text);
         finish();
     }
     for (DeviceCall& device : machine_.devices) device.sink = nullptr;

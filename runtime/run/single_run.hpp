@@ -50,7 +50,9 @@ struct TraceReport {
 /// What came of one run. Final values stand in the machine's signals.
 struct RunReport {
     RunResult result;
-    std::vector<Verdict> verdicts;    ///< one per expectation of the program
+    std::vector<Verdict> verdicts;  ///< one per expectation of the program
+    std::vector<std::string>
+        never_looked_at;              ///< expectations of every scan of a task that had none
     std::vector<TraceReport> traces;  ///< that were recorded
     std::string trace_error;          ///< why the trace is not there, if one was wanted
     std::string pulses_error;         ///< likewise of the pulses

@@ -92,14 +92,6 @@ class Feeder {
 
 }  // namespace
 
-std::string format_time(std::int64_t nanoseconds) {
-    constexpr std::int64_t second = 1'000'000'000;
-    std::string text = fmt::format("{}", nanoseconds / second);
-    if (nanoseconds % second != 0) text += fmt::format(".{:09}", nanoseconds % second);
-    if (text.find('.') != std::string::npos) text.erase(text.find_last_not_of('0') + 1);
-    return text + " s";
-}
-
 Executive::Executive(Machine& machine) : machine_(machine), forces_(machine.forces) {
     for (const BlockSeed& seed : machine.block_seeds) sow(seed, machine.seed);
     for (const Task& task : machine.tasks) {
@@ -125,42 +117,94 @@ void Executive::checkpoint(std::int64_t every, std::function<void(std::int64_t)>
     save_ = std::move(save);
 }
 
+void Executive::look_out(const std::atomic<bool>* interrupt,
+                         std::function<void(std::int64_t)> progress) {
+    interrupt_ = interrupt;
+    progress_ = std::move(progress);
+}
+
 RunResult Executive::run(const std::vector<Observer*>& observers,
                          const std::atomic<bool>* interrupt,
                          const std::function<void(std::int64_t)>& progress) {
-    observers_ = &observers;
+    for (Observer* observer : observers) add(*observer);
+    look_out(interrupt, progress);
+    begin();
+    run_until(machine_.duration);
+    return finish();
+}
+
+void Executive::begin() {
     look_ahead();
     if (save_) next_save_ = later(now_ / save_every_ * save_every_, save_every_);
+    looked_ = Clock::now();
+}
+
+bool Executive::run_until(std::int64_t time) {
+    const std::int64_t last = std::min(time, machine_.duration);
     std::int64_t next = next_event();
-    for (std::uint32_t instants = 0; next <= machine_.duration; ++instants) {
+    if (known_until_ > 0 && known_until_ <= last) settle(std::min(next - 1, last));
+    while (!ended_ && next <= last) {
         advance(next);
         instant();
         next = next_event();
-        const bool reached = machine_.until && read<bool>(machine_.until->slot);
-        const std::int64_t last =
-            stopped_ || reached ? now_ : std::min(next - 1, machine_.duration);
-        for (Observer* observer : observers) observer->settled(now_, last + 1);
+        ended_ = stopped_ || (machine_.until && read<bool>(machine_.until->slot));
+        settle(ended_ ? now_ : std::min(next - 1, last));
         result_.time = now_;
-        if (stopped_ || reached) return result_;
+        if (ended_) break;
         if (next > next_save_) {
             save_(now_);
             next_save_ = later((next - 1) / save_every_ * save_every_, save_every_);
         }
-        if (instants % 4096 != 0) continue;
-        if (progress) progress(now_);
-        if (interrupt && *interrupt) {
-            if (save_) save_(now_);
-            stop(Outcome::interrupted, "interrupted at " + format_time(now_));
-            return result_;
-        }
+        if (--until_look_ == 0) look();
     }
-    advance(machine_.duration);
+    return !ended_ && last < machine_.duration;
+}
+
+/// Nothing changes up to `last`.
+void Executive::settle(std::int64_t last) {
+    for (Observer* observer : observers_) observer->settled(now_, last + 1);
+    known_until_ = last + 1;
+}
+
+/// A quarter of a millisecond of wall time after the last look, as far as that can be foreseen.
+void Executive::look() {
+    constexpr std::chrono::duration<double> wanted = std::chrono::microseconds(250);
+    const auto now = Clock::now();
+    const double factor = wanted / std::max<std::chrono::duration<double>>(
+                                       now - looked_, std::chrono::nanoseconds(100));
+    looked_ = now;
+    stride_ = std::clamp(stride_ * factor, 1.0, std::min(2 * stride_, 1e6));
+    until_look_ = static_cast<std::uint32_t>(stride_);
+    if (progress_) progress_(now_);
+    if (!interrupt_ || !*interrupt_) return;
+    if (save_) save_(now_);
+    stop(Outcome::interrupted, "interrupted at " + format_time(now_));
+    ended_ = true;
+}
+
+RunResult Executive::finish() {
+    if (ended_) return result_;
+    advance(std::max(now_, known_until_ - 1));
     advance_devices();
     result_.time = now_;
-    if (machine_.until)
+    if (machine_.until && now_ == machine_.duration)
         stop(Outcome::limit, fmt::format("'{}' did not become true within {}", machine_.until->name,
                                          format_time(machine_.duration)));
     return result_;
+}
+
+void Executive::add(Observer& observer) {
+    observers_.push_back(&observer);
+}
+
+void Executive::remove(Observer& observer) {
+    std::erase(observers_, &observer);
+}
+
+void Executive::post(Stimulus value) {
+    value.at = known_until_;
+    mail_.push_back(std::move(value));
+    next_outside_ = std::min(next_outside_, known_until_);
 }
 
 /// What next_due_, next_outside_ and pending_ summarise.
@@ -178,6 +222,7 @@ void Executive::look_ahead() {
         next_outside_ = std::min(next_outside_, machine_.stimuli[next_stimulus_].at);
     if (next_look_ < machine_.looks.size())
         next_outside_ = std::min(next_outside_, machine_.looks[next_look_]);
+    if (!mail_.empty()) next_outside_ = std::min(next_outside_, mail_.front().at);
 }
 
 std::int64_t Executive::next_event() {
@@ -315,7 +360,7 @@ bool Executive::scan_blocks(const Task& task, const Scan& scan) {
     Feeder wires(task.wires);
     for (const Call& call : task.calls) {
         wires.feed(call);
-        error |= call.scan(call.first, call.count, scan);
+        error |= call.scan(call.first, call.count, scan, call.context);
     }
     return error;
 }
@@ -327,7 +372,7 @@ void Executive::scan_forced(const Task& task, const Scan& scan) {
         wires.feed(call);
         for (std::size_t i = 0; i < call.count; ++i) forces_.impose_inputs(call.block(i));
         for (std::size_t i = 0; i < call.count; ++i) forces_.release_outputs(call.block(i));
-        call.scan(call.first, call.count, scan);
+        call.scan(call.first, call.count, scan, call.context);
         for (std::size_t i = 0; i < call.count; ++i) forces_.impose_outputs(call.block(i));
     }
 }
@@ -348,7 +393,7 @@ void Executive::publish(int index) {
 /// When what others see of the task's scan is in place.
 void Executive::conclude(int index) {
     ++result_.scans.data()[index];
-    for (Observer* observer : *observers_) observer->scanned(index, state(index).scan);
+    for (Observer* observer : observers_) observer->scanned(index, state(index).scan);
     if (state(index).may_err) report_errors(index);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -8,9 +9,9 @@
 
 #include "runtime/model/random.hpp"
 #include "runtime/model/state.hpp"
+#include "runtime/net/machine.hpp"
 #include "runtime/scan/event.hpp"
 #include "runtime/scan/forces.hpp"
-#include "runtime/net/machine.hpp"
 
 namespace lineshaft {
 
@@ -68,16 +69,38 @@ class Executive {
   public:
     explicit Executive(Machine& machine);
 
-    /// Before run(): where events go.
+    /// Before begin(): where events go.
     void report_to(EventSink& events) { events_ = &events; }
 
-    /// Before run(): calls `save` when every instant due at a multiple of `every` [ns] has passed,
-    /// and when the run is interrupted.
+    /// Before begin(): calls `save` when every instant due at a multiple of `every` [ns] has
+    /// passed, and when the run is interrupted.
     void checkpoint(std::int64_t every, std::function<void(std::int64_t time)> save);
 
+    /// Before begin(): `interrupt` ends the run within a millisecond of wall time (or after the
+    /// instant under way), and `progress` is told how far it is as often as that is looked at.
+    void look_out(const std::atomic<bool>* interrupt,
+                  std::function<void(std::int64_t time)> progress = {});
+
+    /// A whole run: begin(), run_until() the machine's duration, finish().
     RunResult run(const std::vector<Observer*>& observers,
                   const std::atomic<bool>* interrupt = nullptr,
                   const std::function<void(std::int64_t time)>& progress = {});
+
+    /// A run step by step. The steps make no difference to what happens in it: run_until() runs
+    /// each instant up to `time` [ns], included, and tells whether there is more to come; finish()
+    /// ends the run where it is.
+    void begin();
+    bool run_until(std::int64_t time);
+    RunResult finish();
+
+    /// Before begin() or between two steps.
+    void add(Observer& observer);
+    void remove(Observer& observer);
+
+    /// Between two steps: a value from outside counts from the next nanosecond on, so before every
+    /// scan that comes, and is told as a stimulus of that time. A run of the same program with that
+    /// stimulus in its file does the same.
+    void post(Stimulus value);
 
     /// All that the run depends on, the machine's memory too: a machine of the same program, with
     /// restore() before run(), goes on as if there had been no end. The reader tells whether it
@@ -86,6 +109,8 @@ class Executive {
     void restore(StateReader& in);
 
   private:
+    using Clock = std::chrono::steady_clock;
+
     struct State {
         std::int64_t due = 0;           ///< next release [ns]
         bool pending = false;           ///< released, not yet started
@@ -108,6 +133,8 @@ class Executive {
         void set_next(const Task& task);
     };
 
+    void settle(std::int64_t last);
+    void look();
     std::int64_t next_event();
     void look_ahead();
     void advance(std::int64_t time);
@@ -164,7 +191,15 @@ class Executive {
     std::int64_t next_outside_ = 0;  ///< of a force, a replay, a stimulus, a look at a device [ns]
     bool nothing_waits_ = false;     ///< no task takes time or comes from an event
     bool interpolates_ = false;      ///< a replay: then something is due in every instant
-    const std::vector<Observer*>* observers_ = nullptr;
+    std::vector<Observer*> observers_;
+    std::vector<Stimulus> mail_;    ///< posted, counts from the same instant on
+    std::int64_t known_until_ = 0;  ///< observers know that nothing changes before [ns]
+    bool ended_ = false;
+    const std::atomic<bool>* interrupt_ = nullptr;
+    std::function<void(std::int64_t)> progress_;
+    Clock::time_point looked_;      ///< at the interrupt, in wall time
+    double stride_ = 1;             ///< instants between two looks
+    std::uint32_t until_look_ = 1;  ///< instants
     EventSink* events_ = nullptr;
     std::function<void(std::int64_t)> save_;
     std::int64_t save_every_ = 0, next_save_ = never;  ///< [ns]
@@ -180,8 +215,5 @@ class Executive {
 inline std::int64_t later(std::int64_t time, std::int64_t by) {
     return by > 0 && time > never - by ? never : time + by;
 }
-
-/// `12.345 s`, exact from integer nanoseconds.
-std::string format_time(std::int64_t nanoseconds);
 
 }  // namespace lineshaft

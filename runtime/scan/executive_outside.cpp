@@ -39,6 +39,8 @@ void Executive::act_from_outside() {
     const auto& stimuli = machine_.stimuli;
     while (next_stimulus_ < stimuli.size() && stimuli[next_stimulus_].at <= now_)
         set(stimuli[next_stimulus_++], -1);
+    for (const Stimulus& value : mail_) set(value, -1);
+    mail_.clear();
     while (next_look_ < machine_.looks.size() && machine_.looks[next_look_] <= now_) ++next_look_;
     look_ahead();
 }

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "runtime/model/state.hpp"
-#include "runtime/scan/event.hpp"
 #include "runtime/net/machine.hpp"
+#include "runtime/scan/event.hpp"
 
 namespace lineshaft {
 

@@ -1,6 +1,7 @@
 #include "runtime/source/codes.hpp"
 
 #include <algorithm>
+#include <string>
 
 namespace lineshaft {
 
@@ -58,6 +59,12 @@ characters are refused, because what cannot be seen cannot be checked. Save the 
 as UTF-8 in your editor; if it came from a spreadsheet or another program, export it
 as plain text.)"},
 
+    {"L0109", "a character that only looks like the one that is meant",
+     R"(What is copied from a document or a web page often has other characters than the
+keyboard's: a no-break space for a blank, a minus sign or a dash for '-', typographic
+quotes. They look alike on the screen, but neither YAML nor a number has them. Type the
+character anew. Titles, notes and comments may hold any character.)"},
+
     {"L0201", "an unknown key",
      R"(A map has a fixed set of keys, and this is none of them. It is an error because a
 misspelt key would otherwise be ignored, and the program would run with a default that
@@ -68,7 +75,7 @@ you did not want. The line below the mark has the nearest known key, or all of t
 'cases' of a study. The smallest program that runs:
     lineshaft: 1
     tasks: {servo: {every: 2 ms}}
-    blocks: {shaft: {type: virtual_axis, task: servo}}
+    blocks: {shaft: {type: virtual_axis, task: servo, velocity: 10 mm/s}}
     run: {for: 1 s})"},
     {"L0203", "an unknown port, input or signal",
      R"(The block exists, but its type has no such parameter, input or output. 'lineshaft
@@ -88,7 +95,7 @@ virtual_axis, gear_axis.)"},
 file declares. A block must say which task scans it, since the task gives it its
 interval:
     tasks:  {servo: {every: 2 ms, priority: 26}}
-    blocks: {shaft: {type: virtual_axis, task: servo}})"},
+    blocks: {shaft: {type: virtual_axis, task: servo, velocity: 10 mm/s}})"},
     {"L0207", "an unknown parameter",
      R"('$name' stands for a value from 'parameters:', and there is none of that name. Declare
 it with its default; --set and the cases of a study may then change it:
@@ -103,9 +110,9 @@ must stand under 'inputs:' with the value that it has at the start:
      R"(The entry is a map, a list or a single value where another of these three is due, or
 has no value at all. A map has 'key: value' entries, a list has '-' entries or
 brackets:
-    tasks: {servo: {every: 2 ms}}      # a map
-    signals: [shaft.position]          # a list, also of one
-    title: Ratio change                # a single value)"},
+    tasks: {servo: {every: 2 ms}}                      # a map
+    trace: {task: servo, signals: [shaft.position]}    # signals: a list, also of one
+    title: Ratio change                                # a single value)"},
     {"L0210", "not a usable name",
      R"(Names of blocks, tasks, inputs, parameters and cases have letters (a-z, A-Z), digits
 and underscores, and do not begin with a digit: 'slave_x', not 'slave-x', '2nd' or
@@ -149,6 +156,16 @@ much). A row takes 8 bytes for each signal and 16 more. Keep fewer rows or fewer
 or record every n-th scan only. What is recorded from the trigger on goes to the disk and
 is not limited.)"},
 
+    {"L0217", "an expression where a value is expected",
+     R"(A program file has values and wires, and does not calculate. What the expression does is
+done by a block of IEC 61131-3 (and, or, not, gt, add, mul, ...), whose output is then
+wired or named:
+    blocks:
+      far: {type: gt, task: servo, unit: mm, in1: shaft.position, in2: 5 mm}
+    run: {for: 1 min, until: far.out}
+On a wire 'NOT block.port', without quotes, negates a boolean. In an expectation bounds
+are written at_least: 10 mm/s and at_most: 20 mm/s.)"},
+
     {"L0301", "not a number",
      R"(A number is due: digits with an optional point and exponent, then an optional unit,
 such as 20, -1.5, 5e4 mm/s^3 or 1_000. Whole numbers may have a base as in IEC
@@ -166,8 +183,8 @@ one dimension are converted (2 cm is 20 mm), others cannot be. 'lineshaft blocks
 shows the unit of each port.)"},
     {"L0304", "an unknown unit",
      R"(After the number stands something that is no unit. Units are written as symbols,
-combined with '*' and '/' and a power '^': mm, mm/s, mm/s^2, rad/s, kHz, ms, %. Upper
-and lower case matter: mm, not MM. A claim of a study is a plain number or in %.)"},
+combined with '*' and '/' and a power '^': mm, mm/s, mm/s^2, rad/s, rpm, kHz, ms, %. Upper
+and lower case matter: mm, not MM. 'lineshaft units' lists them. A claim of a study is a plain number or in %.)"},
     {"L0305", "a number out of range",
      R"(The number is well written, but the value cannot be: outside of the limits of the port
 (an acceleration must be above 0), beyond what 64 bits hold, a trace of every 0th
@@ -207,6 +224,7 @@ wire or a parameter of the program:
     slave:
       type: gear_axis
       task: servo
+      master_position: shaft.position
       master_velocity: shaft.velocity)"},
     {"L0404", "feedback without previous()",
      R"(Blocks of a task are scanned in the order of the file. The wire reads a block that is
@@ -252,7 +270,7 @@ begins.)"},
 nothing else. Check the name, or declare the parameter and use it:
     parameters: {radius: 20 mm}
     blocks:
-      ratio: {type: circle_ratio, radius: $radius, ...})"},
+      path: {type: path_circle, task: servo, radius: $radius, length: shaft.position})"},
     {"L0502", "--set without name=value",
      R"(A setting is a name, '=' and the value as it would stand in the program. Values with
 blanks need quotes in the shell:
@@ -304,8 +322,8 @@ are taken over all rows that have a paper's value.
 what the program gives. A difference in mm and one in s cannot be added, so each is
 divided by how exact its figure is:
     compare:
-      line.time: {paper: 8.449 s, uncertainty: 0.5 ms}
-      x.pulses: {paper: 449959, uncertainty: 1}
+      slave.position: {paper: 29.7 mm, uncertainty: 0.1 mm}
+      slave.velocity: {paper: 14.9 mm/s, uncertainty: 0.1 mm/s}
 Where all figures are of one unit the uncertainty may be left out: then all weigh the
 same.)"},
     {"L0604", "fewer figures than parameters",
@@ -321,7 +339,7 @@ measurement begins later than the run, say by how much:
     trace: {file: measured.csv, offset: 10 ms})"},
     {"L0611", "chunks of a study are missing",
      R"(The result of a study in chunks is put together only when every chunk is there.
-    lineshaft study PLAN.yaml --chunk 3/8 -o parts/part_3.csv
+    lineshaft study PLAN.yaml --chunk 3/8 -o parts/part_3.csv      # and all the others
     lineshaft study PLAN.yaml --merge parts -o all.csv)"},
     {"L0612", "a chunk of another study",
      R"(A chunk's sidecar has a hash of the plan, the program, its controllers, the files that it
@@ -387,14 +405,39 @@ describes others. Copy a trace together with its own sidecar, or remove the side
      R"(A report lays several traces over each other signal by signal, so all of them must have
 the same ones: they are runs of one program, perhaps with other --set values. Pick the
 signals they share:
-    lineshaft report a.csv b.csv --signals x.position,y.position -o both.html)"},
+    lineshaft report a.csv b.csv --signals shaft.position,slave.position -o both.html)"},
     {"L0725", "traces of different interval",
      R"(The rows of the two traces lie at different distances in time, so that sample cannot be
 compared with sample. Record both with the same task and 'every'.)"},
     {"L0726", "no results of a study",
      R"(A .json file given to 'lineshaft report' is what a study printed:
-    lineshaft study programs/paper/wei2025_table1.yaml --json >table1.json
-    lineshaft report table1.json -o table1.html)"},
+    lineshaft study PLAN.yaml --json >results.json
+    lineshaft report results.json -o results.html)"},
+
+    {"L0801", "a stimulus or a force after the end of the run",
+     R"(A warning. The run ends before this comes, so it does nothing. Let the run be longer, or
+give the stimulus, the replay or the force a sooner time:
+    run: {for: 4 s}
+    stimulus:
+      - {at: 3 s, set: {inputs.go: true}})"},
+    {"L0802", "an expectation that is never looked at",
+     R"(A warning. The run ends before the expectation's time, so it cannot hold; or it shall
+hold always, after every scan of a task that never scanned. 'at: end' is the end of the run,
+whenever that is:
+    expect:
+      - {at: end, slave.in_gear: true})"},
+    {"L0803", "a parameter or an input that nothing uses",
+     R"(A warning. What is declared is changed by --set, by a study or by a stimulus, but no block
+sees it. Often the place where it is meant still has a constant:
+    inputs: {ratio: 1.5}
+    blocks:
+      slave: {type: gear_axis, task: servo, ratio: inputs.ratio,
+              master_position: shaft.position, master_velocity: shaft.velocity})"},
+    {"L0804", "a test that expects nothing",
+     R"(A warning. 'lineshaft test' runs the program, and it passes whatever it does, since it has
+no 'expect:'. Say what must hold:
+    expect:
+      - {at: end, slave.velocity: 15 mm/s, within: 1e-9 mm/s})"},
 };
 
 }  // namespace
@@ -404,7 +447,9 @@ std::span<const CodeText> diagnostic_codes() {
 }
 
 const CodeText* find_code(std::string_view code) {
-    const auto it = std::ranges::find(table, code, &CodeText::code);
+    std::string wanted(code);
+    if (wanted.starts_with('l')) wanted.front() = 'L';
+    const auto it = std::ranges::find(table, wanted, &CodeText::code);
     return it == std::end(table) ? nullptr : it;
 }
 

@@ -15,7 +15,7 @@ struct CodeText {
 /// Every code that a diagnostic may carry, in ascending order.
 std::span<const CodeText> diagnostic_codes();
 
-/// Null for an unknown code.
+/// `L0203`, or `l0203`; null for an unknown code.
 const CodeText* find_code(std::string_view code);
 
 }  // namespace lineshaft

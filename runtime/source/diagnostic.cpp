@@ -17,6 +17,8 @@ constexpr std::size_t before_mark = 40;        // of these, when the line is cut
 constexpr std::size_t longest_message = 1000;  // characters; a message quotes the user's text
 constexpr std::size_t longest_word = 100;      // bytes that `nearest` compares
 constexpr std::size_t most_names = 12;
+constexpr std::size_t most_meant = 3;
+constexpr std::size_t shortest_abbreviation = 3;
 constexpr std::string_view cut = "...";
 
 /// Line breaks, and characters that reorder or hide what stands around them.
@@ -148,16 +150,43 @@ std::size_t distance(std::string_view a, std::string_view b) {
     return last.back();
 }
 
+/// `pos` position, and not `master` master_unit.
+bool abbreviates(std::string_view word, std::string_view name) {
+    return word.size() >= shortest_abbreviation && word.size() < name.size() &&
+           name.starts_with(word) && name.find('_', word.size()) == std::string_view::npos;
+}
+
+/// Of `a.position` 8.
+std::size_t longest_part(std::string_view word) {
+    const std::size_t dot = std::min(word.find('.'), word.size());
+    return std::max(dot, word.size() - dot);
+}
+
 }  // namespace
 
 void Diagnostics::add(std::string code, Mark mark, std::string message, std::string help) {
     list_.push_back({std::move(code), std::move(mark), std::move(message), std::move(help)});
 }
 
+void Diagnostics::warn(std::string code, Mark mark, std::string message, std::string help) {
+    Diagnostic warning{std::move(code), std::move(mark), std::move(message), std::move(help), true};
+    const auto is_same = [&](const Diagnostic& other) { return order(other) == order(warning); };
+    if (std::ranges::none_of(warnings_, is_same)) warnings_.push_back(std::move(warning));
+}
+
+void Diagnostics::be_strict() {
+    for (Diagnostic& warning : warnings_) {
+        warning.is_warning = false;
+        list_.push_back(std::move(warning));
+    }
+    warnings_.clear();
+}
+
 std::string Diagnostics::render(std::size_t limit) const {
     std::vector<const Diagnostic*> sorted;
-    sorted.reserve(list_.size());
-    for (const Diagnostic& diagnostic : list_) sorted.push_back(&diagnostic);
+    const auto& shown_list = list_.empty() ? warnings_ : list_;
+    sorted.reserve(shown_list.size());
+    for (const Diagnostic& diagnostic : shown_list) sorted.push_back(&diagnostic);
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const auto* a, const auto* b) { return order(*a) < order(*b); });
     const auto end = std::unique(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) {
@@ -180,8 +209,9 @@ std::string render(const Diagnostic& diagnostic) {
     if (placed) place += fmt::format("{}:{}:", mark.line, mark.column);
     if (!place.empty()) place += " ";
 
-    std::string out = fmt::format("{}error[{}]: {}\n", place, diagnostic.code,
-                                  printable_text(diagnostic.message));
+    std::string out =
+        fmt::format("{}{}[{}]: {}\n", place, diagnostic.is_warning ? "warning" : "error",
+                    diagnostic.code, printable_text(diagnostic.message));
     if (placed) {
         out += snippet(diagnostic);
     } else if (!diagnostic.help.empty()) {
@@ -190,26 +220,35 @@ std::string render(const Diagnostic& diagnostic) {
     return out;
 }
 
-std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
+std::vector<std::string> nearest(std::string_view word,
+                                 const std::vector<std::string>& candidates) {
     if (word.size() > longest_word) return {};
-    const std::size_t limit = std::clamp<std::size_t>(word.size() / 3, 1, 3);
     const std::string wanted = lower(word);
-    const std::string* best = nullptr;
-    std::size_t best_distance = limit + 1;
+    std::vector<std::string> near;
+    for (const std::string& candidate : candidates)
+        if (abbreviates(wanted, lower(candidate))) near.push_back(candidate);
+    if (near.size() == 1) return near;
+    near.clear();
+    std::size_t fewest = std::min<std::size_t>(longest_part(word) / 3, 3);
     for (const std::string& candidate : candidates) {
+        if (std::ranges::find(near, candidate) != near.end()) continue;
         const std::size_t longer = std::max(candidate.size(), word.size());
-        if (longer - std::min(candidate.size(), word.size()) > limit) continue;
+        if (longer - std::min(candidate.size(), word.size()) > fewest) continue;
         const std::size_t edits = distance(wanted, lower(candidate));
-        if (edits >= best_distance || edits >= longer) continue;
-        best = &candidate;
-        best_distance = edits;
+        if (edits > fewest || edits >= longer) continue;
+        if (edits < fewest) near.clear();
+        fewest = edits;
+        if (near.size() < most_meant) near.push_back(candidate);
     }
-    return best == nullptr ? std::string() : *best;
+    return near;
 }
 
-std::string suggest(std::string_view word, const std::vector<std::string>& candidates) {
-    const std::string near = nearest(word, candidates);
-    if (!near.empty()) return fmt::format("did you mean '{}'?", near);
+std::string suggest(std::string_view word, const std::vector<std::string>& candidates,
+                    std::string_view before) {
+    std::string meant;
+    for (const std::string& name : nearest(word, candidates))
+        meant += fmt::format("{}'{}{}'", meant.empty() ? "" : " or ", before, name);
+    if (!meant.empty()) return fmt::format("did you mean {}?", meant);
     if (candidates.empty()) return {};
     const auto end = std::next(
         candidates.begin(), static_cast<std::ptrdiff_t>(std::min(candidates.size(), most_names)));

@@ -28,6 +28,7 @@ struct Diagnostic {
     Mark mark;
     std::string message;  ///< one line, lower case, no full stop
     std::string help;     ///< shown under the caret: "did you mean 'shaft.velocity'?"; may be empty
+    bool is_warning = false;  ///< of what is allowed and hardly meant
 };
 
 /// Collects diagnostics so that all are shown at once, sorted by place when rendered.
@@ -37,12 +38,19 @@ class Diagnostics {
     bool empty() const { return list_.empty(); }
     const std::vector<Diagnostic>& list() const { return list_; }
 
-    /// Sorted by file, line, column; equal ones once; at most `limit`, then "... and N more".
-    /// Every line ends with '\n'.
+    /// Of what is allowed and hardly meant: no error, so that the list may be empty. Equal ones are
+    /// kept once.
+    void warn(std::string code, Mark mark, std::string message, std::string help = {});
+    const std::vector<Diagnostic>& warnings() const { return warnings_; }
+    /// Warnings become errors.
+    void be_strict();
+
+    /// Errors, else warnings, sorted by file, line, column; equal ones once; at most `limit`, then
+    /// "... and N more". Every line ends with '\n'.
     std::string render(std::size_t limit = 50) const;
 
   private:
-    std::vector<Diagnostic> list_;
+    std::vector<Diagnostic> list_, warnings_;
 };
 
 /// One diagnostic as a compiler prints it:
@@ -54,13 +62,16 @@ class Diagnostics {
 /// Without a place: `error[L0001]: message` (after `FILE: ` if there is a file), the help below it.
 std::string render(const Diagnostic& diagnostic);
 
-/// The candidate nearest to `word` by edit distance (Damerau; capital letters count as small ones,
-/// the first of equally near ones wins), empty if none is near: more edits than a third of the
-/// word's length (at least 1, at most 3), or no letter in common.
-std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
+/// The candidates (at most 3) that `word` may be meant for: the one word that it abbreviates
+/// (`pos`, position), else the nearest by edit distance (Damerau; capital letters count as small
+/// ones), of which there may be several. None if it takes more edits than a third of the word's
+/// length (at most 3), so in a word of one or two letters any.
+std::vector<std::string> nearest(std::string_view word, const std::vector<std::string>& candidates);
 
-/// For `help`: "did you mean 'x'?" when one is near, else "known: a, b, c" (at most 12 names, then
-/// "..."), empty without candidates.
-std::string suggest(std::string_view word, const std::vector<std::string>& candidates);
+/// For `help`: "did you mean 'x' or 'y'?" when some are near, else "known: a, b, c" (at most 12
+/// names, then
+/// "..."), empty without candidates. `before` stands before each name that is meant.
+std::string suggest(std::string_view word, const std::vector<std::string>& candidates,
+                    std::string_view before = {});
 
 }  // namespace lineshaft

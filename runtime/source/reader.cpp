@@ -6,6 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/habits.hpp"
+#include "runtime/source/utf8.hpp"
+
 namespace lineshaft {
 
 namespace {
@@ -28,15 +31,19 @@ std::string measure(const Unit& unit) {
     return plain ? "a plain number" : fmt::format("{} ({})", unit.text, unit.dimension_name());
 }
 
+std::string expected_in(const Unit& unit) {
+    return (unit.same_dimension({}) ? "" : "a number in ") + measure(unit);
+}
+
 std::string given(const Quantity& q) {
     return (q.unit.same_dimension({}) ? "" : "in ") + measure(q.unit);
 }
 
-std::string number_help(std::string_view text, std::string due) {
+std::string number_help(std::string_view text, std::string expected) {
     if (text.size() > 1 && text[0] == '0' && is_digit(text[1]))
         return "a number has no leading zero";
     const bool comma = !text.empty() && is_digit(text[0]) && text.find(',') != text.npos;
-    return comma ? "a number has a decimal point, not a comma" : std::move(due);
+    return comma ? "a number has a decimal point, not a comma" : std::move(expected);
 }
 
 /// The part of a quantity's unit that is none: `sec` of `10 mm/sec`; empty if there is no such
@@ -56,6 +63,22 @@ std::string unknown_factor(std::string_view text) {
         rest.remove_prefix(std::min(length + 1, rest.size()));
     }
     return {};
+}
+
+/// Of what is reported where a value, a wire or a signal is expected.
+constexpr std::string_view codes_of_values[] = {"L0207", "L0208", "L0301",
+                                                "L0304", "L0307", "L0309"};
+
+/// `at` and what is wrong become the character's.
+void name_character(Diagnostic& at, std::string_view text, const LookAlike& character) {
+    const bool as_written = at.mark.length == static_cast<int>(count_characters(text));
+    if (as_written) {
+        at.mark.column += static_cast<int>(count_characters(text.substr(0, character.offset)));
+        at.mark.length = 1;
+    }
+    at.code = "L0109";
+    at.message = fmt::format("{} stands in '{}'", character.name, text);
+    at.help = fmt::format("write {} instead", character.instead);
 }
 
 }  // namespace
@@ -79,14 +102,30 @@ std::optional<SignalName> split_signal(std::string_view text) {
 
 void Reader::fail(const char* code, const Node& node, std::string message, std::string help) const {
     if (node.is_unknown_parameter()) return;
-    if (!node.parameter.empty())
-        message += fmt::format(" (parameter '{}' is '{}')", node.parameter, node.text);
-    out_.add(code, node.mark, std::move(message), std::move(help));
+    Diagnostic found{code, node.mark, std::move(message), std::move(help)};
+    if (const auto character = node.quoted ? std::nullopt : find_look_alike(node.text)) {
+        name_character(found, node.text, *character);
+    } else if (std::ranges::find(codes_of_values, found.code) != std::end(codes_of_values)) {
+        std::string better = node.quoted && node.text.starts_with("NOT ")
+                                 ? std::string()
+                                 : expression_help(node.text);
+        if (!better.empty())
+            found = {"L0217", node.mark, fmt::format("'{}' is an expression", node.text),
+                     std::move(better)};
+    }
+    if (node.used_in_line > 0)
+        found.message +=
+            fmt::format(" (parameter '{}', used in line {})", node.parameter, node.used_in_line);
+    else if (!node.parameter.empty())
+        found.message += fmt::format(" (parameter '{}' is '{}')", node.parameter, node.text);
+    out_.add(std::move(found.code), std::move(found.mark), std::move(found.message),
+             std::move(found.help));
 }
 
-bool Reader::expect_map(const Node& node, std::string_view what) const {
+bool Reader::expect_map(const Node& node, std::string_view what, std::string help) const {
     if (!node.is_map())
-        fail("L0209", node, fmt::format("{} is a map, not {}", what, name_of(node.kind)));
+        fail("L0209", node, fmt::format("{} is a map, not {}", what, name_of(node.kind)),
+             std::move(help));
     return node.is_map();
 }
 
@@ -123,7 +162,7 @@ const Node* Reader::require(const Node& map, std::string_view key, std::string_v
 
 bool Reader::identifier(const Node& node, std::string_view what) const {
     if (node.is_scalar() && is_identifier(node.text)) return true;
-    fail("L0210", node, fmt::format("'{}' is no name for {}", node.text, what),
+    fail("L0210", node, fmt::format("'{}' is not a name for {}", node.text, what),
          "a name has letters, digits and '_', and does not begin with a digit");
     return false;
 }
@@ -132,14 +171,15 @@ std::optional<bool> Reader::boolean(const Node& node) const {
     if (!expect_scalar(node, "a boolean")) return {};
     if (!node.quoted && node.text == "true") return true;
     if (!node.quoted && node.text == "false") return false;
-    fail("L0307", node, fmt::format("'{}' is no boolean", node.text), "write true or false");
+    fail("L0307", node, fmt::format("'{}' is not a boolean", node.text),
+         node.quoted ? "write it without quotes" : "write true or false");
     return {};
 }
 
-std::optional<Quantity> Reader::quantity(const Node& node, std::string due) const {
+std::optional<Quantity> Reader::quantity(const Node& node, std::string expected) const {
     if (!expect_scalar(node, "a number")) return {};
     if (node.quoted) {
-        fail("L0301", node, "a text in quotes is no number", "write it without quotes");
+        fail("L0301", node, "a text in quotes is not a number", "write it without quotes");
         return {};
     }
     const auto result = parse_quantity(node.text);
@@ -152,26 +192,30 @@ std::optional<Quantity> Reader::quantity(const Node& node, std::string due) cons
     const std::string unit =
         error == QuantityError::unknown_unit ? unknown_factor(node.text) : std::string();
     if (unit.empty() || unit.starts_with(','))
-        fail("L0301", node, fmt::format("'{}' is no number", node.text),
-             number_help(node.text, std::move(due)));
+        fail("L0301", node, fmt::format("'{}' is not a number", node.text),
+             number_help(node.text, std::move(expected)));
     else
         fail("L0304", node, fmt::format("unknown unit '{}' in '{}'", unit, node.text),
-             suggest(unit, unit_names()));
+             unit_help(unit, expected));
     return {};
 }
 
-std::optional<std::int64_t> Reader::integer(const Node& node) const {
-    const auto q = quantity(node, "a whole number is due");
+std::optional<std::int64_t> Reader::integer(const Node& node, std::string help) const {
+    const auto q = quantity(node, "expected a whole number");
     if (!q) return {};
     if (q->is_integer && !q->has_unit) return q->integer;
-    fail("L0309", node, fmt::format("'{}' is no whole number", node.text),
-         q->has_unit ? "write it without a unit" : "write it without point and exponent");
+    if (!q->has_unit)
+        help = "write it without point and exponent";
+    else if (help.empty())
+        help = "expected a whole number without a unit";
+    fail("L0309", node, fmt::format("'{}' is not a whole number", node.text), std::move(help));
     return {};
 }
 
 std::optional<double> Reader::real(const Node& node, const Unit& unit) const {
-    const auto q = quantity(node, is_plain(unit) ? "a plain number is due"
-                                                 : fmt::format("a number in {} is due", unit.text));
+    const auto q =
+        quantity(node, is_plain(unit) ? "expected a plain number"
+                                      : fmt::format("expected a number in {}", unit.text));
     if (!q) return {};
     if (!q->has_unit && !is_plain(unit)) {
         fail("L0302", node, fmt::format("'{}' has no unit", node.text),
@@ -180,7 +224,7 @@ std::optional<double> Reader::real(const Node& node, const Unit& unit) const {
     }
     if (!q->unit.same_dimension(unit)) {
         fail("L0303", node,
-             fmt::format("'{}' is {}, {} is due", node.text, given(*q), measure(unit)));
+             fmt::format("'{}' is {}, expected {}", node.text, given(*q), expected_in(unit)));
         return {};
     }
     const double value = convert(q->number, q->unit, unit);
@@ -190,7 +234,7 @@ std::optional<double> Reader::real(const Node& node, const Unit& unit) const {
 }
 
 std::optional<std::int64_t> Reader::time(const Node& node) const {
-    static constexpr const char* help = "write a time such as 2 ms";
+    static constexpr const char* help = "expected a time such as 2 ms";
     const auto q = quantity(node, help);
     if (!q) return {};
     static const Unit second = *Unit::parse("s");
@@ -200,7 +244,7 @@ std::optional<std::int64_t> Reader::time(const Node& node) const {
         return {};
     }
     if (!q->unit.same_dimension(second)) {
-        fail("L0308", node, fmt::format("'{}' is {}, a time is due", node.text, given(*q)), help);
+        fail("L0308", node, fmt::format("'{}' is {}, not a time", node.text, given(*q)), help);
         return {};
     }
     const auto ns = to_nanoseconds(*q);
@@ -208,7 +252,7 @@ std::optional<std::int64_t> Reader::time(const Node& node) const {
     if (q->number < 0)
         fail("L0308", node, fmt::format("'{}' is below 0", node.text));
     else
-        fail("L0308", node, fmt::format("'{}' is no whole number of nanoseconds", node.text),
+        fail("L0308", node, fmt::format("'{}' is not a whole number of nanoseconds", node.text),
              "times are counted in ns, up to 292 years");
     return {};
 }

@@ -19,10 +19,12 @@ class Reader {
   public:
     explicit Reader(Diagnostics& out) : out_(out) {}
 
+    /// Reports it at `node`. Where the text there is an expression, or has a character that only
+    /// looks like the one that is meant, that is what is reported (L0109, L0217).
     void fail(const char* code, const Node& node, std::string message, std::string help = {}) const;
 
     /// L0209 unless it is one.
-    bool expect_map(const Node& node, std::string_view what) const;
+    bool expect_map(const Node& node, std::string_view what, std::string help = {}) const;
     bool expect_sequence(const Node& node, std::string_view what) const;
     bool expect_scalar(const Node& node, std::string_view what) const;
 
@@ -38,9 +40,10 @@ class Reader {
     bool identifier(const Node& node, std::string_view what) const;
 
     std::optional<bool> boolean(const Node& node) const;
-    std::optional<std::int64_t> integer(const Node& node) const;
-    /// `due` is what is wanted instead of something that is no number, for the message.
-    std::optional<Quantity> quantity(const Node& node, std::string due = {}) const;
+    /// `help` is for a number with a unit.
+    std::optional<std::int64_t> integer(const Node& node, std::string help = {}) const;
+    /// `expected` is what is wanted instead of something that is no number, for the message.
+    std::optional<Quantity> quantity(const Node& node, std::string expected = {}) const;
 
     /// A quantity in `unit`: L0302 when the unit is missing, L0303 when it measures something else.
     std::optional<double> real(const Node& node, const Unit& unit) const;

@@ -49,6 +49,7 @@ bool is_digit(char c) {
 
 /// Multiplies `unit` by `factor` (`mm`, `s^3`), or divides; false when it is none.
 bool apply(Unit& unit, std::string_view factor, bool divide) {
+    if (factor == "rpm") return apply(unit, "rev", divide) && apply(unit, "min", !divide);
     const std::size_t caret = factor.find('^');
     const std::string_view name = factor.substr(0, caret);
     int power = 1;
@@ -327,6 +328,7 @@ const std::vector<std::string>& unit_names() {
         std::vector<std::string> all;
         all.reserve(named_units.size());
         for (const NamedUnit& named : named_units) all.emplace_back(named.name);
+        all.emplace_back("rpm");
         return all;
     }();
     return names;
@@ -363,6 +365,14 @@ std::string format_number(double value) {
     std::array<char, 32> text{};
     const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
     return {text.data(), end.ptr};
+}
+
+std::string format_time(std::int64_t nanoseconds) {
+    constexpr std::int64_t second = 1'000'000'000;
+    std::string text = fmt::format("{}", nanoseconds / second);
+    if (nanoseconds % second != 0) text += fmt::format(".{:09}", nanoseconds % second);
+    if (text.find('.') != std::string::npos) text.erase(text.find_last_not_of('0') + 1);
+    return text + " s";
 }
 
 }  // namespace lineshaft

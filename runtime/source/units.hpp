@@ -22,8 +22,9 @@ struct Unit {
 
     /// Empty when the text is no unit. Grammar: factor (('*' | '/') factor)*, without spaces, where
     /// factor = name ['^' digit] and each '/' divides by the one factor after it; `1/s` begins with
-    /// the number 1, which is no unit by itself. Hz is 1/s. Prefixes are part of the listed names:
-    /// nothing is composed. The empty text is the unit of plain numbers.
+    /// the number 1, which is no unit by itself. Hz is 1/s, rpm (without a power) rev/min. Prefixes
+    /// are part of the listed names: nothing is composed. The empty text is the unit of plain
+    /// numbers.
     static std::optional<Unit> parse(std::string_view text);
 
     bool same_dimension(const Unit& other) const { return exponents == other.exponents; }
@@ -61,7 +62,7 @@ enum class QuantityError {
 /// number and unit are optional (`2ms`).
 std::variant<Quantity, QuantityError> parse_quantity(std::string_view text);
 
-/// Every unit name that `Unit::parse` knows, each once, for messages and the schema.
+/// Every unit name that `Unit::parse` knows, each once, for messages.
 const std::vector<std::string>& unit_names();
 
 /// Seconds-like quantity to whole nanoseconds; empty if it is no time, beyond +-9.2e18 ns (292
@@ -71,5 +72,8 @@ std::optional<std::int64_t> to_nanoseconds(const Quantity& quantity);
 
 /// Shortest text that reads back as the same double (`std::to_chars`).
 std::string format_number(double value);
+
+/// `12.345 s`, exact from integer nanoseconds.
+std::string format_time(std::int64_t nanoseconds);
 
 }  // namespace lineshaft

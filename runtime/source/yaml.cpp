@@ -13,6 +13,7 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include "runtime/source/habits.hpp"
 #include "runtime/source/utf8.hpp"
 
 namespace lineshaft {
@@ -156,6 +157,10 @@ std::size_t quoted_end(std::string_view text, std::size_t begin) {
     return i;
 }
 
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
 bool is_quote(char c) {
     return c == '"' || c == '\'';
 }
@@ -275,6 +280,7 @@ class Builder : public YAML::EventHandler {
     void OnMapEnd() override {
         Node& map = stack_.back().node;
         check_duplicates(map);
+        check_decimal_commas(map);
         const bool flow = source_.at(stack_.back().begin) == '{';
         if (!flow && !map.entries.empty()) map.mark = map.entries.front().first.mark;
         close();
@@ -295,7 +301,8 @@ class Builder : public YAML::EventHandler {
 
     static constexpr const char* no_alias =
         "write the value out; a text that begins with '&' or '*' stands in quotes";
-    static constexpr const char* no_tag = "a text that begins with '!' stands in quotes";
+    static constexpr const char* no_tag =
+        "'NOT block.port' negates a boolean; a text that begins with '!' stands in quotes";
     static constexpr const char* quote_help = "a text that begins with a quote ends with the same";
 
   private:
@@ -449,6 +456,22 @@ class Builder : public YAML::EventHandler {
         }
     }
 
+    /// `{ratio: 1,5}` is to YAML a map with a key 5.
+    void check_decimal_commas(const Node& map) const {
+        for (std::size_t i = 1; i < map.entries.size(); ++i) {
+            const Node& value = map.entries[i - 1].second;
+            const auto& [key, nothing] = map.entries[i];
+            const bool digits = !key.text.empty() && is_digit(key.text.front()) &&
+                                !value.text.empty() && is_digit(value.text.back());
+            if (!digits || value.quoted || !nothing.is_empty()) continue;
+            Mark mark = value.mark;
+            mark.length = std::max(1, key.mark.column + key.mark.length - mark.column);
+            out_.add("L0301", std::move(mark),
+                     fmt::format("'{},{}' is not a number", value.text, key.text),
+                     fmt::format("a number has a decimal point: {}.{}", value.text, key.text));
+        }
+    }
+
     const Source& source_;
     Diagnostics& out_;
     const YamlLimits& limits_;
@@ -515,6 +538,24 @@ std::size_t indenting_tab(const Source& source, std::size_t offset) {
     return tab == std::string_view::npos ? tab : begin + tab;
 }
 
+/// A space or a dash that begins the line of `offset`, or the one before, and is not the
+/// keyboard's: to YAML it is text.
+bool report_look_alike(const Source& source, std::size_t offset, Diagnostics& out) {
+    const std::size_t last = source.line_index(offset);
+    for (std::size_t line = last;; --line) {
+        const std::size_t begin = source.line_begin(line);
+        const std::string_view text = source.text().substr(begin, source.line_break(begin) - begin);
+        const auto found = find_look_alike(text);
+        if (found && text.find_first_not_of(' ') == found->offset) {
+            out.add("L0109", source.mark(begin + found->offset),
+                    fmt::format("a line begins with {}", found->name),
+                    fmt::format("write {} instead", found->instead));
+            return true;
+        }
+        if (line == 0 || line + 1 == last) return false;
+    }
+}
+
 /// Place of the colon of `key:value` in the last line before that of `offset`, or npos: YAML reads
 /// on there as in one text of two lines.
 std::size_t glued_colon(const Source& source, std::size_t offset) {
@@ -545,6 +586,7 @@ void report(const YAML::Exception& fault, const Source& source, const Builder& b
                 "replace it by spaces");
         return;
     }
+    if (report_look_alike(source, offset, out)) return;
     const auto [opened, bracket] = builder.open_bracket();
     const bool in_brackets = bracket == '[' || bracket == '{';
     if (at_end && in_brackets) {
@@ -655,12 +697,15 @@ std::optional<Node> parse_yaml(std::shared_ptr<const SourceFile> file, Diagnosti
 
 std::shared_ptr<const SourceFile> read_source(const std::string& path, Diagnostics& out, Mark where,
                                               const YamlLimits& limits) {
+    const std::string looked_for =
+        where.file ? fmt::format("the path counts from the folder of '{}'", where.file->path)
+                   : std::string();
     int error = path.find('\0') == std::string::npos ? 0 : ENOENT;
     std::string text;
     if (error == 0) text = read_bytes(path, limits.bytes + 1, error);
     if (error != 0) {
         out.add("L0001", std::move(where),
-                fmt::format("cannot read '{}': {}", path, reason_of(error)));
+                fmt::format("cannot read '{}': {}", path, reason_of(error)), looked_for);
         return nullptr;
     }
     if (text.size() > limits.bytes) {

@@ -27,6 +27,7 @@ struct Node {
     std::string text;       ///< scalar; empty for an empty value (`key:`, `key: ~`, `key: null`)
     bool quoted = false;    ///< scalar in quotes or block scalar: never a number or a wire
     std::string parameter;  ///< name, where the text was written as `$name`
+    int used_in_line = 0;   ///< where it was, if `mark` is where the parameter is declared
     std::vector<std::pair<Node, Node>> entries;  ///< map, in file order; keys are scalars, unique
     std::vector<Node> items;                     ///< sequence
 
@@ -66,6 +67,8 @@ struct YamlLimits {
 ///   L0107  a key that is no scalar, or empty (`: 1`, `null: 1`)
 ///   L0108  not UTF-8, a NUL or another control character (also as an escape in double quotes), a
 ///          lone carriage return, a byte order mark other than UTF-8's
+///   L0109  a line that begins with a space or a dash that is not the keyboard's
+///   L0301  a decimal comma in braces
 /// Nothing is thrown.
 std::optional<Node> parse_yaml(std::shared_ptr<const SourceFile> file, Diagnostics& out,
                                const YamlLimits& limits = {});

@@ -10,6 +10,7 @@ struct SuiteEntry {
     double wall_seconds = 0;
     std::string failure = {};  ///< first deviation; empty: passed
     bool error = false;        ///< it could not be judged: a wrong program, a fault
+    std::string warnings = {};
 };
 
 /// JUnit XML of a suite, as CI servers read it.

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "runtime/scan/event.hpp"
 #include "runtime/net/machine.hpp"
+#include "runtime/scan/event.hpp"
 #include "runtime/trace/output_file.hpp"
 
 namespace lineshaft {

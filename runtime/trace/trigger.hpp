@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "runtime/model/state.hpp"
-#include "runtime/program/program.hpp"
 #include "runtime/net/machine.hpp"
+#include "runtime/program/program.hpp"
 
 namespace lineshaft {
 

@@ -56,6 +56,7 @@ class Generator {
     void add_stimuli();
     void add_bounds(const BlockType& type, const std::string& name);
     bool is_limit(const Field& field) const;
+    bool may_misfit(const Field& field) const;
 
     struct Input {
         std::string name;
@@ -121,9 +122,10 @@ void Generator::add_block(std::size_t index) {
         if (field.direction != Direction::output && field.type != Type::enumeration)
             numbers_[std::string(field.name)] = as_real(default_of(*type_, field));
     for (const Field& field : type_->fields) {
-        const bool is_set = field.direction != Direction::output &&
-                            !names_.contains(std::string(field.name)) &&
-                            (field.required || choices_.once_in(2));
+        const bool is_set =
+            field.direction != Direction::output && !names_.contains(std::string(field.name)) &&
+            (field.required || choices_.once_in(2)) &&
+            !(may_misfit(field) && !field.unit.empty() && field.type == Type::integer);
         if (is_set) program_.text += setting(field, unit_of(field));
     }
     for (const Field& field : type_->fields)
@@ -140,6 +142,11 @@ bool Generator::is_limit(const Field& field) const {
            std::ranges::find(limits, field.name) != std::end(limits);
 }
 
+/// A constant that may come to nothing beside others; a value from outside is taken as it comes.
+bool Generator::may_misfit(const Field& field) const {
+    return type_->misfit && (field.type == Type::integer || field.type == Type::real);
+}
+
 std::string Generator::setting(const Field& field, const std::string& unit) {
     return fmt::format("    {}: {}\n", field.name,
                        field.direction == Direction::parameter || is_limit(field)
@@ -150,7 +157,8 @@ std::string Generator::setting(const Field& field, const std::string& unit) {
 std::string Generator::value(const Field& field, const std::string& unit) {
     if (choices_.once_in(2))
         if (std::string from = wire(field, unit); !from.empty()) return from;
-    if (choices_.once_in(3) && inputs_.size() < most_stimuli) return new_input(field, unit);
+    if (may_misfit(field) || (choices_.once_in(3) && inputs_.size() < most_stimuli))
+        return new_input(field, unit);
     return literal(field, unit);
 }
 

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
@@ -47,6 +49,13 @@ std::string default_text(const Field& field, const Value& value) {
     return text.empty() ? "\"\"" : text;
 }
 
+void add_limits(nlohmann::ordered_json& object, const Field& field) {
+    if (std::isfinite(field.minimum))
+        object[field.minimum_excluded ? "above" : "at_least"] = field.minimum;
+    if (std::isfinite(field.maximum))
+        object[field.maximum_excluded ? "below" : "at_most"] = field.maximum;
+}
+
 nlohmann::ordered_json to_json(const BlockType& type) {
     const Fresh fresh(type);
     auto fields = nlohmann::ordered_json::array();
@@ -59,13 +68,16 @@ nlohmann::ordered_json to_json(const BlockType& type) {
                                      {"default", describe(fresh.value(f), f.type, f.names, "")},
                                      {"required", f.required}};
         if (!f.names.empty()) field["values"] = f.names;
+        add_limits(field, f);
         fields.push_back(std::move(field));
     }
     nlohmann::ordered_json object{{"type", type.name}, {"doc", type.doc}, {"fields", fields}};
     for (const TableField& t : type.tables) {
         auto columns = nlohmann::ordered_json::array();
-        for (const Field& c : t.columns)
+        for (const Field& c : t.columns) {
             columns.push_back({{"name", c.name}, {"unit", c.unit}, {"doc", c.doc}});
+            add_limits(columns.back(), c);
+        }
         object["tables"].push_back(
             {{"name", t.name}, {"doc", t.doc}, {"rows", t.capacity}, {"columns", columns}});
     }
@@ -93,8 +105,11 @@ void print_fields(const BlockType& type, Direction direction) {
 void print_tables(const BlockType& type) {
     for (const TableField& table : type.tables) {
         fmt::print("\nlist {}, up to {} rows: {}\n", table.name, table.capacity, table.doc);
-        for (const Field& column : table.columns)
-            fmt::print("  {:18} {:10} {}\n", column.name, column.unit, column.doc);
+        for (const Field& column : table.columns) {
+            const std::string limits = describe_limits(column, "");
+            fmt::print("  {:18} {:10} {}{}\n", column.name, column.unit, column.doc,
+                       limits.empty() ? "" : " (" + limits + ")");
+        }
     }
 }
 

@@ -13,6 +13,7 @@ namespace {
 struct CheckCommand {
     CommonOptions common;
     std::vector<std::string> files;
+    bool strict = false;
 };
 
 void check(const std::string& path, const LoadOptions& options, Diagnostics& out) {
@@ -31,10 +32,11 @@ Exit execute(const CheckCommand& command) {
     Diagnostics out;
     const LoadOptions options = command.common.load_options(out);
     for (const std::string& path : command.files) check(path, options, out);
-    if (!out.empty()) return report(out, command.common.json);
-    if (command.common.json)
-        fmt::print("{{\"diagnostics\": []}}\n");
-    else if (!command.common.quiet)
+    if (command.strict) out.be_strict();
+    if (!out.empty() || command.common.json || !out.warnings().empty())
+        report(out, command.common.json);
+    if (!out.empty()) return Exit::wrong;
+    if (!command.common.json && !command.common.quiet)
         for (const std::string& path : command.files) fmt::print("ok  {}\n", path);
     return Exit::fine;
 }
@@ -45,6 +47,7 @@ void add_check(CLI::App& app, Exit& result) {
     auto command = std::make_shared<CheckCommand>();
     CLI::App* sub = app.add_subcommand("check", "Say what is wrong with programs and studies");
     sub->add_option("files", command->files, "Programs and studies, YAML files")->required();
+    add_strict(*sub, command->strict);
     command->common.add_to(*sub);
     sub->callback([command, &result] { result = execute(*command); });
 }

@@ -20,9 +20,13 @@ std::int64_t now_ms() {
 }
 
 nlohmann::ordered_json to_json(const Diagnostic& d) {
-    return {{"code", d.code},       {"file", d.mark.file ? d.mark.file->path : ""},
-            {"line", d.mark.line},  {"column", d.mark.column},
-            {"message", d.message}, {"help", d.help}};
+    return {{"severity", d.is_warning ? "warning" : "error"},
+            {"code", d.code},
+            {"file", d.mark.file ? d.mark.file->path : ""},
+            {"line", d.mark.line},
+            {"column", d.mark.column},
+            {"message", d.message},
+            {"help", d.help}};
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {
@@ -58,13 +62,18 @@ LoadOptions CommonOptions::load_options(Diagnostics& out) const {
     return options;
 }
 
+void add_strict(CLI::App& command, bool& strict) {
+    command.add_flag("--strict", strict, "Take warnings for errors");
+}
+
 Exit report(const Diagnostics& diagnostics, bool json) {
     if (!json) {
         fmt::print(stderr, "{}", diagnostics.render());
         return Exit::wrong;
     }
     auto list = nlohmann::ordered_json::array();
-    for (const Diagnostic& d : diagnostics.list()) list.push_back(to_json(d));
+    for (const Diagnostic& d : diagnostics.empty() ? diagnostics.warnings() : diagnostics.list())
+        list.push_back(to_json(d));
     fmt::print("{}\n", nlohmann::ordered_json{{"diagnostics", list}}.dump(2));
     return Exit::wrong;
 }

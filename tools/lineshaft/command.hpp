@@ -38,8 +38,12 @@ struct CommonOptions {
     LoadOptions load_options(Diagnostics& out) const;
 };
 
-/// Prints what is wrong, as a compiler does on stderr, or as JSON on stdout. Always Exit::wrong.
+/// Prints what is wrong, else what is warned of, as a compiler does on stderr, or as JSON on
+/// stdout. Always Exit::wrong.
 Exit report(const Diagnostics& diagnostics, bool json);
+
+/// `--strict`: warnings are errors.
+void add_strict(CLI::App& command, bool& strict);
 
 /// L0509 for each of `outputs` that is one of the files `inputs`, by whatever name, or that is
 /// named twice. Empty names are none.
@@ -68,6 +72,7 @@ void add_check(CLI::App& app, Exit& result);
 void add_test(CLI::App& app, Exit& result);
 void add_study(CLI::App& app, Exit& result);
 void add_blocks(CLI::App& app, Exit& result);
+void add_units(CLI::App& app, Exit& result);
 void add_schema(CLI::App& app, Exit& result);
 void add_form(CLI::App& app, Exit& result);
 void add_explain(CLI::App& app, Exit& result);

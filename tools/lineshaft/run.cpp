@@ -20,7 +20,7 @@ struct RunCommand {
     std::vector<std::string> forces;
     CsvStyle style;
     Restart restart = Restart::warm;
-    bool resume = false;
+    bool resume = false, strict = false;
 };
 
 nlohmann::ordered_json json_value(const Signal& signal) {
@@ -156,7 +156,9 @@ Exit execute(const RunCommand& command) {
     if (loaded)
         for (const ReplayPlan& replay : loaded->program.replays) inputs.push_back(replay.path);
     check_outputs({command.trace, command.pulses, command.retain, command.checkpoint}, inputs, out);
+    if (command.strict) out.be_strict();
     if (!out.empty()) return report(out, command.common.json);
+    fmt::print(stderr, "{}", out.render());
 
     ProgressLine line(command.common.quiet || command.common.json);
     const double whole = seconds(loaded->linked.machine.duration);
@@ -176,11 +178,16 @@ Exit execute(const RunCommand& command) {
         if (trace.measurements == 0)
             spdlog::warn("the trigger of trace '{}' did not come: {} has no rows",
                          trace.name.empty() ? "trace" : trace.name, trace.paths.front());
+    for (const std::string& text : result.never_looked_at)
+        spdlog::log(command.strict ? spdlog::level::err : spdlog::level::warn,
+                    "'{}' is never looked at: no scan of its task", text);
     if (!result.result.message.empty()) spdlog::error("{}", result.result.message);
     if (!result.trace_error.empty()) spdlog::error("{}", result.trace_error);
     if (!result.pulses_error.empty()) spdlog::error("{}", result.pulses_error);
     if (!result.restart_error.empty()) spdlog::error("{}", result.restart_error);
-    return exit_code(result);
+    const Exit exit = exit_code(result);
+    const bool unseen = command.strict && !result.never_looked_at.empty();
+    return exit == Exit::fine && unseen ? Exit::failed : exit;
 }
 
 }  // namespace
@@ -220,6 +227,7 @@ void add_run(CLI::App& app, Exit& result) {
     sub->add_option("--checkpoint-every", command->checkpoint_every,
                     "Write a checkpoint each time so much virtual time has passed, such as 10s")
         ->type_name("TIME");
+    add_strict(*sub, command->strict);
     command->common.add_to(*sub);
     sub->callback([command, &result] { result = execute(*command); });
 }

@@ -24,6 +24,7 @@ struct TestCommand {
     std::vector<std::string> paths;
     std::string junit;
     std::vector<std::string> include_dirs;
+    bool strict = false;
 };
 
 /// The file itself, or every program and study below a folder, sorted.
@@ -61,11 +62,17 @@ SuiteEntry test_study(const std::shared_ptr<const SourceFile>& file, const LoadO
     return entry;
 }
 
-SuiteEntry test_program(const std::string& path, const LoadOptions& options) {
+SuiteEntry test_program(const std::string& path, const LoadOptions& options, bool strict) {
     SuiteEntry entry{.name = path};
     Diagnostics out;
     auto loaded = load_program(path, options, standard_blocks(), out);
-    if (!loaded) return {path, 0, out.render(), true};
+    if (loaded && loaded->program.expectations.empty())
+        out.warn("L0804", {loaded->program.file, 0, 0, 1},
+                 "the program expects nothing, so it always passes",
+                 "say under 'expect:' what must hold");
+    if (strict) out.be_strict();
+    if (!out.empty()) return {path, 0, out.render(), true};
+    entry.warnings = out.render();
     const RunReport report =
         run(*loaded, {.trace_path = {}, .interrupt = &interrupt_requested, .progress = {}});
     entry.wall_seconds = report.wall_seconds;
@@ -73,14 +80,20 @@ SuiteEntry test_program(const std::string& path, const LoadOptions& options) {
     if (entry.error) entry.failure = report.result.message;
     for (const Verdict& verdict : report.verdicts)
         if (entry.failure.empty() && !verdict.ok) entry.failure = verdict.deviation;
+    for (const std::string& text : report.never_looked_at) {
+        const std::string unseen =
+            fmt::format("'{}' is never looked at: no scan of its task", text);
+        if (strict && entry.failure.empty()) entry.failure = unseen;
+        if (!strict) entry.warnings += fmt::format("warning: {}\n", unseen);
+    }
     return entry;
 }
 
-SuiteEntry test(const std::string& path, const LoadOptions& options) {
+SuiteEntry test(const std::string& path, const LoadOptions& options, bool strict) {
     Diagnostics out;
     const auto file = read_source(path, out);
     if (!file) return {path, 0, out.render(), true};
-    return is_study(*file) ? test_study(file, options) : test_program(path, options);
+    return is_study(*file) ? test_study(file, options) : test_program(path, options, strict);
 }
 
 Exit execute(const TestCommand& command) {
@@ -88,11 +101,14 @@ Exit execute(const TestCommand& command) {
     for (const std::string& path : command.paths) {
         for (const std::string& file : find_files(path)) {
             if (interrupt_requested) return Exit::interrupted;
-            entries.push_back(test(file, {.settings = {}, .include_dirs = command.include_dirs}));
+            entries.push_back(
+                test(file, {.settings = {}, .include_dirs = command.include_dirs}, command.strict));
             const SuiteEntry& entry = entries.back();
             fmt::print("{}  {} ({:.2f} s)\n", entry.failure.empty() ? "ok    " : "FAILED",
                        entry.name, entry.wall_seconds);
             if (!entry.failure.empty()) fmt::print("        {}\n", entry.failure);
+            std::fflush(stdout);
+            fmt::print(stderr, "{}", entry.warnings);
         }
     }
     const auto failed =
@@ -121,6 +137,7 @@ void add_test(CLI::App& app, Exit& result) {
     sub->add_option("--junit", command->junit, "Write a JUnit report, too")->type_name("OUT.xml");
     sub->add_option("--include-dir", command->include_dirs, "Allow files below this folder, too")
         ->type_name("DIR");
+    add_strict(*sub, command->strict);
     sub->callback([command, &result] { result = execute(*command); });
 }
 

@@ -45,13 +45,13 @@ TEST_CASE("literal: a whole number with a unit comes out whole") {
     CHECK(read(field_of(Type::integer, "pulses"), "12 pulses") == "12");
     CHECK(read(field_of(Type::integer, "ns"), "2 us") == "2000");
     CHECK(read(field_of(Type::integer, "pulses"), "1.5 pulses") ==
-          "L0309: '1.5 pulses' is no whole number of pulses for 'port'");
+          "L0309: '1.5 pulses' is not a whole number of pulses for 'port'");
     CHECK(read(field_of(Type::integer, "pulses"), "12") == "L0302: '12' has no unit");
 }
 
 TEST_CASE("literal: names are checked") {
     CHECK(read(field_of(Type::enumeration).one_of(colours), "grean") ==
-          "L0306: 'grean' is no value of 'port'");
+          "L0306: 'grean' is not a value of 'port'");
 }
 
 TEST_CASE("literal: limits, open and closed") {

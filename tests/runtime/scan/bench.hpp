@@ -151,15 +151,16 @@ class Bench {
         probe->log = &log;
         probe->task = spec.name.c_str();
         if (task.published != task.live) new (task.published) Probe(*probe);
-        task.calls.push_back({.scan =
-                                  [](std::byte* first, std::size_t, const Scan& now) {
-                                      auto* block = reinterpret_cast<Probe*>(first);
-                                      block->scan(now);
-                                      return block->flag;
-                                  },
-                              .first = task.live,
-                              .count = 1,
-                              .size = sizeof(Probe)});
+        task.calls.push_back(
+            {.scan =
+                 [](std::byte* first, std::size_t, const Scan& now, const Context&) {
+                     auto* block = reinterpret_cast<Probe*>(first);
+                     block->scan(now);
+                     return block->flag;
+                 },
+             .first = task.live,
+             .count = 1,
+             .size = sizeof(Probe)});
         machine.tasks.push_back(std::move(task));
     }
 

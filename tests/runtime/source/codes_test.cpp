@@ -46,6 +46,7 @@ TEST_CASE("codes: the table is ascending and every entry says something") {
     }
     CHECK(find_code("L9999") == nullptr);
     CHECK(find_code("") == nullptr);
+    CHECK(find_code("l0404") == find_code("L0404"));
 }
 
 TEST_CASE("codes: every code of the sources is in the table, and none besides") {

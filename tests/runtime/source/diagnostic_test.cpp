@@ -134,26 +134,27 @@ TEST_CASE("a limit ends the list with the number left out") {
 
 TEST_CASE("the nearest name") {
     const std::vector<std::string> names{"velocity", "position", "jerk", "q"};
-    CHECK(nearest("velocty", names) == "velocity");
-    CHECK(nearest("velcoity", names) == "velocity");
-    CHECK(nearest("vlecoity", names) == "velocity");
-    CHECK(nearest("Velocity", names) == "velocity");
-    CHECK(nearest("VELOCITY", names) == "velocity");
-    CHECK(nearest("jrek", names) == "jerk");
+    using Names = std::vector<std::string>;
+    for (const char* word : {"velocty", "velcoity", "vlecoity", "Velocity", "VELOCITY", "vel"})
+        CHECK(nearest(word, names) == Names{"velocity"});
+    CHECK(nearest("jrek", names) == Names{"jerk"});
     CHECK(nearest("jrke", names).empty());
-    CHECK(nearest("jerks", names) == "jerk");
-    CHECK(nearest("acceleration", names).empty());
-    CHECK(nearest("x", names).empty());
-    CHECK(nearest("q1", names) == "q");
-    CHECK(nearest("", names).empty());
+    CHECK(nearest("jerks", names) == Names{"jerk"});
+    for (const char* word : {"acceleration", "x", "q1", "", "ve"})
+        CHECK(nearest(word, names).empty());
+    CHECK(nearest("Q", names) == Names{"q"});
     CHECK(nearest("velocity", {}).empty());
-    CHECK(nearest("ab", {"abc", "ac"}) == "abc");
-    CHECK(nearest("abcdefghijkl", {"abcdefghi"}) == "abcdefghi");
+    CHECK(nearest("tonf", {"ton", "tof", "ton", "tp"}) == Names{"ton", "tof"});
+    CHECK(nearest("done", {"home", "moving"}).empty());
+    CHECK(nearest("master", {"master_unit"}).empty());
+    CHECK(nearest("x.a", {"x.b", "y.a"}).empty());
+    CHECK(nearest("abcdefghijkl", {"abcdefghi"}) == Names{"abcdefghi"});
     CHECK(nearest("abcdefghijklmnop", {"abcdefghijkl"}).empty());
 }
 
 TEST_CASE("a suggestion is the nearest name or the names there are") {
     CHECK(suggest("velocty", {"velocity"}) == "did you mean 'velocity'?");
+    CHECK(suggest("tonf", {"ton", "tof"}, "a.") == "did you mean 'a.ton' or 'a.tof'?");
     CHECK(suggest("ratio", {"velocity", "jerk"}) == "known: velocity, jerk");
     CHECK(suggest("ratio", {}).empty());
     std::vector<std::string> many(12, "velocity");
@@ -171,4 +172,18 @@ TEST_CASE("hostile sizes are answered quickly") {
     const std::vector<std::string> names(10'000, std::string(64 << 10, 'y'));
     CHECK(nearest(std::string(64 << 10, 'x'), names).empty());
     CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
+}
+
+TEST_CASE("warnings are no errors until they are taken strictly") {
+    Diagnostics all;
+    const Mark mark{file_of("x\n"), 1, 1, 1};
+    all.warn("L0803", mark, "nothing uses x");
+    all.warn("L0803", mark, "nothing uses x");
+    CHECK(all.empty());
+    CHECK(all.warnings().size() == 1);
+    CHECK(all.render() == "a.yaml:1:1: warning[L0803]: nothing uses x\n   1 | x\n     | ^\n");
+    all.be_strict();
+    CHECK_FALSE(all.empty());
+    CHECK(all.warnings().empty());
+    CHECK(all.render() == "a.yaml:1:1: error[L0803]: nothing uses x\n   1 | x\n     | ^\n");
 }

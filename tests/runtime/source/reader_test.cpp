@@ -47,7 +47,7 @@ TEST_CASE("reader: booleans are true and false only") {
     CHECK(out.empty());
     const std::string bad = GENERATE("yes", "on", "True", "1", "0");
     CHECK(read.boolean(scalar(bad)) == std::nullopt);
-    CHECK(first(out) == "L0307: '" + bad + "' is no boolean");
+    CHECK(first(out) == "L0307: '" + bad + "' is not a boolean");
 }
 
 TEST_CASE("reader: a boolean in quotes is a text") {
@@ -72,12 +72,13 @@ TEST_CASE("reader: what is wrong with a real number") {
     };
     const auto row = GENERATE(values<Row>({
         {"10", "L0302: '10' has no unit", "did you mean '10 mm/s'?"},
-        {"10 mm", "L0303: '10 mm' is in mm (length), mm/s (length/time) is due", ""},
-        {"20 %", "L0303: '20 %' is a plain number, mm/s (length/time) is due", ""},
-        {"fast", "L0301: 'fast' is no number", "a number in mm/s is due"},
-        {"nan", "L0301: 'nan' is no number", "a number in mm/s is due"},
-        {"010 mm/s", "L0301: '010 mm/s' is no number", "a number has no leading zero"},
-        {"1,5 mm/s", "L0301: '1,5 mm/s' is no number", "a number has a decimal point, not a comma"},
+        {"10 mm", "L0303: '10 mm' is in mm (length), expected a number in mm/s (length/time)", ""},
+        {"20 %", "L0303: '20 %' is a plain number, expected a number in mm/s (length/time)", ""},
+        {"fast", "L0301: 'fast' is not a number", "expected a number in mm/s"},
+        {"nan", "L0301: 'nan' is not a number", "expected a number in mm/s"},
+        {"010 mm/s", "L0301: '010 mm/s' is not a number", "a number has no leading zero"},
+        {"1,5 mm/s", "L0301: '1,5 mm/s' is not a number",
+         "a number has a decimal point, not a comma"},
         {"1.2.3", "L0304: unknown unit '.3' in '1.2.3'", ""},
         {"10 MM/s", "L0304: unknown unit 'MM' in '10 MM/s'", "did you mean 'mm'?"},
         {"1e999 mm/s", "L0305: '1e999 mm/s' is beyond a 64-bit number's range", ""},
@@ -105,7 +106,7 @@ TEST_CASE("reader: whole numbers") {
     CHECK(out.empty());
     const std::string bad = GENERATE("3.0", "3 mm", "1e3");
     CHECK(read.integer(scalar(bad)) == std::nullopt);
-    CHECK(first(out) == "L0309: '" + bad + "' is no whole number");
+    CHECK(first(out) == "L0309: '" + bad + "' is not a whole number");
 }
 
 TEST_CASE("reader: times are whole nanoseconds") {
@@ -123,12 +124,12 @@ TEST_CASE("reader: what is wrong with a time") {
     };
     const auto row = GENERATE(values<Row>({
         {"2", "L0302: '2' has no time unit"},
-        {"2 mm", "L0308: '2 mm' is in mm (length), a time is due"},
+        {"2 mm", "L0308: '2 mm' is in mm (length), not a time"},
         {"-2 ms", "L0308: '-2 ms' is below 0"},
-        {"0.5 ns", "L0308: '0.5 ns' is no whole number of nanoseconds"},
+        {"0.5 ns", "L0308: '0.5 ns' is not a whole number of nanoseconds"},
         {"300000 h", ""},
-        {"3000000 h", "L0308: '3000000 h' is no whole number of nanoseconds"},
-        {"soon", "L0301: 'soon' is no number"},
+        {"3000000 h", "L0308: '3000000 h' is not a whole number of nanoseconds"},
+        {"soon", "L0301: 'soon' is not a number"},
     }));
     Diagnostics out;
     CHECK(Reader(out).time(scalar(row.text)).has_value() == row.message.empty());
@@ -168,4 +169,31 @@ TEST_CASE("reader: an unknown parameter is reported once") {
     node.text = "10";
     CHECK(Reader(out).real(node, mm_s) == std::nullopt);
     CHECK(first(out) == "L0302: '10' has no unit (parameter 'speed' is '10')");
+}
+
+TEST_CASE("reader: a character that looks like another is pointed at") {
+    Diagnostics out;
+    Node node = scalar("10\xC2\xA0mm/s");
+    node.mark = {nullptr, 3, 5, 7};
+    CHECK(Reader(out).real(node, mm_s) == std::nullopt);
+    CHECK(first(out) == "L0109: a no-break space (U+00A0) stands in '10\xC2\xA0mm/s'");
+    CHECK(out.list().front().mark.column == 7);
+    CHECK(out.list().front().mark.length == 1);
+}
+
+TEST_CASE("reader: an expression is called one") {
+    Diagnostics out;
+    CHECK(Reader(out).real(scalar("2 * 5 mm/s"), mm_s) == std::nullopt);
+    CHECK(first(out) == "L0217: '2 * 5 mm/s' is an expression");
+    CHECK(Reader(out).boolean(scalar("NOT a.q", true)) == std::nullopt);
+    CHECK(out.list().back().help == "write it without quotes");
+}
+
+TEST_CASE("reader: a declared parameter is pointed at, and its use is named") {
+    Diagnostics out;
+    Node node = scalar("10");
+    node.parameter = "speed";
+    node.used_in_line = 9;
+    CHECK(Reader(out).real(node, mm_s) == std::nullopt);
+    CHECK(first(out) == "L0302: '10' has no unit (parameter 'speed', used in line 9)");
 }

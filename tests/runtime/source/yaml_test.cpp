@@ -487,7 +487,8 @@ TEST_CASE("L0001: a file that cannot be read says why, at the place that names i
     REQUIRE(out.list().size() == 5);
     CHECK(render(out.list()[0]) ==
           "a.yaml:1:10: error[L0001]: cannot read 'none.yaml': no such file\n"
-          "   1 | include: none.yaml\n     |          ^~~~~~~~~\n");
+          "   1 | include: none.yaml\n"
+          "     |          ^~~~~~~~~ the path counts from the folder of 'a.yaml'\n");
     CHECK(out.list()[1].message.ends_with("it is a directory"));
     CHECK(out.list()[2].message.ends_with("no such file"));
     CHECK(out.list()[4].message.ends_with("Not a directory"));
