@@ -7,6 +7,7 @@ usage: traces.py LINESHAFT
 import csv
 import json
 import pathlib
+import random
 import re
 import shutil
 import subprocess
@@ -159,6 +160,82 @@ def check_verify():
         yield "verify of no file"
 
 
+def verified(names):
+    return {line.split()[1].rstrip(":") for line in lineshaft("verify", *names)[1].splitlines() if line.startswith("ok ")}
+
+
+def check_verify_bytes():
+    """Every byte of a trace and of its sidecar counts: changed to another, lost, or there twice."""
+    generator = random.Random(1)
+    whole = {end: (FOLDER / f"run.change.csv{end}").read_bytes() for end in ("", "-metadata.json")}
+    names, kinds = [], []
+    for end, other in (("", "-metadata.json"), ("-metadata.json", "")):
+        data = whole[end]
+        for i, byte in enumerate(data):
+            changes = [data[:i] + bytes([byte ^ generator.randrange(1, 256)]) + data[i + 1:]]
+            if i % 10 == 0:
+                changes += [data[:i] + data[i + 1:], data[:i] + data[i:i + 1] + data[i:]]
+            for changed in changes:
+                if changed in (data, b""):
+                    continue
+                name = f"byte{len(names)}.csv"
+                (FOLDER / f"{name}{end}").write_bytes(changed)
+                (FOLDER / f"{name}{other}").write_bytes(whole[other])
+                names.append(name)
+                kinds.append(f"byte {i} of *.csv{end}")
+    missed = []
+    for first in range(0, len(names), 500):
+        good = verified(names[first:first + 500])
+        missed += [kind for kind, name in zip(kinds[first:], names[first:first + 500]) if name in good]
+    for name in names:
+        for end in whole:
+            (FOLDER / f"{name}{end}").unlink()
+    print(f"{len(names)} changes of one byte, {len(missed)} not found")
+    yield from missed[:10]
+
+
+METHOD = """lineshaft: 1
+title: Two ways
+parameters: {speed: 0.1 mm/s, seed: 1}
+tasks: {main: {every: 1 ms}}
+blocks: {axis: {type: virtual_axis, task: main, velocity: $speed}}
+run: {for: 10 ms, seed: $seed}
+trace: {task: main, signals: [axis.position]}
+"""
+
+
+def check_origins():
+    """A trace says what made it; `diff` and `report` show what differs; comments and spelling are nothing."""
+    others = {"m": METHOD, "comment": METHOD.replace("tasks:", "# one more line\ntasks:"),
+              "spelt": METHOD.replace("0.1 mm/s", "0.01 cm/s").replace("10 ms", "0.01 s"),
+              "longer": METHOD.replace("10 ms", "20 ms")}
+    for name, text in others.items():
+        (FOLDER / f"{name}.yaml").write_text(text)
+        lineshaft("run", f"{name}.yaml", "--quiet", "--trace", f"{name}.csv")
+    lineshaft("run", "m.yaml", "--quiet", "--trace", "fast.csv", "--set", "speed=0.2 mm/s")
+    lineshaft("run", "m.yaml", "--quiet", "--trace", "forced.csv", "--force", "axis.velocity=1 mm/s@2ms..3ms")
+    hashes = {name: json.loads((FOLDER / f"{name}.csv-metadata.json").read_text())["lineshaft:program"]
+              for name in (*others, "fast", "forced")}
+    if not hashes["m"] == hashes["comment"] == hashes["spelt"] or len(set(hashes.values())) != 4:
+        yield f"hashes: {hashes}"
+    for name in ("comment", "spelt"):
+        code, out, err = lineshaft("diff", "m.csv", f"{name}.csv")
+        if code != 0 or "same: 11 rows" not in out or f"program: m.yaml, {name}.yaml" not in out:
+            yield f"diff of {name}: {code} {out}{err}"
+    code, out, err = lineshaft("diff", "m.csv", "fast.csv")
+    if code != 1 or not out.startswith("parameter speed: 0.1 mm/s, 0.2 mm/s\nfirst deviation"):
+        yield f"diff of two settings: {code} {out}{err}"
+    code, out, err = lineshaft("diff", "m.csv", "forced.csv", "--json")
+    wanted = [{"what": "forces", "a": "", "b": "axis.velocity = 1 mm/s from 0.002 s until 0.003 s"}]
+    if json.loads(out).get("runs") != wanted:
+        yield f"diff of a forced run: {code} {out}{err}"
+    if lineshaft("diff", "m.csv", "longer.csv")[0] != 2:
+        yield "diff of another program"
+    lineshaft("report", "m.csv", "fast.csv", "-o", "both.html")
+    if any(speed not in (FOLDER / "both.html").read_text() for speed in ("0.1 mm/s", "0.2 mm/s")):
+        yield "the report does not say what differs"
+
+
 def check_diff():
     code, out, err = lineshaft("diff", "run.csv", "run.csv")
     if (code, out, err) != (0, "same: 1001 rows of 6 columns\n", ""):
@@ -194,7 +271,8 @@ def main():
         failures.append(f"a trigger that did not come is not told: {err}")
     for name in ("run.csv", "run.change.csv", "run.often.1.csv"):
         failures += [*check_rules(name), *check_tools(name)]
-    failures += [*check_conditions(), *check_styles(), *check_verify(), *check_diff()]
+    failures += [*check_conditions(), *check_styles(), *check_verify(), *check_verify_bytes(), *check_origins(),
+                 *check_diff()]
     for failure in failures:
         print(failure)
     print(f"{len(failures)} failures")

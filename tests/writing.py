@@ -11,6 +11,7 @@ import os
 import pathlib
 import random
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -31,11 +32,31 @@ run: {for: $time}
 trace: {task: main, signals: [axis.position, axis.velocity]}
 """
 FOREVER = ["--set", "time=100000 s"]
+MARKED = """lineshaft: 1
+title: Each run leaves its mark in all of its files
+parameters: {mark: 1}
+tasks: {main: {every: 1 ms}}
+inputs: {mark: 0, go: false}
+stimulus: [{at: 1 ms, set: {inputs.go: true}}]
+blocks:
+  x: {type: pto, task: main, start_rate: 1 kHz, count: $mark, execute: inputs.go}
+run: {for: 20 ms}
+trace: {task: main, signals: [inputs.mark]}
+traces:
+  more:
+    task: main
+    signals: [inputs.mark]
+    trigger: {signal: inputs.go, edge: rising}
+    samples: 5
+"""
 
 
 class Checks:
     def __init__(self, lineshaft, folder, kills):
-        self.lineshaft, self.folder, self.kills = lineshaft, folder, kills
+        self.folder, self.kills = folder, kills
+        # Where every user reaches it, by a name without the folders above.
+        shutil.copy(lineshaft, folder / "lineshaft")
+        self.lineshaft = "./lineshaft"
         (folder / "program.yaml").write_text(PROGRAM)
 
     def run(self, *arguments, expect, says="", **options):
@@ -137,6 +158,26 @@ def standard_output(c):
     c.check_whole("t.csv")
 
 
+def trace_to_standard_output(c):
+    """The same bytes as in a file, and nothing else; what the run says goes to the standard error."""
+    c.run("run", "program.yaml", "--trace", "t.csv", "--pulses", "e.csv", expect=0)
+    for option, name in (("--trace", "t.csv"), ("--pulses", "e.csv")):
+        piped = c.run("run", "program.yaml", option, "-", expect=0)
+        assert piped.stdout == c.path(name).read_text() and "machine time" in piped.stderr, piped.stderr
+        with open(c.path("redirected"), "w") as file:
+            c.run("run", "program.yaml", option, "-", "--quiet", expect=0, stdout=file)
+        assert c.path("redirected").read_bytes() == c.path(name).read_bytes()
+    assert "L0509" in c.run("run", "program.yaml", "--trace", "-", "--json", expect=2).stdout
+    c.run("run", "program.yaml", "--trace", "-", "--pulses", "-", expect=2, says="L0509")
+    assert not list(c.folder.glob("-*")), list(c.folder.glob("-*"))
+
+
+def no_verdicts_without_files(c):
+    c.path("expects.yaml").write_text(PROGRAM + "expect: [{at: end, axis.velocity: {at_least: 0 mm/s}}]\n")
+    result = c.run("run", "expects.yaml", "--trace", "nowhere/t.csv", expect=3, says="cannot open 'nowhere/t.csv'")
+    assert "at the end" not in result.stdout, result.stdout
+
+
 def outputs_over_inputs(c):
     os.link(c.path("program.yaml"), c.path("hard.csv"))
     os.symlink("program.yaml", c.path("soft.csv"))
@@ -176,6 +217,98 @@ def signals(c):
     c.run("run", "program.yaml", "--trace", "cut.csv", "--pulses", "edges.csv", expect=0)
     assert "lineshaft:stopped" not in c.sidecar("cut.csv")
     assert not c.path("edges.csv-metadata.json").exists()
+
+
+def second_signals(c):
+    """The first ends the run in order, a later one ends the process, whatever it waits for. A sender that sends it
+    twice at once (as `timeout` does) means it once."""
+    os.mkfifo(c.path("nobody_reads.csv"))
+    process = c.start("--trace", "nobody_reads.csv")
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    time.sleep(0.5)
+    assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=10)
+    assert process.returncode == 130, process.returncode
+    process = c.start(*FOREVER, "--trace", "twice.csv")
+    while not c.path("twice.csv.part").exists():
+        time.sleep(0.005)
+    process.send_signal(signal.SIGTERM)
+    process.send_signal(signal.SIGTERM)
+    assert "interrupted at " in process.communicate(timeout=10)[1]
+    c.check_whole("twice.csv")
+
+
+def idle_inputs(c):
+    """What the command line names may be a pipe that nobody writes to: a signal ends the wait."""
+    os.mkfifo(c.path("idle"))
+    commands = [["check", "idle"], ["run", "idle"], ["run", "/dev/stdin"], ["check", "/dev/stdin"], ["diff", "idle", "idle"],
+                ["test", "idle"], ["study", "idle"], ["fit", "idle"], ["show", "idle"], ["plan", "-"], ["plan", "idle"],
+                ["verify", "/dev/stdin"], ["report", "idle", "-o", "r.html"]]
+    waiting = [subprocess.Popen([c.lineshaft, *command], cwd=c.folder, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                                stderr=subprocess.PIPE) for command in commands]
+    time.sleep(1)
+    for command, process, kind in zip(commands, waiting, (signal.SIGINT, signal.SIGTERM) * len(commands)):
+        assert process.poll() is None, (command, process.communicate())
+        process.send_signal(kind)
+    for command, process in zip(commands, waiting):
+        process.communicate(timeout=10)
+        assert process.returncode == 130, (command, process.returncode)
+    written = subprocess.Popen([c.lineshaft, "check", "/dev/stdin"], cwd=c.folder, stdin=subprocess.PIPE,
+                               stdout=subprocess.PIPE, text=True)
+    time.sleep(0.3)
+    assert written.communicate(PROGRAM, timeout=10)[0] == "ok  /dev/stdin\n"
+
+
+def pipes_that_files_name(c):
+    """What a file names is a regular file, or the mistake is told at its place."""
+    os.mkfifo(c.path("pipe"))
+    study = "lineshaft_study: 1\nprogram: {}\ncompare: {{axis.velocity: {{at_least: 0 mm/s}}}}\ncases: [{{name: a}}]\n"
+    fit = ("lineshaft_fit: 1\nprogram: {}\nparameters: {{speed: {{from: 1 mm/s, to: 20 mm/s}}}}\n"
+           "cases: [{{compare: [axis.velocity], trace: {}}}]\n")
+    files = {
+        "controller": PROGRAM.replace("tasks: {main: {every: 1 ms}}", "controller: pipe"),
+        "replay": PROGRAM.replace("stimulus: [", "stimulus: [{file: pipe, set: {inputs.go: go}}, "),
+        "study": study.format("pipe"),
+        "fit": fit.format("pipe", "t.csv"),
+        "measured": fit.format("program.yaml", "pipe"),
+    }
+    for name, text in files.items():
+        c.path(f"names_{name}.yaml").write_text(text)
+        said = c.run("check", f"names_{name}.yaml", expect=2, says="'pipe' is not a regular file").stderr
+        line = text[:text.index("pipe")].count("\n") + 1
+        assert f"names_{name}.yaml:{line}:" in said, said
+
+
+def marks(c):
+    """Of each file of c.folder / out.*: the run that it comes from."""
+    def column(name):
+        return {line.split(",")[2] for line in c.path(name).read_text().splitlines()[2:]}
+    events = c.path("out.events.csv").read_text()
+    told = [json.loads(c.path(name + "-metadata.json").read_text())["lineshaft:run"]["parameters"]["mark"]
+            for name in ("out.csv", "out.more.csv")]
+    return {*column("out.csv"), *column("out.more.csv"), *told, events.split("inputs.mark = ")[1].split("\n")[0],
+            str(len(c.path("out.edges").read_text().splitlines()) - 1)}
+
+
+def writers_at_once(c, rounds=25):
+    """Of four runs into the same files the last one wins as a whole."""
+    c.path("marked.yaml").write_text(MARKED)
+    winners = set()
+    for _ in range(rounds):
+        runs = [subprocess.Popen([c.lineshaft, "run", "marked.yaml", "--quiet", "--set", f"mark={mark}", "--force",
+                                  f"inputs.mark={mark}", "--trace", "out.csv", "--pulses", "out.edges"], cwd=c.folder,
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                for mark in (2, 3, 4, 5)]
+        said = [process.communicate(timeout=60)[1] for process in runs]
+        assert all(process.returncode == 0 for process in runs), said
+        c.run("verify", "out.csv", "out.more.csv", expect=0)
+        found = marks(c)
+        assert len(found) == 1, found
+        winners |= found
+    assert not list(c.folder.glob("out*.part*")), list(c.folder.glob("out*.part*"))
+    print(f"{rounds} rounds of four, won by {', '.join(sorted(winners))}")
 
 
 def little_memory(c):
@@ -229,8 +362,9 @@ def kills(c):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         c = Checks(os.path.abspath(sys.argv[1]), pathlib.Path(folder), int(sys.argv[2]) if len(sys.argv) > 2 else 10)
-        for check in (full_disks, small_file_systems, folders, standard_output, outputs_over_inputs, signals,
-                      little_memory, kills):
+        for check in (full_disks, small_file_systems, folders, standard_output, trace_to_standard_output,
+                      no_verdicts_without_files, outputs_over_inputs, signals, second_signals, idle_inputs,
+                      pipes_that_files_name, writers_at_once, little_memory, kills):
             check(c)
             print("ok ", check.__name__, flush=True)
 

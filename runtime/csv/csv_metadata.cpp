@@ -6,13 +6,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "runtime/csv/checksum.hpp"
 #include "runtime/source/yaml.hpp"
 
 namespace lineshaft {
 
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 /// The text at `key`, empty when there is none.
 std::string text_at(const Json& object, const char* key) {
@@ -44,6 +45,57 @@ CsvMetadata::Column column_of(const Json& column) {
     return out;
 }
 
+constexpr const char* check_key = "lineshaft:check";
+constexpr std::size_t check_digits = 8;
+
+/// Where the digits of a sidecar's own check stand; npos when there are none.
+std::size_t check_place(const std::string& text) {
+    const std::string begin = fmt::format("\"{}\": \"", check_key);
+    const std::size_t at = text.find(begin);
+    if (at == std::string::npos || at + begin.size() + check_digits > text.size())
+        return std::string::npos;
+    return at + begin.size();
+}
+
+std::string check_of(std::string text, std::size_t place) {
+    Checksum checksum;
+    checksum.add(text.replace(place, check_digits, check_digits, '0'));
+    return checksum.text();
+}
+
+std::optional<bool> is_intact(const std::string& text) {
+    const std::size_t place = check_place(text);
+    if (place == std::string::npos) return {};
+    return text.substr(place, check_digits) == check_of(text, place);
+}
+
+/// `m.csv, crc32 1a2b3c4d` of an object, a text as it is, `a; b` of a list.
+std::string text_of(const Json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    std::string text;
+    if (value.is_array())
+        for (const Json& item : value) text += (text.empty() ? "" : "; ") + text_of(item);
+    if (value.is_array()) return text;
+    if (!value.is_object()) return value.dump();
+    for (const auto& [key, part] : value.items())
+        text += (text.empty() ? "" : ", ") + (key == "file" ? "" : key + " ") + text_of(part);
+    return text;
+}
+
+std::vector<std::pair<std::string, std::string>> made_by(const Json& run) {
+    std::vector<std::pair<std::string, std::string>> list;
+    if (!run.is_object()) return list;
+    for (const auto& [key, value] : run.items()) {
+        if (key == "form") continue;
+        if (key == "parameters" && value.is_object())
+            for (const auto& [name, text] : value.items())
+                list.emplace_back("parameter " + name, text_of(text));
+        else
+            list.emplace_back(key, text_of(value));
+    }
+    return list;
+}
+
 }  // namespace
 
 const CsvMetadata::Column* CsvMetadata::find(std::string_view wanted) const {
@@ -53,6 +105,13 @@ const CsvMetadata::Column* CsvMetadata::find(std::string_view wanted) const {
 
 std::string sidecar_path(const std::string& csv_path) {
     return csv_path + "-metadata.json";
+}
+
+std::string sidecar_text(nlohmann::ordered_json metadata) {
+    metadata[check_key] = std::string(check_digits, '0');
+    std::string text = metadata.dump(2) + "\n";
+    const std::size_t place = check_place(text);
+    return text.replace(place, check_digits, check_of(text, place));
 }
 
 std::optional<CsvMetadata> read_metadata(const std::string& csv_path, Diagnostics& out) {
@@ -71,10 +130,17 @@ std::optional<CsvMetadata> read_metadata(const std::string& csv_path, Diagnostic
     CsvMetadata metadata{.title = text_at(json, "dc:title"),
                          .version = text_at(json, "lineshaft:version"),
                          .program = text_at(json, "lineshaft:program"),
+                         .form = {},
+                         .made_by = {},
                          .stopped = text_at(json, "lineshaft:stopped"),
                          .rows = {},
                          .crc32 = text_at(json, "lineshaft:crc32"),
+                         .intact = is_intact(file->text),
                          .columns = {}};
+    if (const auto run = json.find("lineshaft:run"); run != json.end()) {
+        metadata.form = text_at(*run, "form");
+        metadata.made_by = made_by(*run);
+    }
     if (const auto rows = json.find("lineshaft:rows");
         rows != json.end() && rows->is_number_integer())
         metadata.rows = rows->get<std::int64_t>();

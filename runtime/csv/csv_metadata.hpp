@@ -3,7 +3,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include "runtime/model/value.hpp"
 #include "runtime/source/diagnostic.hpp"
@@ -20,12 +23,17 @@ struct CsvMetadata {
         std::vector<std::string> values;  ///< names of an enumeration
     };
 
-    std::string title;                 ///< of the program
-    std::string version;               ///< of the lineshaft that wrote it
-    std::string program;               ///< text_hash of the program's text
+    std::string title;    ///< of the program
+    std::string version;  ///< of the lineshaft that wrote it
+    std::string program;  ///< Meaning::in_force of the program
+    std::string form;     ///< Meaning::form of the program; empty: not told
+    /// What made it, as `parameter speed`, `10 mm/s`: the program's file, parameters in force,
+    /// seed, controller, forces, replays.
+    std::vector<std::pair<std::string, std::string>> made_by;
     std::string stopped;               ///< why its run did not complete; empty: it did
     std::optional<std::int64_t> rows;  ///< without the header
     std::string crc32;                 ///< Checksum of all bytes of the CSV file
+    std::optional<bool> intact;        ///< by its own check, see sidecar_text; empty: it has none
     std::vector<Column> columns;
 
     /// By title; null when there is none.
@@ -34,6 +42,10 @@ struct CsvMetadata {
 
 /// `PATH-metadata.json`.
 std::string sidecar_path(const std::string& csv_path);
+
+/// The text of a sidecar, with the CRC-32 of itself (the eight digits taken as zeros), so that no
+/// byte of it changes unnoticed.
+std::string sidecar_text(nlohmann::ordered_json metadata);
 
 /// The sidecar of a CSV file. Empty when there is none, and when it cannot be read: then L0707 says
 /// why.

@@ -4,14 +4,15 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <memory>
 
 #include <fmt/format.h>
 
+#include "runtime/csv/checksum.hpp"
 #include "runtime/csv/csv_cells.hpp"
+#include "runtime/source/input_file.hpp"
 #include "runtime/source/utf8.hpp"
 
 namespace lineshaft {
@@ -25,34 +26,36 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 /// Cuts a file into lines, in constant memory.
 class Lines {
   public:
-    explicit Lines(const std::string& path) : file_(std::fopen(path.c_str(), "rb"), &std::fclose) {
-        error_ = file_ ? 0 : errno;
+    explicit Lines(const std::string& path) : file_(path), error_(file_.error()) {
         buffer_.resize(2 * chunk);
     }
 
     /// The next line without its end; false at the end of the file, or after an error.
     bool next(std::string_view& line);
-    bool is_ended() const { return ended_; }  ///< the last line had a newline
-    int error() const { return error_; }      ///< errno, 0 when all is well
+    bool is_ended() const { return ended_; }                   ///< the last line had a newline
+    int error() const { return error_; }                       ///< errno, 0 when all is well
+    std::string checksum() const { return checksum_.text(); }  ///< of all that was read
 
   private:
     void fill();
 
-    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+    InputFile file_;
+    Checksum checksum_;
     std::string buffer_;
     std::size_t begin_ = 0, end_ = 0;
     bool ended_ = true;
-    int error_ = 0;
+    int error_;
 };
 
 void Lines::fill() {
     std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
     end_ -= begin_;
     begin_ = 0;
-    errno = 0;
-    end_ +=
-        std::fread(buffer_.data() + end_, 1, std::min(chunk, buffer_.size() - end_), file_.get());
-    if (std::ferror(file_.get()) != 0) error_ = errno;
+    char* const to = buffer_.data() + end_;
+    const std::size_t count = file_.read(to, std::min(chunk, buffer_.size() - end_));
+    checksum_.add({to, count});
+    end_ += count;
+    if (file_.error() != 0) error_ = file_.error();
 }
 
 bool Lines::next(std::string_view& line) {
@@ -61,7 +64,7 @@ bool Lines::next(std::string_view& line) {
         return static_cast<const char*>(std::memchr(buffer_.data() + begin_, '\n', end_ - begin_));
     };
     const char* stop = newline();
-    while (!stop && std::feof(file_.get()) == 0 && error_ == 0) {
+    while (!stop && !file_.is_ended() && error_ == 0) {
         if (end_ - begin_ > chunk) error_ = EFBIG;
         fill();
         stop = newline();
@@ -134,6 +137,7 @@ std::optional<CsvTable> CsvReader::read() {
     table_.metadata = read_metadata(path_, out_);
     if (lines_.next(line_) && header()) rows();
     check_file();
+    table_.crc32 = lines_.checksum();
     if (out_.list().size() != before) return {};
     return std::move(table_);
 }

@@ -29,6 +29,7 @@ struct CsvTable {
     std::shared_ptr<const SourceFile> header;  ///< path and first line, for messages
     std::vector<CsvColumn> columns;
     std::size_t rows = 0;
+    std::string crc32;                    ///< Checksum of all bytes of the file
     std::optional<CsvMetadata> metadata;  ///< of the sidecar, if there is one
 
     /// By name or title; null when there is none.

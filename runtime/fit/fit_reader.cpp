@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/csv/csv_reader.hpp"
+#include "runtime/csv/csv_time.hpp"
 #include "runtime/fit/fit.hpp"
 #include "runtime/fit/fit_form.hpp"
 #include "runtime/study/study_reader.hpp"
@@ -225,8 +225,9 @@ void FitReader::samples(const FitCasePlan& plan, const CsvTable& table, const Cs
     for (std::size_t row = 0; row < table.rows; ++row) {
         const auto missing = [row](const CsvColumn* c) { return c->is_missing(row); };
         if (time.is_missing(row) || std::ranges::any_of(columns, missing)) continue;
-        const double at = convert(time.values[row], seconds, Unit::parse("ns").value());
-        cell.times.push_back(static_cast<std::int64_t>(std::round(at)) + plan.trace.offset);
+        const auto at = time_of(time, row, seconds, plan.trace.offset, read_, plan.trace.file);
+        if (!at) return;
+        cell.times.push_back(*at);
         for (std::size_t k = 0; k < columns.size(); ++k)
             cell.targets[k].given.push_back(
                 convert(columns[k]->values[row], units[k],

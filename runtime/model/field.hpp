@@ -80,9 +80,10 @@ struct Field {
         return f;
     }
 
-    bool admits(double value) const {
-        return (minimum_excluded ? value > minimum : value >= minimum) &&
-               (maximum_excluded ? value < maximum : value <= maximum);
+    bool admits(const Value& value) const {
+        const auto from_minimum = compare(value, minimum), from_maximum = compare(value, maximum);
+        return (minimum_excluded ? from_minimum > 0 : from_minimum >= 0) &&
+               (maximum_excluded ? from_maximum < 0 : from_maximum <= 0);
     }
 };
 

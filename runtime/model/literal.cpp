@@ -71,7 +71,7 @@ std::optional<Value> read_literal(const Reader& read, const Node& node, const Fi
         value = read_integer(read, node, field, unit);
     else if (const auto number = read.real(node, unit))
         value = *number;
-    if (!value || field.admits(as_real(*value))) return value;
+    if (!value || field.admits(*value)) return value;
     read.fail("L0305", node, fmt::format("'{}' is out of range for '{}'", node.text, field.name),
               "it must be " + describe_limits(field, unit.text));
     return {};

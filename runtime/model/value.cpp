@@ -1,5 +1,8 @@
 #include "runtime/model/value.hpp"
 
+#include <cmath>
+#include <optional>
+
 #include "runtime/source/units.hpp"
 
 namespace lineshaft {
@@ -11,6 +14,23 @@ T read(const std::byte* slot) {
     T value;
     std::memcpy(&value, slot, sizeof value);
     return value;
+}
+
+std::partial_ordering compare(std::int64_t a, double b) {
+    constexpr double beyond = 0x1p63;
+    if (std::isnan(b)) return std::partial_ordering::unordered;
+    if (b >= beyond) return std::partial_ordering::less;
+    if (b < -beyond) return std::partial_ordering::greater;
+    const double whole = std::trunc(b);
+    const auto same = a <=> static_cast<std::int64_t>(whole);
+    return same != 0 ? std::partial_ordering(same) : whole <=> b;
+}
+
+/// Empty for a real.
+std::optional<std::int64_t> as_integer(const Value& value) {
+    if (const auto* b = std::get_if<bool>(&value)) return *b ? 1 : 0;
+    if (const auto* i = std::get_if<std::int64_t>(&value)) return *i;
+    return {};
 }
 
 }  // namespace
@@ -50,6 +70,14 @@ std::string describe(const Value& value, Type type, std::span<const std::string_
 
 double as_real(const Value& value) {
     return std::visit([](auto v) { return static_cast<double>(v); }, value);
+}
+
+std::partial_ordering compare(const Value& a, const Value& b) {
+    const auto x = as_integer(a), y = as_integer(b);
+    if (x && y) return *x <=> *y;
+    if (x) return compare(*x, std::get<double>(b));
+    if (y) return 0 <=> compare(*y, std::get<double>(a));
+    return std::get<double>(a) <=> std::get<double>(b);
 }
 
 }  // namespace lineshaft

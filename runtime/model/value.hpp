@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -38,7 +39,11 @@ std::string format(const Value& value);
 std::string describe(const Value& value, Type type, std::span<const std::string_view> names,
                      std::string_view unit);
 
-/// For comparisons and formulas: true is 1.
+/// For formulas: true is 1.
 double as_real(const Value& value);
+
+/// Exact, also of integers beyond 2^53 and of an integer with a real; true is 1. A real that is
+/// not a number is unordered.
+std::partial_ordering compare(const Value& a, const Value& b);
 
 }  // namespace lineshaft

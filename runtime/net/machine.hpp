@@ -190,6 +190,12 @@ struct BlockPlace {
     std::byte* published = nullptr;  ///< may be the live one
 };
 
+/// A file that a program replays.
+struct ReplayedFile {
+    std::string name;   ///< as the program has it
+    std::string crc32;  ///< Checksum of its bytes
+};
+
 /// A checked and wired program in memory. Owns the blocks; movable, not copyable.
 struct Machine {
     std::vector<std::byte> memory;  ///< all blocks and inputs; zeroed, then constructed
@@ -199,6 +205,7 @@ struct Machine {
     std::vector<Signal> signals;
     std::vector<Stimulus> stimuli;  ///< sorted by time
     std::vector<Replay> replays;    ///< in the order of the file: of one input the last wins
+    std::vector<ReplayedFile> replayed;
     std::vector<Force> forces;
     std::vector<Retained> retained;
     std::vector<DeviceCall> devices;

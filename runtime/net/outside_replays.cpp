@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "runtime/csv/csv_reader.hpp"
+#include "runtime/csv/csv_time.hpp"
 #include "runtime/model/literal.hpp"
 #include "runtime/net/outside.hpp"
 
@@ -12,12 +13,6 @@ namespace lineshaft {
 namespace {
 
 constexpr std::size_t most_memory = std::size_t{256} << 20;  // bytes, of all replays
-constexpr double most_time = 0x1p62;                         // ns
-
-/// The line of the file that a person sees.
-std::size_t line(std::size_t row) {
-    return row + 2;
-}
 
 /// Whether the values of a column may be those of an input; an untyped one is looked at cell by
 /// cell.
@@ -97,24 +92,21 @@ std::optional<std::vector<std::int64_t>> replay_times(Connecting& to, const Repl
         const bool missing = time.is_missing(row);
         if (missing || (row > 0 && time.values[row] < time.values[row - 1]))
             return fail("L0722",
-                        fmt::format("the time in line {} of '{}' {}", line(row), plan.file.text,
+                        fmt::format("the time in line {} of '{}' {}", line_of(row), plan.file.text,
                                     missing ? "is missing" : "is before that of the line above"),
                         "rows stand in the order of time");
-        const double at = std::round(convert(time.values[row], *unit, to.net.unit("ns")));
-        if (!(std::abs(at) + static_cast<double>(plan.at) < most_time))
-            return fail("L0308",
-                        fmt::format("the time in line {} of '{}' lies more than 146 years away",
-                                    line(row), plan.file.text),
-                        "times are in s, or in the unit of a title such as 'time [ms]'");
-        times.push_back(static_cast<std::int64_t>(at) + plan.at);
+        const auto at = time_of(time, row, *unit, plan.at, to.read, plan.file);
+        if (!at) return {};
+        times.push_back(*at);
     }
     return times;
 }
 
 void wrong_cell(Connecting& to, const Target& input, const Node& name, const CsvColumn& column,
                 std::size_t row, bool is_out_of_range) {
-    const std::string what = fmt::format("'{}' in line {} of column '{}'",
-                                         format_number(column.values[row]), line(row), name.text);
+    const std::string what =
+        fmt::format("'{}' in line {} of column '{}'", format_number(column.values[row]),
+                    line_of(row), name.text);
     if (is_out_of_range)
         to.read.fail("L0305", name,
                      fmt::format("{} is out of range for '{}'", what, input.signal.name),
@@ -145,7 +137,7 @@ std::vector<Replay::Point> replay_points(Connecting& to, const Target& input, co
     for (std::size_t row = 0; row < table.rows; ++row) {
         if (column.is_missing(row)) continue;
         const auto value = cell(column, row, input.field, *unit, to.net.unit(input.signal.unit));
-        if (!value || !input.field.admits(as_real(*value))) {
+        if (!value || !input.field.admits(*value)) {
             wrong_cell(to, input, name, column, row, value.has_value());
             return {};
         }
@@ -167,6 +159,7 @@ void add_replay(Connecting& to, const ReplayPlan& plan, std::size_t& room) {
     for (const auto& [key, column] : plan.set) csv.columns.push_back(column.text);
     const auto table = read_csv(plan.path, to.read.diagnostics(), csv);
     if (!table) return;
+    to.machine.replayed.push_back({plan.file.text, table->crc32});
     room -= table->rows * plan.set.size();
     const auto times = replay_times(to, plan, *table);
     if (!times) return;

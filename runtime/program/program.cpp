@@ -122,6 +122,7 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     std::erase_if(program_.replays, [](const ReplayPlan& r) { return r.file.is_empty(); });
     for (const BlockPlan& block : program_.blocks) check_attached(block.task);
     for (const TracePlan& trace : program_.traces) check_attached(trace.task);
+    program_.root = std::move(*root);
     return std::move(program_);
 }
 
@@ -182,13 +183,15 @@ void ProgramReader::controller(const Node& node) {
     const auto file = options_.files ? options_.files->source(*path, out, node.mark)
                                      : read_source(*path, out, node.mark);
     if (!file) return;
-    const auto root = parse(file);
+    auto root = parse(file);
     if (!root || !check_kind(read_, *root, "lineshaft_controller")) return;
     const Node* tasks = root->find("tasks");
     program_.tasks_known = tasks && are_known(*tasks);
     Program controller;
     read_form(controller_form(), read_, *root, controller);
     program_.tasks = std::move(controller.tasks);
+    program_.controller_name = node;
+    program_.controller = std::move(*root);
 }
 
 void ProgramReader::check_attached(const Node& task) const {
@@ -281,6 +284,13 @@ std::optional<std::string> resolve_path(const std::string& named, const std::str
     bool allowed = lies_below(real, project_root(from));
     for (const std::string& folder : include_dirs)
         allowed = allowed || lies_below(real, real_path(folder, error));
+    const fs::file_status status = fs::status(real, error);
+    if (allowed && fs::exists(status) && !fs::is_regular_file(status) &&
+        !fs::is_directory(status)) {
+        out.add("L0001", std::move(where), fmt::format("'{}' is not a regular file", named),
+                "only the command line may name a pipe or a device");
+        return {};
+    }
     if (allowed) return path.string();
     out.add("L0002", std::move(where),
             fmt::format("'{}' lies outside of the program's project", named),

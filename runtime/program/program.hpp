@@ -125,6 +125,8 @@ struct ExpectPlan {
 /// A program file as plain data: its structure is checked, its names are not yet.
 struct Program {
     std::shared_ptr<const SourceFile> file;
+    Node root;                                                  ///< parameters replaced
+    std::optional<Node> controller_name = {}, controller = {};  ///< the file's name, its root
     std::string title;
     std::vector<std::pair<std::string, std::string>> parameters;  ///< name, value in force
     std::vector<TaskPlan> tasks;

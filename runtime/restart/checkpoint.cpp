@@ -1,12 +1,15 @@
 #include "runtime/restart/checkpoint.hpp"
 
-#include <fstream>
-#include <iterator>
+#include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "runtime/trace/csv_writer.hpp"
+#include "runtime/program/meaning.hpp"
+#include "runtime/source/input_file.hpp"
+#include "runtime/source/text_hash.hpp"
+#include "runtime/trace/output_file.hpp"
 #include "runtime/version.hpp"
 
 namespace lineshaft {
@@ -40,7 +43,7 @@ std::string_view bytes_of(const std::vector<Replay::Point>& points) {
 }  // namespace
 
 std::string fingerprint(const Program& program, const Machine& machine) {
-    std::string text = program.file->text;
+    std::string text = meaning_of(program).in_force;
     for (const auto& [name, value] : program.parameters) text += fmt::format("{}={};", name, value);
     text += fmt::format("{} {} {} {};", machine.memory.size(), machine.seed, machine.duration,
                         machine.main_task);
@@ -74,15 +77,17 @@ std::string write_checkpoint(const std::string& path, const std::string& program
 
 std::optional<std::string> read_checkpoint(const std::string& path, const std::string& program,
                                            Diagnostics& out) {
-    std::ifstream file(path, std::ios::binary);
-    std::string line;
-    if (!file || !std::getline(file, line)) {
+    int error = 0;
+    const std::string bytes = read_bytes(path, std::numeric_limits<std::size_t>::max(), error);
+    if (error != 0) {
         out.add("L0001", {}, fmt::format("cannot read the checkpoint '{}'", path),
                 "--checkpoint-every writes one, --checkpoint names it");
         return {};
     }
-    std::string state{std::istreambuf_iterator<char>(file), {}};
-    const std::string wrong = refusal(Json::parse(line, nullptr, false), state, program);
+    const std::size_t end = std::min(bytes.find('\n'), bytes.size());
+    std::string state = bytes.substr(std::min(end + 1, bytes.size()));
+    const std::string wrong =
+        refusal(Json::parse(bytes.substr(0, end), nullptr, false), state, program);
     if (wrong.empty()) return state;
     out.add("L0506", {std::make_shared<SourceFile>(SourceFile{path, {}}), 0, 0, 1}, wrong,
             "run the program from its start: without --resume");

@@ -8,8 +8,9 @@
 
 namespace lineshaft {
 
-/// Tells whether two machines are of one program: its text, its parameters in force, tasks, memory
-/// layout, stimuli, replays and forces, and this version of lineshaft. 16 hexadecimal digits.
+/// Tells whether two machines are of one program: its meaning, its parameters in force, tasks,
+/// memory layout, stimuli, replays and forces, and this version of lineshaft. 16 hexadecimal
+/// digits.
 std::string fingerprint(const Program& program, const Machine& machine);
 
 /// Writes a state: one line of JSON (version, program, virtual time, size and hash of the state),

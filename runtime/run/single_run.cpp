@@ -9,6 +9,7 @@
 
 #include "runtime/restart/checkpoint.hpp"
 #include "runtime/restart/retain.hpp"
+#include "runtime/run/origin.hpp"
 #include "runtime/trace/event_writer.hpp"
 #include "runtime/trace/pulse_writer.hpp"
 #include "runtime/trace/trace_files.hpp"
@@ -33,9 +34,10 @@ namespace {
 
 /// One trace while it is recorded.
 struct Tracing {
-    Tracing(const TraceSetup& setup, const Program& program, const RunOptions& options)
+    Tracing(const TraceSetup& setup, const TraceOrigin& origin, const RunOptions& options,
+            OutputSet& outputs)
         : name(setup.name),
-          files(options.trace_path, setup, program.title, program.file->text, options.csv_style),
+          files(options.trace_path, setup, origin, options.csv_style, outputs),
           recorder(setup, files) {}
 
     void save(StateWriter& out) {
@@ -93,6 +95,8 @@ class SingleRun {
     std::string state_;    ///< of a checkpoint
     int retained_ = 0;
     std::optional<StateReader> begun_;
+    TraceOrigin origin_;
+    OutputSet outputs_;
     std::deque<Tracing> traces_;
     std::optional<EventWriter> events_;
     std::optional<PulseWriter> pulses_;
@@ -106,10 +110,11 @@ RunReport SingleRun::run() {
     if (begin()) {
         report_.result =
             executive_->run(observers_, &stop_, [this](std::int64_t time) { look(time); });
-        if (report_.result.outcome == Outcome::interrupted && writing_fails())
+        const bool broke_off = report_.result.outcome == Outcome::interrupted && writing_fails();
+        if (broke_off)
             report_.result.message = "the run stopped at " + format_time(report_.result.time);
         judge_.finish(report_.result);
-        report_.verdicts = judge_.verdicts();
+        if (!broke_off) report_.verdicts = judge_.verdicts();
         for (const Expectation& e : judge_.expectations())
             if (e.always && e.signal.task >= 0 &&
                 report_.result.scans[static_cast<std::size_t>(e.signal.task)] == 0)
@@ -156,6 +161,10 @@ bool SingleRun::open_files() {
                             "give the same --trace and --pulses as before");
         return false;
     }
+    if (begun_) {
+        outputs_.restore(*begun_);
+        refuse(outputs_.error());
+    }
     if (has_trace()) open_traces();
     if (!options_.pulses_path.empty()) open(pulses_, options_.pulses_path, machine_);
     if (!loaded_.linked.expectations.empty()) observers_.push_back(&judge_);
@@ -178,12 +187,14 @@ void SingleRun::refuse(const std::string& error) {
 }
 
 void SingleRun::open_traces() {
-    open(events_, events_path(options_.trace_path), machine_);
+    origin_ = origin_of(loaded_);
+    if (options_.trace_path != "-") open(events_, events_path(options_.trace_path), machine_);
     for (const TraceSetup& setup : loaded_.linked.traces) {
-        Tracing& trace = traces_.emplace_back(setup, loaded_.program, options_);
+        Tracing& trace = traces_.emplace_back(setup, origin_, options_, outputs_);
         if (begun_) trace.files.restore(*begun_);
         refuse(trace.files.error());
         observers_.push_back(&trace.recorder);
+        if (!events_) continue;
         trace.recorder.on_trigger = [this, &setup](const Scan& scan) {
             events_->happened({.time = scan.time,
                                .scan = scan.index,
@@ -213,6 +224,7 @@ void SingleRun::tell_restart() {
 void SingleRun::save(std::int64_t time) {
     StateWriter out;
     out.put(std::array<bool, 2>{has_trace(), pulses_.has_value()});
+    outputs_.save(out);
     if (events_) events_->save(out);
     for (Tracing& trace : traces_) trace.save(out);
     if (pulses_) pulses_->save(out);
@@ -228,20 +240,17 @@ void SingleRun::look(std::int64_t time) {
 }
 
 bool SingleRun::writing_fails() const {
-    return (events_ && !events_->error().empty()) || (pulses_ && !pulses_->error().empty()) ||
+    return !outputs_.error().empty() || (events_ && !events_->error().empty()) ||
+           (pulses_ && !pulses_->error().empty()) ||
            std::ranges::any_of(traces_, [](const Tracing& t) { return t.files.failed(); });
 }
 
 void SingleRun::finish() {
-    for (Tracing& trace : traces_) {
-        report_.traces.push_back(trace.finish(report_.result, judge_));
-        if (report_.trace_error.empty()) report_.trace_error = trace.files.error();
-    }
-    if (events_) {
-        const std::string error = events_->finish();
-        if (report_.trace_error.empty()) report_.trace_error = error;
-    }
-    if (pulses_) report_.pulses_error = pulses_->finish(report_.result.message);
+    for (Tracing& trace : traces_) report_.traces.push_back(trace.finish(report_.result, judge_));
+    if (events_) events_->finish(outputs_);
+    if (pulses_) pulses_->finish(outputs_, report_.result.message);
+    outputs_.commit();
+    report_.output_error = outputs_.error();
     if (options_.retain_path.empty()) return;
     const std::string error = write_retained(options_.retain_path, machine_);
     if (!error.empty()) report_.restart_error = error;

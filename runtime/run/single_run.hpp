@@ -26,8 +26,9 @@ std::optional<Loaded> load_program(const std::string& path, const LoadOptions& o
 enum class Restart { cold, warm, hot };
 
 struct RunOptions {
-    std::string
-        trace_path;  ///< CSV, see TraceFiles; empty: no trace is recorded. Events go beside it
+    /// CSV, see TraceFiles; empty: no trace is recorded. Events go beside it; `-` is the standard
+    /// output, and has none beside it.
+    std::string trace_path;
     std::string pulses_path = {};  ///< CSV of all pulse channels' edges; empty: none
     CsvStyle csv_style = {};
     const std::atomic<bool>* interrupt = nullptr;
@@ -50,20 +51,19 @@ struct TraceReport {
 /// What came of one run. Final values stand in the machine's signals.
 struct RunReport {
     RunResult result;
-    std::vector<Verdict> verdicts;  ///< one per expectation of the program
+    std::vector<Verdict> verdicts;  ///< one per expectation; none when files could not be written
     std::vector<std::string>
         never_looked_at;              ///< expectations of every scan of a task that had none
     std::vector<TraceReport> traces;  ///< that were recorded
-    std::string trace_error;          ///< why the trace is not there, if one was wanted
-    std::string pulses_error;         ///< likewise of the pulses
+    std::string output_error;         ///< why traces, events and pulses are not there
     std::string restart_error;        ///< why retained values or checkpoints were not written
     Diagnostics refused;              ///< why the run could not begin, if so; nothing has run then
     double wall_seconds = 0;
 
     bool expectations_hold() const;
     bool faulted() const {
-        return result.outcome != Outcome::completed || !trace_error.empty() ||
-               !pulses_error.empty() || !restart_error.empty();
+        return result.outcome != Outcome::completed || !output_error.empty() ||
+               !restart_error.empty();
     }
 };
 

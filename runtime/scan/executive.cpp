@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/units.hpp"
+
 namespace lineshaft {
 
 namespace {

@@ -11,8 +11,23 @@ namespace lineshaft {
 
 namespace {
 
-std::optional<double> read_tolerance(const Connecting& to, const Signal& signal, const Node& node,
-                                     double around) {
+/// value + sign * slack; of a whole number exact, and at most as far as whole numbers go.
+Value moved(const Value& value, const Value& slack, int sign) {
+    constexpr double most = 0x1p63;
+    const auto* whole = std::get_if<std::int64_t>(&value);
+    const double size = as_real(slack);
+    if (!whole || size >= most) return as_real(value) + sign * size;
+    const auto* exact = std::get_if<std::int64_t>(&slack);
+    const std::int64_t way = sign * (exact ? *exact : static_cast<std::int64_t>(size));
+    std::int64_t sum = 0;
+    if (!__builtin_add_overflow(*whole, way, &sum)) return sum;
+    using Limits = std::numeric_limits<std::int64_t>;
+    return sign > 0 ? Limits::max() : Limits::min();
+}
+
+/// Whole where the signal and the text are.
+std::optional<Value> read_tolerance(const Connecting& to, const Signal& signal, const Node& node,
+                                    const Value& around) {
     static const Unit one;
     if (signal.type == Type::boolean || signal.type == Type::enumeration) {
         to.read.fail("L0213", node,
@@ -21,34 +36,44 @@ std::optional<double> read_tolerance(const Connecting& to, const Signal& signal,
         return {};
     }
     const bool share = node.is_scalar() && node.text.ends_with('%');
-    const auto value = to.read.real(node, share ? one : to.net.unit(signal.unit));
+    const bool time = signal.type == Type::integer && signal.unit == "ns" && !share;
+    const auto given = parse_quantity(node.text);
+    const auto* quantity = std::get_if<Quantity>(&given);
+    const bool whole = signal.type == Type::integer && signal.unit.empty() && quantity &&
+                       quantity->is_integer && !quantity->has_unit;
+    std::optional<Value> value;
+    if (whole || time)
+        value = whole ? to.read.integer(node) : to.read.time(node);
+    else
+        value = to.read.real(node, share ? one : to.net.unit(signal.unit));
     if (!value) return {};
-    if (*value >= 0) return share ? *value * std::abs(around) : *value;
+    if (compare(*value, 0.0) >= 0)
+        return share ? Value(as_real(*value) * std::abs(as_real(around))) : value;
     to.read.fail("L0305", node, fmt::format("'{}' is below 0", node.text));
     return {};
 }
 
 Expectation expectation(const Connecting& to, const ExpectPlan& plan, const Signal& target) {
     Expectation e{.text = {}, .signal = target, .always = plan.always, .at = plan.at, .wanted = {}};
-    e.low = -std::numeric_limits<double>::infinity();
-    e.high = -e.low;
     if (plan.equals) {
-        const double value = read_bound(to, target, *plan.equals).value_or(0);
-        const double slack =
-            plan.within ? read_tolerance(to, target, *plan.within, value).value_or(0) : 0;
-        e.low = value - slack;
-        e.high = value + slack;
+        e.low = e.high = read_bound(to, target, *plan.equals).value_or(0.0);
+        const auto slack =
+            plan.within ? read_tolerance(to, target, *plan.within, e.low) : std::nullopt;
+        if (slack) {
+            e.high = moved(e.low, *slack, 1);
+            e.low = moved(e.low, *slack, -1);
+        }
         e.wanted = plan.equals->text;
         if (plan.within) e.wanted += " within " + plan.within->text;
     }
-    const auto side = [&](const std::optional<Node>& node, const char* word, double& limit) {
+    const auto side = [&](const std::optional<Node>& node, const char* word, Value& limit) {
         if (!node) return;
-        limit = read_bound(to, target, *node).value_or(0);
+        limit = read_bound(to, target, *node).value_or(0.0);
         e.wanted += fmt::format("{}{} {}", e.wanted.empty() ? "" : ", ", word, node->text);
     };
     side(plan.at_least, "at least", e.low);
     side(plan.at_most, "at most", e.high);
-    if (plan.at_least && plan.at_most && e.low > e.high)
+    if (plan.at_least && plan.at_most && compare(e.low, e.high) > 0)
         to.read.fail("L0213", *plan.at_least, "'at_least' is above 'at_most': this never holds");
     const std::string when = plan.always ? "always"
                              : plan.at   ? "at " + format_time(*plan.at)
@@ -59,13 +84,12 @@ Expectation expectation(const Connecting& to, const ExpectPlan& plan, const Sign
 
 }  // namespace
 
-std::optional<double> read_bound(const Connecting& to, const Signal& signal, const Node& node) {
+std::optional<Value> read_bound(const Connecting& to, const Signal& signal, const Node& node) {
     Field field;
     field.name = signal.name;
     field.type = signal.type;
     field.names = signal.names;
-    const auto value = read_literal(to.read, node, field, to.net.unit(signal.unit));
-    return value ? std::optional(as_real(*value)) : std::nullopt;
+    return read_literal(to.read, node, field, to.net.unit(signal.unit));
 }
 
 std::vector<Expectation> connect_expectations(const Connecting& to) {

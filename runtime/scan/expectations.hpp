@@ -12,6 +12,6 @@ namespace lineshaft {
 std::vector<Expectation> connect_expectations(const Connecting& to);
 
 /// A bound of what the signal may be, in its unit; an enumeration's name is its number.
-std::optional<double> read_bound(const Connecting& to, const Signal& signal, const Node& node);
+std::optional<Value> read_bound(const Connecting& to, const Signal& signal, const Node& node);
 
 }  // namespace lineshaft

@@ -8,6 +8,15 @@
 
 namespace lineshaft {
 
+namespace {
+
+nlohmann::ordered_json number_json(const Value& value) {
+    if (const auto* i = std::get_if<std::int64_t>(&value)) return *i;
+    return as_real(value);
+}
+
+}  // namespace
+
 Judge::Judge(std::vector<Expectation> expectations) : expectations_(std::move(expectations)) {
     verdicts_.resize(expectations_.size());
     for (std::size_t i = 0; i < expectations_.size(); ++i) {
@@ -54,9 +63,8 @@ void Judge::restore(StateReader& in) {
 void Judge::judge(std::size_t index, std::int64_t time, std::optional<std::int64_t> scan) {
     const Expectation& e = expectations_[index];
     const Value value = e.signal.value();
-    const double number = as_real(value);
     Verdict& verdict = verdicts_[index];
-    verdict.ok = number >= e.low && number <= e.high;
+    verdict.ok = compare(value, e.low) >= 0 && compare(value, e.high) <= 0;
     if (verdict.ok) return;
     verdict.deviation =
         fmt::format("{} is {} at {}", e.signal.name, e.signal.describe(value), format_time(time));
@@ -93,8 +101,8 @@ nlohmann::ordered_json verdicts_json(const Judge& judge) {
         nlohmann::ordered_json object{
             {"text", e.text}, {"signal", e.signal.name}, {"always", e.always}, {"ok", verdict.ok}};
         if (e.at) object["at"] = seconds(*e.at);
-        if (std::isfinite(e.low)) object["low"] = e.low;
-        if (std::isfinite(e.high)) object["high"] = e.high;
+        if (std::isfinite(as_real(e.low))) object["low"] = number_json(e.low);
+        if (std::isfinite(as_real(e.high))) object["high"] = number_json(e.high);
         if (!verdict.ok) object["deviation"] = verdict.deviation;
         list.push_back(std::move(object));
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,8 +19,8 @@ struct Expectation {
     Signal signal;
     bool always = false;
     std::optional<std::int64_t> at;  ///< [ns]; empty and not always: at the end
-    double low = 0;
-    double high = 0;
+    Value low = -std::numeric_limits<double>::infinity();
+    Value high = std::numeric_limits<double>::infinity();
     std::string wanted;  ///< `true`, `15 mm/s`, for the message
 };
 

@@ -12,7 +12,8 @@ constexpr CodeText table[] = {
      R"(The file does not exist, is a folder, or may not be read. The name is taken from the
 command line, or from the file that names it (a program's 'controller:', a study's
 'program:'); such a name counts from the folder of the file it stands in, not from the
-folder you are in. Check the spelling and the permissions.)"},
+folder you are in. Check the spelling and the permissions. What a file names must be a
+regular file; only the command line may name a pipe or a device.)"},
     {"L0002", "a file outside of the project",
      R"(A program reads files of its own project only, so that a program from a stranger
 cannot show you the rest of your disk. The project is the nearest folder above the
@@ -373,20 +374,22 @@ empty. Words such as nan, inf or true are not numbers. In a trace booleans are 0
 enumerations the number of the name, as the sidecar tells.)"},
     {"L0706", "a CSV file that is not whole",
      R"(The file is cut in its last row, or has not the rows that its sidecar
-(NAME.csv-metadata.json) tells of. What a broken run left behind is named NAME.csv.part.
-'lineshaft verify NAME.csv' says more.)"},
+(NAME.csv-metadata.json) tells of, or one of the two is not as it was recorded. What a
+broken run left behind is named NAME.csv.part. 'lineshaft verify NAME.csv' says more.)"},
     {"L0707", "a sidecar that cannot be understood",
      R"(Beside a trace NAME.csv stands NAME.csv-metadata.json with units, types and the
 program's hash, as JSON (W3C CSVW). This one is no such file. Record the trace again, or
 remove the sidecar: then all columns are plain numbers.)"},
     {"L0708", "traces that cannot be compared",
-     R"(Two traces are compared row by row, so both must come from the same program and have the
-same columns in the same order, with the same units, and the same interval between rows.
+     R"(Two traces are compared row by row, so both must come from the same program (with whatever
+parameters, seed, controller and forces; comments do not count) and have the same columns in
+the same order, with the same units, and the same interval between rows.
 'lineshaft diff --any-program' compares traces of two programs, such as the one before and
 after a change.)"},
     {"L0709", "a trace without a sidecar",
      R"(Whether a trace NAME.csv is whole is told by NAME.csv-metadata.json beside it, which has
-its rows and the checksum of its bytes. Copy the two together.)"},
+its rows and the checksum of its bytes, and a checksum of itself. Copy the two together. A
+sidecar of another tool, or of an early version, has none.)"},
     {"L0710", "a CSV file of too many rows",
      R"(What a program replays is kept in memory: 16 bytes a value, 256 MiB for all files and
 columns. Replay fewer columns, thin the file out (a trace with 'every: 10' has a tenth of the

@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 #include <cerrno>
-#include <cstdio>
 #include <sstream>
 #include <system_error>
 
@@ -14,6 +13,7 @@
 #include <yaml-cpp/parser.h>
 
 #include "runtime/source/habits.hpp"
+#include "runtime/source/input_file.hpp"
 #include "runtime/source/utf8.hpp"
 
 namespace lineshaft {
@@ -633,24 +633,6 @@ std::string reason_of(int error) {
     if (error == EISDIR) return "it is a directory";
     if (error == EACCES) return "no permission";
     return std::generic_category().message(error);
-}
-
-/// At most `most` bytes; `error` is an errno, or 0.
-std::string read_bytes(const std::string& path, std::size_t most, int& error) {
-    const auto close = [](std::FILE* file) { std::fclose(file); };
-    const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "rb"), close);
-    error = file ? 0 : errno;
-    std::string text;
-    std::array<char, 1 << 14> part{};
-    while (error == 0 && text.size() < most) {
-        const std::size_t wanted = std::min(part.size(), most - text.size());
-        const std::size_t count = std::fread(part.data(), 1, wanted, file.get());
-        text.append(part.data(), count);
-        if (count == wanted) continue;
-        if (std::ferror(file.get()) != 0) error = errno;
-        break;
-    }
-    return text;
 }
 
 }  // namespace

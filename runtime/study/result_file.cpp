@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/trace/csv_writer.hpp"
+#include "runtime/source/text_hash.hpp"
 #include "runtime/version.hpp"
 
 namespace lineshaft {
@@ -71,7 +71,7 @@ bool ResultFile::begin() {
     file_->write(csv_.header());
     file_->flush();
     error_ = file_->error();
-    return error_.empty() && (!file_->is_regular() || write_sidecar(path_ + ".part", false));
+    return error_.empty() && (!file_->is_regular() || write_sidecar(file_->part(), false));
 }
 
 void ResultFile::open(std::int64_t keep) {
@@ -145,10 +145,11 @@ void ResultFile::keep_late(const std::map<std::int64_t, CaseResult>& results) {
 
 bool ResultFile::commit() {
     if (!file_->is_regular()) return file_->commit();
+    const std::string part = file_->part();
     if (!write_sidecar(path_, true)) return false;
     if (!file_->commit()) error_ = file_->error();
     std::error_code gone;
-    if (error_.empty()) fs::remove(path_ + ".part" + sidecar, gone);
+    if (error_.empty()) fs::remove(part + sidecar, gone);
     return error_.empty();
 }
 

@@ -5,9 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "runtime/csv/checksum.hpp"
 #include "runtime/csv/csv_metadata.hpp"
+#include "runtime/source/text_hash.hpp"
 #include "runtime/study/study_file_reader.hpp"
-#include "runtime/trace/csv_writer.hpp"
 #include "runtime/version.hpp"
 
 namespace lineshaft {

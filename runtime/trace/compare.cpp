@@ -19,9 +19,14 @@ std::int64_t ordinal(double value) {
     return bits < 0 ? std::numeric_limits<std::int64_t>::min() - bits : bits;
 }
 
+double distance(std::int64_t a, std::int64_t b) {
+    const auto x = static_cast<std::uint64_t>(a), y = static_cast<std::uint64_t>(b);
+    return static_cast<double>(a > b ? x - y : y - x);
+}
+
 bool deviates(const CsvColumn& a, const CsvColumn& b, std::size_t row, double tolerance) {
     if (a.is_missing(row) || b.is_missing(row)) return a.is_missing(row) != b.is_missing(row);
-    if (a.type == Type::integer && tolerance == 0) return a.integers[row] != b.integers[row];
+    if (a.type == Type::integer) return distance(a.integers[row], b.integers[row]) > tolerance;
     return std::abs(a.values[row] - b.values[row]) > tolerance;
 }
 
@@ -36,6 +41,17 @@ std::optional<double> interval(const CsvTable& table) {
     const CsvColumn* time = table.find("time");
     if (!time || table.rows < 2) return {};
     return std::round((time->values[1] - time->values[0]) * 1e9) / 1e9;
+}
+
+/// The program's hash where the sidecar does not tell the form.
+const std::string& form_of(const CsvMetadata& metadata) {
+    return metadata.form.empty() ? metadata.program : metadata.form;
+}
+
+std::string made_by(const CsvMetadata& metadata, const std::string& what) {
+    for (const auto& [name, value] : metadata.made_by)
+        if (name == what) return value;
+    return {};
 }
 
 void check_columns(const CsvTable& a, const CsvTable& b, const auto& fail) {
@@ -66,13 +82,27 @@ std::uint64_t ulp_distance(double a, double b) {
                  : static_cast<std::uint64_t>(y) - static_cast<std::uint64_t>(x);
 }
 
+std::vector<RunDifference> run_differences(const CsvMetadata& a, const CsvMetadata& b) {
+    std::vector<RunDifference> list;
+    const auto add = [&](const std::string& what, std::string x, std::string y) {
+        if (x != y && std::ranges::find(list, what, &RunDifference::what) == list.end())
+            list.push_back({what, std::move(x), std::move(y)});
+    };
+    for (const CsvMetadata* side : {&a, &b})
+        for (const auto& [what, value] : side->made_by)
+            add(what, made_by(a, what), made_by(b, what));
+    add("version", a.version, b.version);
+    add("form of the program", a.form, b.form);
+    return list;
+}
+
 void check_comparable(const CsvTable& a, const CsvTable& b, bool same_program, Diagnostics& out) {
     const auto fail = [&](const std::string& what, const std::string& help) {
         out.add("L0708", {b.header, 0, 0, 1},
                 fmt::format("cannot be compared with '{}': {}", a.header->path, what), help);
     };
     check_columns(a, b, fail);
-    if (same_program && a.metadata && b.metadata && a.metadata->program != b.metadata->program)
+    if (same_program && a.metadata && b.metadata && form_of(*a.metadata) != form_of(*b.metadata))
         fail("it comes from another program", "--any-program compares all the same");
     const auto x = interval(a), y = interval(b);
     if (x && y && *x != *y)

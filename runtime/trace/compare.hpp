@@ -33,9 +33,18 @@ struct TraceComparison {
     bool same(const CsvTable& a, const CsvTable& b) const { return !first && a.rows == b.rows; }
 };
 
+/// Something in which two runs differ; empty where one of them does not have it.
+struct RunDifference {
+    std::string what;
+    std::string a, b;
+};
+
+/// What differs in what made two traces, by their sidecars: parameters, seed, controller, ...
+std::vector<RunDifference> run_differences(const CsvMetadata& a, const CsvMetadata& b);
+
 /// L0708 unless both have the same columns in the same order with the same units and types, the
-/// same interval, and the same program (asked only when `same_program`): else there is nothing to
-/// compare.
+/// same interval, and programs of the same form, see Meaning (asked only when `same_program`): else
+/// there is nothing to compare.
 void check_comparable(const CsvTable& a, const CsvTable& b, bool same_program, Diagnostics& out);
 
 /// Compares two comparable tables cell by cell, as far as both have rows. A missing value equals a

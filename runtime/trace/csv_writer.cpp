@@ -46,14 +46,8 @@ nlohmann::ordered_json csvw_column(const Signal& signal, const std::string& titl
 
 }  // namespace
 
-std::string text_hash(std::string_view text) {
-    std::uint64_t hash = 0xcbf29ce484222325;
-    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-    return fmt::format("{:016x}", hash);
-}
-
 CsvWriter::CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& style)
-    : file_(path),
+    : file_(std::make_unique<OutputFile>(path)),
       path_(std::move(path)),
       signals_(setup.signals),
       style_(style),
@@ -66,7 +60,7 @@ CsvWriter::CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& 
 
 CsvWriter::CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& style,
                      StateReader& begun)
-    : file_(path, begun),
+    : file_(std::make_unique<OutputFile>(path, begun)),
       path_(std::move(path)),
       signals_(setup.signals),
       style_(style),
@@ -77,7 +71,7 @@ CsvWriter::CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& 
 }
 
 void CsvWriter::save(StateWriter& out) {
-    file_.save(out);
+    file_->save(out);
     out.put(row_count_);
     out.put(checksum_);
 }
@@ -115,7 +109,7 @@ std::string CsvWriter::title(std::string_view name, std::string_view unit) const
 
 void CsvWriter::write(std::string_view text) {
     checksum_.add(text);
-    file_.write(text);
+    file_->write(text);
 }
 
 char* CsvWriter::write_out(char* end) {
@@ -141,13 +135,13 @@ char* CsvWriter::append_cell(char* end, Cell& cell, std::uint64_t bits) {
     return end + cell.length;
 }
 
-std::string CsvWriter::finish(const std::string& program_title, const std::string& program_text,
-                              const std::string& stopped,
-                              const nlohmann::ordered_json& expectations) {
-    const std::string beside = sidecar_path(path_);
-    std::error_code none;  // then a later step tells what is wrong
-    if (file_.is_regular() && !file_.failed()) std::filesystem::remove(beside, none);
-    if (!file_.commit() || !file_.is_regular()) return file_.error();
+void CsvWriter::finish(OutputSet& files, const TraceOrigin& origin, const std::string& stopped,
+                       const nlohmann::ordered_json& expectations) {
+    files.add(std::move(file_), sidecar(origin, stopped, expectations));
+}
+
+std::string CsvWriter::sidecar(const TraceOrigin& origin, const std::string& stopped,
+                               const nlohmann::ordered_json& expectations) const {
     nlohmann::ordered_json columns = nlohmann::ordered_json::array();
     for (const Signal& s : {Signal{.name = "time", .type = Type::real, .unit = "s", .names = {}},
                             Signal{.name = "scan", .type = Type::integer, .unit = {}, .names = {}}})
@@ -155,19 +149,17 @@ std::string CsvWriter::finish(const std::string& program_title, const std::strin
     for (const Signal& s : signals_) columns.push_back(csvw_column(s, title(s.name, s.unit)));
     nlohmann::ordered_json metadata{{"@context", "http://www.w3.org/ns/csvw"},
                                     {"url", std::filesystem::path(path_).filename().string()},
-                                    {"dc:title", program_title},
+                                    {"dc:title", origin.title},
                                     {"lineshaft:version", version()},
-                                    {"lineshaft:program", text_hash(program_text)},
-                                    {"lineshaft:rows", row_count_},
-                                    {"lineshaft:crc32", checksum_.text()}};
+                                    {"lineshaft:program", origin.program}};
+    if (!origin.run.is_null()) metadata["lineshaft:run"] = origin.run;
+    metadata["lineshaft:rows"] = row_count_;
+    metadata["lineshaft:crc32"] = checksum_.text();
     if (!stopped.empty()) metadata["lineshaft:stopped"] = stopped;
     if (style_.excel_de) metadata["dialect"] = {{"delimiter", ";"}};
     if (!expectations.empty()) metadata["lineshaft:expectations"] = expectations;
     metadata["tableSchema"] = {{"columns", columns}};
-    OutputFile sidecar(beside);
-    sidecar.write(metadata.dump(2) + "\n");
-    sidecar.commit();
-    return sidecar.error();
+    return sidecar_text(std::move(metadata));
 }
 
 }  // namespace lineshaft

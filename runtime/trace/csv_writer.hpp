@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "runtime/csv/checksum.hpp"
 #include "runtime/csv/number_text.hpp"
-#include "runtime/trace/checksum.hpp"
-#include "runtime/trace/output_file.hpp"
+#include "runtime/trace/output_set.hpp"
 #include "runtime/trace/recorder.hpp"
 
 namespace lineshaft {
@@ -26,6 +26,13 @@ struct CsvStyle {
         false;  ///< semicolons between cells and decimal commas, as a German Excel reads
 };
 
+/// What made a trace, for its sidecar.
+struct TraceOrigin {
+    std::string title = {};           ///< of the program
+    std::string program = {};         ///< Meaning::in_force of the program
+    nlohmann::ordered_json run = {};  ///< see origin_of(); null: not told
+};
+
 /// Writes rows as RFC 4180 CSV: one header row, then `time` [s], `scan`, and a column a signal;
 /// comma, newline, shortest round-trip numbers, booleans 0/1, enumerations as integers,
 /// not-a-number and infinite values as an empty cell.
@@ -36,20 +43,18 @@ class CsvWriter : public TraceSink {
     CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& style, StateReader& begun);
 
     void save(StateWriter& out);
-    const std::string& error() const { return file_.error(); }
+    const std::string& error() const { return file_->error(); }
 
     void rows(const std::uint64_t* words, std::size_t rows) override;
 
-    /// Closes the file and writes the CSVW sidecar `PATH-metadata.json` beside it: types, units,
-    /// program and its hash, rows, a checksum, why the run stopped if it did not complete, and what
-    /// came of its expectations (see verdicts_json). A sidecar of before goes first: whenever this
-    /// is killed, none tells of another file. Empty when all is well, else what went wrong.
-    std::string finish(const std::string& program_title, const std::string& program_text,
-                       const std::string& stopped = {},
-                       const nlohmann::ordered_json& expectations = {});
+    /// Hands the file over, with its CSVW sidecar `PATH-metadata.json`: types, units, what made it,
+    /// rows, a checksum, why the run stopped if it did not complete, and what came of its
+    /// expectations (see verdicts_json). Nothing may follow.
+    void finish(OutputSet& files, const TraceOrigin& origin, const std::string& stopped = {},
+                const nlohmann::ordered_json& expectations = {});
 
     /// Whether writing goes wrong. May be asked while another thread writes.
-    bool failed() const { return file_.failed(); }
+    bool failed() const { return file_->failed(); }
 
   private:
     /// A column's last value, and where in `text_` it stands: what stands still is not formatted
@@ -64,11 +69,13 @@ class CsvWriter : public TraceSink {
     void make_room();
     std::string title(std::string_view name, std::string_view unit) const;
     void write(std::string_view text);
+    std::string sidecar(const TraceOrigin& origin, const std::string& stopped,
+                        const nlohmann::ordered_json& expectations) const;
     static char* append_cell(char* end, Cell& cell, std::uint64_t bits);
     /// The text up to `end` into the file; returns where the next begins.
     char* write_out(char* end);
 
-    OutputFile file_;
+    std::unique_ptr<OutputFile> file_;
     std::string path_;
     std::vector<Signal> signals_;
     CsvStyle style_;
@@ -79,9 +86,5 @@ class CsvWriter : public TraceSink {
     std::int64_t row_count_ = 0;
     Checksum checksum_;  ///< of all that was written
 };
-
-/// FNV-1a, 64 bits, as 16 hexadecimal digits: tells whether two traces come from the same program
-/// text.
-std::string text_hash(std::string_view text);
 
 }  // namespace lineshaft

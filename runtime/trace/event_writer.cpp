@@ -24,24 +24,19 @@ std::string events_path(const std::string& trace_path) {
 }
 
 EventWriter::EventWriter(std::string path, const Machine& machine)
-    : file_(std::move(path)), machine_(machine) {
-    file_.write("time,scan,task,kind,text\n");
+    : file_(std::make_unique<OutputFile>(std::move(path))), machine_(machine) {
+    file_->write("time,scan,task,kind,text\n");
 }
 
 EventWriter::EventWriter(std::string path, const Machine& machine, StateReader& begun)
-    : file_(std::move(path), begun), machine_(machine) {}
+    : file_(std::make_unique<OutputFile>(std::move(path), begun)), machine_(machine) {}
 
 void EventWriter::happened(const RunEvent& event) {
     const std::string scan = event.scan < 0 ? "" : std::to_string(event.scan);
     const std::string task =
         event.task < 0 ? "" : machine_.tasks[static_cast<std::size_t>(event.task)].name;
-    file_.write(fmt::format("{},{},{},{},{}\n", seconds_text(event.time), scan, task,
-                            name_of(event.kind), quoted(event.text)));
-}
-
-std::string EventWriter::finish() {
-    file_.commit();
-    return file_.error();
+    file_->write(fmt::format("{},{},{},{},{}\n", seconds_text(event.time), scan, task,
+                             name_of(event.kind), quoted(event.text)));
 }
 
 }  // namespace lineshaft

@@ -5,7 +5,7 @@
 
 #include "runtime/net/machine.hpp"
 #include "runtime/scan/event.hpp"
-#include "runtime/trace/output_file.hpp"
+#include "runtime/trace/output_set.hpp"
 
 namespace lineshaft {
 
@@ -22,14 +22,14 @@ class EventWriter : public EventSink {
 
     void happened(const RunEvent& event) override;
 
-    void save(StateWriter& out) { file_.save(out); }
-    const std::string& error() const { return file_.error(); }
+    void save(StateWriter& out) { file_->save(out); }
+    const std::string& error() const { return file_->error(); }
 
-    /// Closes the file. Empty when all is well, else what went wrong.
-    std::string finish();
+    /// Hands the file over. Nothing may follow.
+    void finish(OutputSet& files) { files.add(std::move(file_)); }
 
   private:
-    OutputFile file_;
+    std::unique_ptr<OutputFile> file_;
     const Machine& machine_;
 };
 

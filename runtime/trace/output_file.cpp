@@ -5,30 +5,21 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+#include "runtime/trace/folder_locks.hpp"
 
 namespace lineshaft {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-/// So that the new name outlives a power failure. A folder that cannot be read, or a file system
-/// that does not flush folders, is no error.
-bool flush_folder(const std::string& path) {
-    const fs::path folder = fs::path(path).parent_path();
-    const int descriptor =
-        ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor < 0) return true;
-    const bool flushed = ::fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS;
-    const int error = errno;
-    ::close(descriptor);
-    errno = error;
-    return flushed;
-}
 
 /// The last bytes before `size`; empty when there is no such place.
 std::string tail_of(const std::string& path, std::int64_t size) {
@@ -41,31 +32,33 @@ std::string tail_of(const std::string& path, std::int64_t size) {
     return file ? tail : "";
 }
 
+bool is_name_of(int descriptor, const std::string& path) {
+    struct stat opened {
+    }, named{};
+    return ::fstat(descriptor, &opened) == 0 && ::stat(path.c_str(), &named) == 0 &&
+           opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
 }  // namespace
 
-OutputFile::OutputFile(std::string path, std::int64_t keep)
-    : path_(std::move(path)), part_(path_ + ".part") {
+OutputFile::OutputFile(std::string path, std::int64_t keep) : path_(std::move(path)) {
     if (look()) open(keep);
 }
 
-OutputFile::OutputFile(std::string path, StateReader& begun)
-    : path_(std::move(path)), part_(path_ + ".part") {
+OutputFile::OutputFile(std::string path, StateReader& begun) : path_(std::move(path)) {
     std::int64_t size = 0;
     std::string tail;
     begun.get(size);
     begun.get(tail);
+    begun.get(suffix_);
     if (!look()) return;
-    if (regular_ && !take_up(size, tail))
+    if (!regular_)
+        open(0);
+    else if (take_up(size, tail))
+        open_stream(descriptor_, size);
+    else if (error_.empty())
         set_error(
             fmt::format("cannot go on with '{}': it is not the file of the checkpoint", path_));
-    else
-        open(size);
-}
-
-void OutputFile::open(std::int64_t keep) {
-    const bool kept = !regular_ || keep == 0 || ::truncate(part_.c_str(), keep) == 0;
-    if (kept) file_ = std::fopen(regular_ ? part_.c_str() : path_.c_str(), keep > 0 ? "ab" : "wb");
-    if (!file_) fail("open");
 }
 
 bool OutputFile::look() {
@@ -73,16 +66,64 @@ bool OutputFile::look() {
     const fs::file_status status = fs::status(path_, unknown);
     if (fs::is_directory(status))
         set_error(fmt::format("cannot write '{}': it is a directory", path_));
-    regular_ = !fs::exists(status) || fs::is_regular_file(status);
+    regular_ = path_ != "-" && (!fs::exists(status) || fs::is_regular_file(status));
     return error_.empty();
 }
 
+void OutputFile::open(std::int64_t keep) {
+    if (path_ == "-") return open_stream(::dup(STDOUT_FILENO), 0);
+    if (!regular_) return open_stream(::open(path_.c_str(), O_WRONLY | O_CLOEXEC), 0);
+    if (keep == 0)
+        take_free_part();
+    else if (take_part() == Taken::busy)
+        set_error(fmt::format("cannot go on with '{}': another process writes it", path_));
+    if (error_.empty()) open_stream(descriptor_, keep);
+}
+
+OutputFile::Taken OutputFile::take_part() {
+    constexpr int most = 1000;  // on a file system whose numbers of files are not to be trusted
+    for (int attempt = 1;; ++attempt) {
+        descriptor_ = ::open(part().c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+        if (descriptor_ < 0) {
+            fail("open");
+            return Taken::failed;
+        }
+        // A file system that cannot lock has one writer at a time.
+        const bool busy = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+        if (!busy && (is_name_of(descriptor_, part()) || attempt == most)) return Taken::yes;
+        ::close(descriptor_);
+        descriptor_ = -1;
+        if (busy) return Taken::busy;
+    }
+}
+
+void OutputFile::take_free_part() {
+    constexpr int most = 10'000;
+    suffix_ = ".part";
+    for (int number = 2; take_part() == Taken::busy && number <= most; ++number)
+        suffix_ = fmt::format(".part{}", number);
+}
+
 bool OutputFile::take_up(std::int64_t size, const std::string& tail) {
-    if (tail_of(part_, size) == tail) return true;
-    if (tail_of(path_, size) != tail) return false;
+    if (tail_of(part(), size) == tail && take_part() == Taken::yes) return true;
+    if (tail_of(path_, size) != tail || !error_.empty()) return false;
+    take_free_part();
     std::error_code error;
-    fs::copy_file(path_, part_, fs::copy_options::overwrite_existing, error);
-    return !error;
+    if (error_.empty()) fs::copy_file(path_, part(), fs::copy_options::overwrite_existing, error);
+    return error_.empty() && !error;
+}
+
+void OutputFile::open_stream(int descriptor, std::int64_t keep) {
+    descriptor_ = -1;
+    if (descriptor >= 0) file_ = ::fdopen(descriptor, "wb");
+    if (!file_) {
+        fail("open");
+        if (descriptor >= 0) ::close(descriptor);
+    } else if (regular_ && ::ftruncate(descriptor, keep) != 0 && errno != EINVAL) {
+        fail("open");
+    } else if (regular_) {
+        std::fseek(file_, 0, SEEK_END);
+    }
 }
 
 void OutputFile::save(StateWriter& out) {
@@ -93,11 +134,13 @@ void OutputFile::save(StateWriter& out) {
         size = std::ftell(file_);
     }
     out.put(size);
-    out.put(tail_of(part_, size));
+    out.put(tail_of(part(), size));
+    out.put(suffix_);
 }
 
 OutputFile::~OutputFile() {
     if (file_) std::fclose(file_);
+    if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 void OutputFile::write(std::string_view text) {
@@ -109,20 +152,31 @@ void OutputFile::flush() {
     if (error_.empty() && std::fflush(file_) != 0) fail("write");
 }
 
-bool OutputFile::commit() {
-    if (!error_.empty()) return false;
-    if (std::fflush(file_) != 0) fail("write");
+bool OutputFile::complete() {
+    flush();
     if (regular_ && error_.empty() && ::fsync(::fileno(file_)) != 0) fail("write");
-    if (std::fclose(file_) != 0 && error_.empty()) fail("close");
-    file_ = nullptr;
-    if (!regular_ || !error_.empty()) return error_.empty();
-    if (std::rename(part_.c_str(), path_.c_str()) != 0) fail("rename");
-    if (error_.empty() && !flush_folder(path_)) fail("flush the folder of");
+    return error_.empty();
+}
+
+bool OutputFile::publish() {
+    if (error_.empty() && regular_ && std::rename(part().c_str(), path_.c_str()) != 0)
+        fail("rename");
+    if (std::fclose(std::exchange(file_, nullptr)) != 0 && error_.empty()) fail("close");
+    return error_.empty();
+}
+
+bool OutputFile::commit() {
+    if (!complete()) return false;
+    if (!regular_) return publish();
+    const FolderLocks folder({folder_of(path_)});
+    if (publish() && !folder.flush()) fail("flush the folder of");
     return error_.empty();
 }
 
 void OutputFile::fail(const char* what) {
-    set_error(fmt::format("cannot {} '{}': {}", what, path_, std::strerror(errno)));
+    const int error = errno;
+    const std::string name = path_ == "-" ? "to the standard output" : fmt::format("'{}'", path_);
+    set_error(fmt::format("cannot {} {}: {}", what, name, std::strerror(error)));
 }
 
 void OutputFile::set_error(std::string text) {

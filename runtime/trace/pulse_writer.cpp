@@ -16,13 +16,14 @@ constexpr std::size_t longest_time = 20;
 
 }  // namespace
 
-PulseWriter::PulseWriter(std::string path, Machine& machine) : file_(path), path_(std::move(path)) {
-    file_.write("channel,time_ns,direction\n");
+PulseWriter::PulseWriter(std::string path, Machine& machine)
+    : file_(std::make_unique<OutputFile>(std::move(path))) {
+    file_->write("channel,time_ns,direction\n");
     listen_to(machine);
 }
 
 PulseWriter::PulseWriter(std::string path, Machine& machine, StateReader& begun)
-    : file_(path, begun), path_(std::move(path)) {
+    : file_(std::make_unique<OutputFile>(std::move(path), begun)) {
     listen_to(machine);
 }
 
@@ -44,20 +45,14 @@ void PulseWriter::Channel::edges(std::span<const std::int64_t> times, bool rever
         end = std::to_chars(end, end + longest_time, time).ptr;
         end = std::ranges::copy(direction, end).out;
     }
-    writer.file_.write({text.data(), static_cast<std::size_t>(end - text.data())});
+    writer.file_->write({text.data(), static_cast<std::size_t>(end - text.data())});
 }
 
-std::string PulseWriter::finish(const std::string& stopped) {
-    std::error_code none;  // then a later step tells what is wrong
-    if (file_.is_regular() && !file_.failed()) std::filesystem::remove(sidecar_path(path_), none);
-    if (!file_.commit() || stopped.empty() || !file_.is_regular()) return file_.error();
-    const nlohmann::ordered_json note{{"@context", "http://www.w3.org/ns/csvw"},
-                                      {"url", std::filesystem::path(path_).filename().string()},
-                                      {"lineshaft:stopped", stopped}};
-    OutputFile sidecar(sidecar_path(path_));
-    sidecar.write(note.dump(2) + "\n");
-    sidecar.commit();
-    return sidecar.error();
+void PulseWriter::finish(OutputSet& files, const std::string& stopped) {
+    const std::string name = std::filesystem::path(file_->path()).filename().string();
+    const nlohmann::ordered_json note{
+        {"@context", "http://www.w3.org/ns/csvw"}, {"url", name}, {"lineshaft:stopped", stopped}};
+    files.add(std::move(file_), stopped.empty() ? "" : sidecar_text(note));
 }
 
 }  // namespace lineshaft

@@ -23,12 +23,12 @@ class PulseWriter {
     PulseWriter(const PulseWriter&) = delete;
     PulseWriter& operator=(const PulseWriter&) = delete;
 
-    void save(StateWriter& out) { file_.save(out); }
-    const std::string& error() const { return file_.error(); }
+    void save(StateWriter& out) { file_->save(out); }
+    const std::string& error() const { return file_->error(); }
 
-    /// Closes the file. If the run did not complete, `PATH-metadata.json` beside it says why
-    /// (`lineshaft:stopped`). Empty when all is well, else what went wrong.
-    std::string finish(const std::string& stopped);
+    /// Hands the file over. If the run did not complete, `PATH-metadata.json` beside it says why
+    /// (`lineshaft:stopped`). Nothing may follow.
+    void finish(OutputSet& files, const std::string& stopped);
 
   private:
     struct Channel : PulseSink {
@@ -42,8 +42,7 @@ class PulseWriter {
 
     void listen_to(Machine& machine);
 
-    OutputFile file_;
-    std::string path_;
+    std::unique_ptr<OutputFile> file_;
     std::string text_;
     std::vector<std::unique_ptr<Channel>> channels_;
 };

@@ -6,15 +6,12 @@
 
 namespace lineshaft {
 
-TraceFiles::TraceFiles(const std::string& out, const TraceSetup& setup, std::string title,
-                       std::string program_text, const CsvStyle& style)
-    : setup_(setup),
-      title_(std::move(title)),
-      program_text_(std::move(program_text)),
-      style_(style) {
+TraceFiles::TraceFiles(const std::string& out, const TraceSetup& setup, const TraceOrigin& origin,
+                       const CsvStyle& style, OutputSet& files)
+    : setup_(setup), origin_(origin), style_(style), files_(files) {
     extension_ = std::filesystem::path(out).extension().string();
     stem_ = out.substr(0, out.size() - extension_.size());
-    if (!setup.name.empty()) stem_ += "." + setup.name;
+    if (!setup.name.empty() && out != "-") stem_ += "." + setup.name;
 }
 
 std::string TraceFiles::next_path() const {
@@ -38,8 +35,7 @@ void TraceFiles::rows(const std::uint64_t* words, std::size_t rows) {
 
 void TraceFiles::end() {
     background_->finish();
-    const std::string wrong = csv_->finish(title_, program_text_, stopped_, expectations_);
-    if (error_.empty()) error_ = wrong;
+    csv_->finish(files_, origin_, stopped_, expectations_);
     background_.reset();
     csv_.reset();
 }
@@ -60,7 +56,6 @@ void TraceFiles::restore(StateReader& in) {
     while (in.ok() && paths_.size() < files) paths_.push_back(next_path());
     if (!in.ok() || !is_open) return;
     open(in);
-    error_ = csv_->error();
 }
 
 }  // namespace lineshaft

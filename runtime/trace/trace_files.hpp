@@ -13,10 +13,10 @@ namespace lineshaft {
 /// `out.csv` goes to `out.name.csv`, one that may repeat to `out.name.1.csv`, `out.name.2.csv`, ...
 class TraceFiles : public TraceSink {
   public:
-    /// `setup` must outlive this. `out` is what the user named, the file of the trace without a
-    /// name.
-    TraceFiles(const std::string& out, const TraceSetup& setup, std::string title,
-               std::string program_text, const CsvStyle& style);
+    /// `setup`, `origin` and `files`, which takes them, must outlive this. `out` is what the user
+    /// named, the file of the trace without a name.
+    TraceFiles(const std::string& out, const TraceSetup& setup, const TraceOrigin& origin,
+               const CsvStyle& style, OutputSet& files);
 
     /// For the files that end after the run: why it stopped, empty if it completed, and what came
     /// of the program's expectations.
@@ -36,10 +36,10 @@ class TraceFiles : public TraceSink {
 
     /// What has been written.
     const std::vector<std::string>& paths() const { return paths_; }
-    /// Of the first file that went wrong; empty when all is well.
-    const std::string& error() const { return error_; }
+    /// Of the open file; empty when all is well.
+    std::string error() const { return csv_ ? csv_->error() : ""; }
     /// Whether writing goes wrong: the rest of the run would not be recorded.
-    bool failed() const { return !error_.empty() || (csv_ && csv_->failed()); }
+    bool failed() const { return csv_ && csv_->failed(); }
 
   private:
     std::string next_path() const;
@@ -47,14 +47,14 @@ class TraceFiles : public TraceSink {
 
     std::string stem_, extension_;
     const TraceSetup& setup_;
-    std::string title_, program_text_;
+    const TraceOrigin& origin_;
     CsvStyle style_;
+    OutputSet& files_;
     std::string stopped_;
     nlohmann::ordered_json expectations_;
     std::optional<CsvWriter> csv_;
     std::optional<BackgroundSink> background_;
     std::vector<std::string> paths_;
-    std::string error_;
 };
 
 }  // namespace lineshaft

@@ -28,10 +28,10 @@ TraceTrigger connect_trigger(const Connecting& to, const TriggerPlan& plan) {
                      of_edge ? "numbers have above, below, inside and equals"
                              : "booleans have edge: rising and edge: falling");
     else if (!plan.values.empty()) {
-        trigger.low = trigger.high = read_bound(to, *watched, plan.values.front()).value_or(0);
+        trigger.low = trigger.high = read_bound(to, *watched, plan.values.front()).value_or(0.0);
         if (plan.values.size() > 1)
-            trigger.high = read_bound(to, *watched, plan.values.back()).value_or(0);
-        if (trigger.low > trigger.high)
+            trigger.high = read_bound(to, *watched, plan.values.back()).value_or(0.0);
+        if (compare(trigger.low, trigger.high) > 0)
             to.read.fail("L0213", plan.values.front(), "the lower bound is above the upper one");
     }
     return trigger;

@@ -4,22 +4,22 @@ namespace lineshaft {
 
 bool TraceTrigger::condition_holds() const {
     if (kind == TriggerKind::immediate) return true;
-    const double value = as_real(signal.value());
+    const Value value = signal.value();
     switch (kind) {
         case TriggerKind::immediate:
             break;
         case TriggerKind::rising:
-            return value != 0;
+            return std::get<bool>(value);
         case TriggerKind::falling:
-            return value == 0;
+            return !std::get<bool>(value);
         case TriggerKind::above:
-            return value > low;
+            return compare(value, low) > 0;
         case TriggerKind::below:
-            return value < high;
+            return compare(value, high) < 0;
         case TriggerKind::inside:
-            return value >= low && value <= high;
+            return compare(value, low) >= 0 && compare(value, high) <= 0;
         case TriggerKind::equals:
-            return value == low;
+            return compare(value, low) == 0;
     }
     return true;
 }

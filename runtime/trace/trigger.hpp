@@ -14,8 +14,8 @@ namespace lineshaft {
 struct TraceTrigger {
     TriggerKind kind = TriggerKind::immediate;
     Signal signal = {};
-    double low = 0;
-    double high = 0;
+    Value low = 0.0;
+    Value high = 0.0;
 
     /// Of the signal's present value.
     bool condition_holds() const;

@@ -101,7 +101,7 @@ void set_usual(Instance& block, const BlockType& type, Direction direction, std:
     for (const Field& f : type.fields) {
         if (f.direction != direction || random.next() % times != 0) continue;
         const Value value = usual_value(f, random);
-        if (f.admits(as_real(value))) block.set(f, value);
+        if (f.admits(value)) block.set(f, value);
     }
 }
 

@@ -96,7 +96,11 @@ void files_alone(benchmark::State& state) {
             CsvWriter writer(file(), circle.setup);
             for (const RunEvent& event : circle.events.list) events.happened(event);
             writer.rows(circle.words.data(), circle.rows());
-            error = writer.finish("", "") + events.finish();
+            OutputSet files;
+            writer.finish(files, {});
+            events.finish(files);
+            files.commit();
+            error = files.error();
         });
         if (!error.empty()) state.SkipWithError(error.c_str());
     }

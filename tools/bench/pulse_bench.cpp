@@ -47,7 +47,10 @@ void csv(benchmark::State& state) {
             train.begin({1000, 100'000, pulses}, RateUpdate::continuous, {});
             for (std::size_t n = train.take(late, out); n > 0; n = train.take(late, out))
                 machine.devices[0].sink->edges(std::span(out).first(n), false);
-            error = writer.finish({});
+            OutputSet files;
+            writer.finish(files, {});
+            files.commit();
+            error = files.error();
         });
         if (!error.empty()) state.SkipWithError(error.c_str());
     }

@@ -10,8 +10,6 @@
 
 namespace lineshaft {
 
-std::atomic<bool> interrupt_requested = false;
-
 namespace {
 
 std::int64_t now_ms() {
@@ -67,15 +65,16 @@ void add_strict(CLI::App& command, bool& strict) {
 }
 
 Exit report(const Diagnostics& diagnostics, bool json) {
+    const Exit exit = interrupt_requested ? Exit::interrupted : Exit::wrong;
     if (!json) {
         fmt::print(stderr, "{}", diagnostics.render());
-        return Exit::wrong;
+        return exit;
     }
     auto list = nlohmann::ordered_json::array();
     for (const Diagnostic& d : diagnostics.empty() ? diagnostics.warnings() : diagnostics.list())
         list.push_back(to_json(d));
     fmt::print("{}\n", nlohmann::ordered_json{{"diagnostics", list}}.dump(2));
-    return Exit::wrong;
+    return exit;
 }
 
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "runtime/model/catalog.hpp"
 #include "runtime/program/program.hpp"
+#include "runtime/source/input_file.hpp"
 
 namespace lineshaft {
 
@@ -22,9 +22,6 @@ enum class Exit : int {
     fault = 3,   ///< something went wrong while running: a block's error, a full disk
     interrupted = 130,
 };
-
-/// Set by SIGINT and SIGTERM.
-extern std::atomic<bool> interrupt_requested;
 
 /// What most commands share.
 struct CommonOptions {
@@ -39,7 +36,7 @@ struct CommonOptions {
 };
 
 /// Prints what is wrong, else what is warned of, as a compiler does on stderr, or as JSON on
-/// stdout. Always Exit::wrong.
+/// stdout. Exit::wrong, or Exit::interrupted when reading was.
 Exit report(const Diagnostics& diagnostics, bool json);
 
 /// `--strict`: warnings are errors.

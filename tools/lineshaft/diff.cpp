@@ -78,8 +78,16 @@ void print_window(const DiffCommand& command, const CsvTable& a, const CsvTable&
                    cell(x, i) == cell(y, i) ? "" : "  " + distance(x, y, i));
 }
 
+std::vector<RunDifference> differences(const CsvTable& a, const CsvTable& b) {
+    if (!a.metadata || !b.metadata) return {};
+    return run_differences(*a.metadata, *b.metadata);
+}
+
 void print_text(const DiffCommand& command, const CsvTable& a, const CsvTable& b,
                 const TraceComparison& found) {
+    if (!command.quiet)
+        for (const auto& [what, x, y] : differences(a, b))
+            fmt::print("{}: {}, {}\n", what, x.empty() ? "none" : x, y.empty() ? "none" : y);
     if (found.same(a, b)) {
         if (!command.quiet) fmt::print("same: {} rows of {} columns\n", a.rows, a.columns.size());
         return;
@@ -122,6 +130,8 @@ void print_json(const CsvTable& a, const CsvTable& b, const TraceComparison& fou
                                   {"rows_b", b.rows},
                                   {"rows_deviating", found.rows},
                                   {"cells", found.cells}};
+    for (const auto& [what, x, y] : differences(a, b))
+        object["runs"].push_back({{"what", what}, {"a", x}, {"b", y}});
     if (found.first) object["first"] = to_json(a, b, *found.first);
     if (found.greatest) object["greatest"] = to_json(a, b, *found.greatest);
     fmt::print("{}\n", object.dump(2));

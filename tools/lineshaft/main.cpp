@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <exception>
 #include <new>
 
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "runtime/version.hpp"
@@ -20,7 +22,21 @@ namespace {
 
 constexpr const char* out_of_memory = "lineshaft: error: out of memory\n";
 
+std::int64_t now_ms() {
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    return now.tv_sec * std::int64_t{1000} + now.tv_nsec / 1'000'000;
+}
+
+/// The first signal asks for an end, a later one is the end. Some senders (`timeout`) send it twice
+/// at once.
 void on_signal(int) {
+    constexpr std::int64_t apart_ms = 200;
+    static std::atomic<std::int64_t> first_ms = 0;
+    std::int64_t none = 0;
+    const std::int64_t now = now_ms();
+    if (!first_ms.compare_exchange_strong(none, now) && now - first_ms > apart_ms)
+        ::_exit(static_cast<int>(lineshaft::Exit::interrupted));
     lineshaft::interrupt_requested = true;
 }
 
@@ -40,6 +56,14 @@ void set_up_signals() {
     std::signal(SIGTERM, on_signal);
     std::signal(SIGPIPE, SIG_IGN);  // writing tells it
     std::signal(SIGXFSZ, SIG_IGN);  // likewise
+}
+
+/// The files of a run stay open until they get their names together, and a repeated trace has many.
+void allow_many_files() {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+    limit.rlim_cur = limit.rlim_max;
+    ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 /// A library that cannot go on without memory ends here, whatever it calls on its way.
@@ -110,6 +134,7 @@ int run_command(int argc, char** argv) {
 int main(int argc, char** argv) {
     occupy_closed_streams();
     set_up_signals();
+    allow_many_files();
     std::set_terminate(on_terminate);
     try {
         return run_command(argc, argv);

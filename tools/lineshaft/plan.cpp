@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <filesystem>
@@ -8,9 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -161,28 +158,6 @@ void append_row(std::string& text, const SevenSegment& problem) {
     text += '\n';
 }
 
-/// Standard output, or a file that appears when it is whole.
-class Sink {
-  public:
-    explicit Sink(const std::string& path) {
-        if (!path.empty()) file_ = std::make_unique<OutputFile>(path);
-    }
-    void write(const std::string& text) {
-        if (file_) return file_->write(text);
-        if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() ||
-            std::fflush(stdout) != 0)
-            error_ = "cannot write to the standard output";
-    }
-    void commit() {
-        if (file_) file_->commit();
-    }
-    const std::string& error() const { return file_ ? file_->error() : error_; }
-
-  private:
-    std::unique_ptr<OutputFile> file_;
-    std::string error_;
-};
-
 /// Turns the lines of one file into rows.
 class Planner {
   public:
@@ -250,16 +225,17 @@ void Planner::mistake(const std::string& what) {
 /// is too long is cut at its beginning.
 class Lines {
   public:
-    explicit Lines(int descriptor) : descriptor_(descriptor), buffer_(longest_line, '\0') {}
+    explicit Lines(InputFile& file) : file_(file), buffer_(longest_line, '\0') {}
 
     enum class Read { some, end, failed, interrupted };
 
     Read read();
+    int error() const { return file_.error(); }  ///< an errno
     /// The next whole line of what has been read; at the end the last one, whatever ends it.
     bool next(std::string_view& line, bool& too_long, bool at_end);
 
   private:
-    int descriptor_;
+    InputFile& file_;
     std::string buffer_;
     std::size_t begin_ = 0, end_ = 0;
     bool too_long_ = false;  ///< the line under way has lost its beginning
@@ -273,14 +249,10 @@ Lines::Read Lines::read() {
         too_long_ = true;
         end_ = 1;  // at the end of the file there is still a line
     }
-    constexpr int wake_ms = 200;  // to see an interrupt
-    pollfd waiting{.fd = descriptor_, .events = POLLIN, .revents = 0};
-    while (::poll(&waiting, 1, wake_ms) <= 0)
-        if (interrupt_requested) return Read::interrupted;
-    const ssize_t count = ::read(descriptor_, buffer_.data() + end_, buffer_.size() - end_);
-    if (count < 0) return errno == EINTR || errno == EAGAIN ? Read::some : Read::failed;
-    end_ += static_cast<std::size_t>(count);
+    const std::size_t count = file_.read(buffer_.data() + end_, buffer_.size() - end_);
+    end_ += count;
     if (interrupt_requested) return Read::interrupted;
+    if (file_.error() != 0) return Read::failed;
     return count == 0 ? Read::end : Read::some;
 }
 
@@ -295,13 +267,13 @@ bool Lines::next(std::string_view& line, bool& too_long, bool at_end) {
     return true;
 }
 
-Exit plan_lines(Lines& lines, Planner& planner, Sink& sink) {
+Exit plan_lines(Lines& lines, Planner& planner, OutputFile& sink) {
     std::string rows;
     for (auto got = Lines::Read::some; got == Lines::Read::some;) {
         got = lines.read();
         if (got == Lines::Read::interrupted) return Exit::interrupted;
         if (got == Lines::Read::failed) {
-            spdlog::error("cannot read: {}", std::strerror(errno));
+            spdlog::error("cannot read: {}", std::strerror(lines.error()));
             return Exit::fault;
         }
         rows.clear();
@@ -310,6 +282,7 @@ Exit plan_lines(Lines& lines, Planner& planner, Sink& sink) {
         while (lines.next(line, too_long, got == Lines::Read::end))
             if (!planner.line(line, too_long, rows)) return Exit::wrong;
         sink.write(rows);
+        sink.flush();
         if (!sink.error().empty()) break;
     }
     planner.finish();
@@ -325,17 +298,15 @@ Exit execute(const PlanCommand& command) {
     Diagnostics out;
     check_outputs({command.output}, {command.input}, out);
     if (!out.empty()) return report(out, false);
-    const int descriptor =
-        standard_input ? STDIN_FILENO : ::open(command.input.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) {
-        spdlog::error("cannot open '{}': {}", command.input, std::strerror(errno));
+    InputFile file = standard_input ? InputFile(STDIN_FILENO) : InputFile(command.input);
+    if (file.error() != 0) {
+        spdlog::error("cannot open '{}': {}", command.input, std::strerror(file.error()));
         return Exit::wrong;
     }
-    Lines lines(descriptor);
+    Lines lines(file);
     Planner planner(standard_input ? "stdin" : command.input);
-    Sink sink(command.output);
+    OutputFile sink(command.output.empty() ? "-" : command.output);
     const Exit result = plan_lines(lines, planner, sink);
-    if (!standard_input) ::close(descriptor);
     if (!planner.has_header() || (result != Exit::fine && result != Exit::wrong)) return result;
     sink.commit();
     if (sink.error().empty()) return result;

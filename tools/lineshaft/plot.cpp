@@ -236,7 +236,7 @@ Exit execute(PlotCommand& command) {
         spdlog::error("{}", file.error());
         return Exit::fault;
     }
-    if (!command.quiet) fmt::print("picture: {}\n", command.output);
+    if (!command.quiet && command.output != "-") fmt::print("picture: {}\n", command.output);
     return Exit::fine;
 }
 

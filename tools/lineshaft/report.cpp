@@ -166,7 +166,7 @@ Exit execute(const ReportCommand& command) {
         spdlog::error("{}", file.error());
         return Exit::fault;
     }
-    if (!command.quiet) fmt::print("report: {}\n", command.output);
+    if (!command.quiet && command.output != "-") fmt::print("report: {}\n", command.output);
     return Exit::fine;
 }
 

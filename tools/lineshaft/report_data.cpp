@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -52,6 +53,8 @@ Json read_expectations(const std::string& csv_path, Diagnostics& out) {
 Json read_events(const std::string& csv_path) {
     constexpr std::size_t most = 1000;
     Json list = Json::array();
+    std::error_code unknown;  // then there is none
+    if (!std::filesystem::is_regular_file(events_path(csv_path), unknown)) return list;
     std::ifstream file(events_path(csv_path));
     std::string line;
     std::getline(file, line);
@@ -220,16 +223,19 @@ nlohmann::ordered_json to_json(const ReportRun& run) {
         signals.push_back(std::move(signal));
     }
     const auto& metadata = run.table.metadata;
-    return {{"label", run.path},
-            {"title", metadata ? metadata->title : ""},
-            {"version", metadata ? metadata->version : ""},
-            {"program", metadata ? metadata->program : ""},
-            {"rows", run.table.rows},
-            {"time", times},
-            {"signals", signals},
-            {"bytes", base64(deflated(bytes))},
-            {"expectations", run.expectations},
-            {"events", run.events}};
+    return {
+        {"label", run.path},
+        {"title", metadata ? metadata->title : ""},
+        {"version", metadata ? metadata->version : ""},
+        {"program", metadata ? metadata->program : ""},
+        {"made_by", metadata ? Json(std::map(metadata->made_by.begin(), metadata->made_by.end()))
+                             : Json::object()},
+        {"rows", run.table.rows},
+        {"time", times},
+        {"signals", signals},
+        {"bytes", base64(deflated(bytes))},
+        {"expectations", run.expectations},
+        {"events", run.events}};
 }
 
 }  // namespace lineshaft

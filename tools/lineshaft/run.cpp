@@ -56,39 +56,45 @@ void print_json(const Loaded& loaded, const RunReport& report) {
                                     {"measurements", trace.measurements},
                                     {"rows", trace.rows}});
     if (report.faulted())
-        object["fault"] = !report.trace_error.empty()     ? report.trace_error
-                          : !report.pulses_error.empty()  ? report.pulses_error
+        object["fault"] = !report.output_error.empty()    ? report.output_error
                           : !report.restart_error.empty() ? report.restart_error
                                                           : report.result.message;
     fmt::print("{}\n", object.dump(2));
 }
 
+/// What stands on the standard output when a file was to go there.
+bool writes_to_stdout(const RunCommand& command) {
+    return command.trace == "-" || command.pulses == "-";
+}
+
 void print_text(const RunCommand& command, const Loaded& loaded, const RunReport& report) {
+    std::FILE* const out = writes_to_stdout(command) ? stderr : stdout;
     for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
         const Verdict& verdict = report.verdicts[i];
-        fmt::print("{}  {}\n", verdict.ok ? "ok    " : "FAILED",
+        fmt::print(out, "{}  {}\n", verdict.ok ? "ok    " : "FAILED",
                    loaded.linked.expectations[i].text);
-        if (!verdict.ok) fmt::print("        {}\n", verdict.deviation);
+        if (!verdict.ok) fmt::print(out, "        {}\n", verdict.deviation);
     }
     if (command.common.quiet) return;
     const double machine_seconds = seconds(report.result.time);
     fmt::print(
-        "{}: machine time {:.3f} s, wall time {:.3f} s, {:.0f} times faster than the clock\n",
+        out, "{}: machine time {:.3f} s, wall time {:.3f} s, {:.0f} times faster than the clock\n",
         loaded.program.title, machine_seconds, report.wall_seconds,
         machine_seconds / report.wall_seconds);
-    if (report.result.time_errors > 0) fmt::print("time errors: {}\n", report.result.time_errors);
-    if (report.trace_error.empty())
-        for (const TraceReport& trace : report.traces)
-            for (const std::string& path : trace.paths) fmt::print("trace: {}\n", path);
-    if (!report.traces.empty() && report.trace_error.empty())
-        fmt::print("events: {}\n", events_path(command.trace));
-    if (!command.pulses.empty() && report.pulses_error.empty())
-        fmt::print("pulses: {}\n", command.pulses);
+    if (report.result.time_errors > 0)
+        fmt::print(out, "time errors: {}\n", report.result.time_errors);
+    if (!report.output_error.empty()) return;
+    const auto tell = [out](const char* what, const std::string& path) {
+        if (path != "-") fmt::print(out, "{}: {}\n", what, path);
+    };
+    for (const TraceReport& trace : report.traces)
+        for (const std::string& path : trace.paths) tell("trace", path);
+    if (!report.traces.empty() && command.trace != "-") tell("events", events_path(command.trace));
+    if (!command.pulses.empty()) tell("pulses", command.pulses);
 }
 
 Exit exit_code(const RunReport& report) {
-    const bool files_failed = !report.trace_error.empty() || !report.pulses_error.empty() ||
-                              !report.restart_error.empty();
+    const bool files_failed = !report.output_error.empty() || !report.restart_error.empty();
     if (files_failed) return Exit::fault;
     if (report.result.outcome == Outcome::interrupted) return Exit::interrupted;
     if (report.faulted()) return Exit::fault;
@@ -131,6 +137,17 @@ RunOptions run_options(const RunCommand& command, Diagnostics& out) {
     return options;
 }
 
+/// L0509 for what else would go to the standard output.
+void check_stdout(const RunCommand& command, const Loaded& loaded, Diagnostics& out) {
+    const auto& traces = loaded.linked.traces;
+    if (command.common.json)
+        out.add("L0509", {}, "'-' and --json would both write to the standard output",
+                "name a file");
+    if (command.trace == "-" && (traces.size() > 1 || (traces.size() == 1 && traces[0].repeat > 1)))
+        out.add("L0509", {}, "the program records more than one trace",
+                "name a file: --trace FILE.csv");
+}
+
 Exit execute(const RunCommand& command) {
     Diagnostics out;
     YamlFiles files;
@@ -155,6 +172,7 @@ Exit execute(const RunCommand& command) {
     for (const auto& file : files.sources()) inputs.push_back(file->path);
     if (loaded)
         for (const ReplayPlan& replay : loaded->program.replays) inputs.push_back(replay.path);
+    if (loaded && writes_to_stdout(command)) check_stdout(command, *loaded, out);
     check_outputs({command.trace, command.pulses, command.retain, command.checkpoint}, inputs, out);
     if (command.strict) out.be_strict();
     if (!out.empty()) return report(out, command.common.json);
@@ -182,8 +200,7 @@ Exit execute(const RunCommand& command) {
         spdlog::log(command.strict ? spdlog::level::err : spdlog::level::warn,
                     "'{}' is never looked at: no scan of its task", text);
     if (!result.result.message.empty()) spdlog::error("{}", result.result.message);
-    if (!result.trace_error.empty()) spdlog::error("{}", result.trace_error);
-    if (!result.pulses_error.empty()) spdlog::error("{}", result.pulses_error);
+    if (!result.output_error.empty()) spdlog::error("{}", result.output_error);
     if (!result.restart_error.empty()) spdlog::error("{}", result.restart_error);
     const Exit exit = exit_code(result);
     const bool unseen = command.strict && !result.never_looked_at.empty();
@@ -196,13 +213,16 @@ void add_run(CLI::App& app, Exit& result) {
     auto command = std::make_shared<RunCommand>();
     CLI::App* sub = app.add_subcommand("run", "Run a program and judge its expectations");
     sub->add_option("program", command->program, "The program, a YAML file")->required();
-    sub->add_option("--trace", command->trace,
-                    "Write the program's trace to this CSV file; the trace NAME of its 'traces:' "
-                    "to FILE.NAME.csv")
+    sub->add_option(
+           "--trace", command->trace,
+           "Write the program's trace to this CSV file, the trace NAME of its 'traces:' to "
+           "FILE.NAME.csv; - is the standard output")
         ->type_name("FILE.csv");
     add_style(*sub, command->style);
-    sub->add_option("--pulses", command->pulses,
-                    "Write the rising edges of all pulse channels to this CSV file")
+    sub->add_option(
+           "--pulses", command->pulses,
+           "Write the rising edges of all pulse channels to this CSV file; - is the standard "
+           "output")
         ->type_name("FILE");
     sub->add_option("--force", command->forces,
                     "Keep a signal at a value, whatever the program writes: slave.ratio=2@1s..2s")

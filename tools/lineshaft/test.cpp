@@ -100,9 +100,9 @@ Exit execute(const TestCommand& command) {
     std::vector<SuiteEntry> entries;
     for (const std::string& path : command.paths) {
         for (const std::string& file : find_files(path)) {
-            if (interrupt_requested) return Exit::interrupted;
             entries.push_back(
                 test(file, {.settings = {}, .include_dirs = command.include_dirs}, command.strict));
+            if (interrupt_requested) return Exit::interrupted;
             const SuiteEntry& entry = entries.back();
             fmt::print("{}  {} ({:.2f} s)\n", entry.failure.empty() ? "ok    " : "FAILED",
                        entry.name, entry.wall_seconds);

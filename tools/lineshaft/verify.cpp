@@ -1,14 +1,8 @@
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <memory>
 
 #include <fmt/format.h>
 
 #include "runtime/csv/csv_reader.hpp"
-#include "runtime/trace/checksum.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {
@@ -20,21 +14,6 @@ struct VerifyCommand {
     bool json = false, quiet = false;
 };
 
-/// Empty, and an L0001 diagnostic, when it cannot be read.
-std::optional<std::string> checksum_of(const std::string& path, Diagnostics& out) {
-    Checksum checksum;
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                               &std::fclose);
-    std::array<char, 1 << 16> part;
-    for (std::size_t count = part.size(); file && count == part.size();) {
-        count = std::fread(part.data(), 1, part.size(), file.get());
-        checksum.add({part.data(), count});
-    }
-    if (file && !std::ferror(file.get())) return checksum.text();
-    out.add("L0001", {}, fmt::format("cannot read '{}': {}", path, std::strerror(errno)));
-    return {};
-}
-
 bool is_mistake_of_file(const Diagnostic& d) {
     return d.code != "L0001" && d.code != "L0707" && d.code != "L0709";
 }
@@ -43,14 +22,23 @@ bool is_mistake_of_file(const Diagnostic& d) {
 std::optional<CsvTable> verify(const std::string& path, Diagnostics& out) {
     auto table = read_csv(path, out);
     if (!table) return {};
-    if (!table->metadata || table->metadata->crc32.empty())
-        out.add("L0709", {table->header, 0, 0, 1}, "no sidecar tells what the trace was",
-                fmt::format("a trace is whole if it is as '{}' says", sidecar_path(path)));
-    else if (const auto is = checksum_of(path, out); is && *is != table->metadata->crc32)
-        out.add(
-            "L0706", {table->header, 0, 0, 1},
-            fmt::format("the CRC-32 of its bytes is {}, and was {}", *is, table->metadata->crc32),
-            "the file was changed after it had been recorded");
+    const auto fail = [&](const char* code, const std::string& message, const std::string& help) {
+        out.add(code, {table->header, 0, 0, 1}, message, help);
+    };
+    const auto& told = table->metadata;
+    if (!told || told->crc32.empty())
+        fail("L0709", "no sidecar tells what the trace was",
+             fmt::format("a trace is whole if it is as '{}' says", sidecar_path(path)));
+    else if (!told->intact)
+        fail("L0709", "the sidecar has no checksum of itself",
+             "record the trace again with this version of lineshaft");
+    else if (!*told->intact)
+        fail("L0706", "its sidecar is not as it was recorded",
+             "the sidecar was changed: its units, types or hashes may be wrong");
+    else if (table->crc32 != told->crc32)
+        fail("L0706",
+             fmt::format("the CRC-32 of its bytes is {}, and was {}", table->crc32, told->crc32),
+             "the file was changed after it had been recorded");
     return table;
 }
 
@@ -68,7 +56,7 @@ Exit execute(const VerifyCommand& command) {
     }
     if (out.empty() && command.json) fmt::print("{{\"diagnostics\": []}}\n");
     if (out.empty()) return Exit::fine;
-    report(out, command.json);
+    if (report(out, command.json) == Exit::interrupted) return Exit::interrupted;
     const bool unknown = !std::ranges::all_of(out.list(), is_mistake_of_file);
     return unknown ? Exit::wrong : Exit::failed;
 }

@@ -210,11 +210,20 @@ async function testStudy(browser) {
   assert.deepEqual(page.problems, []);
 }
 
+/** Each run says in what it differs from the other, and no more. */
+async function testMakers(page) {
+  const [early, immediate] = await page.locator(".run").allTextContents();
+  assert.ok(early.includes("parameter method: early"), early);
+  assert.ok(immediate.includes("parameter method: immediate"), immediate);
+  assert.ok(!early.includes("seed"), early);
+}
+
 async function testCircle(browser) {
   circle("early.csv", "method=early");
   circle("immediate.csv", "method=immediate");
   const address = report("circle.html", file("early.csv"), file("immediate.csv"), "--circle", "0,0,20", "--while", "g.moving");
   const page = await open(browser, address);
+  await testMakers(page);
   await testCurves(page);
   await page.screenshot({ path: file("circle.png") });
   await testPath(page);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <limits>
+#include <random>
 
 #include <catch2/catch.hpp>
 
@@ -44,6 +45,47 @@ TEST_CASE("a person reads true, names and units") {
     CHECK(describe(2.5, Type::real, {}, "mm/s") == "2.5 mm/s");
     CHECK(describe(2.5, Type::real, {}, "") == "2.5");
     CHECK(describe(std::int64_t{7}, Type::integer, {}, "pulse") == "7 pulse");
+}
+
+TEST_CASE("integers and reals are compared exactly") {
+    constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max(), least = -most - 1;
+    constexpr std::int64_t edge = std::int64_t{1} << 53;
+    CHECK(std::is_lt(compare(edge, edge + 1)));
+    CHECK(std::is_gt(compare(edge + 1, 0x1p53)));
+    CHECK(std::is_lt(compare(0x1p53, edge + 1)));
+    CHECK(std::is_eq(compare(edge, 0x1p53)));
+    CHECK(std::is_lt(compare(most, 0x1p63)));
+    CHECK(std::is_eq(compare(least, -0x1p63)));
+    CHECK(std::is_gt(compare(least, -0x1.0000000000001p63)));
+    CHECK(std::is_lt(compare(std::int64_t{-1}, -0.5)));
+    CHECK(std::is_gt(compare(std::int64_t{0}, -0.5)));
+    CHECK(std::is_eq(compare(std::int64_t{0}, -0.0)));
+    CHECK(std::is_eq(compare(true, 1.0)));
+    CHECK(std::is_gt(compare(std::numeric_limits<double>::infinity(), most)));
+    const double not_a_number = std::numeric_limits<double>::quiet_NaN();
+    CHECK_FALSE(std::is_lteq(compare(most, not_a_number)));
+    CHECK_FALSE(std::is_gteq(compare(most, not_a_number)));
+    CHECK_FALSE(std::is_lteq(compare(not_a_number, most)));
+}
+
+TEST_CASE("the order of random values is that of the numbers they stand for") {
+    std::mt19937_64 random(1);
+    const auto near = [&](std::int64_t number) -> Value {
+        const std::uint64_t moved = static_cast<std::uint64_t>(number) + random() % 3 - 1;
+        if (random() % 2 == 0) return static_cast<std::int64_t>(moved);
+        return static_cast<double>(number);
+    };
+    // 64 bits of mantissa hold both exactly.
+    static_assert(std::numeric_limits<long double>::digits >= 64);
+    const auto exact = [](const Value& value) {
+        return std::visit([](auto v) { return static_cast<long double>(v); }, value);
+    };
+    for (int i = 0; i < 100'000; ++i) {
+        const auto number = static_cast<std::int64_t>(random()) >> (random() % 64);
+        const Value a = near(number), b = near(number);
+        INFO(format(a) << " and " << format(b));
+        REQUIRE((compare(a, b) == (exact(a) <=> exact(b))));
+    }
 }
 
 TEST_CASE("as a real, true is 1 and an integer is itself") {

@@ -226,16 +226,37 @@ TEST_CASE("link: bounds of expectations") {
     REQUIRE(result.out.empty());
     const auto& e = result.linked.expectations;
     REQUIRE(e.size() == 5);
-    CHECK(e[0].low == 18);
-    CHECK(e[0].high == 22);
-    CHECK(e[1].low == 19);
+    CHECK(as_real(e[0].low) == 18);
+    CHECK(as_real(e[0].high) == 22);
+    CHECK(as_real(e[1].low) == 19);
     CHECK(e[1].at == 1'000'000);
     CHECK(e[2].always);
-    CHECK(e[2].low == 1);
-    CHECK(e[2].high == 3);
-    CHECK(e[3].low == 1);
-    CHECK(e[4].high == 1);
+    CHECK(as_real(e[2].low) == 1);
+    CHECK(as_real(e[2].high) == 3);
+    CHECK(as_real(e[3].low) == 1);
+    CHECK(as_real(e[4].high) == 1);
     CHECK(e[0].text == "at the end: g.y = 20 mm within 10 %");
+}
+
+TEST_CASE("link: bounds of integers are exact, and end where integers end") {
+    const Result result =
+        link_text(program_of("  c: {type: counter, task: a}\n",
+                             "inputs: {n: 9007199254740992}\n"
+                             "expect:\n"
+                             "  - {at: end, inputs.n: 9007199254740993}\n"
+                             "  - {at: end, inputs.n: 9007199254740993, within: 1}\n"
+                             "  - {at: end, inputs.n: 9223372036854775807, within: 2}\n"
+                             "  - {at: end, inputs.n: -9223372036854775808, within: 0.5}\n"
+                             "  - {at: end, inputs.n: 100, within: 10.5 %}\n"));
+    INFO(result.out.render());
+    REQUIRE(result.out.empty());
+    const auto& e = result.linked.expectations;
+    const auto bounds = [&](std::size_t i) { return format(e[i].low) + " " + format(e[i].high); };
+    CHECK(bounds(0) == "9007199254740993 9007199254740993");
+    CHECK(bounds(1) == "9007199254740992 9007199254740994");
+    CHECK(bounds(2) == "9223372036854775805 9223372036854775807");
+    CHECK(bounds(3) == "-9223372036854775808 -9223372036854775808");
+    CHECK(bounds(4) == "90 110");
 }
 
 TEST_CASE("link: what is wrong with an expectation, a trace or a run") {

@@ -76,7 +76,7 @@ TEST_CASE("a trace is written while the program runs") {
     REQUIRE(loaded);
     const std::string trace = file.folder / "t.csv";
     const RunReport report = run(*loaded, {.trace_path = trace, .interrupt = {}, .progress = {}});
-    CHECK(report.trace_error.empty());
+    CHECK(report.output_error.empty());
     CHECK(read(trace) ==
           "time,scan,axis.velocity,axis.moving\n"
           "0,0,0,0\n"
@@ -93,7 +93,7 @@ TEST_CASE("a trace that cannot be written is a fault and ends the run") {
         run(*loaded, {.trace_path = file.folder / "none/t.csv", .interrupt = {}, .progress = {}});
     CHECK(report.result.message == "the run stopped at 0 s");
     CHECK(report.faulted());
-    CHECK_THAT(report.trace_error, Catch::EndsWith("No such file or directory"));
+    CHECK_THAT(report.output_error, Catch::EndsWith("No such file or directory"));
 }
 
 TEST_CASE("a block's error is a fault, and what was traced until then is kept") {

@@ -1,6 +1,7 @@
 #include "runtime/scan/judge.hpp"
 
 #include <limits>
+#include <random>
 
 #include <catch2/catch.hpp>
 
@@ -41,7 +42,33 @@ struct Counted {
     }
 };
 
+std::int64_t any_integer(std::mt19937_64& random) {
+    constexpr std::int64_t ends[] = {std::numeric_limits<std::int64_t>::min(), -1, 0,
+                                     std::int64_t{1} << 53,
+                                     std::numeric_limits<std::int64_t>::max()};
+    const std::int64_t value =
+        random() % 4 == 0 ? ends[random() % std::size(ends)] : static_cast<std::int64_t>(random());
+    const auto step = static_cast<std::uint64_t>(random() % 3) - 1;
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(value) + step);
+}
+
 }  // namespace
+
+TEST_CASE("integers are judged as integers, whatever their size") {
+    std::mt19937_64 random(1);
+    for (int i = 0; i < 20'000; ++i) {
+        const std::int64_t value = any_integer(random);
+        const std::int64_t low = random() % 2 == 0 ? value + (value < 0) : any_integer(random);
+        const std::int64_t high = random() % 2 == 0 ? value - (value > 0) : any_integer(random);
+        Expectation e{.text = {}, .signal = {}, .at = {}, .low = low, .high = high, .wanted = {}};
+        e.signal.type = Type::integer;
+        e.signal.slot = reinterpret_cast<const std::byte*>(&value);
+        Judge judge({e});
+        judge.finish({});
+        INFO(low << " <= " << value << " <= " << high);
+        REQUIRE(judge.ok() == (low <= value && value <= high));
+    }
+}
 
 TEST_CASE("an expectation at an instant sees what was published at it, and until the next scan") {
     Counted c;

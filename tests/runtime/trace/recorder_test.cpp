@@ -187,6 +187,23 @@ List triggers_of(Kind kind, const std::vector<double>& values, double low = 0, d
 
 }  // namespace
 
+TEST_CASE("a trigger compares integers as integers") {
+    constexpr std::int64_t edge = std::int64_t{1} << 53;
+    std::int64_t value = 0;
+    const auto holds = [&](Kind kind, std::int64_t is, std::int64_t low, std::int64_t high) {
+        TraceTrigger trigger{.kind = kind, .signal = {}, .low = low, .high = high};
+        trigger.signal.type = Type::integer;
+        trigger.signal.slot = reinterpret_cast<const std::byte*>(&value);
+        value = is;
+        return trigger.condition_holds();
+    };
+    CHECK(holds(Kind::above, edge + 1, edge, 0));
+    CHECK(holds(Kind::below, edge, 0, edge + 1));
+    CHECK_FALSE(holds(Kind::equals, edge, edge + 1, edge + 1));
+    CHECK_FALSE(holds(Kind::inside, edge, edge + 1, edge + 2));
+    CHECK(holds(Kind::equals, edge + 1, edge + 1, edge + 1));
+}
+
 TEST_CASE("a trigger comes when its condition begins to hold") {
     CHECK(triggers_of(Kind::rising, {0, 1, 1, 0, 1}) == List{1, 4});
     CHECK(triggers_of(Kind::falling, {1, 0, 0, 1, 0}) == List{1, 4});

@@ -25,12 +25,18 @@ function shortenLabels(runs) {
   runs.forEach((run, k) => { run.label = names[k]; });
 }
 
+/** What made a run; of several, where they differ. */
+function makers(run, runs) {
+  const differs = ([what, value]) => runs.length === 1 || runs.some(({ made_by }) => made_by[what] !== value);
+  return Object.entries(run.made_by).filter(differs).map(([what, value]) => `${what}: ${value}`);
+}
+
 function describeRuns(runs) {
   return runs.map((run) => {
     const style = `<svg width="26" height="8"><line x1="0" y1="4" x2="26" y2="4"
       stroke="currentColor" stroke-width="2" stroke-dasharray="${dashes(run.index)}"/></svg>`;
     const facts = [`${run.rows} rows`, run.program && `program ${run.program}`,
-                   run.version && `lineshaft ${run.version}`].filter(Boolean);
+                   run.version && `lineshaft ${run.version}`, ...makers(run, runs)].filter(Boolean);
     return element("div", { className: "run" },
                    element("span", { innerHTML: runs.length > 1 ? style : "" }),
                    element("b", {}, run.label), ` ${facts.join(", ")}`);

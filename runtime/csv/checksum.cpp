@@ -1,4 +1,4 @@
-#include "runtime/trace/checksum.hpp"
+#include "runtime/csv/checksum.hpp"
 
 #include <fmt/format.h>
 #include <libdeflate.h>

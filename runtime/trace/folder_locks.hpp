@@ -1,0 +1,30 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace lineshaft {
+
+/// Holds the folders of some files for as long as it lives, so that their names are given by one
+/// process at a time. A folder that cannot be read, or that its file system cannot lock, is not
+/// held.
+class FolderLocks {
+  public:
+    explicit FolderLocks(const std::set<std::string>& folders);
+    ~FolderLocks();
+    FolderLocks(const FolderLocks&) = delete;
+    FolderLocks& operator=(const FolderLocks&) = delete;
+
+    /// So that names outlive a power failure; false, and errno, when a disk fails. A file system
+    /// that does not flush folders is no error.
+    bool flush() const;
+
+  private:
+    std::vector<int> descriptors_;
+};
+
+/// Of a file: `.` for a bare name.
+std::string folder_of(const std::string& path);
+
+}  // namespace lineshaft
