@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "runtime/net/outside.hpp"
+#include "runtime/source/units.hpp"
 
 namespace lineshaft {
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runtime/scan/executive.hpp"
+#include "runtime/source/units.hpp"
 
 namespace lineshaft {
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "runtime/model/literal.hpp"
+#include "runtime/source/units.hpp"
 
 namespace lineshaft {
 

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "runtime/source/units.hpp"
+
 namespace lineshaft {
 
 namespace {

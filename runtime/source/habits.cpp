@@ -70,7 +70,7 @@ std::string upper(std::string_view text) {
 bool is_operand(std::string_view text) {
     text = trimmed(text);
     const std::string_view word = text.substr(0, text.find(' '));
-    return !text.empty() && (is_digit(text.front()) || text.front() == '$' || is_signal_name(word));
+    return !text.empty() && (is_digit(text.front()) || text.front() == '$' || split_signal(word));
 }
 
 const Operator* find_operator(std::string_view text) {
@@ -223,7 +223,7 @@ std::string expression_help(std::string_view text) {
             return fmt::format(
                 "a bound is written {}: {}", bound == ">" ? "at_least" : "at_most",
                 trimmed(text.substr(std::min(text.find_first_not_of("<>="), text.size()))));
-    if (text.starts_with('!') && is_signal_name(text.substr(1)))
+    if (text.starts_with('!') && split_signal(text.substr(1)))
         return fmt::format("write NOT {}", text.substr(1));
     const Operator* found = find_operator(text);
     const std::string_view block = found ? found->block : text.starts_with("NOT ") ? "not" : "";

@@ -24,8 +24,8 @@ constexpr const char* fit_help =
     "  cases:\n"
     "    - {set: {x: 7.5 cm}, compare: {line.time: {paper: 8.449 s}}}\n"
     "    - {set: {x: 6 cm}, hold_out: true, compare: {line.time: {paper: 7.443 s, within: 5 ms}}}\n"
-    "Cases with hold_out are only compared with what the others have found. programs/README.md\n"
-    "describes the form. Exit code 1: a value is outside of its 'within'.";
+    "Cases with hold_out are only compared with what the others have found. 'lineshaft form fit' has the\n"
+    "keys. Exit code 1: a value is outside of its 'within'.";
 
 struct FitCommand {
     CommonOptions common;
