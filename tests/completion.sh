@@ -27,6 +27,7 @@ offers --trace run --tr
 offers --dot show --
 offers !--dot run --
 offers gear_axis blocks ge
+offers trigger form tr
 offers programs/03_ratio_change.yaml run programs/03
 offers programs/paper run programs/p
 offers !programs/README.md run programs/R

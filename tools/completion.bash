@@ -83,6 +83,7 @@ _lineshaft() {
     fi
     case $command in
         blocks) _lineshaft_words "$current" < <("$lineshaft" blocks 2>/dev/null | cut -d' ' -f1) ;;
+        form) _lineshaft_words "$current" < <("$lineshaft" form 2>/dev/null | grep -o "^[a-z_]*") ;;
         plot | plan | diff | verify | contour) _lineshaft_files "$current" csv ;;
         report) _lineshaft_files "$current" csv json ;;
         *) _lineshaft_files "$current" yaml yml ;;

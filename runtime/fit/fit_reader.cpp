@@ -7,56 +7,25 @@
 
 #include "runtime/csv/csv_time.hpp"
 #include "runtime/fit/fit.hpp"
-#include "runtime/source/reader.hpp"
+#include "runtime/fit/fit_form.hpp"
 #include "runtime/study/study_reader.hpp"
 
 namespace lineshaft {
 
 namespace {
 
-constexpr std::int64_t most_starts = 1000;
 constexpr double default_step = 1e-3;  // of the way between the bounds
 
-/// What a plan's case says beyond a study's.
-struct PendingTarget {
-    Node signal;
-    Statistic statistic = Statistic::mean;
-    Node uncertainty = {}, column = {};  ///< empty where it says nothing
-};
-
-struct PendingCell {
-    Node place;
-    bool hold_out = false;
-    Node trace;  ///< a file's name, or a map
-    std::vector<PendingTarget> targets;
-};
-
-/// Takes the value at `key` out of a map; an empty node when there is none.
-Node take(Node& map, std::string_view key) {
-    const auto it = std::ranges::find_if(
-        map.entries, [&](const auto& entry) { return entry.first.text == key; });
-    if (it == map.entries.end()) return {};
-    Node value = std::move(it->second);
-    map.entries.erase(it);
-    return value;
+const Node& place_of(const std::optional<Node>& node, const Node& otherwise) {
+    return node ? *node : otherwise;
 }
 
 /// By default named as the signal.
-std::string column_name(const PendingTarget& target) {
-    return target.column.is_empty() ? target.signal.text : target.column.text;
+const Node& column_of(const ComparisonPlan& plan) {
+    return place_of(plan.column, plan.signal);
 }
 
-/// Reports what is not allowed, and takes it out, so that it is not reported once more.
-void keep_only(const Reader& read, Node& map, std::string_view what,
-               std::initializer_list<std::string_view> allowed) {
-    read.only_keys(map, what, allowed);
-    std::erase_if(map.entries, [&](const auto& entry) {
-        return std::ranges::find(allowed, entry.first.text) == allowed.end();
-    });
-}
-
-/// A plan is a study with some entries more. They are taken out of it, what is left is read as a
-/// study, and the two are put together.
+/// Reads what a plan has in common with a study as one, and adds what is measured.
 class FitReader {
   public:
     FitReader(const LoadOptions& options, const Catalog& catalog, Diagnostics& out)
@@ -65,21 +34,17 @@ class FitReader {
     FitPlan read(std::shared_ptr<const SourceFile> file);
 
   private:
-    void parameters(const Node& node);
-    void parameter(const Node& name, const Node& body);
-    std::optional<double> number(const Node& map, std::string_view key, const Unit& unit) const;
-    void starts(const Node& starts, const Node& seed);
-    void hold_out(const Node& node);
-    void take_cell(Node& node);
-    void forbid_settings(const Node& map) const;
+    void parameter(const FitParameterPlan& plan);
+    StudyPlan study() const;
+    void forbid(const std::vector<Setting>& settings) const;
     void join(Study&& study);
-    FitCell cell(const PendingCell& pending, StudyCase&& run);
-    void figures(const PendingCell& pending, FitCell& cell) const;
-    std::optional<double> uncertainty(const PendingTarget& pending, const Comparison& comparison,
+    FitCell cell(const FitCasePlan& plan, StudyCase&& run) const;
+    void figures(const FitCasePlan& plan, FitCell& cell) const;
+    std::optional<double> uncertainty(const ComparisonPlan& plan, const Comparison& comparison,
                                       std::optional<double> whole) const;
-    void trace(const PendingCell& pending, FitCell& cell) const;
+    void trace(const FitCasePlan& plan, FitCell& cell) const;
     Unit unit_of(const CsvColumn& column, const std::string& wanted, const Node& place) const;
-    void samples(const PendingCell& pending, const CsvTable& table, const CsvColumn& time,
+    void samples(const FitCasePlan& plan, const CsvTable& table, const CsvColumn& time,
                  FitCell& cell) const;
     void check_times(const Node& place, const std::vector<std::int64_t>& times) const;
     void check_units() const;
@@ -88,127 +53,69 @@ class FitReader {
     LoadOptions options_;
     const Catalog& catalog_;
     Reader read_;
+    FitFilePlan file_;
     FitPlan plan_;
-    Node parameters_;
-    std::vector<PendingCell> pending_;
 };
 
 FitPlan FitReader::read(std::shared_ptr<const SourceFile> file) {
     plan_.file = file;
-    auto root = parse_yaml(file, read_.diagnostics());
+    const auto root = parse_yaml(file, read_.diagnostics());
     if (!root || !check_kind(read_, *root, "lineshaft_fit")) return std::move(plan_);
-    keep_only(read_, *root, "a fit",
-              {"lineshaft_fit", "title", "program", "notes", "set", "repeat", "parameters",
-               "starts", "seed", "hold_out", "cases"});
-    take(*root, "lineshaft_fit");
-    starts(take(*root, "starts"), take(*root, "seed"));
-    hold_out(take(*root, "hold_out"));
-    read_.require(*root, "parameters", "a fit",
-                  "say what is looked for: parameters: {lag: {from: 0 ms, to: 50 ms}}");
-    parameters_ = take(*root, "parameters");
-    if (!parameters_.is_empty()) parameters(parameters_);
-    if (const Node* set = root->find("set"); set && set->is_map()) forbid_settings(*set);
-    for (auto& [key, value] : root->entries)
-        if (key.text == "cases" && value.is_sequence())
-            for (Node& item : value.items) take_cell(item);
-    const std::size_t before = read_.diagnostics().list().size();
-    Study study = read_study(file, *root, options_, catalog_, read_.diagnostics());
-    if (before == 0 && read_.diagnostics().empty()) join(std::move(study));
+    read_form(fit_form(), read_, *root, file_);
+    plan_.starts = file_.starts;
+    plan_.seed = file_.seed;
+    plan_.hold_out_each = !file_.hold_out.is_empty();
+    for (const FitParameterPlan& plan : file_.parameters) parameter(plan);
+    forbid(file_.study.settings);
+    for (const FitCasePlan& plan : file_.cases) forbid(plan.run.settings);
+    const bool good = read_.diagnostics().empty();
+    Study made = read_study(file, study(), options_, catalog_, read_.diagnostics());
+    if (good && read_.diagnostics().empty()) join(std::move(made));
     return std::move(plan_);
 }
 
-void FitReader::starts(const Node& starts, const Node& seed) {
-    if (!starts.is_empty()) plan_.starts = read_.integer(starts).value_or(1);
-    if (plan_.starts < 1 || plan_.starts > most_starts)
-        read_.fail("L0305", starts, fmt::format("'starts' is 1 to {}", most_starts));
-    const std::int64_t value = seed.is_empty() ? 1 : read_.integer(seed).value_or(1);
-    if (value < 0) read_.fail("L0305", seed, fmt::format("'{}' is below 0", seed.text));
-    plan_.seed = static_cast<std::uint64_t>(value);
-}
-
-void FitReader::hold_out(const Node& node) {
-    if (node.is_empty() || !read_.expect_scalar(node, "'hold_out'")) return;
-    plan_.hold_out_each = node.text == "each";
-    if (!plan_.hold_out_each)
-        read_.fail("L0306", node, fmt::format("'{}' is not a way to hold out cases", node.text),
-                   "write hold_out: each, or hold_out: true at a case");
-}
-
-void FitReader::parameters(const Node& node) {
-    if (!read_.expect_map(node, "'parameters'")) return;
-    if (node.entries.empty()) read_.fail("L0202", node, "'parameters' names none to look for");
-    for (const auto& [name, body] : node.entries)
-        if (read_.expect_map(body, fmt::format("parameter '{}'", name.text))) parameter(name, body);
+StudyPlan FitReader::study() const {
+    StudyPlan study = file_.study;
+    for (const FitCasePlan& plan : file_.cases) study.cases.push_back(plan.run);
+    return study;
 }
 
 /// The unit of `from` is the parameter's.
-void FitReader::parameter(const Node& name, const Node& body) {
-    read_.only_keys(body, "a parameter of a fit", {"from", "to", "start", "step"});
-    const Node* from = read_.require(body, "from", "a parameter of a fit");
-    const Node* to = read_.require(body, "to", "a parameter of a fit");
-    if (!from || !to) return;
-    const auto low = read_.quantity(*from, "a bound with its unit, as 0 ms");
+void FitReader::parameter(const FitParameterPlan& plan) {
+    if (plan.from.is_empty() || plan.to.is_empty()) return;
+    const auto low = read_.quantity(plan.from, "a bound with its unit, as 0 ms");
     if (!low) return;
-    FitParameter made{.name = name.text, .unit = low->unit};
-    const auto high = read_.real(*to, made.unit);
+    FitParameter made{.name = plan.name.text, .unit = low->unit};
+    const auto high = read_.real(plan.to, made.unit);
     if (!high) return;
     made.from = low->number;
     made.to = *high;
     if (!(made.from < made.to))
-        return read_.fail("L0305", *to, fmt::format("'to' is not above 'from' ({})", from->text));
-    made.start = number(body, "start", made.unit).value_or((made.from + made.to) / 2);
+        return read_.fail("L0305", plan.to,
+                          fmt::format("'to' is not above 'from' ({})", plan.from.text));
+    const auto number = [&](const std::optional<Node>& node, double otherwise) {
+        return node ? read_.real(*node, made.unit).value_or(otherwise) : otherwise;
+    };
+    made.start = number(plan.start, (made.from + made.to) / 2);
     if (made.start < made.from || made.start > made.to)
-        read_.fail("L0305", *body.find("start"), "'start' is outside of 'from' and 'to'");
-    made.step = number(body, "step", made.unit).value_or((made.to - made.from) * default_step);
+        read_.fail("L0305", *plan.start, "'start' is outside of 'from' and 'to'");
+    made.step = number(plan.step, (made.to - made.from) * default_step);
     if (!(made.step > 0 && made.step <= (made.to - made.from) / 2))
-        read_.fail("L0305", *body.find("step"),
+        read_.fail("L0305", *plan.step,
                    "'step' is above 0 and at most half of the way from 'from' to 'to'");
-    const Mark value_mark = body.find("start") ? body.find("start")->mark : from->mark;
-    options_.settings.push_back({made.name, made.text(made.start), name.mark, value_mark});
+    options_.settings.push_back(
+        {made.name, made.text(made.start), plan.name.mark, place_of(plan.start, plan.from).mark});
     plan_.parameters.push_back(std::move(made));
 }
 
-std::optional<double> FitReader::number(const Node& map, std::string_view key,
-                                        const Unit& unit) const {
-    const Node* node = map.find(key);
-    return node ? read_.real(*node, unit) : std::nullopt;
-}
-
-void FitReader::take_cell(Node& node) {
-    PendingCell pending;
-    pending.place.mark = node.mark;
-    if (!node.is_map()) return;
-    keep_only(read_, node, "a case of a fit",
-              {"name", "set", "repeat", "compare", "hold_out", "trace"});
-    if (const Node hold_out = take(node, "hold_out"); !hold_out.is_empty())
-        pending.hold_out = read_.boolean(hold_out).value_or(false);
-    pending.trace = take(node, "trace");
-    if (const Node* set = node.find("set"); set && set->is_map()) forbid_settings(*set);
-    if (!read_.require(node, "compare", "a case of a fit")) return;
-    for (auto& [key, value] : node.entries) {
-        if (key.text != "compare") continue;
-        for (const Node& signal : value.items) pending.targets.push_back({.signal = signal});
-        for (auto& [signal, body] : value.entries) {
-            PendingTarget target{.signal = signal};
-            target.uncertainty = take(body, "uncertainty");
-            target.column = take(body, "column");
-            pending.targets.push_back(std::move(target));
-            for (auto& [key_of_body, spread] : body.entries)
-                if (key_of_body.text == "spread")
-                    pending.targets.push_back({.signal = signal,
-                                               .statistic = Statistic::spread,
-                                               .uncertainty = take(spread, "uncertainty")});
-        }
-    }
-    pending_.push_back(std::move(pending));
-}
-
-void FitReader::forbid_settings(const Node& map) const {
-    for (const auto& [name, value] : map.entries)
-        if (parameters_.find(name.text))
-            read_.fail("L0213", name,
-                       fmt::format("'{}' is set here, and looked for as well", name.text),
-                       "leave it out, or take it out of 'parameters'");
+void FitReader::forbid(const std::vector<Setting>& settings) const {
+    for (const Setting& setting : settings)
+        for (const FitParameterPlan& parameter : file_.parameters)
+            if (parameter.name.text == setting.name)
+                read_.diagnostics().add(
+                    "L0213", setting.mark,
+                    fmt::format("'{}' is set here, and looked for as well", setting.name),
+                    "leave it out, or take it out of 'parameters'");
 }
 
 void FitReader::join(Study&& study) {
@@ -216,30 +123,31 @@ void FitReader::join(Study&& study) {
     plan_.program = std::move(study.program);
     plan_.notes = std::move(study.notes);
     plan_.include_dirs = std::move(study.include_dirs);
-    for (std::size_t i = 0; i < pending_.size(); ++i)
-        plan_.cells.push_back(cell(pending_[i], study.make_case(static_cast<std::int64_t>(i))));
+    for (std::size_t i = 0; i < file_.cases.size(); ++i)
+        plan_.cells.push_back(cell(file_.cases[i], study.make_case(static_cast<std::int64_t>(i))));
     if (!read_.diagnostics().empty()) return;
     check_units();
     check_count();
 }
 
-FitCell FitReader::cell(const PendingCell& pending, StudyCase&& run) {
-    FitCell made{.run = std::move(run), .hold_out = pending.hold_out};
-    std::erase_if(made.run.settings,
-                  [this](const Setting& s) { return parameters_.find(s.name) != nullptr; });
-    if (pending.trace.is_empty())
-        figures(pending, made);
+FitCell FitReader::cell(const FitCasePlan& plan, StudyCase&& run) const {
+    FitCell made{.run = std::move(run), .hold_out = plan.hold_out};
+    for (const FitParameterPlan& parameter : file_.parameters)
+        std::erase_if(made.run.settings,
+                      [&](const Setting& s) { return s.name == parameter.name.text; });
+    if (plan.trace.file.is_empty())
+        figures(plan, made);
     else
-        trace(pending, made);
+        trace(plan, made);
     return made;
 }
 
-void FitReader::figures(const PendingCell& pending, FitCell& cell) const {
-    for (std::size_t k = 0; k < pending.targets.size(); ++k) {
-        const PendingTarget& p = pending.targets[k];
+void FitReader::figures(const FitCasePlan& plan, FitCell& cell) const {
+    for (std::size_t k = 0; k < plan.run.comparisons.size(); ++k) {
+        const ComparisonPlan& p = plan.run.comparisons[k];
         const Comparison& comparison = cell.run.comparisons[k];
-        if (!p.column.is_empty())
-            read_.fail("L0202", p.column, "a column of which file? The case has no 'trace'",
+        if (p.column)
+            read_.fail("L0202", *p.column, "a column of which file? The case has no 'trace'",
                        "name the file in the case: trace: measured.csv");
         else if (!comparison.bounds.paper)
             read_.fail("L0202", p.signal,
@@ -251,12 +159,12 @@ void FitReader::figures(const PendingCell& pending, FitCell& cell) const {
 }
 
 /// 1 where it is not given; a percentage is of `whole`.
-std::optional<double> FitReader::uncertainty(const PendingTarget& pending,
+std::optional<double> FitReader::uncertainty(const ComparisonPlan& plan,
                                              const Comparison& comparison,
                                              std::optional<double> whole) const {
     static const Unit one;
-    const Node& node = pending.uncertainty;
-    if (node.is_empty()) return 1;
+    if (!plan.uncertainty) return 1;
+    const Node& node = *plan.uncertainty;
     const bool share = whole && node.is_scalar() && node.text.ends_with('%');
     auto size = read_.real(node, share ? one : Unit::parse(comparison.unit).value());
     if (size && share) *size *= std::abs(*whole);
@@ -265,26 +173,21 @@ std::optional<double> FitReader::uncertainty(const PendingTarget& pending,
     return {};
 }
 
-/// `trace: FILE`, or `trace: {file: FILE, time: COLUMN, offset: 10 ms}`.
-void FitReader::trace(const PendingCell& pending, FitCell& cell) const {
+void FitReader::trace(const FitCasePlan& plan, FitCell& cell) const {
     Diagnostics& out = read_.diagnostics();
-    const Node& node = pending.trace;
-    if (node.is_map()) read_.only_keys(node, "a trace", {"file", "time", "offset"});
-    const Node* name = node.is_map() ? read_.require(node, "file", "a trace") : &node;
-    if (!name || !read_.expect_scalar(*name, "the name of a trace")) return;
-    const auto path =
-        resolve_path(name->text, plan_.file->path, plan_.include_dirs, name->mark, out);
+    const Node& name = plan.trace.file;
+    const auto path = resolve_path(name.text, plan_.file->path, plan_.include_dirs, name.mark, out);
     if (!path) return;
     if (!std::filesystem::exists(*path))
-        return read_.fail("L0001", *name, fmt::format("there is no file '{}'", *path));
-    const Node* time = node.find("time");
-    const std::string time_name = time ? time->text : "time";
+        return read_.fail("L0001", name, fmt::format("there is no file '{}'", *path));
+    const std::string time_name = plan.trace.time ? plan.trace.time->text : "time";
     CsvOptions csv{.columns = {time_name}};
-    for (const PendingTarget& p : pending.targets) csv.columns.push_back(column_name(p));
+    for (const ComparisonPlan& p : plan.run.comparisons) csv.columns.push_back(column_of(p).text);
     const auto table = read_csv(*path, out, csv);
     if (!table) return;
-    if (const CsvColumn* column = table->require(time_name, out, time ? time->mark : name->mark))
-        samples(pending, *table, *column, cell);
+    if (const CsvColumn* column =
+            table->require(time_name, out, place_of(plan.trace.time, name).mark))
+        samples(plan, *table, *column, cell);
 }
 
 /// What the file says, else `wanted`; both measure the same.
@@ -300,34 +203,31 @@ Unit FitReader::unit_of(const CsvColumn& column, const std::string& wanted,
     return due;
 }
 
-void FitReader::samples(const PendingCell& pending, const CsvTable& table, const CsvColumn& time,
+void FitReader::samples(const FitCasePlan& plan, const CsvTable& table, const CsvColumn& time,
                         FitCell& cell) const {
     Diagnostics& out = read_.diagnostics();
     std::vector<const CsvColumn*> columns;
     std::vector<Unit> units;
-    for (std::size_t k = 0; k < pending.targets.size(); ++k) {
-        const PendingTarget& p = pending.targets[k];
+    for (std::size_t k = 0; k < plan.run.comparisons.size(); ++k) {
+        const ComparisonPlan& p = plan.run.comparisons[k];
         const Comparison& comparison = cell.run.comparisons[k];
         if (comparison.bounds.paper || comparison.bounds.judged() ||
             p.statistic == Statistic::spread)
             read_.fail("L0213", p.signal, "a signal of a trace is compared sample by sample",
                        "leave out paper, within, at_least, at_most and spread");
-        const Node& place = p.column.is_empty() ? p.signal : p.column;
-        const CsvColumn* column = table.require(column_name(p), out, place.mark);
+        const Node& place = column_of(p);
+        const CsvColumn* column = table.require(place.text, out, place.mark);
         if (!column) continue;
         columns.push_back(column);
         units.push_back(unit_of(*column, comparison.unit, place));
         cell.targets.push_back({{}, uncertainty(p, comparison, {}).value_or(1)});
     }
-    const Unit seconds = unit_of(time, "s", pending.trace);
+    const Unit seconds = unit_of(time, "s", plan.trace.place);
     if (!out.empty()) return;
-    const Node* const named = pending.trace.find("file");
-    const Node* offset = pending.trace.find("offset");
-    const std::int64_t shift = offset ? read_.time(*offset).value_or(0) : 0;
     for (std::size_t row = 0; row < table.rows; ++row) {
         const auto missing = [row](const CsvColumn* c) { return c->is_missing(row); };
         if (time.is_missing(row) || std::ranges::any_of(columns, missing)) continue;
-        const auto at = time_of(time, row, seconds, shift, read_, named ? *named : pending.trace);
+        const auto at = time_of(time, row, seconds, plan.trace.offset, read_, plan.trace.file);
         if (!at) return;
         cell.times.push_back(*at);
         for (std::size_t k = 0; k < columns.size(); ++k)
@@ -335,7 +235,7 @@ void FitReader::samples(const PendingCell& pending, const CsvTable& table, const
                 convert(columns[k]->values[row], units[k],
                         Unit::parse(cell.run.comparisons[k].unit).value()));
     }
-    check_times(pending.trace, cell.times);
+    check_times(plan.trace.place, cell.times);
 }
 
 void FitReader::check_times(const Node& place, const std::vector<std::int64_t>& times) const {
@@ -358,10 +258,10 @@ void FitReader::check_units() const {
             unit = &comparison.unit;
         }
     if (!mixed) return;
-    for (const PendingCell& pending : pending_)
-        for (const PendingTarget& target : pending.targets)
-            if (target.uncertainty.is_empty())
-                read_.fail("L0603", target.signal,
+    for (const FitCasePlan& plan : file_.cases)
+        for (const ComparisonPlan& compared : plan.run.comparisons)
+            if (!compared.uncertainty)
+                read_.fail("L0603", compared.signal,
                            "the plan compares values of different units, and this one has no "
                            "uncertainty to count its difference in",
                            "write how exact the figure is: uncertainty: 5 %");
@@ -379,7 +279,7 @@ void FitReader::check_count() const {
     }
     if (plan_.hold_out_each) kept = std::min(kept, all - largest);
     if (kept >= plan_.parameters.size()) return;
-    read_.fail("L0604", parameters_.entries.front().first,
+    read_.fail("L0604", file_.parameters.front().name,
                fmt::format("{} parameters are looked for, but only {} {} not held out",
                            plan_.parameters.size(), kept, kept == 1 ? "figure is" : "figures are"),
                "compare more, or look for less");

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/program/program_form.hpp"
 #include "runtime/program/program_reader.hpp"
 
 namespace lineshaft {
@@ -11,8 +12,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* block_help =
-    "add blocks such as shaft: {type: virtual_axis, task: servo, ...}";
+constexpr const char* force_help = "write signal=value@from..until, such as slave.ratio=2@1s..2s";
 
 /// Without links and dots; empty, and why, when the path cannot be followed.
 fs::path real_path(const fs::path& path, std::error_code& error) {
@@ -86,41 +86,42 @@ class Substitution {
     std::set<std::string> used_;
 };
 
+/// Whether all of them could be read.
+bool are_known(const Node& tasks) {
+    return !tasks.entries.empty() && std::ranges::all_of(tasks.entries, [](const auto& task) {
+        return is_identifier(task.first.text) && task.second.is_map();
+    });
+}
+
+/// A text from the command line: it has no place.
+Node node_of(std::string_view text) {
+    Node node;
+    node.text = text;
+    return node;
+}
+
 }  // namespace
 
 Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     program_.file = file;
+    program_.title = fs::path(file->path).stem().string();
     auto root = parse(file);
     if (!root || !check_kind(read_, *root, "lineshaft")) return std::move(program_);
-    read_.only_keys(*root, "a program",
-                    {"lineshaft", "title", "parameters", "controller", "tasks", "blocks", "inputs",
-                     "outputs", "retain", "run", "stimulus", "force", "trace", "traces", "expect"});
     parameters(*root);
     Substitution substitution(values_, root->find("parameters"), read_);
     substitution.apply(*root);
     unused_parameters(*root, substitution.used());
-    program_.title = fs::path(file->path).stem().string();
-    if (const Node* n = root->find("title"); n && read_.expect_scalar(*n, "the title"))
-        program_.title = n->text;
-    if (const Node* n = root->find("controller")) controller(*n);
-    if (const Node* n = root->find("tasks")) tasks(*n);
-    if (!root->find("tasks") && !root->find("controller")) {
-        read_.fail("L0202", *root, "a program has no 'tasks' and no 'controller'", task_help);
-        program_.tasks_known = false;
-    }
-    if (const Node* n = read_.require(*root, "blocks", "a program", block_help)) blocks(*n);
-    if (const Node* n = root->find("inputs")) inputs(*n);
-    if (const Node* n =
-            read_.require(*root, "run", "a program", "say how long to run: run: {for: 2 s}"))
-        run(*n);
-    if (const Node* n = root->find("outputs")) outputs(*n);
-    if (const Node* n = root->find("retain")) retain(*n);
-    if (const Node* n = root->find("stimulus")) stimuli(*n);
-    if (const Node* n = root->find("force")) forces(*n);
+    const Node* tasks = root->find("tasks");
+    const Node* named = root->find("controller");
+    if (named) controller(*named);
+    program_.tasks_known =
+        (named || tasks) && program_.tasks_known && (!tasks || are_known(*tasks));
+    read_form(program_form(), read_, *root, program_);
     for (const std::string& text : options_.forces) force(text);
-    if (const Node* n = root->find("trace")) trace({}, *n);
-    if (const Node* n = root->find("traces")) traces(*n);
-    if (const Node* n = root->find("expect")) expectations(*n);
+    for (ReplayPlan& replay : program_.replays) find_file(replay);
+    std::erase_if(program_.replays, [](const ReplayPlan& r) { return r.file.is_empty(); });
+    for (const BlockPlan& block : program_.blocks) check_attached(block.task);
+    for (const TracePlan& trace : program_.traces) check_attached(trace.task);
     program_.root = std::move(*root);
     return std::move(program_);
 }
@@ -130,13 +131,14 @@ std::optional<Node> ProgramReader::parse(const std::shared_ptr<const SourceFile>
                           : parse_yaml(file, read_.diagnostics());
 }
 
+/// What is wrong with them is told when the whole file is read.
 void ProgramReader::parameters(const Node& root) {
     const Node* node = root.find("parameters");
-    if (node && read_.expect_map(*node, "'parameters'"))
+    if (node)
         for (const auto& [key, value] : node->entries)
-            if (read_.identifier(key, "a parameter"))
+            if (is_identifier(key.text))
                 values_.emplace(key.text,
-                                read_.expect_scalar(value, "a parameter") ? value : unreadable());
+                                value.is_scalar() && !value.is_empty() ? value : unreadable());
     settings(values_);
     if (node)
         for (const auto& [key, value] : node->entries)
@@ -183,54 +185,58 @@ void ProgramReader::controller(const Node& node) {
     if (!file) return;
     auto root = parse(file);
     if (!root || !check_kind(read_, *root, "lineshaft_controller")) return;
-    program_.tasks_known = true;
-    read_.only_keys(*root, "a controller", {"lineshaft_controller", "title", "tasks"});
-    if (const Node* n = read_.require(*root, "tasks", "a controller")) {
-        in_controller_ = true;
-        tasks(*n);
-        in_controller_ = false;
-    }
+    const Node* tasks = root->find("tasks");
+    program_.tasks_known = tasks && are_known(*tasks);
+    Program controller;
+    read_form(controller_form(), read_, *root, controller);
+    program_.tasks = std::move(controller.tasks);
     program_.controller_name = node;
     program_.controller = std::move(*root);
 }
 
-void ProgramReader::blocks(const Node& node) {
-    if (!read_.expect_map(node, "'blocks'",
-                          "write the block's name as a key: delay: {type: ton, task: servo, ...}"))
-        return;
-    if (node.entries.empty()) read_.fail("L0202", node, "'blocks' has no block", block_help);
-    for (const auto& [name, body] : node.entries) {
-        if (!read_.identifier(name, "a block")) continue;
-        if (name.text == "inputs" || name.text == "outputs") {
-            read_.fail("L0210", name, fmt::format("a block cannot be called '{}'", name.text),
-                       fmt::format("{0}.x names the program's own {0}", name.text));
-            continue;
-        }
-        program_.blocks.push_back({.name = name, .type = {}, .task = {}, .cost = {}, .ports = {}});
-        if (read_.expect_map(body, "a block")) block(program_.blocks.back(), body);
-    }
+void ProgramReader::check_attached(const Node& task) const {
+    const auto plan = std::ranges::find(program_.tasks, task.text, &TaskPlan::name);
+    if (plan == program_.tasks.end() || !plan->unattached) return;
+    read_.fail(
+        "L0202", task,
+        fmt::format("the controller's task '{}' never runs: nothing starts it", task.text),
+        fmt::format("attach it to an event: tasks: {{{}: {{on: inputs.start}}}}", task.text));
 }
 
-void ProgramReader::block(BlockPlan& plan, const Node& body) {
-    const std::string what = fmt::format("block '{}'", plan.name.text);
-    const Node* type = body.find("type");
-    const Node* task = body.find("task");
-    if (!type)
-        read_.fail("L0202", plan.name, what + " has no 'type'",
-                   "'lineshaft blocks' lists the types");
-    else if (read_.expect_scalar(*type, "a type"))
-        plan.type = *type;
-    if (!task)
-        read_.fail("L0202", plan.name, what + " has no 'task'", "say which task scans it");
-    else if (read_.expect_scalar(*task, "a task's name"))
-        plan.task = *task;
-    check_attached(plan.task);
-    for (const auto& [key, value] : body.entries) {
-        if (key.text == "cost")
-            plan.cost = value;
-        else if (key.text != "type" && key.text != "task")
-            plan.ports.emplace_back(key, value);
-    }
+/// A replay without a file that could be looked for is none.
+void ProgramReader::find_file(ReplayPlan& replay) const {
+    if (replay.file.is_unknown_parameter()) replay.file = {};
+    if (replay.file.is_empty()) return;
+    const auto path = resolve_path(replay.file.text, program_.file->path, options_.include_dirs,
+                                   replay.file.mark, read_.diagnostics());
+    std::error_code unknown;
+    if (path && fs::is_regular_file(*path, unknown))
+        replay.path = *path;
+    else if (path)
+        read_.fail("L0001", replay.file, fmt::format("there is no file '{}'", *path));
+}
+
+/// `signal=value`, then `@from..until`; without one of the times from the start or to the end.
+void ProgramReader::force(const std::string& text) {
+    const auto equals = text.find('=');
+    const auto at = std::min(text.find('@'), text.size());
+    const std::string times = at < text.size() ? text.substr(at + 1) : "..";
+    const auto dots = times.find("..");
+    if (equals == std::string::npos || equals == 0 || equals + 1 >= at || dots == std::string::npos)
+        return read_.fail("L0505", node_of(text), fmt::format("'{}' forces nothing", text),
+                          force_help);
+    ForcePlan plan;
+    plan.signal = node_of(text.substr(0, equals));
+    plan.value = node_of(text.substr(equals + 1, at - equals - 1));
+    const auto time = [&](const std::string& part, std::int64_t otherwise) {
+        return part.empty() ? otherwise : read_.time(node_of(part)).value_or(otherwise);
+    };
+    plan.from = time(times.substr(0, dots), 0);
+    plan.until = time(times.substr(dots + 2), never);
+    if (plan.until <= plan.from)
+        return read_.fail("L0505", node_of(text), fmt::format("'{}' ends before it begins", text),
+                          force_help);
+    program_.forces.push_back(std::move(plan));
 }
 
 bool check_kind(const Reader& read, const Node& root, std::string_view kind) {

@@ -113,7 +113,7 @@ struct TracePlan {
     std::int64_t repeat = 1;
 };
 
-/// One line of `expect:`, see `programs/README.md`.
+/// One line of `expect:`.
 struct ExpectPlan {
     Mark mark;
     bool always = false;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "runtime/model/literal.hpp"
+#include "runtime/program/program_form.hpp"
 #include "runtime/source/units.hpp"
 
 namespace lineshaft {
@@ -17,6 +18,7 @@ using Json = nlohmann::ordered_json;
 
 const std::string name_pattern = "[A-Za-z_][A-Za-z0-9_]*";
 const std::string signal_pattern = name_pattern + "\\." + name_pattern;
+const std::string number_pattern = "([0-9._]+([eE][-+]?[0-9]+)?|(2|8|16)#[0-9A-Fa-f_]+)";
 
 /// A schema of one keyword. Braces alone would leave it to the compiler what a list of one is.
 Json keyword(std::string_view word, Json value) {
@@ -41,26 +43,16 @@ Json required(std::string_view key) {
     return keyword("required", Json::array_t{key});
 }
 
+Json if_then(Json condition, Json then) {
+    Json out = keyword("if", std::move(condition));
+    out["then"] = std::move(then);
+    return out;
+}
+
 /// `schema` behind its description: the order in which a person wants to read them.
 Json described(std::string_view text, const Json& schema) {
     Json out = keyword("description", text);
     out.update(schema);
-    return out;
-}
-
-Json map_of(Json properties, Json::array_t needed = {}) {
-    Json out = of_type("object");
-    out["properties"] = std::move(properties);
-    if (!needed.empty()) out["required"] = std::move(needed);
-    out["additionalProperties"] = false;
-    return out;
-}
-
-/// A map whose keys are chosen by the user.
-Json named(Json value) {
-    Json out = of_type("object");
-    out["propertyNames"] = keyword("pattern", "^" + name_pattern + "$");
-    out["additionalProperties"] = std::move(value);
     return out;
 }
 
@@ -74,11 +66,6 @@ Json text(const std::string& pattern) {
     Json out = of_type("string");
     out["pattern"] = "^(" + pattern + ")$";
     return out;
-}
-
-Json version(std::string_view what) {
-    return described(fmt::format("version of the form of this {}", what),
-                     keyword("enum", Json::array_t{1, "1"}));
 }
 
 /// Every text that `unit` may become when its `{parameter}` is put in.
@@ -148,12 +135,11 @@ Json rows(const TableField& table) {
     return described(table.doc, out);
 }
 
-Json block_type(const BlockType& type) {
-    Json properties;
+/// `common` is the form of any block.
+Json block_type(const BlockType& type, const Json& common) {
+    Json properties = common.at("properties");
     properties["type"] = keyword("const", type.name);
-    properties["task"] = reference("task_name");
-    properties["cost"] = described("adds to its task's execution time", reference("time"));
-    Json::array_t needed{"type", "task"};
+    Json::array_t needed = common.at("required");
     for (const Field& field : type.fields) {
         if (field.direction == Direction::output) continue;
         Json::array_t forms = constants(type, field);
@@ -163,7 +149,11 @@ Json block_type(const BlockType& type) {
         if (field.required) needed.push_back(field.name);
     }
     for (const TableField& table : type.tables) properties[std::string(table.name)] = rows(table);
-    return described(type.doc, map_of(properties, needed));
+    Json out = of_type("object");
+    out["properties"] = std::move(properties);
+    out["required"] = std::move(needed);
+    out["additionalProperties"] = false;
+    return described(type.doc, out);
 }
 
 /// A type from the catalogue, and then the keys of that type.
@@ -173,15 +163,23 @@ Json block(const Catalog& catalog) {
     out["properties"]["type"] = any_of({keyword("enum", catalog.names()), reference("parameter")});
     Json::array_t cases;
     for (const BlockType& type : catalog.types()) {
-        Json one;
-        one["if"]["properties"]["type"] = keyword("const", type.name);
-        one["then"] = reference("block_" + std::string(type.name));
-        cases.push_back(std::move(one));
+        Json is_type;
+        is_type["properties"]["type"] = keyword("const", type.name);
+        cases.push_back(if_then(is_type, reference("block_" + std::string(type.name))));
     }
     out["allOf"] = std::move(cases);
     return out;
 }
 
+std::string time_units() {
+    static const Unit second = *Unit::parse("s");
+    std::string names;
+    for (const std::string& name : unit_names())
+        if (Unit::parse(name)->same_dimension(second)) names += (names.empty() ? "" : "|") + name;
+    return names;
+}
+
+/// The values that are not forms.
 Json scalars() {
     const std::string parameter = "\\$" + name_pattern;
     Json out;
@@ -191,368 +189,202 @@ Json scalars() {
         "a wire from block.port or inputs.name; NOT negates it, previous(...) is the last scan's "
         "value",
         text(fmt::format("(NOT )?({0}|previous\\({0}\\))", signal_pattern)));
-    out["signal"] = described("block.port, inputs.name or outputs.name",
-                              text(signal_pattern + "|" + parameter));
+    out["signal"] = described("block.port, inputs.name or outputs.name", text(signal_pattern));
     out["quantity"] = described("a number with its unit, such as 20 mm, 5e4 mm/s^3 or 20 %",
                                 text("[-+]?[.0-9].*"));
     out["interval"] =
         described("every(task): the interval of a task", text("every\\(" + name_pattern + "\\)"));
-    out["time"] =
-        described("a time, such as 2 ms", any_of({reference("quantity"), reference("parameter")}));
-    out["count"] = any_of({of_type("integer"), reference("quantity"), reference("parameter")});
+    out["time"] = described("a time, such as 2 ms",
+                            text(fmt::format("\\+?{} *({})", number_pattern, time_units())));
+    out["share"] = described("a percentage", text("[0-9.]+ *%"));
+    out["integer"] =
+        described("a whole number, such as 16#FF", text("[-+]?[0-9_]+|(2|8|16)#[0-9A-Fa-f_]+"));
     out["number"] = any_of({of_type("number"), reference("quantity")});
     out["scalar"] = keyword("type", Json::array_t{"string", "number", "boolean"});
-    out["task_name"] = described("a task that scans", text(name_pattern + "|" + parameter));
+    out["task_name"] = described("a task that scans", text(name_pattern));
     return out;
 }
 
-Json task() {
-    const auto time = [](std::string_view text) { return described(text, reference("time")); };
-    Json properties;
-    properties["every"] = time("interval");
-    properties["on"] = described("boolean signals: each rising edge starts a scan",
-                                 any_of({reference("signal"), list_of(reference("signal"))}));
-    properties["on_overrun"] =
-        described("tasks: each time error of theirs starts a scan, as OB80",
-                  any_of({reference("task_name"), list_of(reference("task_name"))}));
-    properties["offset"] = time("start of the first scan");
-    properties["priority"] = described("a larger number wins", reference("count"));
-    properties["jitter"] = time("each interval is drawn from every +- jitter; a time or in %");
-    properties["cost"] = time("execution time: outputs are published this long after the start");
-    properties["cost_jitter"] = time("each cost is drawn from cost +- cost_jitter; a time or in %");
-    properties["maximum_cycle_time"] = time("longest scan; 150 ms in the task of lowest priority");
-    properties["motion"] = described("an overrun is STOP, as of MC_Servo",
-                                     any_of({of_type("boolean"), reference("parameter")}));
-    return map_of(properties);
+/// A default as it stands in JSON.
+Json value_of(std::string_view written) {
+    Json value = Json::parse(written, nullptr, false);
+    return value.is_discarded() ? Json(written) : value;
 }
 
-Json expectation() {
-    Json bounds;
-    bounds["at_least"] = reference("scalar");
-    bounds["at_most"] = reference("scalar");
-    Json properties = bounds;
-    properties["at"] =
-        described("a time, or end", any_of({keyword("const", "end"), reference("time")}));
-    properties["always"] = described("a signal that is judged in every scan", reference("signal"));
-    properties["within"] =
-        described("tolerance: in the signal's unit or in %", reference("scalar"));
-    Json out = of_type("object");
-    out["properties"] = properties;
-    out["patternProperties"]["^" + signal_pattern + "$"] =
-        any_of({reference("scalar"), map_of(bounds)});
-    out["additionalProperties"] = false;
-    out["oneOf"] = Json::array_t{required("at"), required("always")};
-    return out;
-}
+/// Writes forms and the shapes of their keys as definitions, each form once.
+class SchemaWriter {
+  public:
+    explicit SchemaWriter(Json& definitions) : definitions_(definitions) {}
 
-Json values_of_signals() {
-    Json values = of_type("object");
-    values["patternProperties"]["^" + signal_pattern + "$"] = reference("scalar");
-    values["additionalProperties"] = false;
-    return values;
-}
+    /// With `parameters` $name may stand for what is no text.
+    Json form(const Form& form, bool parameters) {
+        if (!definitions_.contains(form.name)) {
+            definitions_[std::string(form.name)] = {};
+            definitions_[std::string(form.name)] = table(form, parameters);
+        }
+        return reference(form.name);
+    }
 
-Json stimulus() {
-    Json properties;
-    properties["at"] = reference("time");
-    properties["scan"] = described("before this scan of the task, from 0", reference("count"));
-    properties["task"] = reference("task_name");
-    properties["set"] = described("inputs and their new values", values_of_signals());
-    properties["cost"] = described("execution time of this scan", reference("time"));
-    Json out = map_of(properties);
-    Json by_scan;
-    by_scan["required"] = Json::array_t{"scan", "task"};
-    Json by_time;
-    by_time["required"] = Json::array_t{"at", "set"};
-    out["oneOf"] = Json::array_t{by_time, by_scan};
-    return out;
-}
+    Json table(const Form& form, bool parameters) {
+        Json out = described(form.doc, of_type("object"));
+        Json::array_t needed, rules;
+        for (const Key& key : form.keys) {
+            out["properties"][std::string(key.name)] =
+                described(description_of(key), value(key, parameters));
+            if (key.required) needed.push_back(key.name);
+        }
+        if (!form.others.name.empty())
+            out["patternProperties"]["^" + signal_pattern + "$"] =
+                described(form.others.doc, shape(form.others.shape, parameters));
+        if (!needed.empty()) out["required"] = std::move(needed);
+        out["additionalProperties"] = false;
+        for (const Rule& r : form.rules) rules.push_back(rule(form, r));
+        if (!rules.empty()) out["allOf"] = std::move(rules);
+        return out;
+    }
 
-Json replay() {
-    Json properties;
-    properties["file"] =
-        described("CSV with a column 'time', relative to this file", reference("scalar"));
-    properties["set"] = described("inputs and the columns played into them", values_of_signals());
-    properties["at"] = described("time of the run at the file's time 0", reference("time"));
-    properties["between"] = described(
-        "from row to row: held, the default, or on a line",
-        any_of({keyword("enum", Json::array_t{"held", "interpolated"}), reference("parameter")}));
-    return map_of(properties, {"file", "set"});
-}
+  private:
+    using Kind = Shape::Kind;
 
-Json force() {
-    Json properties;
-    properties["from"] = described("default: the start", reference("time"));
-    properties["until"] =
-        described("then the program's own value again; default: never", reference("time"));
-    properties["set"] = described("signals and their values meanwhile", values_of_signals());
-    return map_of(properties, {"set"});
-}
+    Json value(const Key& key, bool parameters) {
+        const Json plain = shape(key.shape, parameters);
+        if (key.word.empty()) return plain;
+        return any_of({keyword("const", key.word), plain});
+    }
 
-Json run() {
-    Json properties;
-    properties["for"] = described("how long to run, or how long at most", reference("time"));
-    properties["until"] = described("a boolean signal that ends the run", reference("signal"));
-    properties["seed"] = described("of all random numbers", reference("count"));
-    properties["on_error"] =
-        any_of({keyword("enum", Json::array_t{"stop", "continue"}), reference("parameter")});
-    return map_of(properties, {"for"});
-}
+    Json shape(const Shape& s, bool parameters) {
+        const auto or_parameter = [&](Json::array_t forms) {
+            if (parameters) forms.push_back(reference("parameter"));
+            return forms.size() == 1 ? forms[0] : any_of(forms);
+        };
+        switch (s.kind) {
+            case Kind::scalar:
+                return reference("scalar");
+            case Kind::name:
+                return reference("name");
+            case Kind::signal:
+                return or_parameter({reference("signal")});
+            case Kind::task:
+                return or_parameter({reference("task_name")});
+            case Kind::number:
+                return reference("number");
+            case Kind::boolean:
+                return or_parameter({of_type("boolean")});
+            case Kind::integer:
+                return or_parameter(
+                    {limited(of_type("integer"), s, "minimum", "maximum"), reference("integer")});
+            case Kind::time:
+                return or_parameter({reference("time")});
+            case Kind::share:
+                return or_parameter({reference("time"), reference("share")});
+            case Kind::choice:
+                return or_parameter({keyword("enum", s.names)});
+            case Kind::nothing:
+                return of_type("null");
+            case Kind::version:
+                return keyword("enum", Json::array_t{1, "1"});
+            case Kind::list:
+                return list(s, parameters);
+            case Kind::map:
+                return map(s, parameters);
+            case Kind::form:
+                return form(s.form(), parameters);
+            case Kind::block:
+                return reference("block");
+            case Kind::either:
+                break;
+        }
+        Json::array_t forms;
+        for (const Shape& one : s.of) forms.push_back(shape(one, parameters));
+        return any_of(std::move(forms));
+    }
 
-Json trigger() {
-    const auto with = [](std::string_view key, Json value) {
-        Json properties;
-        properties["signal"] = reference("signal");
-        properties[std::string(key)] = std::move(value);
-        return map_of(properties, {"signal", key});
-    };
-    Json bounds = list_of(reference("scalar"));
-    bounds["minItems"] = bounds["maxItems"] = 2;
-    return described(
-        "when a measurement begins; its time counts from there",
-        any_of({keyword("const", "immediate"),
-                with("edge", any_of({keyword("enum", Json::array_t{"rising", "falling"}),
-                                     reference("parameter")})),
-                with("above", reference("scalar")), with("below", reference("scalar")),
-                with("inside", bounds), with("equals", reference("scalar"))}));
-}
+    static Json limited(Json out, const Shape& s, const char* least, const char* most) {
+        if (s.least != Shape{}.least) out[least] = s.least;
+        if (s.most != Shape{}.most) out[most] = s.most;
+        return out;
+    }
 
-Json trace() {
-    Json properties;
-    properties["task"] = reference("task_name");
-    properties["every"] = described("records every n-th scan", reference("count"));
-    properties["signals"] = list_of(reference("signal"));
-    properties["trigger"] = trigger();
-    properties["pre_trigger"] = described("rows kept from before the trigger", reference("count"));
-    properties["samples"] = described("rows from the trigger on, at most", reference("count"));
-    properties["for"] = described("time from the trigger on, at most", reference("time"));
-    properties["repeat"] =
-        described("measurements at most, each in a file of its own", reference("count"));
-    return map_of(properties, {"task", "signals"});
-}
+    Json list(const Shape& s, bool parameters) {
+        Json out = limited(list_of(shape(s.of[0], parameters)), s, "minItems", "maxItems");
+        if (!s.twice.empty()) out["uniqueItems"] = true;
+        return out;
+    }
 
-Json program_file() {
-    Json properties;
-    properties["lineshaft"] = version("program");
-    properties["title"] = reference("scalar");
-    properties["parameters"] =
-        described("names and defaults; $name stands for the value", named(reference("scalar")));
-    properties["controller"] =
-        described("a file with tasks, relative to this one", reference("scalar"));
-    properties["tasks"] = named(reference("task"));
-    properties["blocks"] = described("in the order of their scan", named(reference("block")));
-    properties["inputs"] =
-        described("values from outside, as they are at the start", named(reference("scalar")));
-    properties["outputs"] =
-        described("names for outside and the signals that they show", named(reference("signal")));
-    properties["retain"] =
-        described("signals that outlive a run, see --retain-file", list_of(reference("signal")));
-    properties["run"] = run();
-    properties["stimulus"] =
-        described("changes of inputs while running, and files played into them",
-                  list_of(any_of({stimulus(), replay()})));
-    properties["trace"] = described("what --trace records", reference("trace"));
-    properties["traces"] = described(
-        "further traces: --trace FILE.csv writes them to FILE.NAME.csv", named(reference("trace")));
-    properties["force"] =
-        described("values that win over what the program writes", list_of(force()));
-    properties["expect"] = described("what must hold", list_of(reference("expectation")));
-    Json out = map_of(properties, {"lineshaft", "blocks", "run"});
-    out["anyOf"] = Json::array_t{required("tasks"), required("controller")};
-    return out;
-}
+    Json map(const Shape& s, bool parameters) {
+        Json out = limited(of_type("object"), s, "minProperties", "maxProperties");
+        const std::string names = s.what.empty() ? signal_pattern : name_pattern;
+        out["patternProperties"]["^" + names + "$"] = shape(s.of[0], parameters);
+        out["additionalProperties"] = false;
+        return out;
+    }
 
-Json controller_file() {
-    Json properties;
-    properties["lineshaft_controller"] = version("controller");
-    properties["title"] = reference("scalar");
-    properties["tasks"] = named(reference("task"));
-    return map_of(properties, {"lineshaft_controller", "tasks"});
-}
+    /// `key` is there, and does not say its default.
+    static Json stands(const Form& form, std::string_view key) {
+        const Key& k = *form.find(key);
+        Json::array_t defaults;
+        for (const std::string_view said : {k.otherwise, k.word})
+            if (!said.empty()) defaults.push_back(value_of(said));
+        Json out = required(key);
+        if (!defaults.empty())
+            out["properties"][std::string(key)] = keyword("not", keyword("enum", defaults));
+        return out;
+    }
 
-void add_bounds(Json& properties) {
-    properties["paper"] = described("the paper's value", reference("number"));
-    properties["within"] = described(
-        "distance from the paper's value, in its unit, in % or in points; of a list one is enough",
-        any_of({reference("number"), list_of(reference("number"))}));
-    properties["at_least"] = reference("number");
-    properties["at_most"] = reference("number");
-}
+    static Json rule(const Form& form, const Rule& r) {
+        Json::array_t others;
+        for (const std::string_view other : r.others)
+            others.push_back(r.kind == Rule::Kind::only_with ? stands(form, other)
+                                                             : required(other));
+        switch (r.kind) {
+            case Rule::Kind::not_with:
+                return if_then(required(r.key), keyword("not", any_of(others)));
+            case Rule::Kind::only_with:
+                return if_then(stands(form, r.key), any_of(others));
+            case Rule::Kind::exactly_one:
+                return keyword("oneOf", others);
+            case Rule::Kind::at_least_one:
+                break;
+        }
+        return any_of(others);
+    }
 
-/// Of the repeats' values.
-Json spread(Json properties) {
-    return described("standard deviation over the repeats",
-                     any_of({of_type("null"), map_of(std::move(properties))}));
-}
-
-Json comparisons() {
-    Json properties;
-    add_bounds(properties);
-    properties["spread"] = spread(properties);
-    Json map = of_type("object");
-    map["patternProperties"]["^" + signal_pattern + "$"] =
-        any_of({of_type("null"), map_of(properties)});
-    map["additionalProperties"] = false;
-    return any_of({list_of(text(signal_pattern)), map});
-}
-
-Json study_case() {
-    Json properties;
-    properties["name"] = described("for the claims' formulas", reference("name"));
-    properties["set"] = reference("settings");
-    properties["grid"] = described("every combination of these values is a run",
-                                   named(list_of(reference("scalar"))));
-    properties["random"] = described("parameters whose values are drawn for each case",
-                                     named(reference("distribution")));
-    properties["draws"] = described("how often; each is a case", reference("count"));
-    properties["seed"] = described("of the draws, 1 unless said", of_type("integer"));
-    properties["compare"] = reference("comparisons");
-    properties["repeat"] = described("runs with seeds that follow each other", reference("count"));
-    return map_of(properties);
-}
-
-Json distribution() {
-    const Json two = [] {
-        Json list = list_of(reference("scalar"));
-        list["minItems"] = list["maxItems"] = 2;
-        return list;
-    }();
-    Json properties;
-    properties["uniform"] = described("[least, greatest]", two);
-    properties["log_uniform"] = described("[least, greatest], both above 0", two);
-    properties["normal"] = described("[mean, standard deviation], which may be in %", two);
-    properties["integer"] = described("[least, greatest], whole numbers, both included", two);
-    properties["choice"] = described("one of these", list_of(reference("scalar")));
-    Json map = map_of(properties);
-    map["minProperties"] = map["maxProperties"] = 1;
-    return map;
-}
-
-Json claim() {
-    Json properties;
-    properties["claim"] = described("what is claimed", reference("scalar"));
-    properties["formula"] = described("over the names of cases", reference("scalar"));
-    properties["unit"] = keyword("const", "%");
-    add_bounds(properties);
-    return map_of(properties, {"claim", "formula"});
-}
-
-Json study_file() {
-    Json properties;
-    properties["lineshaft_study"] = version("study");
-    properties["title"] = reference("scalar");
-    properties["program"] = described("the program, relative to this file", reference("scalar"));
-    properties["notes"] = any_of({reference("scalar"), list_of(reference("scalar"))});
-    properties["set"] = reference("settings");
-    properties["repeat"] = reference("count");
-    properties["compare"] = reference("comparisons");
-    properties["cases"] = list_of(reference("case"));
-    properties["claims"] = list_of(reference("claim"));
-    return map_of(properties, {"lineshaft_study", "program", "cases"});
-}
-
-Json fit_parameter() {
-    Json properties;
-    properties["from"] = described("lower bound", reference("number"));
-    properties["to"] = described("upper bound", reference("number"));
-    properties["start"] =
-        described("of the first search, by default the middle", reference("number"));
-    properties["step"] = described("of the difference quotients", reference("number"));
-    return map_of(properties, {"from", "to"});
-}
-
-Json fit_comparisons() {
-    Json properties;
-    add_bounds(properties);
-    properties["uncertainty"] = described(
-        "differences are counted in it, in the signal's unit or in %", reference("number"));
-    properties["spread"] = spread(properties);
-    properties["column"] =
-        described("of the trace, by default named as the signal", reference("scalar"));
-    Json map = of_type("object");
-    map["patternProperties"]["^" + signal_pattern + "$"] =
-        any_of({of_type("null"), map_of(properties)});
-    map["additionalProperties"] = false;
-    return any_of({list_of(text(signal_pattern)), map});
-}
-
-Json fit_trace() {
-    Json properties;
-    properties["file"] = described("CSV, relative to this file", reference("scalar"));
-    properties["time"] = described("its column of times, by default 'time'", reference("scalar"));
-    properties["offset"] = described("time of the run at its time 0", reference("time"));
-    return any_of({reference("scalar"), map_of(properties, {"file"})});
-}
-
-Json fit_case() {
-    Json properties;
-    properties["name"] = reference("name");
-    properties["set"] = reference("settings");
-    properties["repeat"] = described("runs with seeds that follow each other", reference("count"));
-    properties["hold_out"] = described("takes no part in the search", of_type("boolean"));
-    properties["trace"] = described("what was measured, sample by sample", fit_trace());
-    properties["compare"] = fit_comparisons();
-    return map_of(properties, {"compare"});
-}
-
-Json fit_file() {
-    Json properties;
-    properties["lineshaft_fit"] = version("fit");
-    properties["title"] = reference("scalar");
-    properties["program"] = described("the program, relative to this file", reference("scalar"));
-    properties["notes"] = any_of({reference("scalar"), list_of(reference("scalar"))});
-    properties["set"] = reference("settings");
-    properties["repeat"] = reference("count");
-    properties["parameters"] =
-        described("of the program, whose values are looked for", named(fit_parameter()));
-    properties["starts"] = described("searches from other points", reference("count"));
-    properties["seed"] = described("of their points", reference("count"));
-    properties["hold_out"] = described("leaves each case out in turn, predicted from all others",
-                                       keyword("const", "each"));
-    properties["cases"] = list_of(fit_case());
-    return map_of(properties, {"lineshaft_fit", "program", "parameters", "cases"});
-}
-
-Json definitions(const Catalog& catalog) {
-    Json out = scalars();
-    out["task"] = task();
-    out["block"] = block(catalog);
-    for (const BlockType& type : catalog.types())
-        out["block_" + std::string(type.name)] = block_type(type);
-    out["trace"] = trace();
-    out["expectation"] = expectation();
-    out["settings"] =
-        described("parameters of the program and their values", named(reference("scalar")));
-    out["comparisons"] = comparisons();
-    out["distribution"] = distribution();
-    out["case"] = study_case();
-    out["claim"] = claim();
-    out["program"] = program_file();
-    out["study"] = study_file();
-    out["fit"] = fit_file();
-    out["controller"] = controller_file();
-    return out;
-}
-
-Json if_key(std::string_view key, const Json& then, const Json& otherwise) {
-    Json out = keyword("if", required(key));
-    out["then"] = then;
-    out["else"] = otherwise;
-    return out;
-}
+    Json& definitions_;
+};
 
 }  // namespace
 
-nlohmann::ordered_json program_schema(const Catalog& catalog) {
+std::string description_of(const Key& key) {
+    const std::string_view said = key.word.empty() ? key.otherwise : key.word;
+    if (said.empty()) return std::string(key.doc);
+    return fmt::format("{}; {}{}", key.doc, key.word.empty() ? "default " : "or ", said);
+}
+
+nlohmann::ordered_json file_schema(const Catalog& catalog, std::span<const FormOf> files) {
+    Json definitions = scalars();
+    SchemaWriter writer(definitions);
+    definitions["block"] = block(catalog);
+    Json choice;
+    for (const FormOf file : files) {
+        const Form& form = file();
+        const bool parameters = &form == &files.front()();
+        Json schema = writer.form(form, parameters);
+        if (!choice.is_null()) {
+            Json other = if_then(required(form.keys.front().name), std::move(schema));
+            other["else"] = std::move(choice);
+            schema = std::move(other);
+        }
+        choice = std::move(schema);
+    }
+    const Json common = writer.table(block_form(), true);
+    for (const BlockType& type : catalog.types())
+        definitions["block_" + std::string(type.name)] = block_type(type, common);
     Json out;
     out["$schema"] = "http://json-schema.org/draft-07/schema#";
     out["title"] = "lineshaft: a program, a study, a fit or a controller";
     out["type"] = "object";
-    out.update(if_key(
-        "lineshaft_study", reference("study"),
-        if_key("lineshaft_fit", reference("fit"),
-               if_key("lineshaft_controller", reference("controller"), reference("program")))));
-    out["definitions"] = definitions(catalog);
+    out.update(choice);
+    out["definitions"] = std::move(definitions);
     return out;
 }
 

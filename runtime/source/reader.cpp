@@ -143,23 +143,6 @@ bool Reader::expect_scalar(const Node& node, std::string_view what) const {
     return node.is_scalar() && !node.is_empty();
 }
 
-void Reader::only_keys(const Node& map, std::string_view what,
-                       std::initializer_list<std::string_view> allowed) const {
-    for (const auto& [key, value] : map.entries)
-        if (std::ranges::find(allowed, key.text) == allowed.end())
-            fail("L0201", key, fmt::format("unknown key '{}' in {}", key.text, what),
-                 key.text.find(':') == std::string::npos
-                     ? suggest(key.text, {allowed.begin(), allowed.end()})
-                     : "a blank is missing after ':'");
-}
-
-const Node* Reader::require(const Node& map, std::string_view key, std::string_view what,
-                            std::string help) const {
-    const Node* value = map.find(key);
-    if (!value) fail("L0202", map, fmt::format("{} has no '{}'", what, key), std::move(help));
-    return value;
-}
-
 bool Reader::identifier(const Node& node, std::string_view what) const {
     if (node.is_scalar() && is_identifier(node.text)) return true;
     fail("L0210", node, fmt::format("'{}' is not a name for {}", node.text, what),

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,14 +26,6 @@ class Reader {
     bool expect_map(const Node& node, std::string_view what, std::string help = {}) const;
     bool expect_sequence(const Node& node, std::string_view what) const;
     bool expect_scalar(const Node& node, std::string_view what) const;
-
-    /// L0201 for each key of `map` that is not `allowed`.
-    void only_keys(const Node& map, std::string_view what,
-                   std::initializer_list<std::string_view> allowed) const;
-
-    /// The value at `key`; L0202 at the map when it is missing.
-    const Node* require(const Node& map, std::string_view key, std::string_view what,
-                        std::string help = {}) const;
 
     /// Letters, digits and underscores, not starting with a digit; L0210 otherwise.
     bool identifier(const Node& node, std::string_view what) const;

@@ -18,64 +18,37 @@ bool has_paper(const CaseGroup& group) {
 
 }  // namespace
 
-void StudyFileReader::comparisons(const Node& node, std::vector<PendingComparison>& into) const {
-    if (node.is_sequence()) {
-        for (const Node& item : node.items)
-            if (read_.expect_scalar(item, "a signal")) into.push_back({item, {}});
-        return;
-    }
-    if (!read_.expect_map(node, "'compare'")) return;
-    for (const auto& [signal, body] : node.entries) {
-        if (!body.is_empty() && !read_.expect_map(body, "a comparison")) continue;
-        read_.only_keys(body, "a comparison", {"paper", "within", "at_least", "at_most", "spread"});
-        into.push_back({signal, body});
-        const Node* spread = body.find("spread");
-        if (!spread || !(spread->is_empty() || read_.expect_map(*spread, "a spread"))) continue;
-        read_.only_keys(*spread, "a spread", {"paper", "within", "at_least", "at_most"});
-        into.push_back({signal, *spread, Statistic::spread});
-    }
-}
-
-std::optional<Comparison> StudyFileReader::compare(const PendingComparison& pending,
-                                                   const Machine& machine, std::int64_t repeat) {
-    if (pending.statistic == Statistic::spread && repeat < 2)
-        read_.fail("L0213", pending.signal,
+void StudyFileReader::compare(const ComparisonPlan& plan, const Machine& machine,
+                              CaseGroup& group) {
+    if (plan.statistic == Statistic::spread && group.repeat < 2)
+        read_.fail("L0213", plan.signal,
                    "'spread' is the standard deviation over the repeats, and there is one run",
                    "write repeat: 4");
-    const Signal* signal = machine.find(pending.signal.text);
-    if (!signal) {
-        std::vector<std::string> names;
-        for (const Signal& s : machine.signals) names.push_back(s.name);
-        read_.fail("L0203", pending.signal,
-                   fmt::format("the program has no signal '{}'", pending.signal.text),
-                   suggest(pending.signal.text, names));
-        return {};
+    if (const Signal* signal = machine.find(plan.signal.text)) {
+        const Bounds made = bounds(plan.bounds, Unit::parse(signal->unit).value());
+        group.comparisons.push_back({signal->name, signal->unit, made, plan.statistic});
+        return;
     }
-    Comparison comparison{
-        .signal = signal->name, .unit = signal->unit, .bounds = {}, .statistic = pending.statistic};
-    if (pending.body.is_map())
-        comparison.bounds = bounds(pending.body, Unit::parse(signal->unit).value());
-    return comparison;
+    std::vector<std::string> names;
+    for (const Signal& s : machine.signals) names.push_back(s.name);
+    read_.fail("L0203", plan.signal,
+               fmt::format("the program has no signal '{}'", plan.signal.text),
+               suggest(plan.signal.text, names));
+    cases_known_ = false;
 }
 
-Bounds StudyFileReader::bounds(const Node& map, const Unit& unit) const {
-    Bounds bounds;
-    if (const Node* n = map.find("paper")) bounds.paper = read_.real(*n, unit);
-    if (const Node* n = map.find("at_least")) bounds.at_least = read_.real(*n, unit);
-    if (const Node* n = map.find("at_most")) bounds.at_most = read_.real(*n, unit);
+Bounds StudyFileReader::bounds(const BoundsPlan& plan, const Unit& unit) const {
+    const auto number = [&](const std::optional<Node>& node) {
+        return node ? read_.real(*node, unit) : std::nullopt;
+    };
+    Bounds bounds{.paper = number(plan.paper),
+                  .within = {},
+                  .at_least = number(plan.at_least),
+                  .at_most = number(plan.at_most)};
     if (bounds.at_least && bounds.at_most && *bounds.at_least > *bounds.at_most)
-        read_.fail("L0213", *map.find("at_least"),
-                   "'at_least' is above 'at_most': this never holds");
-    const Node* n = map.find("within");
-    if (!n) return bounds;
-    if (!map.find("paper"))
-        read_.fail("L0202", *n, "'within' is for the paper's value, and there is none",
-                   "write paper: VALUE beside it");
-    if (!bounds.paper) return bounds;
-    if (n->is_sequence())
-        for (const Node& item : n->items) within(item, unit, bounds);
-    else
-        within(*n, unit, bounds);
+        read_.fail("L0213", *plan.at_least, "'at_least' is above 'at_most': this never holds");
+    if (bounds.paper)
+        for (const Node& distance : plan.within) within(distance, unit, bounds);
     return bounds;
 }
 
@@ -98,30 +71,13 @@ void StudyFileReader::within(const Node& node, const Unit& unit, Bounds& bounds)
     if (distance) bounds.within.push_back(*distance);
 }
 
-void StudyFileReader::claims(const Node& node) {
-    if (!read_.expect_sequence(node, "'claims'")) return;
-    for (const Node& item : node.items)
-        if (read_.expect_map(item, "a claim")) claim(item);
-}
-
-void StudyFileReader::claim(const Node& node) {
+void StudyFileReader::claim(const ClaimPlan& plan) {
     static const Unit one;
-    read_.only_keys(node, "a claim",
-                    {"claim", "formula", "unit", "paper", "within", "at_least", "at_most"});
-    const Node* text = read_.require(node, "claim", "a claim");
-    const Node* formula = read_.require(node, "formula", "a claim");
-    if (!text || !formula || !read_.expect_scalar(*formula, "a formula")) return;
-    Claim made;
-    made.text = text->text;
-    made.formula = formula->text;
-    made.bounds = bounds(node, one);
-    check_formula(*formula);
-    const Node* unit = node.find("unit");
-    made.percent = unit && unit->text == "%";
-    if (unit && !made.percent)
-        read_.fail("L0304", *unit,
-                   fmt::format("a claim is a plain number or in %, not in '{}'", unit->text));
-    study_.claims.push_back(std::move(made));
+    study_.claims.push_back({.text = plan.text.text,
+                             .formula = plan.formula.text,
+                             .percent = plan.percent,
+                             .bounds = bounds(plan.bounds, one)});
+    check_formula(plan.formula);
 }
 
 /// Evaluated with all names at 1, so that a misspelt name is known before the first run.

@@ -38,53 +38,40 @@ std::string checksum_of(const std::string& path) {
 }  // namespace
 
 Study StudyFileReader::read(std::shared_ptr<const SourceFile> file) {
+    study_.file = file;
     const auto root = parse_yaml(file, read_.diagnostics());
-    if (!root || !check_kind(read_, *root, "lineshaft_study")) {
-        study_.file = std::move(file);
-        return std::move(study_);
-    }
-    return read(std::move(file), *root);
+    if (!root || !check_kind(read_, *root, "lineshaft_study")) return std::move(study_);
+    StudyPlan plan;
+    read_form(study_form(), read_, *root, plan);
+    return read(std::move(file), std::move(plan));
 }
 
-Study StudyFileReader::read(std::shared_ptr<const SourceFile> file, const Node& root) {
+Study StudyFileReader::read(std::shared_ptr<const SourceFile> file, StudyPlan plan) {
+    plan_ = std::move(plan);
     study_.file = std::move(file);
+    study_.title = plan_.title;
+    study_.notes = plan_.notes;
     study_.include_dirs = options_.include_dirs;
-    read_.only_keys(root, "a study",
-                    {"lineshaft_study", "title", "program", "notes", "set", "repeat", "compare",
-                     "cases", "claims"});
-    if (const Node* n = root.find("title"); n && read_.expect_scalar(*n, "the title"))
-        study_.title = n->text;
-    program(root);
-    if (const Node* n = root.find("notes")) notes(*n);
-    if (const Node* n = root.find("set")) settings(*n, common_);
+    find_program();
+    common_ = plan_.settings;
     common_.insert(common_.end(), options_.settings.begin(), options_.settings.end());
-    if (const Node* n = root.find("repeat"))
-        common_repeat_ = positive(*n, "a case runs at least once");
-    if (const Node* n = root.find("compare")) comparisons(*n, common_comparisons_);
-    if (const Node* n = read_.require(root, "cases", "a study")) cases(*n);
-    if (const Node* n = root.find("claims")) claims(*n);
+    for (const CasePlan& one : plan_.cases) one_case(one);
+    for (const ClaimPlan& one : plan_.claims) claim(one);
     if (read_.diagnostics().empty()) study_.identity = identity();
     return std::move(study_);
 }
 
-void StudyFileReader::program(const Node& root) {
-    const Node* node = read_.require(root, "program", "a study");
+void StudyFileReader::find_program() {
+    const Node& node = plan_.program;
     checkable_ = false;
-    if (!node || !read_.expect_scalar(*node, "'program'")) return;
+    if (node.is_empty()) return;
     Diagnostics& out = read_.diagnostics();
     const auto path =
-        resolve_path(node->text, study_.file->path, options_.include_dirs, node->mark, out);
+        resolve_path(node.text, study_.file->path, options_.include_dirs, node.mark, out);
     if (!path) return;
     study_.program = *path;
-    program_file_ = files_.source(*path, out, node->mark);
+    program_file_ = files_.source(*path, out, node.mark);
     checkable_ = program_file_ != nullptr;
-}
-
-void StudyFileReader::notes(const Node& node) {
-    if (node.is_scalar()) return study_.notes.push_back(node.text);
-    if (!read_.expect_sequence(node, "'notes'")) return;
-    for (const Node& item : node.items)
-        if (read_.expect_scalar(item, "a note")) study_.notes.push_back(item.text);
 }
 
 std::string StudyFileReader::identity() {
@@ -147,9 +134,10 @@ Study read_study(std::shared_ptr<const SourceFile> file, const LoadOptions& opti
     return StudyFileReader(options, catalog, check, out).read(std::move(file));
 }
 
-Study read_study(std::shared_ptr<const SourceFile> file, const Node& root,
-                 const LoadOptions& options, const Catalog& catalog, Diagnostics& out) {
-    return StudyFileReader(options, catalog, StudyCheck::values, out).read(std::move(file), root);
+Study read_study(std::shared_ptr<const SourceFile> file, StudyPlan plan, const LoadOptions& options,
+                 const Catalog& catalog, Diagnostics& out) {
+    return StudyFileReader(options, catalog, StudyCheck::values, out)
+        .read(std::move(file), std::move(plan));
 }
 
 }  // namespace lineshaft

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "runtime/model/catalog.hpp"
-#include "runtime/study/study.hpp"
+#include "runtime/study/study_form.hpp"
 
 namespace lineshaft {
 
@@ -20,9 +20,9 @@ enum class StudyCheck {
 Study read_study(std::shared_ptr<const SourceFile> file, const LoadOptions& options,
                  const Catalog& catalog, Diagnostics& out, StudyCheck check = StudyCheck::values);
 
-/// The same of a study's map that stands in a file of another kind.
-Study read_study(std::shared_ptr<const SourceFile> file, const Node& root,
-                 const LoadOptions& options, const Catalog& catalog, Diagnostics& out);
+/// The same of a study that is read out of a file of another kind.
+Study read_study(std::shared_ptr<const SourceFile> file, StudyPlan plan, const LoadOptions& options,
+                 const Catalog& catalog, Diagnostics& out);
 
 /// True for a file that calls itself a study, or a program.
 bool is_study(const SourceFile& file);

@@ -71,6 +71,7 @@ void add_study(CLI::App& app, Exit& result);
 void add_blocks(CLI::App& app, Exit& result);
 void add_units(CLI::App& app, Exit& result);
 void add_schema(CLI::App& app, Exit& result);
+void add_form(CLI::App& app, Exit& result);
 void add_explain(CLI::App& app, Exit& result);
 void add_plan(CLI::App& app, Exit& result);
 void add_fit(CLI::App& app, Exit& result);

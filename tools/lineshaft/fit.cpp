@@ -24,11 +24,9 @@ constexpr const char* fit_help =
     "  cases:\n"
     "    - {set: {x: 7.5 cm}, compare: {line.time: {paper: 8.449 s}}}\n"
     "    - {set: {x: 6 cm}, hold_out: true, compare: {line.time: {paper: 7.443 s, within: 5 ms}}}\n"
-    "Cases with hold_out are only compared with what the others have found; hold_out: each, in "
-    "the\n"
-    "plan, also leaves out each case in turn. programs/README.md describes the form. Exit code 1: "
-    "a\n"
-    "value is outside of its 'within'.";
+    "Cases with hold_out are only compared with what the others have found; hold_out: each also\n"
+    "leaves out each case in turn. 'lineshaft form fit' has the keys. Exit code 1: a value is\n"
+    "outside of its 'within'.";
 
 struct FitCommand {
     CommonOptions common;

@@ -104,9 +104,9 @@ int run_command(int argc, char** argv) {
         "Exit codes: 0 fine, 1 an expectation failed, 2 the program or the command line is wrong,\n"
         "3 a fault while running, 130 interrupted. `lineshaft COMMAND --help` says more.");
     Exit result = Exit::fine;
-    for (const AddCommand add :
-         {add_run, add_check, add_test, add_study, add_fit, add_blocks, add_units, add_schema,
-          add_explain, add_plan, add_diff, add_verify, add_contour, add_report, add_show, add_plot})
+    for (const AddCommand add : {add_run, add_check, add_test, add_study, add_fit, add_blocks,
+                                 add_form, add_units, add_schema, add_explain, add_plan, add_diff,
+                                 add_verify, add_contour, add_report, add_show, add_plot})
         add(app, result);
     if (argc > 1 && argv[1][0] != '-') {
         if (const std::string message = unknown_command(app, argv[1]); !message.empty()) {

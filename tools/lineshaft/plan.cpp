@@ -57,7 +57,7 @@ struct Cells {
 
 /// One of the problems: the columns of its header, of which the last ones may be left out, and the
 /// rows that it answers with.
-struct Form {
+struct RowForm {
     std::vector<std::string_view> columns;
     std::size_t needed;
     std::string output_header;
@@ -135,23 +135,23 @@ std::string motion_header() {
     return text + '\n';
 }
 
-const Form& move_form() {
-    static const Form form{{"Vs", "Ve", "Vm", "A", "J", "L"},
-                           6,
-                           "ok,case,equation,T1,T2,T3,T4,T5,T6,T7,end_velocity\n",
-                           append_move};
+const RowForm& move_form() {
+    static const RowForm form{{"Vs", "Ve", "Vm", "A", "J", "L"},
+                              6,
+                              "ok,case,equation,T1,T2,T3,T4,T5,T6,T7,end_velocity\n",
+                              append_move};
     return form;
 }
 
-const Form& motion_form() {
-    static const Form form{{"p0", "v0", "a0", "pf", "vf", "V", "A", "D", "J", "Vmin", "T"},
-                           9,
-                           motion_header(),
-                           append_motion};
+const RowForm& motion_form() {
+    static const RowForm form{{"p0", "v0", "a0", "pf", "vf", "V", "A", "D", "J", "Vmin", "T"},
+                              9,
+                              motion_header(),
+                              append_motion};
     return form;
 }
 
-std::string column_names(const Form& form) {
+std::string column_names(const RowForm& form) {
     std::string text;
     for (std::size_t i = 0; i < form.columns.size(); ++i) {
         const bool left_out = i >= form.needed;
@@ -206,7 +206,7 @@ std::string read_number(std::string_view cell, std::string_view column, double& 
 
 /// The form that a file's header names, and the order of its columns there.
 struct Header {
-    const Form* form = nullptr;
+    const RowForm* form = nullptr;
     std::vector<std::size_t> order;
 
     /// What is wrong with the line; empty when nothing is.

@@ -1,5 +1,6 @@
 #include "runtime/program/schema.hpp"
 
+#include "runtime/program/program_form.hpp"
 #include "tests/runtime/net/small_blocks.hpp"
 
 using namespace lineshaft;
@@ -18,10 +19,15 @@ Json reference(const std::string& name) {
     return out;
 }
 
+Json small_schema() {
+    static constexpr FormOf files[] = {program_form, controller_form};
+    return file_schema(small_catalog(), files);
+}
+
 }  // namespace
 
 TEST_CASE("schema: a block's keys are its parameters and inputs") {
-    const Json schema = program_schema(small_catalog());
+    const Json schema = small_schema();
     const Json& gain = schema.at("definitions").at("block_gain");
     std::vector<std::string> keys;
     for (const auto& [key, value] : gain.at("properties").items()) keys.push_back(key);
@@ -34,7 +40,7 @@ TEST_CASE("schema: a block's keys are its parameters and inputs") {
 }
 
 TEST_CASE("schema: the forms of a value") {
-    const Json schema = program_schema(small_catalog());
+    const Json schema = small_schema();
     const Json& counter = schema.at("definitions").at("block_counter").at("properties");
     const Json& gain = schema.at("definitions").at("block_gain").at("properties");
     const Json& probe = schema.at("definitions").at("block_probe").at("properties");
@@ -56,7 +62,7 @@ TEST_CASE("schema: the forms of a value") {
 }
 
 TEST_CASE("schema: every reference leads somewhere") {
-    const Json schema = program_schema(small_catalog());
+    const Json schema = small_schema();
     int references = 0;
     const std::function<void(const Json&)> visit = [&](const Json& node) {
         if (!node.is_structured()) return;

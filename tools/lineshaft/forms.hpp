@@ -1,0 +1,12 @@
+#pragma once
+
+#include "runtime/fit/fit_form.hpp"
+#include "runtime/program/program_form.hpp"
+#include "runtime/study/study_form.hpp"
+
+namespace lineshaft {
+
+/// Of all files that lineshaft reads.
+inline constexpr FormOf files[] = {program_form, controller_form, study_form, fit_form};
+
+}  // namespace lineshaft
