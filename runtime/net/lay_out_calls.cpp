@@ -62,8 +62,7 @@ void add(const Wire& wire, Type type, Copy copy, CallWires& to) {
 CallWires wires_of(const Net& net, std::span<const int> blocks, Machine& machine) {
     CallWires out;
     for (const int block : blocks) {
-        const auto to_block = [](const Wire& wire) { return wire.to.instance; };
-        for (const Wire& wire : std::ranges::equal_range(net.wires, block, {}, to_block)) {
+        for (const Wire& wire : net.wires_to(block)) {
             const std::byte* from = wire.late == Late::published ? machine.published(wire.from)
                                                                  : machine.live(wire.from);
             add(wire, net.field(wire.to).type, {from, machine.live(wire.to)}, out);

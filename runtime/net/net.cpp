@@ -99,6 +99,12 @@ int Net::find_task(const Reader& read, const Node& node, std::string_view name) 
     return -1;
 }
 
+std::span<const Wire> Net::wires_to(int number) const {
+    const auto target = [](const Wire& wire) { return wire.to.instance; };
+    const auto first = std::ranges::lower_bound(wires, number, {}, target);
+    return {first, std::ranges::upper_bound(first, wires.end(), number, {}, target)};
+}
+
 Port Net::port(int number, const Field& field) const {
     return {number, static_cast<int>(&field - instance(number).type->fields.data())};
 }

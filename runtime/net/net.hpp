@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -99,6 +100,9 @@ struct Net {
 
     /// -1, and L0206, when there is no such task; -1 alone for an empty name.
     int find_task(const Reader& read, const Node& node, std::string_view name) const;
+
+    /// Those that feed the instance, in the order of the file.
+    std::span<const Wire> wires_to(int instance) const;
 
     /// Of the instance's field.
     Port port(int instance, const Field& field) const;

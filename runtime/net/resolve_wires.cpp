@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,12 @@ int source_of(const Net& net, const Assignment& wire) {
     return it == net.instance_numbers.end() ? -1 : it->second;
 }
 
+std::span<const Assignment> assignments_of(const Resolving& to, int instance) {
+    const auto& all = to.assignments;
+    const auto first = std::ranges::lower_bound(all, instance, {}, &Assignment::instance);
+    return {first, std::ranges::upper_bound(first, all.end(), instance, {}, &Assignment::instance)};
+}
+
 /// The way back from block `to` to block `from` by the wires of their task: `a -> b -> a`; empty if
 /// there is none.
 std::string loop(const Resolving& resolving, int from, int to) {
@@ -26,8 +33,7 @@ std::string loop(const Resolving& resolving, int from, int to) {
     std::vector<bool> seen(net.instances.size());
     seen[static_cast<std::size_t>(to)] = true;
     for (std::size_t head = 0; head < queue.size() && queue[head] != from; ++head) {
-        for (const Assignment& wire : std::ranges::equal_range(resolving.assignments, queue[head],
-                                                               {}, &Assignment::instance)) {
+        for (const Assignment& wire : assignments_of(resolving, queue[head])) {
             if (!wire.wire || wire.wire->previous) continue;
             const int source = source_of(net, wire);
             if (source < 0 || seen[static_cast<std::size_t>(source)]) continue;

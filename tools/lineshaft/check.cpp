@@ -19,7 +19,7 @@ struct CheckCommand {
 void check(const std::string& path, const LoadOptions& options, Diagnostics& out) {
     const auto file = read_source(path, out);
     if (!file) return;
-    const Catalog catalog = standard_blocks();
+    const Catalog& catalog = standard_blocks();
     if (is_study(*file))
         read_study(file, options, catalog, out);
     else if (is_fit(*file))
@@ -33,9 +33,9 @@ Exit execute(const CheckCommand& command) {
     const LoadOptions options = command.common.load_options(out);
     for (const std::string& path : command.files) check(path, options, out);
     if (command.strict) out.be_strict();
-    if (!out.empty() || command.common.json || !out.warnings().empty())
-        report(out, command.common.json);
-    if (!out.empty()) return Exit::wrong;
+    const bool speaks = !out.empty() || command.common.json || !out.warnings().empty();
+    const Exit said = speaks ? report(out, command.common.json) : Exit::fine;
+    if (!out.empty()) return said;
     if (!command.common.json && !command.common.quiet)
         for (const std::string& path : command.files) fmt::print("ok  {}\n", path);
     return Exit::fine;

@@ -26,7 +26,6 @@ struct Drawing {
         : program(loaded.program), net(loaded.linked.net), machine(loaded.linked.machine) {}
 
     std::vector<int> blocks_of(const Task& task) const;
-    std::vector<const Wire*> wires_of(int block) const;
     std::string_view source(const Wire& wire) const;
     std::string_view value(const Wire& wire) const;
     std::string_view input(const Wire& wire) const { return net.field(wire.to).name; }
@@ -38,13 +37,6 @@ std::vector<int> Drawing::blocks_of(const Task& task) const {
     for (int i = 0; i < static_cast<int>(net.instances.size()); ++i)
         if (machine.tasks[static_cast<std::size_t>(net.instance(i).task)].name == task.name)
             found.push_back(i);
-    return found;
-}
-
-std::vector<const Wire*> Drawing::wires_of(int block) const {
-    std::vector<const Wire*> found;
-    for (const Wire& wire : net.wires)
-        if (wire.to.instance == block) found.push_back(&wire);
     return found;
 }
 
@@ -85,13 +77,13 @@ std::string timing(const Drawing& drawing, const Task& task) {
 void print_block(const Drawing& drawing, int number, std::size_t place) {
     const Instance& block = drawing.net.instance(number);
     fmt::print("  {:>2} {:18} {}\n", place, block.name, block.type->name);
-    for (const Wire* wire : drawing.wires_of(number)) {
-        const int from = wire->from.instance < 0 ? -1 : drawing.net.instance(wire->from).task;
+    for (const Wire& wire : drawing.net.wires_to(number)) {
+        const int from = wire.from.instance < 0 ? -1 : drawing.net.instance(wire.from).task;
         const std::string task =
             from < 0 || from == block.task
                 ? ""
                 : "  of " + drawing.machine.tasks[static_cast<std::size_t>(from)].name;
-        fmt::print("       {:18} <- {}{}\n", drawing.input(*wire), drawing.text(*wire), task);
+        fmt::print("       {:18} <- {}{}\n", drawing.input(wire), drawing.text(wire), task);
     }
 }
 
@@ -161,8 +153,8 @@ nlohmann::ordered_json to_json(const Drawing& drawing) {
         for (const int number : drawing.blocks_of(task)) {
             const Instance& block = drawing.net.instance(number);
             auto wires = nlohmann::ordered_json::object();
-            for (const Wire* wire : drawing.wires_of(number))
-                wires[std::string(drawing.input(*wire))] = drawing.text(*wire);
+            for (const Wire& wire : drawing.net.wires_to(number))
+                wires[std::string(drawing.input(wire))] = drawing.text(wire);
             blocks.push_back({{"name", block.name}, {"type", block.type->name}, {"wires", wires}});
         }
         tasks.push_back(
