@@ -14,12 +14,12 @@ namespace lineshaft {
 /// `motion: velocity` follows the input `velocity` while `enable` is true (PLCopen
 /// MC_MoveVelocity). `motion: absolute` moves to `target` at each rising edge of `execute`
 /// (MC_MoveAbsolute); target and limits are taken with the edge, from whatever motion the axis is
-/// in. Without `enable` the axis ramps to standstill (MC_Halt), and an edge of `execute` is refused.
-/// Velocity changes are S-curves under `acceleration` and `jerk` as they are when the wanted
-/// velocity changes; other limits in mid-ramp count from the next change on. With `immediate` they
-/// take no time, as the set-point of a virtual axis may. Positions come from the closed form of
-/// each phase, not from summing up: they do not drift. `home` sets the position of a standing axis
-/// (MC_Home, direct).
+/// in. Without `enable` the axis ramps to standstill (MC_Halt), and an edge of `execute` is
+/// refused. Velocity changes are S-curves under `acceleration` and `jerk` as they are when the
+/// wanted velocity changes; other limits in mid-ramp count from the next change on. With
+/// `immediate` they take no time, as the set-point of a virtual axis may. Positions come from the
+/// closed form of each phase, not from summing up: they do not drift. `home` sets the position of a
+/// standing axis (MC_Home, direct).
 struct VirtualAxis {
     enum class Motion : std::int64_t { velocity, absolute };
 
