@@ -49,7 +49,7 @@ TraceSetup connect_trace(const Connecting& to, const TracePlan& plan) {
     for (const Node& node : plan.signals)
         if (auto s = to.net.find(to.read, node, node.text))
             setup.signals.push_back(to.machine.placed(std::move(*s)));
-    if (plan.trigger.kind != TriggerKind::immediate)
+    if (plan.trigger.kind != TriggerKind::immediate && plan.trigger.signal.mark.line > 0)
         setup.trigger = connect_trigger(to, plan.trigger);
     return setup;
 }
