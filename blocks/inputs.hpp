@@ -10,11 +10,4 @@ bool all_finite(T... values) {
     return (std::isfinite(values) && ...);
 }
 
-/// True once per rising edge of `now`; `last` remembers.
-inline bool rising_edge(bool now, bool& last) {
-    const bool edge = now && !last;
-    last = now;
-    return edge;
-}
-
 }  // namespace lineshaft

@@ -85,8 +85,7 @@ void ServoDrive::scan(const Scan& now) {
     if (!checked) check();
     error_id = all_finite(set_position, set_velocity, home_position) ? contradiction
                                                                      : ServoError::not_finite;
-    const bool homing = home && !last_home;
-    last_home = home;
+    const bool homing = rising_edge(home, last_home);
     in_simulation = in_simulation && !homing;
     if (error_id == ServoError::none) error_id = in_simulation ? copy() : follow(now.time, homing);
     last_time = now.time;

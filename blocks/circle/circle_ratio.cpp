@@ -80,8 +80,7 @@ void CircleRatio::scan(const Scan& now) {
     error_id = inputs_finite() ? arc_error : Error::not_finite;
     error = error_id != Error::none;
     if (error) return;
-    const bool edge = start && !last_start;
-    last_start = start;
+    const bool edge = rising_edge(start, last_start);
     switch (state) {
         case State::idle:
         case State::done:

@@ -55,8 +55,7 @@ std::span<const Field> ContourComparison::fields() {
 }
 
 void ContourComparison::scan(const Scan&) {
-    if (enable && !last_enable) begin();
-    last_enable = enable;
+    if (rising_edge(enable, last_enable)) begin();
     if (!usable(command_x) || !usable(command_y)) return;
     path.add({command_x, command_y});
     if (!enable || !usable(actual_x) || !usable(actual_y)) return;

@@ -99,8 +99,7 @@ void ConstantJerkLine::scan(const Scan& now) {
     error = !finite();
     error_id = error ? Error::not_finite : Error::none;
     if (error) return;
-    const bool edge = start && !last_start;
-    last_start = start;
+    const bool edge = rising_edge(start, last_start);
     if (edge && !busy) begin(now);
     if (busy) run(now);
 }

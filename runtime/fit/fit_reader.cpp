@@ -162,12 +162,10 @@ void FitReader::figures(const FitCasePlan& plan, FitCell& cell) const {
 std::optional<double> FitReader::uncertainty(const ComparisonPlan& plan,
                                              const Comparison& comparison,
                                              std::optional<double> whole) const {
-    static const Unit one;
     if (!plan.uncertainty) return 1;
     const Node& node = *plan.uncertainty;
-    const bool share = whole && node.is_scalar() && node.text.ends_with('%');
-    auto size = read_.real(node, share ? one : Unit::parse(comparison.unit).value());
-    if (size && share) *size *= std::abs(*whole);
+    const Unit unit = Unit::parse(comparison.unit).value();
+    const auto size = whole ? read_.real_or_share(node, unit, *whole) : read_.real(node, unit);
     if (!size || *size > 0) return size;
     read_.fail("L0305", node, fmt::format("an uncertainty of '{}' is not above 0", node.text));
     return {};
@@ -285,15 +283,10 @@ void FitReader::check_count() const {
                "compare more, or look for less");
 }
 
-/// At the beginning of a line.
-bool has_key(const std::string& text, const std::string& key) {
-    return text.starts_with(key) || text.find("\n" + key) != std::string::npos;
-}
-
 }  // namespace
 
 bool is_fit(const SourceFile& file) {
-    return has_key(file.text, "lineshaft_fit:");
+    return file.has_key("lineshaft_fit:");
 }
 
 FitPlan read_fit(std::shared_ptr<const SourceFile> file, const LoadOptions& options,

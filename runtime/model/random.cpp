@@ -13,11 +13,14 @@ std::uint64_t Random::next() {
     return z ^ (z >> 31);
 }
 
-std::int64_t Random::around_zero(std::int64_t spread) {
+std::uint64_t Random::below(std::uint64_t count) {
     __extension__ using Wide = unsigned __int128;
-    const Wide range = static_cast<Wide>(spread) * 2 + 1;
-    const Wide scaled = (next() * range) >> 64;
-    return static_cast<std::int64_t>(scaled - static_cast<Wide>(spread));
+    return static_cast<std::uint64_t>((static_cast<Wide>(next()) * count) >> 64);
+}
+
+std::int64_t Random::around_zero(std::int64_t spread) {
+    const auto size = static_cast<std::uint64_t>(spread);
+    return static_cast<std::int64_t>(below(2 * size + 1) - size);
 }
 
 double Random::share() {

@@ -16,7 +16,10 @@ class Random {
 
     std::uint64_t next();
 
-    /// Whole number in [-spread, spread], each equally likely (to 2^-64 of the range).
+    /// Whole number in [0, count), each equally likely (to 2^-64 of the range).
+    std::uint64_t below(std::uint64_t count);
+
+    /// Likewise in [-spread, spread].
     std::int64_t around_zero(std::int64_t spread);
 
     /// In (0, 1): the middle of one of 2^52 equal parts.

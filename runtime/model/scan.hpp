@@ -26,6 +26,14 @@ struct Context {
     }
 };
 
+/// True once per rising edge of `now`; `last` remembers.
+template <class Level>
+bool rising_edge(bool now, Level& last) {
+    const bool edge = now && !last;
+    last = now;
+    return edge;
+}
+
 /// Nanoseconds to seconds; correctly rounded.
 constexpr double seconds(std::int64_t nanoseconds) {
     return static_cast<double>(nanoseconds) / 1e9;

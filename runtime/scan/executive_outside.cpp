@@ -89,9 +89,7 @@ void Executive::look_ahead(int index) {
 void Executive::detect_edges() {
     for (std::size_t i = 0; i < trigger_levels_.size() && !stopped_; ++i) {
         const Trigger& trigger = machine_.triggers[i];
-        const bool risen = *trigger.signal && !trigger_levels_[i];
-        trigger_levels_[i] = *trigger.signal;
-        if (!risen) continue;
+        if (!rising_edge(*trigger.signal, trigger_levels_[i])) continue;
         State& state = this->state(trigger.task);
         if (state.pending && state.released < now_) {
             due_again(trigger.task);

@@ -29,15 +29,13 @@ Value moved(const Value& value, const Value& slack, int sign) {
 /// Whole where the signal and the text are.
 std::optional<Value> read_tolerance(const Connecting& to, const Signal& signal, const Node& node,
                                     const Value& around) {
-    static const Unit one;
     if (signal.type == Type::boolean || signal.type == Type::enumeration) {
         to.read.fail("L0213", node,
                      fmt::format("'within' is for numbers, '{}' is {}", signal.name,
                                  kind(signal.type, signal.names)));
         return {};
     }
-    const bool share = node.is_scalar() && node.text.ends_with('%');
-    const bool time = signal.type == Type::integer && signal.unit == "ns" && !share;
+    const bool time = signal.type == Type::integer && signal.unit == "ns" && !is_share(node);
     const auto given = parse_quantity(node.text);
     const auto* quantity = std::get_if<Quantity>(&given);
     const bool whole = signal.type == Type::integer && signal.unit.empty() && quantity &&
@@ -46,10 +44,8 @@ std::optional<Value> read_tolerance(const Connecting& to, const Signal& signal, 
     if (whole || time)
         value = whole ? to.read.integer(node) : to.read.time(node);
     else
-        value = to.read.real(node, share ? one : to.net.unit(signal.unit));
-    if (!value) return {};
-    if (compare(*value, 0.0) >= 0)
-        return share ? Value(as_real(*value) * std::abs(as_real(around))) : value;
+        value = to.read.real_or_share(node, to.net.unit(signal.unit), as_real(around));
+    if (!value || compare(*value, 0.0) >= 0) return value;
     to.read.fail("L0305", node, fmt::format("'{}' is below 0", node.text));
     return {};
 }

@@ -12,6 +12,11 @@ namespace lineshaft {
 struct SourceFile {
     std::string path;  ///< as the user gave it
     std::string text;
+
+    /// `lineshaft_study:` at the beginning of a line: what kind of file it is, before it is read.
+    bool has_key(std::string_view key) const {
+        return text.starts_with(key) || text.find("\n" + std::string(key)) != std::string::npos;
+    }
 };
 
 /// A place in a file: `length` characters from line:column, both counted from 1. line 0: no place.

@@ -241,13 +241,23 @@ std::optional<std::int64_t> Reader::time(const Node& node) const {
 }
 
 std::optional<std::int64_t> Reader::time_or_share(const Node& node, std::int64_t whole) const {
-    if (!node.is_scalar() || node.text.find('%') == std::string::npos) return time(node);
-    static const Unit one;
-    const auto share = real(node, one);
+    if (!is_share(node)) return time(node);
+    const auto share = real(node, Unit());
     if (!share) return {};
     if (*share >= 0 && *share <= 1) return std::llround(*share * static_cast<double>(whole));
     fail("L0305", node, fmt::format("'{}' is not between 0 % and 100 %", node.text));
     return {};
+}
+
+std::optional<double> Reader::real_or_share(const Node& node, const Unit& unit,
+                                            double whole) const {
+    if (!is_share(node)) return real(node, unit);
+    const auto share = real(node, Unit());
+    return share ? std::optional(*share * std::abs(whole)) : std::nullopt;
+}
+
+bool is_share(const Node& node) {
+    return node.is_scalar() && node.text.ends_with('%');
 }
 
 }  // namespace lineshaft

@@ -39,6 +39,9 @@ class Reader {
     /// A quantity in `unit`: L0302 when the unit is missing, L0303 when it measures something else.
     std::optional<double> real(const Node& node, const Unit& unit) const;
 
+    /// A quantity in `unit`, or a percentage of the size of `whole`.
+    std::optional<double> real_or_share(const Node& node, const Unit& unit, double whole) const;
+
     /// Whole nanoseconds, not negative.
     std::optional<std::int64_t> time(const Node& node) const;
 
@@ -50,6 +53,9 @@ class Reader {
   private:
     Diagnostics& out_;
 };
+
+/// `5 %`
+bool is_share(const Node& node);
 
 /// A unit that a plain number has as well: none, `mm/mm`.
 bool is_plain(const Unit& unit);

@@ -5,7 +5,7 @@
 
 namespace lineshaft {
 
-/// FNV-1a, 64 bits, as 16 hexadecimal digits: tells whether two texts are the same.
+/// XXH3, 64 bits, as 16 hexadecimal digits: tells whether two texts are the same.
 std::string text_hash(std::string_view text);
 
 }  // namespace lineshaft

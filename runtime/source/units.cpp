@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/number_text.hpp"
+
 namespace lineshaft {
 namespace {
 
@@ -362,17 +364,14 @@ std::optional<std::int64_t> to_nanoseconds(const Quantity& quantity) {
 }
 
 std::string format_number(double value) {
-    std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
-    return {text.data(), end.ptr};
+    if (!std::isfinite(value)) return fmt::format("{}", value);
+    std::array<char, longest_number> text{};
+    return {text.data(), write_real(text.data(), value)};
 }
 
 std::string format_time(std::int64_t nanoseconds) {
-    constexpr std::int64_t second = 1'000'000'000;
-    std::string text = fmt::format("{}", nanoseconds / second);
-    if (nanoseconds % second != 0) text += fmt::format(".{:09}", nanoseconds % second);
-    if (text.find('.') != std::string::npos) text.erase(text.find_last_not_of('0') + 1);
-    return text + " s";
+    std::array<char, longest_number> text{};
+    return std::string(text.data(), write_seconds(text.data(), nanoseconds)) + " s";
 }
 
 }  // namespace lineshaft

@@ -70,7 +70,7 @@ const std::vector<std::string>& unit_names();
 /// `0.1 s`, `1.25 ms` and all others of up to 15 digits, or of 18 without point and exponent.
 std::optional<std::int64_t> to_nanoseconds(const Quantity& quantity);
 
-/// Shortest text that reads back as the same double (`std::to_chars`).
+/// Shortest text that reads back as the same double, as in traces (see write_real); `inf`, `nan`.
 std::string format_number(double value);
 
 /// `12.345 s`, exact from integer nanoseconds.

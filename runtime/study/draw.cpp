@@ -32,11 +32,6 @@ std::string text(double value, const Unit& unit) {
                      unit);
 }
 
-std::uint64_t below(Random& random, std::uint64_t count) {
-    __extension__ using Wide = unsigned __int128;
-    return static_cast<std::uint64_t>((static_cast<Wide>(random.next()) * count) >> 64);
-}
-
 }  // namespace
 
 std::string draw(const RandomParameter& p, std::uint64_t seed, std::int64_t index) {
@@ -52,11 +47,11 @@ std::string draw(const RandomParameter& p, std::uint64_t seed, std::int64_t inde
             return text(p.a + p.b * random.normal(), p.unit);
         case Distribution::integer: {
             const auto count = static_cast<std::uint64_t>(p.b - p.a) + 1;
-            const auto offset = static_cast<std::int64_t>(below(random, count));
+            const auto offset = static_cast<std::int64_t>(random.below(count));
             return with_unit(fmt::format("{}", static_cast<std::int64_t>(p.a) + offset), p.unit);
         }
         case Distribution::choice:
-            return p.choices[below(random, p.choices.size())];
+            return p.choices[random.below(p.choices.size())];
     }
     return {};
 }

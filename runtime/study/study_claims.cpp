@@ -54,17 +54,14 @@ Bounds StudyFileReader::bounds(const BoundsPlan& plan, const Unit& unit) const {
 
 /// An absolute distance, a percentage of the paper's value, or `points` for a claim in percent.
 void StudyFileReader::within(const Node& node, const Unit& unit, Bounds& bounds) const {
-    static const Unit one;
-    const bool share = node.is_scalar() && node.text.ends_with('%');
     std::optional<double> distance;
     if (node.is_scalar() && node.text.ends_with(" points")) {
         Node number = node;
         number.text.resize(number.text.size() - 7);
-        distance = read_.real(number, one);
+        distance = read_.real(number, Unit());
         if (distance) *distance /= 100;
     } else {
-        distance = read_.real(node, share ? one : unit);
-        if (distance && share) *distance *= std::abs(*bounds.paper);
+        distance = read_.real_or_share(node, unit, *bounds.paper);
     }
     if (distance && *distance < 0)
         read_.fail("L0305", node, fmt::format("'{}' is below 0", node.text));

@@ -15,11 +15,6 @@ namespace lineshaft {
 
 namespace {
 
-/// At the beginning of a line.
-bool has_key(const std::string& text, const std::string& key) {
-    return text.starts_with(key) || text.find("\n" + key) != std::string::npos;
-}
-
 /// Of all before and `text`.
 void add(std::string& hash, const std::string& text) {
     hash = text_hash(hash + text);
@@ -123,10 +118,10 @@ std::set<std::string> StudyFileReader::choices(const Node& root, const Node& nod
 }
 
 bool is_study(const SourceFile& file) {
-    return has_key(file.text, "lineshaft_study:");
+    return file.has_key("lineshaft_study:");
 }
 bool is_program(const SourceFile& file) {
-    return has_key(file.text, "lineshaft:");
+    return file.has_key("lineshaft:");
 }
 
 Study read_study(std::shared_ptr<const SourceFile> file, const LoadOptions& options,

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/csv/csv_metadata.hpp"
-#include "runtime/csv/number_text.hpp"
+#include "runtime/source/number_text.hpp"
 #include "runtime/version.hpp"
 
 namespace lineshaft {

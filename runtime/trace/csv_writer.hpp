@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/csv/checksum.hpp"
-#include "runtime/csv/number_text.hpp"
+#include "runtime/source/number_text.hpp"
 #include "runtime/trace/output_set.hpp"
 #include "runtime/trace/recorder.hpp"
 

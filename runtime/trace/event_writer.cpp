@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "runtime/csv/csv_cells.hpp"
-#include "runtime/csv/number_text.hpp"
+#include "runtime/source/number_text.hpp"
 
 namespace lineshaft {
 

@@ -29,10 +29,7 @@ TriggerWatch::TriggerWatch(const TraceTrigger& trigger)
       held_(trigger.kind == TriggerKind::rising || trigger.kind == TriggerKind::falling) {}
 
 bool TriggerWatch::fires() {
-    const bool holds = trigger_.condition_holds();
-    const bool comes = holds && !held_;
-    held_ = holds;
-    return comes;
+    return rising_edge(trigger_.condition_holds(), held_);
 }
 
 }  // namespace lineshaft

@@ -13,7 +13,7 @@
 
 #include "blocks/profile/any_state.hpp"
 #include "blocks/profile/seven_segment.hpp"
-#include "runtime/csv/number_text.hpp"
+#include "runtime/source/number_text.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
 

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/csv/number_text.hpp"
 #include "runtime/run/single_run.hpp"
 #include "runtime/scan/executive.hpp"
+#include "runtime/source/number_text.hpp"
 #include "tests/folder.hpp"
 #include "tests/runtime/net/small_blocks.hpp"
 

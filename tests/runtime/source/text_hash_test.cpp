@@ -4,8 +4,8 @@
 
 using namespace lineshaft;
 
-TEST_CASE("a hash is 64-bit FNV-1a") {
-    CHECK(text_hash("") == "cbf29ce484222325");
-    CHECK(text_hash("a") == "af63dc4c8601ec8c");
-    CHECK(text_hash("foobar") == "85944171f73967e8");
+TEST_CASE("a hash is 64-bit XXH3") {
+    CHECK(text_hash("") == "2d06800538d394c2");
+    CHECK(text_hash("a") == "e6c632b61e964e1f");
+    CHECK(text_hash("foobar") == "d78fda63144c5c84");
 }

@@ -1,4 +1,4 @@
-#include "runtime/csv/number_text.hpp"
+#include "runtime/source/number_text.hpp"
 
 #include <array>
 #include <bit>
