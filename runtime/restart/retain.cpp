@@ -46,7 +46,7 @@ int read_retained(const std::string& path, Machine& machine, Diagnostics& out) {
     const Json root = Json::parse(file->text, nullptr, false);
     if (!root.is_object() || !root.contains("lineshaft_retain") || root["lineshaft_retain"] != 1 ||
         !root.contains("values") || !root["values"].is_object()) {
-        fail("this is no file of retained values");
+        fail("this is not a file of retained values");
         return 0;
     }
     int set = 0;
