@@ -30,14 +30,9 @@ class Source {
         if (text_.starts_with(utf8_byte_order_mark)) {
             text_.remove_prefix(utf8_byte_order_mark.size());
         }
-        characters_.reserve(text_.size() + 1);
-        for (std::size_t i = 0; i < text_.size();) {
-            const std::size_t bytes = first_character(text_.substr(i)).bytes;
-            characters_.insert(characters_.end(), bytes, count_++);
-            i += bytes;
-            if (text_[i - 1] == '\n') lines_.push_back(i);
-        }
-        characters_.push_back(count_);
+        for (std::size_t i = text_.find('\n'); i != text_.npos; i = text_.find('\n', i + 1))
+            lines_.push_back(i + 1);
+        if (!std::ranges::all_of(text_, is_ascii)) number_characters();
     }
 
     std::string_view text() const { return text_; }
@@ -71,18 +66,32 @@ class Source {
     Mark mark(std::size_t begin, std::size_t end) const {
         const std::size_t line = line_index(begin);
         return {file_, static_cast<int>(line) + 1,
-                static_cast<int>(characters_[begin] - characters_[lines_[line]]) + 1,
-                std::max(1, static_cast<int>(characters_[end] - characters_[begin]))};
+                static_cast<int>(characters(lines_[line], begin)) + 1,
+                std::max(1, static_cast<int>(characters(begin, end)))};
     }
 
     Mark mark(std::size_t offset) const { return mark(offset, offset); }
 
   private:
+    void number_characters() {
+        characters_.reserve(text_.size() + 1);
+        std::uint32_t count = 0;
+        for (std::string_view rest = text_; !rest.empty(); ++count) {
+            const std::size_t bytes = first_character(rest).bytes;
+            characters_.insert(characters_.end(), bytes, count);
+            rest.remove_prefix(bytes);
+        }
+        characters_.push_back(count);
+    }
+
+    std::size_t characters(std::size_t begin, std::size_t end) const {
+        return characters_.empty() ? end - begin : characters_[end] - characters_[begin];
+    }
+
     std::shared_ptr<const SourceFile> file_;
     std::string_view text_;
     std::vector<std::size_t> lines_{0};
-    std::vector<std::uint32_t> characters_;
-    std::uint32_t count_ = 0;
+    std::vector<std::uint32_t> characters_;  // before each byte; empty for a text of ASCII
 };
 
 /// Ends the parsing from within the handler; what is wrong has been reported.
@@ -366,9 +375,9 @@ class Builder : public YAML::EventHandler {
             stop("L0106", node.mark,
                  fmt::format("a text has more than {} bytes", limits_.scalar_bytes));
         }
-        std::string_view rest = node.text;
-        for (; !rest.empty(); rest.remove_prefix(first_character(rest).bytes)) {
-            const char32_t code = first_character(rest).code;
+        for (std::string_view rest = node.text; !rest.empty();) {
+            const auto [code, bytes, valid] = first_character(rest);
+            rest.remove_prefix(bytes);
             if (!is_control(code) || code == '\n' || code == '\t') continue;
             out_.add("L0108", node.mark,
                      fmt::format("a text contains the control character U+{:04X}",
