@@ -32,7 +32,7 @@ blocks:
   x: {type: pto, task: main, multi_segment: true, execute: inputs.go}
   counter: {type: ctu, task: main, cu: inputs.go, pv: 3}
 inputs: {go: false, recipe: 1}
-retain: [counter.cv]
+retain: [counter]
 run: {for: 2 s}
 trace: {task: servo, signals: [shaft.position, slave.position]}
 """

@@ -18,7 +18,7 @@ parameters: {count: 0}
 tasks: {main: {every: 1 ms}}
 blocks: {shaft: {type: virtual_axis, task: main, velocity: 1 mm/s}}
 inputs: {a: $count, b: $count}
-retain: [inputs.a, inputs.b]
+retain: [inputs.a, inputs.b, shaft]
 run: {for: 2 s}
 """
 
@@ -40,7 +40,8 @@ def main():
 
         def start(count):
             command = [lineshaft, "run", program, "--quiet", "--restart", "cold", "--retain-file", kept]
-            return subprocess.Popen(command + ["--set", f"count={count}"], stdout=subprocess.DEVNULL)
+            return subprocess.Popen(command + ["--set", f"count={count}"], stdout=subprocess.DEVNULL,
+                                    stderr=subprocess.DEVNULL)
 
         usual = min(seconds(start) for _ in range(5))
         old, killed, renewed, count = 0, 0, 0, 0

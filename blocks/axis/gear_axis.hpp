@@ -64,6 +64,10 @@ struct GearAxis {
         "slave axis geared to a master, with S-curve transitions";
     static std::span<const Field> fields();
     void scan(const Scan& now);
+    void shift(std::int64_t by) {
+        ramp_start += by;
+        positioning.shift(by);
+    }
 
   private:
     AxisError check() const;

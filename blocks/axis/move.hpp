@@ -67,6 +67,10 @@ struct Move {
     static constexpr std::string_view doc = "axis that moves in seven segments of constant jerk";
     static std::span<const Field> fields();
     void scan(const Scan& now);
+    void shift(std::int64_t by) {
+        first_time += by;
+        positioning.shift(by);
+    }
 
   private:
     MoveError check() const;

@@ -31,6 +31,7 @@ struct Positioning {
     bool reaches_Ve() const { return from_any_state || plan.reaches_Ve; }
     bool finished(std::int64_t time) const;
     MotionState at(std::int64_t time) const;
+    void shift(std::int64_t by) { start_time += by; }
 
   private:
     PlanResult begin_from_any_state(const MotionState& from, double goal,

@@ -53,6 +53,10 @@ struct VirtualAxis {
     static constexpr std::string_view doc = "virtual master axis: velocity or absolute motion";
     static std::span<const Field> fields();
     void scan(const Scan& now);
+    void shift(std::int64_t by) {
+        phase_start += by;
+        move.shift(by);
+    }
 
   private:
     AxisError check() const;

@@ -88,6 +88,10 @@ struct CircleRatio {
         "user program of a circular arc by variable synchronisation ratio";
     static std::span<const Field> fields();
     void scan(const Scan& now);
+    void shift(std::int64_t by) {
+        state_since += by;
+        standing_since += by;
+    }
 
   private:
     bool inputs_finite() const;

@@ -50,6 +50,7 @@ struct FilterPt1 {
     static constexpr std::string_view doc = "first-order low-pass filter";
     static std::span<const Field> fields();
     void scan(const Scan& now);
+    void shift(std::int64_t by) { last_time += by; }
 
   private:
     void set_share(std::int64_t step);

@@ -48,6 +48,7 @@ struct Timer {
     static constexpr std::string_view doc = timer_docs[static_cast<std::size_t>(kind)];
     static std::span<const Field> fields();
     void scan(const Scan& now);
+    void shift(std::int64_t by) { start += by; }
 
   private:
     void begin(const Scan& now);

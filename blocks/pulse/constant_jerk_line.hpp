@@ -95,6 +95,7 @@ struct ConstantJerkLine {
     static constexpr std::string_view doc = "user program of a two-axis line with constant jerk";
     static std::span<const Field> fields();
     void scan(const Scan& now);
+    void shift(std::int64_t by) { started += by; }
 
   private:
     bool finite() const;

@@ -47,6 +47,7 @@ struct BlockType {
     DeviceCalls device = {};
     std::optional<Misfit> (*misfit)(const std::byte* block,
                                     const IsConstant& is_constant) = nullptr;  ///< or null
+    void (*shift)(std::byte* block, std::int64_t by) = nullptr;                ///< or null
     const void* context = nullptr;           ///< what all blocks of the kind share; may be null
     std::shared_ptr<const void> owner = {};  ///< of a kind that a program brings along
 
@@ -83,7 +84,9 @@ class Catalog {
   public:
     /// A block is a struct with `type`, `doc`, `fields()` and `scan(const Scan&)`, or
     /// `scan(const Scan&, const Context&)`. An output `error` is its member `error`. It may have
-    /// `misfit(const IsConstant&) const`, for what its limits cannot say.
+    /// `misfit(const IsConstant&) const`, for what its limits cannot say. One that remembers
+    /// moments has `shift(by)`, which moves them all by so many ns: a retained block goes on in
+    /// another run.
     template <class Block>
     Catalog& add() {
         static_assert(PlainData<Block>);
@@ -98,7 +101,8 @@ class Catalog {
                     .make = [](std::byte* place, const void*) { new (place) Block{}; },
                     .scan_blocks = scan_blocks<Block>,
                     .device = device_calls<Block>(),
-                    .misfit = misfit<Block>()});
+                    .misfit = misfit<Block>(),
+                    .shift = shift<Block>()});
     }
 
     Catalog& add(BlockType type) {
@@ -116,6 +120,15 @@ class Catalog {
         if constexpr (requires(const Block& block, const IsConstant& f) { block.misfit(f); })
             return [](const std::byte* block, const IsConstant& is_constant) {
                 return std::launder(reinterpret_cast<const Block*>(block))->misfit(is_constant);
+            };
+        return nullptr;
+    }
+
+    template <class Block>
+    static constexpr auto shift() -> decltype(BlockType::shift) {
+        if constexpr (requires(Block & block) { block.shift(std::int64_t{}); })
+            return [](std::byte* block, std::int64_t by) {
+                std::launder(reinterpret_cast<Block*>(block))->shift(by);
             };
         return nullptr;
     }

@@ -192,6 +192,13 @@ struct Retained {
     std::byte* published = nullptr;  ///< may be the live one
 };
 
+/// A block that outlives the run with all that it remembers; parameters, inputs and references stay
+/// as the program has them.
+struct RetainedBlock {
+    std::size_t instance = 0;
+    std::string settings;  ///< Hash of what its memory rests on: version, kind, parameters
+};
+
 /// Where an instance stands.
 struct BlockPlace {
     std::string name;
@@ -218,6 +225,7 @@ struct Machine {
     std::vector<ReplayedFile> replayed;
     std::vector<Force> forces;
     std::vector<Retained> retained;
+    std::vector<RetainedBlock> retained_blocks;
     std::vector<DeviceCall> devices;
     std::vector<Trigger> triggers;
     std::vector<BlockSeed> block_seeds;
@@ -228,6 +236,7 @@ struct Machine {
     std::uint64_t seed = 1;
     bool continue_on_error = false;
 
+    bool retains_nothing() const { return retained.empty() && retained_blocks.empty(); }
     const Signal* find(std::string_view name) const;
 
     /// Where the value stands: for its own task, and for all others.

@@ -35,18 +35,20 @@ std::optional<Signal> Net::find(const Reader& read, const Node& node, std::strin
     }
     if (name->owner == "inputs") return find_input(read, node, name->port);
     if (name->owner == "outputs") return find_output(read, node, name->port);
-    const auto it = instance_numbers.find(std::string(name->owner));
-    if (it == instance_numbers.end()) {
-        read.fail("L0204", node, fmt::format("the program has no block '{}'", name->owner),
-                  suggest(name->owner, names(instances)));
-        return {};
-    }
-    const Instance& block = instance(it->second);
-    if (!block.known()) return {};
-    if (const Field* field = block.type->find_readable(name->port))
-        return signal(port(it->second, *field));
-    unknown_port(read, node, block, name->port);
+    const int number = find_block(read, node, name->owner);
+    if (number < 0 || !instance(number).known()) return {};
+    if (const Field* field = instance(number).type->find_readable(name->port))
+        return signal(port(number, *field));
+    unknown_port(read, node, instance(number), name->port);
     return {};
+}
+
+int Net::find_block(const Reader& read, const Node& node, std::string_view name) const {
+    const auto it = instance_numbers.find(std::string(name));
+    if (it != instance_numbers.end()) return it->second;
+    read.fail("L0204", node, fmt::format("the program has no block '{}'", name),
+              suggest(name, names(instances)));
+    return -1;
 }
 
 void Net::unknown_port(const Reader& read, const Node& node, const Instance& block,

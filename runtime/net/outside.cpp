@@ -134,22 +134,6 @@ void connect_forces(Connecting& to) {
     for (const ForcePlan& plan : to.program.forces) add_force(to, plan);
 }
 
-void connect_retained(Connecting& to) {
-    for (const Node& node : to.program.retain) {
-        auto kept = find_target(to, node);
-        if (!kept) continue;
-        if (kept->field.direction == Direction::parameter ||
-            (kept->is_of_block() && is_wired(to.net, *kept)))
-            to.read.fail("L0411", node,
-                         fmt::format("'{}' is {} and cannot be retained", kept->signal.name,
-                                     kept->field.direction == Direction::parameter ? "a parameter"
-                                                                                   : "wired"),
-                         "retain outputs of blocks and inputs that are set from outside");
-        else
-            to.machine.retained.push_back({std::move(kept->signal), kept->live, kept->published});
-    }
-}
-
 void connect_outside(Connecting& to) {
     connect_events(to);
     connect_run(to);

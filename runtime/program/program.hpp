@@ -135,7 +135,7 @@ struct Program {
     std::shared_ptr<const Catalog> kinds;  ///< of block that the program brings along; may be null
     std::vector<std::pair<Node, Node>> inputs;
     std::vector<std::pair<Node, Node>> outputs;  ///< name and the signal it shows
-    std::vector<Node> retain;                    ///< signals
+    std::vector<Node> retain;                    ///< blocks, signals
     std::vector<StimulusPlan> stimuli;
     std::vector<ReplayPlan> replays;
     std::vector<ForcePlan> forces;

@@ -572,8 +572,10 @@ const Form& program_form() {
                                     "names and values from outside, as they are at the start"),
               key<&Program::outputs>("outputs", named("an output", a_signal),
                                      "names for outside and the signals that they show"),
-              key<&Program::retain>("retain", list_of(a_signal).unique("'{}' is retained already"),
-                                    "signals that outlive a run in --retain-file"),
+              key<&Program::retain>(
+                  "retain", list_of(either({a_signal, a_name})).unique("'{}' is retained already"),
+                  "blocks with all that they remember, and signals, that outlive a run in "
+                  "--retain-file"),
               key<&Program::run>("run", a_form(run_form), "how long")
                   .must("say how long to run: run: {for: 2 s}"),
               key<read_stimuli>("stimulus",

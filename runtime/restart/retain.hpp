@@ -7,13 +7,15 @@
 
 namespace lineshaft {
 
-/// Writes the machine's retained values as JSON, names and values: whole or not at all. Empty when
-/// all is well, else what went wrong.
-std::string write_retained(const std::string& path, const Machine& machine);
+/// Writes what the machine retains as JSON: names and values of signals, the bytes of blocks. Whole
+/// or not at all. `now` is the end of the run [ns]: moments that blocks remember are kept as
+/// distances from it. Empty when all is well, else what went wrong.
+std::string write_retained(const std::string& path, const Machine& machine, std::int64_t now);
 
-/// Puts the values of a file into a machine that has not run; names that the file does not have
-/// keep their initial values. Returns how many were set. L0507 for what is no such file, or has a
-/// value of another type. A file that is not there is an empty one: nothing has been retained yet.
+/// Puts what a file holds into a machine that has not run; names that the file does not have keep
+/// their initial values. Returns how many signals and blocks were set. L0507 for what is no such
+/// file, a value of another type, a block of another kind, with other parameters or written by
+/// another version. A file that is not there is an empty one: nothing has been retained yet.
 int read_retained(const std::string& path, Machine& machine, Diagnostics& out);
 
 }  // namespace lineshaft

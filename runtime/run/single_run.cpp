@@ -253,7 +253,7 @@ void SingleRun::finish() {
     outputs_.commit();
     report_.output_error = outputs_.error();
     if (options_.retain_path.empty()) return;
-    const std::string error = write_retained(options_.retain_path, machine_);
+    const std::string error = write_retained(options_.retain_path, machine_, report_.result.time);
     if (!error.empty()) report_.restart_error = error;
 }
 

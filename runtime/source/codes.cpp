@@ -260,11 +260,11 @@ an input of the program (inputs.name) and wire that.)"},
 S7-1500 does. And a task that overruns cannot be its own help.
     tasks:
       time_error: {on_overrun: [main], priority: 22})"},
-    {"L0411", "a signal that cannot be retained",
-     R"('retain' lists values that outlive a run: outputs of blocks, such as the value of a
-counter, and inputs that are set from outside. A parameter is the program's own constant;
-a wired input gets its value from the wire in the first scan, so retain where the wire
-begins.)"},
+    {"L0411", "something that cannot be retained",
+     R"('retain' lists what outlives a run: blocks, outputs of blocks, and inputs that are set from
+outside. A parameter is the program's own constant; a wired input gets its value from the
+wire in the first scan, so retain where the wire begins. A device, such as a pulse output,
+is hardware and starts anew with the power: retain its outputs.)"},
 
     {"L0501", "a setting for a parameter that the program does not have",
      R"(--set and the cases of a study change what the program declares under 'parameters:',
@@ -297,13 +297,15 @@ differs, if it is not whole, or if the trace is not the one that was being writt
 Run the program from its start, or with the same file, --set, --force, --trace and
 --pulses as before.)"},
     {"L0507", "a file of retained values that does not fit",
-     R"(A retain file is JSON: {"lineshaft_retain": 1, "values": {"counter.cv": 12}}. This one is
-something else, or has a value of another type than the signal. Remove the file, or begin
-with the initial values, which then overwrite it:
+     R"(A retain file is JSON: {"lineshaft_retain": 1, "values": {"counter.cv": 12}, "blocks": ...}.
+This one is something else, or has a value of another type than the signal. What a block
+remembers, as bytes, is of use only to a block of the same kind with the same parameters in
+the same version of lineshaft. Remove the file, or begin with the initial values, which
+then overwrite it:
     lineshaft run program.yaml --retain-file line.retain --restart cold)"},
     {"L0508", "--retain-file for a program that retains nothing",
-     R"(The program does not say what outlives a run. List the signals:
-    retain: [counter.cv, inputs.recipe])"},
+     R"(The program does not say what outlives a run. List the blocks and inputs:
+    retain: [counter, inputs.recipe])"},
     {"L0509", "an output that is a file the command reads",
      R"(The output would replace what it is made from: --trace program.yaml would leave a table where
 the program was. Two outputs of one name would replace each other. Name another file:
@@ -441,6 +443,11 @@ sees it. Often the place where it is meant still has a constant:
 no 'expect:'. Say what must hold:
     expect:
       - {at: end, slave.velocity: 15 mm/s, within: 1e-9 mm/s})"},
+    {"L0805", "an output that is retained without its block",
+     R"(A warning. A block remembers more than its outputs show: a counter the level that its input had,
+a timer when it was started. 'retain: [counter.cv]' keeps the number alone, and a part that stands
+in the light barrier is counted once more after the restart. Keep the whole block:
+    retain: [counter])"},
 };
 
 }  // namespace

@@ -28,10 +28,10 @@ class Instance {
         type.construct(memory_.data());
     }
 
-    void scan(std::int64_t index) {
+    void scan(std::int64_t index, std::int64_t later = 0) {
         const bool error = type_.scan_blocks(
             memory_.data(), 1,
-            {.time = index * millisecond, .interval = millisecond, .index = index}, {});
+            {.time = index * millisecond + later, .interval = millisecond, .index = index}, {});
         if (error != is_in_error()) FAIL("the scan says something else than the output");
     }
     void set(const Field& field, const Value& value) {
@@ -41,6 +41,9 @@ class Instance {
     bool is_in_error() const {
         const Field* error = type_.find_readable("error");
         return error && std::get<bool>(get(*error));
+    }
+    void shift(std::int64_t by) {
+        if (type_.shift) type_.shift(memory_.data(), by);
     }
     bool same_bytes(const Instance& other) const {
         return std::memcmp(memory_.data(), other.memory_.data(), memory_.size()) == 0;
@@ -497,6 +500,31 @@ TEST_CASE("the sign of a zero changes no output") {
             INFO(type.name << "." << (some.size() == 1 ? some[0]->name : "all its inputs"));
             check_zeros(at_rest, 0, type, some);
             for (const Instance& block : moving) check_zeros(block, scans_of_motion, type, some);
+        }
+    }
+}
+
+TEST_CASE("a block whose moments are shifted goes on in shifted time as before") {
+    const Catalog catalog = standard_blocks();
+    for (const BlockType& type : catalog.types()) {
+        if (type.is_device()) continue;
+        for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+            const auto begun = static_cast<std::int64_t>(seed) * 17;
+            Instance block = scanned(type, seed, begun), shifted = block;
+            const std::int64_t by = seed % 2 == 0 ? -begun * millisecond : 12345;
+            shifted.shift(by);
+            Random random(seed, "inputs");
+            for (std::int64_t i = begun; i < begun + 300; ++i) {
+                INFO(type.name << ", seed " << seed << ", scan " << i);
+                if (i % 50 == 25) {
+                    Random same = random;
+                    set_usual(block, type, Direction::input, 4, random);
+                    set_usual(shifted, type, Direction::input, 4, same);
+                }
+                block.scan(i);
+                shifted.scan(i, by);
+                REQUIRE(agree(block, shifted, type));
+            }
         }
     }
 }

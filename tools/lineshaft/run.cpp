@@ -165,10 +165,10 @@ Exit execute(const RunCommand& command) {
         out.add("L0504", {loaded->program.file, 0, 0, 1},
                 "the program has no pulse channel to write to " + command.pulses,
                 "'lineshaft blocks pto' describes one");
-    if (loaded && !command.retain.empty() && loaded->linked.machine.retained.empty())
+    if (loaded && !command.retain.empty() && loaded->linked.machine.retains_nothing())
         out.add("L0508", {loaded->program.file, 0, 0, 1},
                 "the program has nothing to keep in " + command.retain,
-                "say under 'retain:' which signals outlive a run");
+                "say under 'retain:' which blocks and signals outlive a run");
     std::vector<std::string> inputs;
     for (const auto& file : files.sources()) inputs.push_back(file->path);
     if (loaded)

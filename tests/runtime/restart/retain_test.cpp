@@ -1,0 +1,120 @@
+#include "runtime/restart/retain.hpp"
+
+#include <fstream>
+
+#include <catch2/catch.hpp>
+
+#include "blocks/catalog.hpp"
+#include "runtime/run/single_run.hpp"
+#include "tests/folder.hpp"
+
+using namespace lineshaft;
+using namespace lineshaft::test;
+
+namespace {
+
+constexpr const char* barrier = R"(
+lineshaft: 1
+parameters: {counted: parts, preset: 5 s}
+tasks: {main: {every: 10 ms}}
+blocks:
+  parts: {type: ctu, task: main, cu: inputs.barrier, pv: 100}
+  delay: {type: ton, task: main, in: inputs.barrier, pt: $preset}
+  mean: {type: filter_pt1, task: main, in: inputs.level, time_constant: 0.5 s}
+inputs: {barrier: true, level: 1}
+retain: [$counted, delay, mean]
+run: {for: 1 s}
+)";
+
+void write(const std::string& path, std::string_view text) {
+    std::ofstream(path, std::ios::binary) << text;
+}
+
+Loaded load(const Folder& folder, std::vector<Setting> settings = {}) {
+    Diagnostics out;
+    write(folder / "line.yaml", barrier);
+    LoadOptions options;
+    options.settings = std::move(settings);
+    auto loaded = load_program(folder / "line.yaml", options, standard_blocks(), out);
+    INFO(out.render());
+    REQUIRE(loaded);
+    return std::move(*loaded);
+}
+
+/// Of a run with the retain file of the folder.
+RunReport run_on(Loaded& loaded, const Folder& folder) {
+    RunOptions options;
+    options.retain_path = folder / "line.retain";
+    RunReport report = run(loaded, options);
+    CHECK(report.restart_error.empty());
+    return report;
+}
+
+Value value_of(const Loaded& loaded, std::string_view signal) {
+    const Signal* found = loaded.linked.machine.find(signal);
+    REQUIRE(found);
+    return found->value();
+}
+
+}  // namespace
+
+TEST_CASE("a part in the light barrier is counted once over warm restarts", "[retain]") {
+    const Folder folder;
+    for (int restart = 0; restart < 3; ++restart) {
+        Loaded loaded = load(folder);
+        run_on(loaded, folder);
+        CHECK(value_of(loaded, "parts.cv") == Value(std::int64_t{1}));
+    }
+}
+
+TEST_CASE("a retained counter's value alone counts the part again", "[retain]") {
+    const Folder folder;
+    for (std::int64_t restart = 1; restart <= 3; ++restart) {
+        Loaded loaded = load(folder, {{"counted", "parts.cv"}});
+        run_on(loaded, folder);
+        CHECK(value_of(loaded, "parts.cv") == Value(restart));
+    }
+}
+
+TEST_CASE("a retained timer goes on where it stood when the power went", "[retain]") {
+    const Folder folder;
+    for (std::int64_t restart = 1; restart <= 6; ++restart) {
+        Loaded loaded = load(folder);
+        run_on(loaded, folder);
+        const std::int64_t elapsed = std::min<std::int64_t>(restart * 1000, 5000);
+        CHECK(value_of(loaded, "delay.et") == Value(elapsed * 1'000'000));
+        CHECK(value_of(loaded, "delay.q") == Value(restart >= 5));
+    }
+}
+
+TEST_CASE("what a program says of a retained block counts after the restart", "[retain]") {
+    const Folder folder;
+    Loaded first = load(folder);
+    run_on(first, folder);
+    Loaded second = load(folder, {{"preset", "500 ms"}});
+    run_on(second, folder);
+    CHECK(value_of(second, "delay.q") == Value(true));
+    CHECK(value_of(second, "delay.pt") == Value(std::int64_t{500'000'000}));
+}
+
+TEST_CASE("a block retained by other settings, or cut short, is refused", "[retain]") {
+    const Folder folder;
+    Loaded first = load(folder);
+    run_on(first, folder);
+    const std::string whole = read(folder / "line.retain");
+    const auto refused = [&](const std::string& text) {
+        write(folder / "line.retain", text);
+        Loaded loaded = load(folder);
+        const RunReport report = run_on(loaded, folder);
+        CHECK(value_of(loaded, "parts.cv") == Value(std::int64_t{0}));
+        return report.refused.render();
+    };
+    const auto replaced = [&](std::string_view from, std::string_view to) {
+        std::string text = whole;
+        return text.replace(text.find(from), from.size(), to);
+    };
+    CHECK(refused(replaced("\"settings\": \"", "\"settings\": \"0")).find("'parts' (ctu) was") !=
+          std::string::npos);
+    CHECK(refused(replaced("\"state\": \"", "\"state\": \"00")).find("L0507") != std::string::npos);
+    CHECK(refused(replaced("\"state\": \"0", "\"state\": \"x")).find("L0507") != std::string::npos);
+}
