@@ -48,9 +48,9 @@ ANSWERS = [
     ("NaN and infinite", HEADER + "NaN,0,1,1,1,1\n0,0,1,nan,1,1\n0,0,1,1,1,inf\n0,-Inf,1,1,1,1\n",
      [NOT_PLANNED] * 4, []),
     ("a missing cell", HEADER + "0,0,100,500,5000\n" + GOOD, [NOT_PLANNED, PLANNED],
-     ["2: error: 5 cells instead of 6"]),
+     ["2: error: the line has 5 cells instead of 6"]),
     ("a cell too many", HEADER + GOOD + "\n" + GOOD + ",\n", [PLANNED, NOT_PLANNED],
-     ["3: error: 7 cells instead of 6"]),
+     ["3: error: the line has 7 cells instead of 6"]),
     ("an empty cell", HEADER + "0,0,,500,5000,1\n", [NOT_PLANNED], ["2: error: column Vm is empty"]),
     ("no number", HEADER + "0,0,1,fast,1,1\n0,0,1,1 2,1,1\n0,0,0x10,1,1,1\n0,+-1,1,1,1,1\n",
      [NOT_PLANNED] * 4,
@@ -63,15 +63,15 @@ ANSWERS = [
     ("the column's own name", "L,J,A,Vm,Ve,Vs\n30,5000,500,100,0,no\n", [NOT_PLANNED],
      ["2: error: 'no' in column Vs is not a number"]),
     ("a line too long", HEADER + "1" * 200000 + "\n" + GOOD, [NOT_PLANNED, PLANNED],
-     ["2: error: a line of 65536 characters or more"]),
+     ["2: error: the line has 65536 characters or more"]),
     ("a last line too long", HEADER + GOOD + "\n" + " " * 65536, [PLANNED, NOT_PLANNED],
-     ["3: error: a line of 65536 characters or more"]),
-    ("empty", "", None, ["1: error: no header; the first line names " + ALL_NAMES]),
-    ("no header", GOOD + "\n", None, ["1: error: unknown column '0'; the header names " + ALL_NAMES]),
-    ("a column missing", "Vs,Ve,Vm,A,L\n", None, ["1: error: no column 'J'; the header names " + NAMES]),
-    ("a column twice", "Vs,Ve,Vm,A,J,L,L\n", None, ["1: error: a second column 'L'"]),
+     ["3: error: the line has 65536 characters or more"]),
+    ("empty", "", None, ["1: error: the header is missing; the first line names " + ALL_NAMES]),
+    ("no header", GOOD + "\n", None, ["1: error: the column '0' is not known; the header names " + ALL_NAMES]),
+    ("a column missing", "Vs,Ve,Vm,A,L\n", None, ["1: error: there is no column 'J'; the header names " + NAMES]),
+    ("a column twice", "Vs,Ve,Vm,A,J,L,L\n", None, ["1: error: two columns are called 'L'"]),
     ("a header in capitals", "\nVS,Ve,Vm,A,J,L\n", None,
-     ["2: error: unknown column 'VS'; the header names " + ALL_NAMES]),
+     ["2: error: the column 'VS' is not known; the header names " + ALL_NAMES]),
 ]
 
 
@@ -85,11 +85,11 @@ MOTIONS = [
      ["0,limit_not_positive"] * 3 + ["0,velocity_above_limit"] * 2, []),
     ("no numbers", MOTION, ["nan,0,0,1,0,1,1,1,1", "0,inf,0,1,0,1,1,1,1", "0,0,0,1e308,0,1e-308,1,1,1"], ["0,not_finite"] * 3, []),
     ("bad lines", MOTION, ["0,0,0,1", "0,0,0,x,0,1,1,1,1"], ["0,bad_line"] * 2,
-     ["2: error: 4 cells instead of 9", "3: error: 'x' in column pf is not a number"]),
+     ["2: error: the line has 4 cells instead of 9", "3: error: 'x' in column pf is not a number"]),
     ("an unknown column", MOTION.replace("D", "d"), [], None,
-     ["1: error: unknown column 'd'; the header names " + MOTION_NAMES]),
+     ["1: error: the column 'd' is not known; the header names " + MOTION_NAMES]),
     ("a column missing", MOTION.replace("D,", ""), [], None,
-     ["1: error: no column 'D'; the header names " + MOTION_NAMES]),
+     ["1: error: there is no column 'D'; the header names " + MOTION_NAMES]),
 ]
 
 
@@ -182,11 +182,11 @@ def check_files(lineshaft, folder):
     code, text, err = run(lineshaft, str(good), "-o", str(out))
     if code != 2 or text or out.read_text(encoding="utf-8") != wanted:
         yield f"-o: exit code {code}, {text!r} on the standard output"
-    if err != f"{good}:3: error: 1 cells instead of 6\n":
+    if err != f"{good}:3: error: the line has 1 cells instead of 6\n":
         yield f"-o: said {err!r}"
     out.unlink()
     code, text, err = run(lineshaft, str(bad), "-o", str(out))
-    if code != 2 or out.exists() or not err.startswith(f"{bad}:1: error: unknown column 'a'"):
+    if code != 2 or out.exists() or not err.startswith(f"{bad}:1: error: the column 'a' is not known"):
         yield f"a wrong header with -o: exit code {code}, said {err!r}"
     if run(lineshaft, "-", text=HEADER + GOOD)[1] != "\n".join([OUTPUT_HEADER, PLANNED]) + "\n":
         yield "- is not the standard input"

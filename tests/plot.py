@@ -71,15 +71,15 @@ class Prompt(unittest.TestCase):
             shutil.copy(f"{self.trace}-metadata.json", f"{cut}-metadata.json")
             self.refused("cut", command, cut, *to)
             one, two = self.file("1.csv", "time,a\n0,1\n1,1\n2,1\n"), self.file("2.csv", "time,a\n0,1\n2,1\n4,1\n")
-            self.refused("a row each 2000 ms, but each 1000 ms", command, one, two, *to)
+            self.refused("the trace has a row each 2000 ms, but each 1000 ms", command, one, two, *to)
             other = self.file("3.csv", "time,b\n0,1\n1,1\n2,1\n")
-            self.refused("no column 'a'", command, one, other, *to)
+            self.refused("the trace has no column 'a'", command, one, other, *to)
             foreign = self.file("4.csv", other.read_text(encoding="utf-8"))
             shutil.copy(f"{self.trace}-metadata.json", f"{foreign}-metadata.json")
             self.refused("it is not the file that was recorded", command, foreign, *to)
             self.assertFalse((self.folder / output).exists())
-        self.refused("no results of a study", "report", self.file("x.json", "{}"), "-o", self.folder / "a.html")
-        self.refused("no .svg", "plot", self.trace, "-o", self.folder / "a.pdf")
+        self.refused("these are not the results of a study", "report", self.file("x.json", "{}"), "-o", self.folder / "a.html")
+        self.refused("neither an .svg", "plot", self.trace, "-o", self.folder / "a.pdf")
 
     def file(self, name, text):
         path = self.folder / name

@@ -242,7 +242,7 @@ def full_disks(c):
 
 def command_lines(c):
     for arguments in (["--chunk", "0/3"], ["--chunk", "4/3"], ["--chunk", "1/3x"]):
-        assert "is no chunk" in c.run(*arguments, "-o", "x.csv", expect=2).stderr
+        assert "is not a chunk" in c.run(*arguments, "-o", "x.csv", expect=2).stderr
     for arguments in (["--resume"], ["--chunk", "1/3"], ["--merge", "."]):
         assert "L0614" in c.run(*arguments, expect=2).stderr
     c.run("--merge", ".", "--chunk", "1/2", "-o", "x.csv", expect=2)

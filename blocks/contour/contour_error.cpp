@@ -28,7 +28,7 @@ std::span<const Field> ContourError::fields() {
         output("at_newest", &C::at_newest, "", "the nearest command point is the newest"),
         output("out_of_reach", &C::out_of_reach, "",
                "the nearest point may have left the memory; the estimate is held"),
-        output("error", &C::error, "", "an input is no number; the estimate is held"),
+        output("error", &C::error, "", "an input is not a number; the estimate is held"),
         output("error_id", &C::error_id, "", "why").one_of(error_names),
     };
     return table;

@@ -28,7 +28,7 @@ std::span<const Field> CrossCoupling::fields() {
         output("x", &C::x, "mm", "set-point for the drive"),
         output("y", &C::y, "mm", "set-point for the drive"),
         output("correction", &C::correction, "mm", "w, to the right of the path"),
-        output("error", &C::error, "", "an input is no number; no correction"),
+        output("error", &C::error, "", "an input is not a number; no correction"),
         output("error_id", &C::error_id, "", "why").one_of(error_names),
     };
     return table;

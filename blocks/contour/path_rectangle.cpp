@@ -52,7 +52,7 @@ std::span<const Field> PathRectangle::fields() {
         output("velocity_x", &P::velocity_x, "mm/s", "of x"),
         output("velocity_y", &P::velocity_y, "mm/s", "of y"),
         output("perimeter", &P::perimeter, "mm", "length of the whole path"),
-        output("error", &P::error, "", "an input is no number; outputs are held"),
+        output("error", &P::error, "", "an input is not a number; outputs are held"),
         output("error_id", &P::error_id, "", "why").one_of(error_names),
     };
     return table;

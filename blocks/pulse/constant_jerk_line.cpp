@@ -82,7 +82,7 @@ std::span<const Field> ConstantJerkLine::fields() {
         output("gamma", &L::gamma, "", "smaller displacement / larger"),
         output("samples", &L::samples, "", "sent"),
         output("time", &L::time, "s", "since `start`, until both channels had ended"),
-        output("error", &L::error, "", "an input is no number; nothing is sent"),
+        output("error", &L::error, "", "an input is not a number; nothing is sent"),
         output("error_id", &L::error_id, "", "why").one_of(error_names),
     };
     return list;

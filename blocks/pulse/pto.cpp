@@ -101,7 +101,7 @@ std::optional<Misfit> Pto::misfit(const IsConstant& is_constant) const {
         return Misfit{"start_rate", "a single segment has at most 65535 Hz"};
     const std::int64_t most = std::max<std::int64_t>(profile.size, 1);
     if (multi && is_constant("segments") && (segments == 0 || segments > most))
-        return Misfit{"segments", "as many as the profile has, or -1 for all"};
+        return Misfit{"segments", "name as many as the profile has, or -1 for all"};
     return {};
 }
 

@@ -123,7 +123,7 @@ std::optional<CsvMetadata> read_metadata(const std::string& csv_path, Diagnostic
     const Json json = Json::parse(file->text, nullptr, false);
     const Json::json_pointer pointer("/tableSchema/columns");
     if (!json.is_object() || !json.contains(pointer) || !json[pointer].is_array()) {
-        out.add("L0707", {file, 0, 0, 1}, "this is no CSVW description of a table",
+        out.add("L0707", {file, 0, 0, 1}, "this is not a CSVW description of a table",
                 "remove it if the CSV is not a trace of lineshaft");
         return {};
     }

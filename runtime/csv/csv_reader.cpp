@@ -178,8 +178,9 @@ void CsvReader::add_column(std::string_view cell) {
     double number = 0;
     if (column.title.empty() || !parse(column.title, number))
         return fail("L0701", cell,
-                    column.title.empty() ? "a column has no name"
-                                         : fmt::format("'{}' is no name of a column", column.title),
+                    column.title.empty()
+                        ? "a column has no name"
+                        : fmt::format("'{}' is not a name of a column", column.title),
                     "the first line names the columns");
     const std::size_t bracket = column.title.find(" [");
     if (bracket != std::string::npos && column.title.ends_with(']')) {
@@ -194,7 +195,7 @@ void CsvReader::add_column(std::string_view cell) {
         column.names = known->values;
     }
     if (table_.find(column.name) || table_.find(column.title))
-        fail("L0703", cell, fmt::format("a second column '{}'", column.title));
+        fail("L0703", cell, fmt::format("two columns are called '{}'", column.title));
     table_.columns.push_back(std::move(column));
 }
 
@@ -224,8 +225,9 @@ void CsvReader::rows() {
                                         options_.most_rows));
         row();
         if (mistakes_ < most_mistakes) continue;
-        return out_.add("L0705", {table_.header, 0, 0, 1},
-                        fmt::format("{} mistakes; the rest of the file is not read", mistakes_));
+        return out_.add(
+            "L0705", {table_.header, 0, 0, 1},
+            fmt::format("there are {} mistakes; the rest of the file is not read", mistakes_));
     }
     if (lines_.error() == 0 && mistakes_ == 0) end_of_rows();
 }
@@ -245,8 +247,8 @@ void CsvReader::row() {
     const bool cut = !lines_.is_ended() && options_.last_row_may_be_cut;
     if (cut || mistakes_ != before || count == order_.size()) return;
     fail(lines_.is_ended() ? "L0704" : "L0706", line_,
-         fmt::format("{} {} instead of {}{}", count, count == 1 ? "cell" : "cells", order_.size(),
-                     lines_.is_ended() ? "" : ": the file is cut"),
+         fmt::format("the row has {} {} instead of {}{}", count, count == 1 ? "cell" : "cells",
+                     order_.size(), lines_.is_ended() ? "" : ": the file is cut"),
          separator_ == ',' && count > order_.size()
              ? "with decimal commas, semicolons stand between the cells"
              : "");
@@ -308,9 +310,9 @@ void CsvReader::end_of_rows() {
     const auto due = static_cast<std::size_t>(*table_.metadata->rows);
     if (due == table_.rows && lines_.is_ended()) return;
     out_.add("L0706", {table_.header, 0, 0, 1},
-             due == table_.rows
-                 ? "the file is cut: its last row has no end"
-                 : fmt::format("{} rows, where its sidecar tells of {}", table_.rows, due),
+             due == table_.rows ? "the file is cut: its last row has no end"
+                                : fmt::format("the file has {} rows, where its sidecar tells of {}",
+                                              table_.rows, due),
              "it is not the file that was recorded; remove the sidecar to read it all the same");
 }
 
@@ -349,7 +351,7 @@ const CsvColumn* CsvTable::require(std::string_view name, Diagnostics& out, Mark
     std::vector<std::string> names;
     for (const CsvColumn& column : columns) names.push_back(column.name);
     if (!where.file) where = {header, 1, 1, static_cast<int>(count_characters(header->text))};
-    out.add("L0702", std::move(where), fmt::format("no column '{}' in '{}'", name, header->path),
+    out.add("L0702", std::move(where), fmt::format("'{}' has no column '{}'", header->path, name),
             suggest(name, names));
     return nullptr;
 }

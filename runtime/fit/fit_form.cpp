@@ -122,11 +122,12 @@ const Form& fit_form() {
                                  "of the program, whose "
                                  "values are looked for")
                 .must("say what is looked for: parameters: {lag: {from: 0 ms, to: 50 ms}}"),
-            key<&FitFilePlan::starts>("starts", an_integer.within(1, 1000, "'starts' is 1 to 1000"),
+            key<&FitFilePlan::starts>("starts",
+                                      an_integer.within(1, 1000, "'starts' must be from 1 to 1000"),
                                       "searches: the first at each 'start', the others at random")
                 .by_default("1"),
             key<&FitFilePlan::seed>("seed", an_integer.at_least(0), "of these").by_default("1"),
-            key<&FitFilePlan::hold_out>("hold_out", one_of("way to hold out cases", {"each"}),
+            key<&FitFilePlan::hold_out>("hold_out", one_of("a way to hold out cases", {"each"}),
                                         "leaves each case out in turn, predicted from all others"),
             key<&FitFilePlan::cases>("cases",
                                      list_of(a_form(case_form)).filled("'cases' has no case"),

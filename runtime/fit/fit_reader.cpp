@@ -83,7 +83,7 @@ StudyPlan FitReader::study() const {
 /// The unit of `from` is the parameter's.
 void FitReader::parameter(const FitParameterPlan& plan) {
     if (plan.from.is_empty() || plan.to.is_empty()) return;
-    const auto low = read_.quantity(plan.from, "a bound with its unit, as 0 ms");
+    const auto low = read_.quantity(plan.from, "expected a bound with its unit, such as 0 ms");
     if (!low) return;
     FitParameter made{.name = plan.name.text, .unit = low->unit};
     const auto high = read_.real(plan.to, made.unit);
@@ -102,7 +102,7 @@ void FitReader::parameter(const FitParameterPlan& plan) {
     made.step = number(plan.step, (made.to - made.from) * default_step);
     if (!(made.step > 0 && made.step <= (made.to - made.from) / 2))
         read_.fail("L0305", *plan.step,
-                   "'step' is above 0 and at most half of the way from 'from' to 'to'");
+                   "'step' must be above 0 and at most half of the way from 'from' to 'to'");
     options_.settings.push_back(
         {made.name, made.text(made.start), plan.name.mark, place_of(plan.start, plan.from).mark});
     plan_.parameters.push_back(std::move(made));
@@ -147,7 +147,7 @@ void FitReader::figures(const FitCasePlan& plan, FitCell& cell) const {
         const ComparisonPlan& p = plan.run.comparisons[k];
         const Comparison& comparison = cell.run.comparisons[k];
         if (p.column)
-            read_.fail("L0202", *p.column, "a column of which file? The case has no 'trace'",
+            read_.fail("L0202", *p.column, "the case has no 'trace' with this column",
                        "name the file in the case: trace: measured.csv");
         else if (!comparison.bounds.paper)
             read_.fail("L0202", p.signal,

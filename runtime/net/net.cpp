@@ -46,7 +46,7 @@ std::optional<Signal> Net::find(const Reader& read, const Node& node, std::strin
 int Net::find_block(const Reader& read, const Node& node, std::string_view name) const {
     const auto it = instance_numbers.find(std::string(name));
     if (it != instance_numbers.end()) return it->second;
-    read.fail("L0204", node, fmt::format("unknown block '{}'", name),
+    read.fail("L0204", node, fmt::format("the program has no block '{}'", name),
               suggest(name, names(instances)));
     return -1;
 }
@@ -59,7 +59,7 @@ void Net::unknown_port(const Reader& read, const Node& node, const Instance& blo
         for (const Field& f : block.type->fields)
             if (f.direction == d && std::ranges::find(names, f.name) == names.end())
                 names.emplace_back(f.name);
-    read.fail("L0203", node, fmt::format("unknown port '{}' on {}", port, block.described()),
+    read.fail("L0203", node, fmt::format("{} has no port '{}'", block.described(), port),
               suggest(misspelt(port), names, block.name + "."));
 }
 
@@ -96,7 +96,7 @@ int Net::find_task(const Reader& read, const Node& node, std::string_view name) 
     const auto it = std::ranges::find(tasks, name, &TaskSettings::name);
     if (it != tasks.end()) return static_cast<int>(it - tasks.begin());
     if (tasks_known && !name.empty())
-        read.fail("L0206", node, fmt::format("unknown task '{}'", name),
+        read.fail("L0206", node, fmt::format("the program has no task '{}'", name),
                   suggest(name, names(tasks)));
     return -1;
 }

@@ -112,7 +112,8 @@ void wrong_cell(Connecting& to, const Target& input, const Node& name, const Csv
                      fmt::format("{} is out of range for '{}'", what, input.signal.name),
                      "it must be " + describe_limits(input.field, input.signal.unit));
     else
-        to.read.fail("L0705", name, fmt::format("{} is no value of '{}'", what, input.signal.name),
+        to.read.fail("L0705", name,
+                     fmt::format("{} is not a value of '{}'", what, input.signal.name),
                      "it takes " + kind(input.field.type, input.field.names));
 }
 

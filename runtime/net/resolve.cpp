@@ -6,7 +6,7 @@ namespace lineshaft {
 
 namespace {
 
-/// Empty, and reported, when the text is no value of an input.
+/// Empty, and reported, when the text is not a value of an input.
 std::optional<Signal> read_input(const Reader& read, const Node& value, Value& initial) {
     Signal signal;
     if (!value.quoted && (value.text == "true" || value.text == "false")) {
@@ -15,7 +15,7 @@ std::optional<Signal> read_input(const Reader& read, const Node& value, Value& i
         return signal;
     }
     if (!value.quoted && is_identifier(value.text))
-        read.fail("L0307", value, fmt::format("'{}' is no value of an input", value.text),
+        read.fail("L0307", value, fmt::format("'{}' is not a value of an input", value.text),
                   "write true, false or a number");
     const auto quantity = is_identifier(value.text) ? std::nullopt : read.quantity(value);
     if (!quantity) return {};

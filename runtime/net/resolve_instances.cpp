@@ -29,7 +29,7 @@ void find_type(Resolving& to, const Node& name, Instance& block) {
         auto names = to.catalog.names();
         if (to.program.kinds)
             std::ranges::copy(to.program.kinds->names(), std::back_inserter(names));
-        return to.read.fail("L0205", name, fmt::format("unknown block type '{}'", name.text),
+        return to.read.fail("L0205", name, fmt::format("there is no block type '{}'", name.text),
                             suggest(name.text, names));
     }
     block.image.resize(block.type->size);
@@ -88,7 +88,8 @@ void refer(Resolving& to, int number, const Field& field, const Node& value) {
         std::vector<std::string> fitting;
         for (const Instance& other : to.net.instances)
             if (other.type && other.type->name == field.refers) fitting.push_back(other.name);
-        return to.read.fail("L0204", value, fmt::format("unknown block '{}'", value.text),
+        return to.read.fail("L0204", value,
+                            fmt::format("the program has no block '{}'", value.text),
                             suggest(value.text, fitting));
     }
     const Instance& other = to.net.instance(it->second);
@@ -96,7 +97,7 @@ void refer(Resolving& to, int number, const Field& field, const Node& value) {
     if (other.type->name != field.refers)
         return to.read.fail(
             "L0401", value,
-            fmt::format("'{}' of {} refers to a block of type {}, {} is none", field.name,
+            fmt::format("'{}' of {} refers to a block of type {}, which {} is not", field.name,
                         block.described(), field.refers, other.described()));
     to.net.references.push_back({to.net.port(number, field), it->second});
     store(field.type, block.image.data() + field.offset, std::int64_t{it->second});

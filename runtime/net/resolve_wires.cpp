@@ -71,7 +71,7 @@ bool check_order(const Resolving& to, const Assignment& wire, int source) {
     }
     const std::string path = loop(to, wire.instance, source);
     if (!path.empty())
-        to.read.fail("L0404", *wire.value, fmt::format("feedback without previous(): {}", path),
+        to.read.fail("L0404", *wire.value, fmt::format("this feedback needs previous(): {}", path),
                      fmt::format("write previous({}) where the loop may be a scan late", signal));
     else
         to.read.fail("L0404", *wire.value,
@@ -130,7 +130,7 @@ void connect(Resolving& to, const Assignment& wire) {
     if (name && name->owner == "outputs")
         return to.read.fail(
             "L0203", *value,
-            fmt::format("'{}' is for outside, a wire comes from a block or an input", text->signal),
+            fmt::format("'{}' is for outside; a wire comes from a block or an input", text->signal),
             "wire the signal that the output shows");
     const auto source = to.net.find(to.read, *value, text->signal);
     if (!source) return;

@@ -93,7 +93,7 @@ std::optional<std::size_t> chosen(const Reader& read, const Shape& s, const Node
     if (!read.expect_scalar(node, key)) return {};
     const auto it = std::ranges::find(s.names, node.text);
     if (it != s.names.end()) return static_cast<std::size_t>(it - s.names.begin());
-    read.fail("L0306", node, fmt::format("'{}' is no {}", node.text, s.what),
+    read.fail("L0306", node, fmt::format("'{}' is not {}", node.text, s.what),
               fmt::format("known: {}", fmt::join(s.names, ", ")));
     return {};
 }

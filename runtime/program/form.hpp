@@ -132,7 +132,7 @@ struct Form {
     std::vector<Key> keys = {};
     std::vector<Rule> rules = {};
     Key others = {};  ///< keys that the file chooses, for `check` to read; nameless: there are none
-    std::string_view unknown = "unknown key '{}' in {}";  ///< message about another key
+    std::string_view unknown = "{1} has no key '{0}'";  ///< message about another key
     const char* unknown_code = "L0201";
     void (*check)(const Reader&, const Node&, void* plan) = nullptr;   ///< when all keys are read
     bool (*probe)(const Form&, const Reader&, const Node&) = nullptr;  ///< reads, and keeps nothing

@@ -74,8 +74,8 @@ class Substitution {
   private:
     void unknown(Node& node, const std::string& name) const {
         if (!declared_ || declared_->is_map())
-            read_.fail("L0207", node, fmt::format("unknown parameter '{}'", name),
-                       values_.empty() ? "the program has no 'parameters:'"
+            read_.fail("L0207", node, fmt::format("the program has no parameter '{}'", name),
+                       values_.empty() ? "it has no 'parameters:'"
                                        : suggest(name, names_of(values_), "$"));
         node.parameter = name;
     }

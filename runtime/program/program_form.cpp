@@ -218,7 +218,7 @@ const Form& replay_form() {
                   key<&ReplayPlan::at>("at", a_time, "time of the run at the file's time 0")
                       .by_default("0 s"),
                   key<&ReplayPlan::interpolated>(
-                      "between", one_of("way from row to row", {"held", "interpolated"}),
+                      "between", one_of("a way from row to row", {"held", "interpolated"}),
                       "a value is held until the next row, or a real is on the line to it")
                       .by_default("held")},
          .check = by<check_replay>});
@@ -306,7 +306,7 @@ const Form& trigger_form() {
                 "first scan. It is "
                 "time 0, and looked at after every scan of the trace's task",
          .keys = {key<&TriggerPlan::signal>("signal", a_signal, "of any task"),
-                  key("edge", one_of("edge", {"rising", "falling"}), "of a boolean"),
+                  key("edge", one_of("an edge", {"rising", "falling"}), "of a boolean"),
                   key<&TriggerPlan::values>("above", a_value, "of a number"),
                   key<&TriggerPlan::values>("below", a_value, "of a number"),
                   key<&TriggerPlan::values>(
@@ -331,7 +331,7 @@ void read_trigger(const Reader& read, const Node& node, TracePlan& trace) {
     if (node.is_map())
         read_form(trigger_form(), read, node, trace.trigger);
     else
-        read.fail("L0306", node, fmt::format("'{}' is no trigger", node.text), trigger_help);
+        read.fail("L0306", node, fmt::format("'{}' is not a trigger", node.text), trigger_help);
 }
 
 void read_pre_trigger(const Reader& read, const Node& node, TracePlan& trace);
@@ -519,7 +519,7 @@ const Form& run_form() {
                   key<&RunPlan::seed>("seed", an_integer.at_least(0), "of all random numbers")
                       .by_default("1"),
                   key<&RunPlan::continue_on_error>(
-                      "on_error", one_of("way to go on", {"stop", "continue"}),
+                      "on_error", one_of("a way to go on", {"stop", "continue"}),
                       "what a block that sets 'error' does: stop with exit 3, or go on")
                       .by_default("stop")},
          .check = by<check_run>});

@@ -26,7 +26,7 @@ std::string text_of(const Json& head, const char* key) {
 std::string refusal(const Json& head, const std::string& state, const std::string& program) {
     if (!head.is_object() || !head.contains("lineshaft_checkpoint") ||
         head["lineshaft_checkpoint"] != 1)
-        return "this is no checkpoint";
+        return "this is not a checkpoint";
     if (text_of(head, "version") != version())
         return fmt::format("the checkpoint is of lineshaft {}, this is {}",
                            text_of(head, "version"), version());

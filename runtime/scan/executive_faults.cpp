@@ -19,8 +19,8 @@ bool Executive::repeats_without_end(int index) {
     state.repeats = state.scan.time == now_ ? state.repeats + 1 : 0;
     if (state.repeats < most_starts_at_once) return false;
     stop(Outcome::overrun,
-         fmt::format("event task '{}' overran: {} scans at {}, and no end", task.name,
-                     state.repeats, format_time(now_)),
+         fmt::format("event task '{}' overran: it has scanned {} times at {} and does not end",
+                     task.name, state.repeats, format_time(now_)),
          index);
     return true;
 }
@@ -41,7 +41,7 @@ void Executive::check_deadlines() {
 
 void Executive::due_again(int index) {
     const State& state = this->state(index);
-    const char* again = task(index).on_event ? "its event comes again" : "due again";
+    const char* again = task(index).on_event ? "its event comes again" : "it is due again";
     time_error(index, state.pending
                           ? fmt::format("{} at {}, before scan {}, due at {}, could begin", again,
                                         format_time(now_), state.index, format_time(state.released))
@@ -62,7 +62,7 @@ void Executive::time_error(int index, std::string what) {
     };
     if (task.motion) return because("a motion task must not overrun");
     if (task.on_overrun < 0) return because("no task has it under 'on_overrun'");
-    if (errors_in_cycle_ > 1) return because("the second time error in one cycle");
+    if (errors_in_cycle_ > 1) return because("it is the second time error in one cycle");
     make_pending(task.on_overrun);
     state(task.on_overrun).released = now_;
 }

@@ -41,7 +41,7 @@ read. For a value that is needed in several places use a parameter:
     blocks:
       shaft: {type: virtual_axis, task: servo, velocity: $speed}
 If you mean the character itself, put the text in quotes.)"},
-    {"L0105", "the file is no map",
+    {"L0105", "the file is not a map",
      R"(A program, a study and a controller are maps: 'key: value' at the left margin,
 beginning with 'lineshaft: 1', 'lineshaft_study: 1' or 'lineshaft_controller: 1'. The
 file is empty, holds nothing but comments, or is a list or a plain text.)"},
@@ -79,7 +79,7 @@ you did not want. The line below the mark has the nearest known key, or all of t
     blocks: {shaft: {type: virtual_axis, task: servo, velocity: 10 mm/s}}
     run: {for: 1 s})"},
     {"L0203", "an unknown port, input or signal",
-     R"(The block exists, but its type has no such parameter, input or output. 'lineshaft
+     R"(The block exists, but its type does not have this parameter, input or output. 'lineshaft
 blocks TYPE' lists what a type has, with units and defaults. A wire, a trace and an
 expectation name a value as block.port, as in 'shaft.velocity'; a wire starts at an
 output. A study may compare any signal of its program.)"},
@@ -88,7 +88,7 @@ output. A study may compare any signal of its program.)"},
 with the name of its type. No block of this program is called so. The program's own
 inputs are called 'inputs.name'.)"},
     {"L0205", "an unknown type of block",
-     R"(The catalogue of function blocks has no such type. 'lineshaft blocks' lists all types
+     R"(The catalogue of function blocks does not have this type. 'lineshaft blocks' lists all types
 with one sentence each. Types are written in lower case with underscores:
 virtual_axis, gear_axis.)"},
     {"L0206", "an unknown task",
@@ -102,13 +102,13 @@ interval:
 it with its default; --set and the cases of a study may then change it:
     parameters: {speed: 10 mm/s}
 A text that really begins with '$' is put in quotes.)"},
-    {"L0208", "no such signal",
+    {"L0208", "an unknown signal",
      R"(A signal is written as block.port, or as inputs.name for an input of the program
 itself; both parts are plain names. 'shaft' alone names a block, not a value. An input
 must stand under 'inputs:' with the value that it has at the start:
     inputs: {start: false})"},
     {"L0209", "the wrong kind of value",
-     R"(The entry is a map, a list or a single value where another of these three is due, or
+     R"(The entry is a map, a list or a single value where another of these three is expected, or
 has no value at all. A map has 'key: value' entries, a list has '-' entries or
 brackets:
     tasks: {servo: {every: 2 ms}}                      # a map
@@ -168,7 +168,7 @@ On a wire 'NOT block.port', without quotes, negates a boolean. In an expectation
 are written at_least: 10 mm/s and at_most: 20 mm/s.)"},
 
     {"L0301", "not a number",
-     R"(A number is due: digits with an optional point and exponent, then an optional unit,
+     R"(A number is expected: digits with an optional point and exponent, then an optional unit,
 such as 20, -1.5, 5e4 mm/s^3 or 1_000. Whole numbers may have a base as in IEC
 61131-3: 16#E0, 2#1010. Not accepted: a leading zero (010 would be eight in some tools
 and ten in others), a decimal comma, infinity, nan, and a number in quotes.)"},
@@ -179,11 +179,11 @@ is what moves an axis a thousand times too far. Any unit of the right dimension 
 do; it is converted.)"},
     {"L0303", "the unit measures something else",
      R"(The value has a unit, but of another dimension than the port: a velocity in mm where
-mm/s is due, a length for an angle, or a unit where a plain number is due. Units of
+mm/s is expected, a length for an angle, or a unit where a plain number is expected. Units of
 one dimension are converted (2 cm is 20 mm), others cannot be. 'lineshaft blocks TYPE'
 shows the unit of each port.)"},
     {"L0304", "an unknown unit",
-     R"(After the number stands something that is no unit. Units are written as symbols,
+     R"(After the number stands something that is not a unit. Units are written as symbols,
 combined with '*' and '/' and a power '^': mm, mm/s, mm/s^2, rad/s, rpm, kHz, ms, %. Upper
 and lower case matter: mm, not MM. 'lineshaft units' lists them. A claim of a study is a plain number or in %.)"},
     {"L0305", "a number out of range",
@@ -199,7 +199,7 @@ TYPE' shows each list.)"},
      R"(A boolean is 'true' or 'false', in lower case and without quotes. YAML tools disagree
 on yes, no, on, off, TRUE and 1, so these are not accepted.)"},
     {"L0308", "not a time",
-     R"(A time is due: a number with s, ms, us or ns, such as '2 ms'. Virtual time counts
+     R"(A time is expected: a number with s, ms, us or ns, such as '2 ms'. Virtual time counts
 whole nanoseconds, so a time may not be negative, nor a fraction of a nanosecond, nor
 above 292 years; an interval may not be zero, since the task would never come to an
 end.)"},
@@ -247,7 +247,7 @@ ports are inputs and so take wires.)"},
 hand; or it belongs to another task, or is an input of the program, where the wire
 carries what was published last in any case. With previous() it would look like a
 delay that is not there. Remove the word.)"},
-    {"L0408", "NOT on something that is no boolean",
+    {"L0408", "NOT on something that is not a boolean",
      R"('NOT block.port' negates a boolean wire. The output or the input here is of another
 type. For a comparison or a sign use a block that does it.)"},
     {"L0409", "a stimulus on an input that is wired",
@@ -359,7 +359,7 @@ study shows its table on the terminal and keeps nothing.)"},
      R"(The first line of a CSV file names its columns, separated by commas (or semicolons, where
 the decimal point is a comma); numbers begin in the second line. The file is empty, begins
 with numbers, or a column has no name.)"},
-    {"L0702", "no such column",
+    {"L0702", "an unknown column",
      R"(The CSV file has no column of this name. Columns are named as in the first line of the
 file, in a trace also as the signals are in the program: shaft.position. A unit in
 brackets behind the name may be left out.)"},
@@ -370,7 +370,7 @@ the first line of the file.)"},
      R"(Every row of a CSV file has as many cells as the first line has names; a missing value
 is an empty cell. Often a decimal comma took a number apart: then semicolons must stand
 between the cells.)"},
-    {"L0705", "no number in a column of numbers",
+    {"L0705", "something else in a column of numbers",
      R"(The cells of the columns that are read are numbers; where there is no value the cell is
 empty. Words such as nan, inf or true are not numbers. In a trace booleans are 0 and 1,
 enumerations the number of the name, as the sidecar tells.)"},
@@ -380,7 +380,7 @@ enumerations the number of the name, as the sidecar tells.)"},
 broken run left behind is named NAME.csv.part. 'lineshaft verify NAME.csv' says more.)"},
     {"L0707", "a sidecar that cannot be understood",
      R"(Beside a trace NAME.csv stands NAME.csv-metadata.json with units, types and the
-program's hash, as JSON (W3C CSVW). This one is no such file. Record the trace again, or
+program's hash, as JSON (W3C CSVW). This file is something else. Record the trace again, or
 remove the sidecar: then all columns are plain numbers.)"},
     {"L0708", "traces that cannot be compared",
      R"(Two traces are compared row by row, so both must come from the same program (with whatever
@@ -414,7 +414,7 @@ signals they share:
     {"L0725", "traces of different interval",
      R"(The rows of the two traces lie at different distances in time, so that sample cannot be
 compared with sample. Record both with the same task and 'every'.)"},
-    {"L0726", "no results of a study",
+    {"L0726", "a file that is not the results of a study",
      R"(A .json file given to 'lineshaft report' is what a study printed:
     lineshaft study PLAN.yaml --json >results.json
     lineshaft report results.json -o results.html)"},

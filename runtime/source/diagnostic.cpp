@@ -28,36 +28,42 @@ bool is_unsafe(char32_t code) {
     return (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
 }
 
-/// At most `most` characters from the beginning of `text`, one string each, as they are printed.
-std::vector<std::string> printable(std::string_view text, std::size_t most) {
-    std::vector<std::string> out;
-    while (!text.empty() && out.size() < most) {
+/// The beginning of a text as it is printed.
+struct Printable {
+    std::string text;
+    std::size_t characters = 0;
+    bool whole = false;  ///< there is no more of it
+};
+
+Printable printable(std::string_view text, std::size_t most) {
+    Printable out;
+    out.text.reserve(std::min(text.size(), most));
+    for (; !text.empty() && out.characters < most; ++out.characters) {
         const Utf8Character character = first_character(text);
-        const bool unsafe = !character.valid || is_unsafe(character.code);
-        if (text.front() == '\t') {
-            out.emplace_back(" ");
-        } else {
-            out.emplace_back(unsafe ? "?" : text.substr(0, character.bytes));
-        }
+        if (text.front() == '\t')
+            out.text += ' ';
+        else if (!character.valid || is_unsafe(character.code))
+            out.text += '?';
+        else
+            out.text += text.substr(0, character.bytes);
         text.remove_prefix(character.bytes);
     }
+    out.whole = text.empty();
     return out;
 }
 
 /// Removes `count` characters, or all there are, from the beginning; how many that were.
 std::size_t skip(std::string_view& text, std::size_t count) {
     std::size_t skipped = 0;
-    for (; skipped < count && !text.empty(); ++skipped) {
-        const bool ascii = static_cast<unsigned char>(text.front()) < 0x80;
-        text.remove_prefix(ascii ? 1 : first_character(text).bytes);
-    }
+    for (; skipped < count && !text.empty(); ++skipped)
+        text.remove_prefix(first_character(text).bytes);
     return skipped;
 }
 
 std::string printable_text(std::string_view text) {
-    const std::string shown = fmt::format("{}", fmt::join(printable(text, longest_message), ""));
-    const bool whole = skip(text, longest_message) < longest_message || text.empty();
-    return whole ? shown : fmt::format("{}{}", shown, cut);
+    Printable shown = printable(text, longest_message);
+    if (!shown.whole) shown.text += cut;
+    return std::move(shown.text);
 }
 
 /// Line `line` (from 1) without its end; empty beyond the last.
@@ -83,21 +89,18 @@ struct Window {
 
 Window window_of(std::string_view line, const Mark& mark) {
     std::string_view rest = line;
-    const bool whole = skip(rest, longest_line) < longest_line || rest.empty();
-    rest = line;
     const std::size_t column = skip(rest, static_cast<std::size_t>(std::max(mark.column, 1)) - 1);
     const std::size_t length = static_cast<std::size_t>(std::max(mark.length, 1));
-    const std::size_t first = whole || column <= before_mark ? 0 : column - before_mark;
-    rest = line;
-    skip(rest, first);
-    const std::vector<std::string> shown = printable(rest, longest_line);
-
+    Printable shown = printable(line, longest_line);
+    const std::size_t first = shown.whole || column <= before_mark ? 0 : column - before_mark;
+    if (first > 0) {
+        skip(line, first);
+        shown = printable(line, longest_line);
+    }
     const std::string_view left = first > 0 ? cut : "";
     const std::size_t begin = column - first;
-    const std::size_t end = std::max(begin + 1, std::min(begin + length, shown.size()));
-    const std::string_view right =
-        skip(rest, longest_line) == longest_line && !rest.empty() ? cut : "";
-    return {fmt::format("{}{}{}", left, fmt::join(shown, ""), right), begin + left.size(),
+    const std::size_t end = std::max(begin + 1, std::min(begin + length, shown.characters));
+    return {fmt::format("{}{}{}", left, shown.text, shown.whole ? "" : cut), begin + left.size(),
             end + left.size()};
 }
 

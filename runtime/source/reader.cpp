@@ -178,7 +178,7 @@ std::optional<Quantity> Reader::quantity(const Node& node, std::string expected)
         fail("L0301", node, fmt::format("'{}' is not a number", node.text),
              number_help(node.text, std::move(expected)));
     else
-        fail("L0304", node, fmt::format("unknown unit '{}' in '{}'", unit, node.text),
+        fail("L0304", node, fmt::format("the unit '{}' in '{}' is not known", unit, node.text),
              unit_help(unit, expected));
     return {};
 }

@@ -1,7 +1,6 @@
 #include "runtime/source/utf8.hpp"
 
 #include <array>
-#include <cassert>
 
 namespace lineshaft {
 namespace {
@@ -9,7 +8,6 @@ namespace {
 constexpr Utf8Character invalid{0xFFFD, 1, false};
 
 std::size_t sequence_length(unsigned char lead) {
-    if (lead < 0x80) return 1;
     if (lead >= 0xC2 && lead <= 0xDF) return 2;
     if (lead >= 0xE0 && lead <= 0xEF) return 3;
     if (lead >= 0xF0 && lead <= 0xF4) return 4;
@@ -18,11 +16,9 @@ std::size_t sequence_length(unsigned char lead) {
 
 }  // namespace
 
-Utf8Character first_character(std::string_view text) {
-    assert(!text.empty());
+Utf8Character first_beyond_ascii(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const std::size_t length = sequence_length(byte(0));
-    if (length == 1) return {byte(0), 1, true};
     if (length == 0 || length > text.size()) return invalid;
 
     char32_t code = byte(0) & (0x7Fu >> length);
@@ -43,10 +39,6 @@ std::size_t count_characters(std::string_view text) {
         ++count;
     }
     return count;
-}
-
-bool is_control(char32_t code) {
-    return code < 0x20 || (code >= 0x7F && code < 0xA0);
 }
 
 }  // namespace lineshaft

@@ -13,14 +13,26 @@ struct Utf8Character {
     bool valid = true;
 };
 
+constexpr bool is_ascii(char c) {
+    return static_cast<unsigned char>(c) < 0x80;
+}
+
+/// Of a text whose first byte is not ASCII.
+Utf8Character first_beyond_ascii(std::string_view text);
+
 /// The first character of `text`, which is not empty.
-Utf8Character first_character(std::string_view text);
+inline Utf8Character first_character(std::string_view text) {
+    if (!is_ascii(text.front())) return first_beyond_ascii(text);
+    return {static_cast<char32_t>(text.front()), 1, true};
+}
 
 /// Number of characters.
 std::size_t count_characters(std::string_view text);
 
 /// C0 (tab, line feed and carriage return included), DEL and C1.
-bool is_control(char32_t code);
+constexpr bool is_control(char32_t code) {
+    return code < 0x20 || (code >= 0x7F && code < 0xA0);
+}
 
 /// The byte order mark of UTF-8, which a file may begin with.
 inline constexpr std::string_view utf8_byte_order_mark = "\xEF\xBB\xBF";

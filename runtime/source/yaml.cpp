@@ -30,14 +30,9 @@ class Source {
         if (text_.starts_with(utf8_byte_order_mark)) {
             text_.remove_prefix(utf8_byte_order_mark.size());
         }
-        characters_.reserve(text_.size() + 1);
-        for (std::size_t i = 0; i < text_.size();) {
-            const std::size_t bytes = first_character(text_.substr(i)).bytes;
-            characters_.insert(characters_.end(), bytes, count_++);
-            i += bytes;
-            if (text_[i - 1] == '\n') lines_.push_back(i);
-        }
-        characters_.push_back(count_);
+        for (std::size_t i = text_.find('\n'); i != text_.npos; i = text_.find('\n', i + 1))
+            lines_.push_back(i + 1);
+        if (!std::ranges::all_of(text_, is_ascii)) number_characters();
     }
 
     std::string_view text() const { return text_; }
@@ -71,26 +66,40 @@ class Source {
     Mark mark(std::size_t begin, std::size_t end) const {
         const std::size_t line = line_index(begin);
         return {file_, static_cast<int>(line) + 1,
-                static_cast<int>(characters_[begin] - characters_[lines_[line]]) + 1,
-                std::max(1, static_cast<int>(characters_[end] - characters_[begin]))};
+                static_cast<int>(characters(lines_[line], begin)) + 1,
+                std::max(1, static_cast<int>(characters(begin, end)))};
     }
 
     Mark mark(std::size_t offset) const { return mark(offset, offset); }
 
   private:
+    void number_characters() {
+        characters_.reserve(text_.size() + 1);
+        std::uint32_t count = 0;
+        for (std::string_view rest = text_; !rest.empty(); ++count) {
+            const std::size_t bytes = first_character(rest).bytes;
+            characters_.insert(characters_.end(), bytes, count);
+            rest.remove_prefix(bytes);
+        }
+        characters_.push_back(count);
+    }
+
+    std::size_t characters(std::size_t begin, std::size_t end) const {
+        return characters_.empty() ? end - begin : characters_[end] - characters_[begin];
+    }
+
     std::shared_ptr<const SourceFile> file_;
     std::string_view text_;
     std::vector<std::size_t> lines_{0};
-    std::vector<std::uint32_t> characters_;
-    std::uint32_t count_ = 0;
+    std::vector<std::uint32_t> characters_;  // before each byte; empty for a text of ASCII
 };
 
 /// Ends the parsing from within the handler; what is wrong has been reported.
 struct Stop {};
 
 std::string_view fault_of(const Utf8Character& character, std::string_view rest) {
-    if (!character.valid) return "a byte that is no UTF-8";
-    if (character.code == 0xFEFF) return "a byte order mark inside the file";
+    if (!character.valid) return "a byte that is not UTF-8";
+    if (character.code == 0xFEFF) return "a byte order mark after its beginning";
     if (character.code == '\r' && !rest.starts_with("\r\n")) {
         return "a carriage return without a line feed";
     }
@@ -117,9 +126,10 @@ void check_characters(const Source& source, Diagnostics& out) {
         if (!fault.empty()) {
             const std::size_t offset = source.text().size() - rest.size();
             const auto byte = static_cast<unsigned char>(rest.front());
-            out.add("L0108", source.mark(offset), std::string(fault),
-                    character.valid ? fmt::format("U+{:04X}", static_cast<unsigned>(character.code))
-                                    : fmt::format("byte {:02X}", byte));
+            out.add("L0108", source.mark(offset), fmt::format("the file contains {}", fault),
+                    character.valid
+                        ? fmt::format("it is U+{:04X}", static_cast<unsigned>(character.code))
+                        : fmt::format("the byte is {:02X}", byte));
             ++found;
         }
         rest.remove_prefix(character.bytes);
@@ -141,7 +151,7 @@ void check_brackets(const Source& source, const YamlLimits& limits, Diagnostics&
     }
     if (open <= most) return;
     out.add("L0106", source.mark(too_deep),
-            fmt::format("nested deeper than {} levels", limits.depth));
+            fmt::format("the file is nested deeper than {} levels", limits.depth));
 }
 
 /// Offset after the closing quote of the quoted text at `begin`, npos when there is none.
@@ -220,7 +230,8 @@ class Builder : public YAML::EventHandler {
         const std::size_t begin = source_.offset(mark);
         const bool marked = source_.text().substr(begin).starts_with("---");
         stop("L0103", source_.mark(begin, marked ? begin + 3 : source_.line_end(begin)),
-             marked ? "a second document" : "text after the end of the document",
+             marked ? "the file holds a second document"
+                    : "text stands after the end of the document",
              "a file holds one document");
     }
 
@@ -232,7 +243,7 @@ class Builder : public YAML::EventHandler {
         count_node(begin);
         if (stack_.empty()) stop("L0105", source_.mark(0), "the file is empty");
         if (expects_key()) {
-            out_.add("L0107", source_.mark(begin), "an empty key",
+            out_.add("L0107", source_.mark(begin), "a key is empty",
                      "a key that is called null or ~ stands in quotes");
         }
         Node node;
@@ -243,7 +254,7 @@ class Builder : public YAML::EventHandler {
     void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
         const std::size_t begin = source_.offset(mark);
         count_node(begin);
-        out_.add("L0104", source_.mark(begin, word_end(begin)), "an alias", no_alias);
+        out_.add("L0104", source_.mark(begin, word_end(begin)), "this is a YAML alias", no_alias);
         Node node;
         node.mark = source_.mark(begin);
         attach(std::move(node), begin + 1);
@@ -324,7 +335,7 @@ class Builder : public YAML::EventHandler {
     }
 
     [[noreturn]] void root_is_no_map(std::size_t begin, std::size_t end) {
-        stop("L0105", source_.mark(begin, end), "the file is no map",
+        stop("L0105", source_.mark(begin, end), "the file is not a map",
              "its first level is made of lines such as 'key: value'");
     }
 
@@ -334,7 +345,8 @@ class Builder : public YAML::EventHandler {
 
     void count_node(std::size_t begin) {
         if (++nodes_ <= limits_.nodes) return;
-        stop("L0106", source_.mark(begin), fmt::format("more than {} values", limits_.nodes));
+        stop("L0106", source_.mark(begin),
+             fmt::format("the file has more than {} values", limits_.nodes));
     }
 
     std::size_t word_end(std::size_t begin) const {
@@ -347,8 +359,8 @@ class Builder : public YAML::EventHandler {
         const bool tagged = !implicit || source_.at(begin) == '!';
         if (anchor == YAML::NullAnchor && !tagged) return;
         const Mark mark = source_.mark(begin, word_end(begin));
-        if (anchor != YAML::NullAnchor) out_.add("L0104", mark, "an anchor", no_alias);
-        if (tagged) out_.add("L0104", mark, "a tag", no_tag);
+        if (anchor != YAML::NullAnchor) out_.add("L0104", mark, "this is a YAML anchor", no_alias);
+        if (tagged) out_.add("L0104", mark, "this is a YAML tag", no_tag);
     }
 
     /// The library takes the file's end for a quote when a line end stands before it.
@@ -361,14 +373,14 @@ class Builder : public YAML::EventHandler {
     void check_scalar(const Node& node) {
         if (node.text.size() > limits_.scalar_bytes) {
             stop("L0106", node.mark,
-                 fmt::format("a text of more than {} bytes", limits_.scalar_bytes));
+                 fmt::format("a text has more than {} bytes", limits_.scalar_bytes));
         }
-        std::string_view rest = node.text;
-        for (; !rest.empty(); rest.remove_prefix(first_character(rest).bytes)) {
-            const char32_t code = first_character(rest).code;
+        for (std::string_view rest = node.text; !rest.empty();) {
+            const auto [code, bytes, valid] = first_character(rest);
+            rest.remove_prefix(bytes);
             if (!is_control(code) || code == '\n' || code == '\t') continue;
             out_.add("L0108", node.mark,
-                     fmt::format("a text with the control character U+{:04X}",
+                     fmt::format("a text contains the control character U+{:04X}",
                                  static_cast<unsigned>(code)));
             return;
         }
@@ -390,7 +402,7 @@ class Builder : public YAML::EventHandler {
         if (stack_.empty() && kind != Node::Kind::map) root_is_no_map(begin, begin + 1);
         if (stack_.size() >= limits_.depth) {
             stop("L0106", source_.mark(begin),
-                 fmt::format("nested deeper than {} levels", limits_.depth));
+                 fmt::format("the file is nested deeper than {} levels", limits_.depth));
         }
         Frame frame;
         frame.node.kind = kind;
@@ -406,7 +418,7 @@ class Builder : public YAML::EventHandler {
         Frame frame = std::move(stack_.back());
         stack_.pop_back();
         if (frame.is_key && !frame.in_key) {
-            out_.add("L0107", source_.mark(frame.begin), "a key that is no name",
+            out_.add("L0107", source_.mark(frame.begin), "a key is not a name",
                      "a key is a word; a text with brackets stands in quotes");
         }
         attach(std::move(frame.node), frame.begin + 1);
@@ -434,7 +446,7 @@ class Builder : public YAML::EventHandler {
 
     void check_merge(const Node& key) {
         if (key.quoted || key.text != "<<") return;
-        out_.add("L0104", key.mark, "a merge key", "write the values out");
+        out_.add("L0104", key.mark, "this is a YAML merge key", "write the values out");
     }
 
     void check_duplicates(const Node& map) const {
@@ -451,8 +463,8 @@ class Builder : public YAML::EventHandler {
                 first = key;
                 continue;
             }
-            out_.add("L0102", key->mark, fmt::format("duplicate key '{}'", key->text),
-                     fmt::format("first given in line {}", first->mark.line));
+            out_.add("L0102", key->mark, fmt::format("the key '{}' stands twice", key->text),
+                     fmt::format("it was first given in line {}", first->mark.line));
         }
     }
 
@@ -492,37 +504,37 @@ struct Translation {
 const Translation* translation_of(std::string_view message) {
     static constexpr std::string_view quotes = "a text with special characters stands in quotes";
     static const auto table = std::to_array<Translation>({
-        {YAML::ErrorMsg::TAB_IN_INDENTATION, "L0101", "a tab character; YAML indents with spaces",
-         "replace it by spaces"},
-        {YAML::ErrorMsg::END_OF_MAP_FLOW, "L0101", "',' or '}' expected", quotes},
+        {YAML::ErrorMsg::TAB_IN_INDENTATION, "L0101",
+         "a tab character indents the line; YAML indents with spaces", "replace it by spaces"},
+        {YAML::ErrorMsg::END_OF_MAP_FLOW, "L0101", "expected ',' or '}'", quotes},
         {YAML::ErrorMsg::END_OF_MAP, "L0101", "this does not continue the map above",
          "expected 'key: value', indented like the keys above"},
-        {YAML::ErrorMsg::END_OF_SEQ_FLOW, "L0101", "',' or ']' expected", quotes},
+        {YAML::ErrorMsg::END_OF_SEQ_FLOW, "L0101", "expected ',' or ']'", quotes},
         {YAML::ErrorMsg::END_OF_SEQ, "L0101", "this does not continue the list above",
          "expected '- item', indented like the items above"},
         {YAML::ErrorMsg::UNKNOWN_TOKEN, "L0101", "no value may begin with this character", quotes},
-        {YAML::ErrorMsg::DOC_IN_SCALAR, "L0101", "a document's mark inside quotes",
+        {YAML::ErrorMsg::DOC_IN_SCALAR, "L0101", "a document's mark stands inside quotes",
          "the quote that opens this text is not closed before it"},
         {YAML::ErrorMsg::EOF_IN_SCALAR, "L0101", "a quote is never closed", Builder::quote_help},
-        {YAML::ErrorMsg::FLOW_END, "L0101", "a bracket that closes nothing", quotes},
+        {YAML::ErrorMsg::FLOW_END, "L0101", "this bracket closes nothing", quotes},
         {YAML::ErrorMsg::BLOCK_ENTRY, "L0101", "no list item may begin here",
          "each '- item' stands on a line of its own, or the list in brackets"},
         {YAML::ErrorMsg::MAP_KEY, "L0101", "no key may begin here", quotes},
         {YAML::ErrorMsg::MAP_VALUE, "L0101", "no ':' may stand here",
          "a key is indented like its neighbours, a nested map begins on a line of its own, a text "
          "with ': ' stands in quotes"},
-        {YAML::ErrorMsg::INVALID_ESCAPE, "L0101", "unknown escape in double quotes",
+        {YAML::ErrorMsg::INVALID_ESCAPE, "L0101", "this escape in double quotes is not known",
          "a backslash is written '\\\\'; in single quotes it stands for itself"},
-        {YAML::ErrorMsg::UNKNOWN_ANCHOR, "L0104", "an alias", Builder::no_alias},
-        {YAML::ErrorMsg::MULTIPLE_ANCHORS, "L0104", "an anchor", Builder::no_alias},
-        {YAML::ErrorMsg::ALIAS_NOT_FOUND, "L0104", "an alias without a name", quotes},
-        {YAML::ErrorMsg::ANCHOR_NOT_FOUND, "L0104", "an anchor without a name", quotes},
-        {YAML::ErrorMsg::CHAR_IN_ALIAS, "L0104", "an alias", Builder::no_alias},
-        {YAML::ErrorMsg::CHAR_IN_ANCHOR, "L0104", "an anchor", Builder::no_alias},
-        {YAML::ErrorMsg::MULTIPLE_TAGS, "L0104", "a tag", Builder::no_tag},
-        {YAML::ErrorMsg::CHAR_IN_TAG_HANDLE, "L0104", "a tag", Builder::no_tag},
-        {YAML::ErrorMsg::TAG_WITH_NO_SUFFIX, "L0104", "a tag", Builder::no_tag},
-        {YAML::ErrorMsg::END_OF_VERBATIM_TAG, "L0104", "a tag", Builder::no_tag},
+        {YAML::ErrorMsg::UNKNOWN_ANCHOR, "L0104", "this is a YAML alias", Builder::no_alias},
+        {YAML::ErrorMsg::MULTIPLE_ANCHORS, "L0104", "this is a YAML anchor", Builder::no_alias},
+        {YAML::ErrorMsg::ALIAS_NOT_FOUND, "L0104", "a YAML alias has no name", quotes},
+        {YAML::ErrorMsg::ANCHOR_NOT_FOUND, "L0104", "a YAML anchor has no name", quotes},
+        {YAML::ErrorMsg::CHAR_IN_ALIAS, "L0104", "this is a YAML alias", Builder::no_alias},
+        {YAML::ErrorMsg::CHAR_IN_ANCHOR, "L0104", "this is a YAML anchor", Builder::no_alias},
+        {YAML::ErrorMsg::MULTIPLE_TAGS, "L0104", "this is a YAML tag", Builder::no_tag},
+        {YAML::ErrorMsg::CHAR_IN_TAG_HANDLE, "L0104", "this is a YAML tag", Builder::no_tag},
+        {YAML::ErrorMsg::TAG_WITH_NO_SUFFIX, "L0104", "this is a YAML tag", Builder::no_tag},
+        {YAML::ErrorMsg::END_OF_VERBATIM_TAG, "L0104", "this is a YAML tag", Builder::no_tag},
     });
     const auto found = std::find_if(table.begin(), table.end(), [&](const Translation& entry) {
         return message.starts_with(entry.library);
@@ -582,7 +594,8 @@ void report(const YAML::Exception& fault, const Source& source, const Builder& b
     }
     const std::size_t tab = indenting_tab(source, offset);
     if (tab != std::string_view::npos) {
-        out.add("L0101", source.mark(tab), "a tab character; YAML indents with spaces",
+        out.add("L0101", source.mark(tab),
+                "a tab character indents the line; YAML indents with spaces",
                 "replace it by spaces");
         return;
     }
@@ -600,12 +613,12 @@ void report(const YAML::Exception& fault, const Source& source, const Builder& b
     }
     const Translation* known = translation_of(fault.msg);
     if (known == nullptr) {
-        out.add("L0101", source.mark(offset), fmt::format("not YAML: {}", fault.msg));
+        out.add("L0101", source.mark(offset), fmt::format("this is not YAML: {}", fault.msg));
         return;
     }
-    const bool unclosed = in_brackets && known->message.ends_with("expected");
+    const bool unclosed = in_brackets && known->message.starts_with("expected");
     out.add(known->code, source.mark(offset), std::string(known->message),
-            unclosed ? fmt::format("to go on after the '{}' of line {}", bracket, opened.line)
+            unclosed ? fmt::format("the '{}' of line {} is still open", bracket, opened.line)
                      : std::string(known->help));
 }
 
@@ -624,14 +637,15 @@ void build(const Source& source, Builder& builder, Diagnostics& out) {
         builder.check_open_maps();
         report(fault, source, builder, out);
     } catch (const std::exception& fault) {
-        out.add("L0101", source.mark(0), fmt::format("cannot be read as YAML: {}", fault.what()));
+        out.add("L0101", source.mark(0),
+                fmt::format("the file cannot be read as YAML: {}", fault.what()));
     }
 }
 
 std::string reason_of(int error) {
-    if (error == ENOENT) return "no such file";
+    if (error == ENOENT) return "it does not exist";
     if (error == EISDIR) return "it is a directory";
-    if (error == EACCES) return "no permission";
+    if (error == EACCES) return "you have no permission";
     return std::generic_category().message(error);
 }
 
@@ -662,7 +676,7 @@ std::optional<Node> parse_yaml(std::shared_ptr<const SourceFile> file, Diagnosti
     assert(file);
     if (file->text.size() > limits.bytes) {
         out.add("L0106", {file, 1, 1, 1},
-                fmt::format("a file of more than {} bytes", limits.bytes));
+                fmt::format("the file has more than {} bytes", limits.bytes));
         return {};
     }
     const std::size_t before = out.list().size();

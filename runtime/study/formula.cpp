@@ -84,7 +84,7 @@ class Evaluator {
         double value = 0;
         const auto [end, error] =
             std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-        if (error != std::errc()) fail("no number");
+        if (error != std::errc()) fail("this is not a number");
         at_ = static_cast<std::size_t>(end - text_.data());
         return value;
     }
@@ -100,7 +100,7 @@ class Evaluator {
         if (!value) {
             at_ = start;
             if (!failed()) result_.name = word;
-            fail(fmt::format("unknown name '{}'", word));
+            fail(fmt::format("the name '{}' is not known", word));
         }
         return value.value_or(0);
     }
@@ -119,7 +119,7 @@ class Evaluator {
                    static_cast<double>(arguments.size());
         at_ = start;
         fail(fmt::format(
-            "no function '{}' of {}; known: abs(x), sqrt(x), min, max and mean", function,
+            "there is no function '{}' of {}; known: abs(x), sqrt(x), min, max and mean", function,
             arguments.size() == 1 ? "one value" : fmt::format("{} values", arguments.size())));
         return 0;
     }

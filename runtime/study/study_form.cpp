@@ -42,7 +42,7 @@ void check_limits(const Reader& read, const Node& values, const RandomParameter&
     if (p.distribution != Distribution::integer) return;
     for (const auto& [node, value] : {std::pair(&first, p.a), std::pair(&second, p.b)})
         if (value != std::trunc(value) || std::abs(value) > greatest_integer)
-            return read.fail("L0309", *node, fmt::format("'{}' is no whole number", node->text));
+            return read.fail("L0309", *node, fmt::format("'{}' is not a whole number", node->text));
 }
 
 /// Two numbers of one unit; a standard deviation may be in % of the mean.
@@ -51,9 +51,10 @@ void read_limits(const Reader& read, const Node& values, RandomParameter& p) {
     constexpr bool normal = distribution == Distribution::normal;
     p.distribution = distribution;
     if (values.items.size() != 2)
-        return read.fail(
-            "L0202", values, fmt::format("'{}' takes two numbers", name_of(distribution)),
-            normal ? "the mean and the standard deviation" : "the least and the greatest");
+        return read.fail("L0202", values,
+                         fmt::format("'{}' takes two numbers", name_of(distribution)),
+                         normal ? "they are the mean and the standard deviation"
+                                : "they are the least and the greatest");
     const auto a = read.quantity(values.items[0]);
     if (!a) return;
     static const Unit one;
@@ -104,7 +105,7 @@ const Form& distribution_form() {
                     "write it as {uniform: [5 mm/s, 10 mm/s]}",
                     the_map,
                     "L0202"}},
-         .unknown = "unknown distribution '{}'",
+         .unknown = "'{}' is not a distribution",
          .unknown_code = "L0306"});
     return form;
 }
@@ -233,7 +234,7 @@ const Form& claim_form() {
                                                "greatest_relative_error are those of all rows "
                                                "with a paper's value")
                           .must(),
-                      key<read_unit>("unit", one_of("unit", {"%"}), "shown in percent")}}
+                      key<read_unit>("unit", one_of("a unit", {"%"}), "shown in percent")}}
             .with<&ClaimPlan::bounds>(bounds_form()));
     return form;
 }

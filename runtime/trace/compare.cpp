@@ -99,7 +99,8 @@ std::vector<RunDifference> run_differences(const CsvMetadata& a, const CsvMetada
 void check_comparable(const CsvTable& a, const CsvTable& b, bool same_program, Diagnostics& out) {
     const auto fail = [&](const std::string& what, const std::string& help) {
         out.add("L0708", {b.header, 0, 0, 1},
-                fmt::format("cannot be compared with '{}': {}", a.header->path, what), help);
+                fmt::format("the trace cannot be compared with '{}': {}", a.header->path, what),
+                help);
     };
     check_columns(a, b, fail);
     if (same_program && a.metadata && b.metadata && form_of(*a.metadata) != form_of(*b.metadata))

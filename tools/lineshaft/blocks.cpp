@@ -128,7 +128,7 @@ Exit execute(const BlocksCommand& command) {
     }
     const BlockType* type = catalog.find(command.type);
     if (!type) {
-        spdlog::error("unknown block type '{}'; {}", command.type,
+        spdlog::error("there is no block type '{}'; {}", command.type,
                       suggest(command.type, catalog.names()));
         return Exit::wrong;
     }

@@ -21,7 +21,7 @@ std::optional<double> read_tolerance(const std::string& text, const CsvColumn* c
     const auto parsed = parse_quantity(text);
     const auto* quantity = std::get_if<Quantity>(&parsed);
     if (!quantity || quantity->number < 0) {
-        out.add("L0301", {}, fmt::format("'{}' is no tolerance", text),
+        out.add("L0301", {}, fmt::format("'{}' is not a tolerance", text),
                 "write --tolerance 1e-9 or --tolerance a.x=1um");
         return {};
     }

@@ -88,7 +88,7 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
     if (std::ranges::find(names, word) != names.end()) return {};
-    return fmt::format("unknown command '{}'; {}", word, lineshaft::suggest(word, names));
+    return fmt::format("there is no command '{}'; {}", word, lineshaft::suggest(word, names));
 }
 
 /// The exit code.

@@ -42,7 +42,7 @@ constexpr const char* plan_help =
     "                velocity_above_limit (vf outside of Vmin..V), bad_line\n"
     "  T             duration of the motion\n"
     "  j1,t1,...     jerk and duration of each phase; cells after the last one are empty\n\n"
-    "A bad line (cells missing, no number) is reported on stderr as FILE:LINE: error: ...; the "
+    "A bad line (cells missing, not a number) is reported on stderr as FILE:LINE: error: ...; the "
     "others\n"
     "are planned, and the exit code is 2.";
 
@@ -225,16 +225,16 @@ std::string Header::read(std::string_view line) {
     for (const std::string_view cell : cells) {
         const auto found = std::ranges::find(form->columns, cell);
         if (found == form->columns.end())
-            return fmt::format("unknown column '{}'; the header names {}", cell,
+            return fmt::format("the column '{}' is not known; the header names {}", cell,
                                motion ? column_names(*form) : all_names());
         const auto column = static_cast<std::size_t>(found - form->columns.begin());
         if (std::ranges::find(order, column) != order.end())
-            return fmt::format("a second column '{}'", cell);
+            return fmt::format("two columns are called '{}'", cell);
         order.push_back(column);
     }
     for (std::size_t i = 0; i < form->needed; ++i)
         if (std::ranges::find(order, i) == order.end())
-            return fmt::format("no column '{}'; the header names {}", form->columns[i],
+            return fmt::format("there is no column '{}'; the header names {}", form->columns[i],
                                column_names(*form));
     return {};
 }
@@ -254,7 +254,7 @@ std::string read_cells(std::string_view line, const Header& header, Cells& cells
         ++count;
     }
     if (count != header.order.size())
-        return fmt::format("{} cells instead of {}", count, header.order.size());
+        return fmt::format("the line has {} cells instead of {}", count, header.order.size());
     return mistake;
 }
 
@@ -290,7 +290,7 @@ bool Planner::line(std::string_view text, bool too_long, std::string& rows) {
     if (!has_header()) return header(text, rows);
     Cells cells;
     const std::string wrong = too_long
-                                  ? fmt::format("a line of {} characters or more", longest_line)
+                                  ? fmt::format("the line has {} characters or more", longest_line)
                                   : read_cells(text, header_, cells);
     if (!wrong.empty()) mistake(wrong);
     header_.form->append(rows, ++row_, wrong.empty() ? &cells : nullptr, options_);
@@ -311,7 +311,7 @@ bool Planner::header(std::string_view text, std::string& rows) {
 void Planner::finish() {
     if (has_header() || mistakes_) return;
     number_ = 1;
-    mistake("no header; the first line names " + all_names());
+    mistake("the header is missing; the first line names " + all_names());
 }
 
 void Planner::mistake(const std::string& what) {

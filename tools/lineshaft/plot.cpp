@@ -214,7 +214,7 @@ std::vector<ReportRun> read_runs(const PlotCommand& command, Diagnostics& out) {
 
 Exit execute(PlotCommand& command) {
     if (!command.output.ends_with(".svg") && !command.output.ends_with(".png")) {
-        spdlog::error("'{}' is no .svg and no .png file", command.output);
+        spdlog::error("'{}' is neither an .svg nor a .png file", command.output);
         return Exit::wrong;
     }
     Diagnostics out;

@@ -59,7 +59,7 @@ Json read_study_results(const std::string& path, Diagnostics& out) {
     if (study.is_object() && study.contains("title") && study["title"].is_string() &&
         are_rows("rows") && are_rows("claims"))
         return study;
-    out.add("L0726", {file, 1, 1, 1}, "these are no results of a study",
+    out.add("L0726", {file, 1, 1, 1}, "these are not the results of a study",
             "write them by: lineshaft study STUDY.yaml --json >FILE.json");
     return {};
 }

@@ -185,17 +185,17 @@ void check_overlay(const ReportRun& first, const ReportRun& second, Diagnostics&
         });
         if (missing == others.end()) return false;
         out.add("L0724", header_of(run.table),
-                fmt::format("no column '{}', which {} has", *missing, other.path),
+                fmt::format("the trace has no column '{}', which {} has", *missing, other.path),
                 "only runs of the same signals can be laid over each other; --signals picks some");
         return true;
     };
     if (lacks(second, theirs, first, ours) || lacks(first, ours, second, theirs)) return;
     const double a = interval(first), b = interval(second);
     if (a == 0 || b == 0 || std::abs(a - b) <= 0.05 * std::min(a, b)) return;
-    out.add(
-        "L0725", header_of(second.table),
-        fmt::format("a row each {:.6g} ms, but each {:.6g} ms in {}", b * 1e3, a * 1e3, first.path),
-        "record both at the same interval");
+    out.add("L0725", header_of(second.table),
+            fmt::format("the trace has a row each {:.6g} ms, but each {:.6g} ms in {}", b * 1e3,
+                        a * 1e3, first.path),
+            "record both at the same interval");
 }
 
 std::vector<PathPair> find_paths(const ReportRun& run) {

@@ -134,7 +134,7 @@ RunOptions run_options(const RunCommand& command, Diagnostics& out) {
     every.text = command.checkpoint_every;
     options.checkpoint_every = Reader(out).time(every).value_or(1);
     if (options.checkpoint_every == 0)
-        out.add("L0308", {}, "--checkpoint-every must be above 0 s", "such as 10s");
+        out.add("L0308", {}, "--checkpoint-every must be above 0 s", "write 10s, for instance");
     return options;
 }
 
@@ -200,7 +200,7 @@ Exit execute(const RunCommand& command) {
     for (const std::string& text : result.warnings) spdlog::warn("{}", text);
     for (const std::string& text : result.never_looked_at)
         spdlog::log(command.strict ? spdlog::level::err : spdlog::level::warn,
-                    "'{}' is never looked at: no scan of its task", text);
+                    "'{}' is never looked at: its task never scans", text);
     if (!result.result.message.empty()) spdlog::error("{}", result.result.message);
     if (!result.output_error.empty()) spdlog::error("{}", result.output_error);
     if (!result.restart_error.empty()) spdlog::error("{}", result.restart_error);

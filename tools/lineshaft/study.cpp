@@ -28,7 +28,7 @@ std::optional<Chunk> parse_chunk(const std::string& text, Diagnostics& out) {
     const int read = std::sscanf(text.c_str(), "%ld/%ld%n", &chunk.index, &chunk.of, &end);
     const bool whole = read == 2 && static_cast<std::size_t>(end) == text.size();
     if (whole && chunk.index >= 1 && chunk.index <= chunk.of && chunk.of <= most_runs) return chunk;
-    out.add("L0502", {}, fmt::format("'{}' is no chunk", text),
+    out.add("L0502", {}, fmt::format("'{}' is not a chunk", text),
             fmt::format("write --chunk 3/8, the third of eight, at most {}", most_runs));
     return {};
 }

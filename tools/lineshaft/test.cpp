@@ -82,7 +82,7 @@ SuiteEntry test_program(const std::string& path, const LoadOptions& options, boo
         if (entry.failure.empty() && !verdict.ok) entry.failure = verdict.deviation;
     for (const std::string& text : report.never_looked_at) {
         const std::string unseen =
-            fmt::format("'{}' is never looked at: no scan of its task", text);
+            fmt::format("'{}' is never looked at: its task never scans", text);
         if (strict && entry.failure.empty()) entry.failure = unseen;
         if (!strict) entry.warnings += fmt::format("warning: {}\n", unseen);
     }
@@ -123,7 +123,7 @@ Exit execute(const TestCommand& command) {
             return Exit::fault;
         }
     }
-    if (entries.empty()) spdlog::error("no program and no study found");
+    if (entries.empty()) spdlog::error("no program and no study was found");
     if (entries.empty()) return Exit::wrong;
     return failed == 0 ? Exit::fine : Exit::failed;
 }

@@ -160,21 +160,22 @@ TEST_CASE("mistakes of a CSV file are told with their places") {
           "     |   ^~~~ leave the cell empty where there is no value\n");
     CHECK(read_text("\xC3\xA4,y\n\xC3\xA4,1\n").said.starts_with("t.csv:2:1: error[L0705]: "));
     CHECK(read_text("x,y\n1,2,3\n").said ==
-          "t.csv:2:1: error[L0704]: 3 cells instead of 2\n"
+          "t.csv:2:1: error[L0704]: the row has 3 cells instead of 2\n"
           "   2 | 1,2,3\n"
           "     | ^~~~~ with decimal commas, semicolons stand between the cells\n");
     CHECK(read_text("x,y\n1,2\n1").said ==
-          "t.csv:3:1: error[L0706]: 1 cell instead of 2: the file is cut\n"
+          "t.csv:3:1: error[L0706]: the row has 1 cell instead of 2: the file is cut\n"
           "   3 | 1\n"
           "     | ^\n");
     for (const char* word : {"nan", "inf", "-inf", "0x10", "1 2", "1e999", "true", "+-1", "1,5;"})
         CHECK(read_text(fmt::format("x,y\n1,{}\n", word)).said.find("error[L070") !=
               std::string::npos);
-    CHECK(read_text("x,x\n1,2\n").said.starts_with("t.csv:1:3: error[L0703]: a second column 'x'"));
-    CHECK(read_text("1,2\n3,4\n").said.starts_with("t.csv:1:1: error[L0701]: '1' is no name"));
+    CHECK(read_text("x,x\n1,2\n")
+              .said.starts_with("t.csv:1:3: error[L0703]: two columns are called 'x'"));
+    CHECK(read_text("1,2\n3,4\n").said.starts_with("t.csv:1:1: error[L0701]: '1' is not a name"));
     CHECK(read_text("x,\n1,2\n").said.starts_with("t.csv:1:3: error[L0701]: a column has no name"));
     CHECK(read_text("time,a.x\n1,2\n", {.columns = {"a.y"}}).said ==
-          "t.csv:1:1: error[L0702]: no column 'a.y' in 't.csv'\n"
+          "t.csv:1:1: error[L0702]: 't.csv' has no column 'a.y'\n"
           "   1 | time,a.x\n"
           "     | ^~~~~~~~ known: time, a.x\n");
 }
@@ -206,7 +207,8 @@ TEST_CASE("values that a column's type does not have are told") {
 
 TEST_CASE("a file shorter than its sidecar tells is told, and a sidecar that is none") {
     CHECK(read_text("time\n1\n", {}, sidecar)
-              .said.starts_with("t.csv: error[L0706]: 1 rows, where its sidecar tells of 2\n"));
+              .said.starts_with(
+                  "t.csv: error[L0706]: the file has 1 rows, where its sidecar tells of 2\n"));
     CHECK(read_text("time\n1\n2", {}, sidecar).said.find("its last row has no end") !=
           std::string::npos);
     for (const char* text :

@@ -114,7 +114,7 @@ TEST_CASE("a foreign or cut checkpoint is refused", "[resume]") {
         CHECK(message("03_ratio_change.yaml") == "the checkpoint is not whole");
     }
     std::ofstream(options.checkpoint_path, std::ios::binary) << whole.substr(0, 10);
-    CHECK(message("03_ratio_change.yaml") == "this is no checkpoint");
+    CHECK(message("03_ratio_change.yaml") == "this is not a checkpoint");
     std::ofstream(options.checkpoint_path, std::ios::binary) << whole;
     std::ofstream(options.trace_path, std::ios::binary) << "time,scan\n";
     CHECK_THAT(message("03_ratio_change.yaml"),

@@ -183,7 +183,7 @@ TEST_CASE("link: a loop is named hop by hop") {
                              "  g: {type: gain, task: a, x: f.y}\n"
                              "  h: {type: gain, task: a, x: g.y}\n"));
     REQUIRE(result.out.list().size() == 1);
-    CHECK(result.out.list()[0].message == "feedback without previous(): f -> g -> h -> f");
+    CHECK(result.out.list()[0].message == "this feedback needs previous(): f -> g -> h -> f");
 }
 
 TEST_CASE("link: what could not be read causes no further mistakes") {

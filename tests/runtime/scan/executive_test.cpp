@@ -132,10 +132,10 @@ TEST_CASE("a task due again before its scan has ended is an overrun") {
     const RunResult result = bench.run();
     CHECK(result.outcome == Outcome::overrun);
     CHECK(result.time == 2 * ms);
-    CHECK(
-        result.message ==
-        "task 'main' overran: due again at 0.002 s, before scan 0, begun at 0 s, has ended; STOP: "
-        "no task has it under 'on_overrun'");
+    CHECK(result.message ==
+          "task 'main' overran: it is due again at 0.002 s, before scan 0, begun at 0 s, has "
+          "ended; STOP: "
+          "no task has it under 'on_overrun'");
 }
 
 TEST_CASE("a task that could not even begin is an overrun, with the time it was due") {

@@ -76,7 +76,7 @@ TEST_CASE("a slow task at 2.01 times its limit stops the machine", "[overrun]") 
     CHECK(line.times("ob80") == Times{150});
     CHECK(result.message ==
           "task 'main' overran: scan 1, begun at 0.1 s, has not ended at 0.2 s; its maximum cycle "
-          "time is 0.05 s; block 'x' (probe) was running; STOP: the second time error in one "
+          "time is 0.05 s; block 'x' (probe) was running; STOP: it is the second time error in one "
           "cycle");
 }
 

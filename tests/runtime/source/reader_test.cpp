@@ -79,8 +79,8 @@ TEST_CASE("reader: what is wrong with a real number") {
         {"010 mm/s", "L0301: '010 mm/s' is not a number", "a number has no leading zero"},
         {"1,5 mm/s", "L0301: '1,5 mm/s' is not a number",
          "a number has a decimal point, not a comma"},
-        {"1.2.3", "L0304: unknown unit '.3' in '1.2.3'", ""},
-        {"10 MM/s", "L0304: unknown unit 'MM' in '10 MM/s'", "did you mean 'mm'?"},
+        {"1.2.3", "L0304: the unit '.3' in '1.2.3' is not known", ""},
+        {"10 MM/s", "L0304: the unit 'MM' in '10 MM/s' is not known", "did you mean 'mm'?"},
         {"1e999 mm/s", "L0305: '1e999 mm/s' is beyond a 64-bit number's range", ""},
         {"1e308 m/s", "L0305: '1e308 m/s' is beyond a 64-bit number's range", ""},
     }));

@@ -80,7 +80,7 @@ TEST_CASE("a division by zero and a root of a negative number have no finite val
 }
 
 TEST_CASE("a mistake is named where it stands") {
-    check_error("1 + x", "unknown name 'x'", 4);
+    check_error("1 + x", "the name 'x' is not known", 4);
     check_error("", "a number, a name or '(' is expected here", 0);
     check_error("1 +", "a number, a name or '(' is expected here", 3);
     check_error("(1 + 2", "')' is missing", 6);
@@ -89,18 +89,18 @@ TEST_CASE("a mistake is named where it stands") {
     check_error("1 + * 2", "a number, a name or '(' is expected here", 4);
     check_error("1)", "')' is not expected here", 1);
     const std::string known = "; known: abs(x), sqrt(x), min, max and mean";
-    check_error("root(2)", "no function 'root' of one value" + known, 0);
-    check_error("2 * abs(1, 2)", "no function 'abs' of 2 values" + known, 4);
+    check_error("root(2)", "there is no function 'root' of one value" + known, 0);
+    check_error("2 * abs(1, 2)", "there is no function 'abs' of 2 values" + known, 4);
     check_error("min()", "a number, a name or '(' is expected here", 4);
-    check_error("1e999", "no number", 0);
-    check_error(".", "no number", 0);
+    check_error("1e999", "this is not a number", 0);
+    check_error(".", "this is not a number", 0);
     check_error("1 % 2", "'%' is not expected here", 2);
 }
 
 TEST_CASE("only the first mistake is told") {
-    check_error("x + y", "unknown name 'x'", 0);
-    check_error("(x", "unknown name 'x'", 1);
-    check_error("min(x, (", "unknown name 'x'", 4);
+    check_error("x + y", "the name 'x' is not known", 0);
+    check_error("(x", "the name 'x' is not known", 1);
+    check_error("min(x, (", "the name 'x' is not known", 4);
 }
 
 TEST_CASE("a formula may be 100 levels deep, no more") {

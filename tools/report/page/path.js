@@ -98,7 +98,7 @@ export class Path {
       return element("label", {}, label, input);
     };
     const title = element("h2", {}, `Path of ${this.pair.x}, ${this.pair.y}`);
-    if (!this.circle) return element("div", {}, title, element("p", {}, "The path is no circle."));
+    if (!this.circle) return element("div", {}, title, element("p", {}, "The path is not a circle."));
     const { circle } = this;
     return element("div", { className: "controls" }, title,
       field("deviation ×", this.magnify, (value) => { this.magnify = value; }),
