@@ -448,6 +448,70 @@ no 'expect:'. Say what must hold:
 a timer when it was started. 'retain: [counter.cv]' keeps the number alone, and a part that stands
 in the light barrier is counted once more after the restart. Keep the whole block:
     retain: [counter])"},
+
+    {"L0901", "a character of no word",
+     R"(The Structured Text has a character that begins no name, number, text or sign, or a comment
+or text that does not end. Comments are // to the end of the line, (* *) and /* */, which
+nest. Texts stand in single quotes; names with other than letters, digits and '_' stand in
+double quotes.)"},
+    {"L0902", "something else is expected",
+     R"(The Structured Text cannot be taken apart here: another word or sign is due. The place is
+where the reader noticed; what is missing often belongs before it, such as the ';' that ends a
+statement. ':=' assigns, '=' compares. IF, CASE, FOR, WHILE and REPEAT end with their own END_...;
+in a chain of conditions write ELSIF, for ELSE IF opens a second IF.)"},
+    {"L0903", "not supported",
+     R"(This part of IEC 61131-3 or of a maker's language is not supported; the help says what to write
+instead. Not supported are classes, interfaces, inheritance, pointers and references, direct
+addresses (%IX0.0), sequential function charts, WSTRING and dates.)"},
+    {"L0904", "a name that is not declared",
+     R"(No variable, type, block or function of this name is seen here. Names are found without regard
+to capital letters. A block sees its own variables, its methods those of their block; all see
+VAR_GLOBAL, data blocks, types, enumerations and functions of all sources of the program. From
+outside, a block's VAR_TEMP and constants are not seen.)"},
+    {"L0905", "a type that does not fit",
+     R"(The value has another type than is due, and none that becomes it by itself. A condition is a
+BOOL, an index and a CASE selector are whole numbers, an operator takes operands of its own kind.
+Conversions are written as functions: INT_TO_REAL(n), or TO_REAL(n).)"},
+    {"L0906", "a conversion that may lose",
+     R"(Integers, bit strings and reals become larger types by themselves (INT to DINT, INT to REAL, DINT
+to LREAL, REAL to LREAL, BYTE to WORD). The other way a value may not fit, so that it must be
+written: LREAL_TO_REAL(x), DINT_TO_INT(n) (which wraps), REAL_TO_INT(x) (which rounds half to even,
+and is a fault where no INT holds the value).)"},
+    {"L0907", "wrong arguments",
+     R"(A call gives an argument that is not there, gives one twice, leaves one out that is due, or
+gives a value where a variable is due. Inputs are given with ':=', outputs are taken with '=>':
+delay(IN := start, PT := T#20ms, Q => done)
+By position, arguments stand in the order of their declaration. A VAR_IN_OUT must be given.)"},
+    {"L0908", "a value out of range",
+     R"(A constant does not fit: a number beyond its type, an index beyond its array, a division by zero,
+a value that a CASE has already, more initial values than elements.)"},
+    {"L0909", "a name declared twice",
+     R"(Two declarations of one scope bear the same name. Names that differ in capital letters only are
+the same name.)"},
+    {"L0910", "not to be assigned",
+     R"(Inputs, constants and values are not assigned. Of an instance only inputs are set from outside. An
+input that a block wants to change is copied to a variable of VAR first, or declared as VAR_IN_OUT
+where the caller's variable is meant.)"},
+    {"L0911", "a block that calls or contains itself",
+     R"(A PLC has a fixed amount of memory for each block, so that nothing may call itself, also not by way
+of others, and no type may contain itself. The message lists the way around. Write a loop, with an
+array for what has to be remembered.)"},
+    {"L0912", "too deep or too large",
+     R"(Expressions and statements nest at most 200 deep, a chain of operators has at most 2000 operands,
+an array at most 16777216 elements, a block at most 512 MB.)"},
+    {"L0913", "not a constant",
+     R"(Bounds of arrays and subranges, lengths of STRING, values of enumerations, labels of CASE and
+initial values are known when compiling: numbers, constants of VAR CONSTANT, and expressions of
+these.)"},
+    {"L0914", "a statement or declaration in a wrong place",
+     R"(EXIT and CONTINUE stand in a loop. Only functions and methods have a result. A function keeps
+nothing from call to call, so that it has no instances; it takes one as VAR_IN_OUT.)"},
+    {"L0921", "a variable that is never used",
+     R"(A warning: the variable is declared and nothing reads or writes it. Remove it, or use it: often a
+name is misspelt elsewhere.)"},
+    {"L0922", "a statement that is never reached",
+     R"(A warning: the statement before it leaves the block or the loop. Remove it, or put the statement
+before it into an IF.)"},
 };
 
 }  // namespace

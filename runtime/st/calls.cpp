@@ -1,0 +1,408 @@
+#include <algorithm>
+
+#include "runtime/st/checker_class.hpp"
+#include "runtime/st/standard.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+using Kind = Type::Kind;
+
+bool is_variable(const Expression& e) {
+    using E = Expression::Kind;
+    return e.kind == E::name || e.kind == E::member || e.kind == E::index;
+}
+
+}  // namespace
+
+const Type* Checker::check_call(Expression& call, bool as_statement, const Type* expected) {
+    Expression& callee = *call.operands[0];
+    if (callee.kind == Expression::Kind::member) {
+        const Type* of = check(*callee.operands[0]);
+        if (!of) return nullptr;
+        if (of->kind == Kind::block) {
+            const auto it = of->routine->methods.find(callee.token.text);
+            if (it != of->routine->methods.end()) {
+                Routine& method = *it->second;
+                const bool outside =
+                    !routine_ || (routine_ != of->routine && routine_->owner != of->routine);
+                if (method.pou->is_private && outside)
+                    return fail("L0907", callee.token.place,
+                                fmt::format("'{}' is PRIVATE to {}", callee.token.text, of->name),
+                                "only its own block calls it");
+                return check_routine_call(call, method, as_statement);
+            }
+        }
+    }
+    if (callee.kind == Expression::Kind::name && !find_variable(callee.token)) {
+        const std::string_view name = callee.token.text;
+        for (const Routine* r = routine_; r; r = r->owner)
+            if (const auto it = r->methods.find(name); it != r->methods.end())
+                return check_routine_call(call, *it->second, as_statement);
+        if (const auto it = routines_.find(name); it != routines_.end() && !it->second->type)
+            return check_routine_call(call, *it->second, as_statement);
+        if (!callee.token.quoted) return check_standard_function(call, expected);
+    }
+    if (callee.kind == Expression::Kind::name && routine_ && !routine_->names.empty()) {
+        const auto it = routines_.find(callee.token.text);
+        const bool own = it != routines_.end() && it->second == routine_;
+        if (own && routine_->is_function())
+            return check_routine_call(call, *routine_, as_statement);
+    }
+    const Type* type = check(callee);
+    if (!type) return nullptr;
+    if (type->is_instance()) return check_instance_call(call, *type, as_statement);
+    return fail("L0907", callee.place, fmt::format("{} cannot be called", describe(*type)),
+                "functions, methods and instances of function blocks are called");
+}
+
+const Type* Checker::check_routine_call(Expression& call, Routine& routine, bool as_statement) {
+    call.routine = &routine;
+    if (routine_) {
+        routine_->calls.push_back(&routine);
+        routine_->call_places.push_back(call.place);
+    }
+    check_arguments(call, routine);
+    if (routine.result) return routine.result->type;
+    if (!as_statement)
+        return fail("L0905", call.place, fmt::format("'{}' has no result", routine.name),
+                    "call it as a statement of its own, and take an output with '=>'");
+    return nullptr;
+}
+
+const Type* Checker::check_instance_call(Expression& call, const Type& type, bool as_statement) {
+    if (!as_statement)
+        return fail("L0905", call.place, "the call of an instance has no value",
+                    "call it as a statement of its own, then take an output: name.Q");
+    if (type.kind == Kind::block) {
+        call.routine = type.routine;
+        check_arguments(call, *type.routine);
+    } else {
+        check_standard_arguments(call, type);
+    }
+    return nullptr;
+}
+
+Variable* Checker::find_parameter(Argument& argument, Routine& routine, std::size_t position) {
+    const auto is_parameter = [](const Variable& variable) {
+        return variable.section == Section::input || variable.section == Section::in_out ||
+               variable.section == Section::output;
+    };
+    std::vector<std::string> names;
+    std::size_t i = 0;
+    for (Variable& variable : routine.variables) {
+        if (!is_parameter(variable)) continue;
+        names.emplace_back(variable.text);
+        const bool named = argument.name.word != Word::end_of_file;
+        if (named ? same_name(variable.text, argument.name.text) : i == position) return &variable;
+        ++i;
+    }
+    if (argument.name.word == Word::end_of_file)
+        return fail("L0907", argument.value->place,
+                    fmt::format("'{}' takes {} argument{}", routine.name, i, i == 1 ? "" : "s"));
+    return fail("L0907", argument.name.place,
+                fmt::format("'{}' has no argument '{}'", routine.name, argument.name.text),
+                suggest(argument.name.text, names));
+}
+
+void Checker::check_arguments(Expression& call, Routine& routine) {
+    std::size_t position = 0;
+    std::vector<const Variable*> given;
+    bool by_name = false;
+    for (Argument& argument : call.arguments) {
+        by_name |= argument.name.word != Word::end_of_file;
+        Variable* parameter = find_parameter(argument, routine, position++);
+        argument.variable = parameter;
+        if (!parameter) {
+            check(*argument.value);
+            continue;
+        }
+        if (std::ranges::find(given, parameter) != given.end())
+            fail("L0907", argument.value->place,
+                 fmt::format("'{}' is given twice", parameter->text));
+        given.push_back(parameter);
+        check_argument(call, argument, *parameter);
+    }
+    for (const Variable& variable : routine.variables) {
+        const bool due = variable.section == Section::in_out ||
+                         (variable.section == Section::input && !routine.has_instances() &&
+                          !by_name && !variable.initial);
+        if (due && std::ranges::find(given, &variable) == given.end())
+            fail("L0907", call.operands[0]->place,
+                 fmt::format("'{}' is called without '{}'", routine.name, variable.text),
+                 fmt::format("write {} := ...", variable.text));
+    }
+}
+
+void Checker::check_argument(Expression&, Argument& argument, Variable& parameter) {
+    Expression*& value = argument.value;
+    const Type* type = parameter.type;
+    if (argument.is_output != (parameter.section == Section::output) &&
+        argument.name.word != Word::end_of_file) {
+        check(*value);
+        fail("L0907", argument.name.place,
+             fmt::format("'{}' is {} of the call", parameter.text,
+                         parameter.section == Section::output ? "an output" : "an input"),
+             parameter.section == Section::output ? "write '=>' and the variable that it goes to"
+                                                  : "write ':='");
+        return;
+    }
+    if (parameter.section == Section::input) {
+        if (check(*value, type) && type) coerce(value, *type);
+        return;
+    }
+    const Type* given = check(*value);
+    if (!given || !type) return;
+    if (!is_variable(*value) || !check_target(*value, "given here")) {
+        if (!is_variable(*value))
+            fail("L0907", value->place,
+                 fmt::format("'{}' takes a variable, not a value", parameter.text),
+                 "declare one and give it here");
+        return;
+    }
+    const bool fits =
+        parameter.section == Section::in_out
+            ? same_type(*given, *type)
+            : same_type(*given, *type) || (type->is_scalar() && widens(*type, *given));
+    if (!fits)
+        fail("L0905", value->place,
+             fmt::format("'{}' is {}, and {} is given", parameter.text, describe(*type),
+                         describe(*given)));
+}
+
+void Checker::check_standard_arguments(Expression& call, const Type& type) {
+    std::vector<std::string> names;
+    for (const Variable* member : type.members) names.emplace_back(member->text);
+    std::size_t position = 0;
+    for (Argument& argument : call.arguments) {
+        Variable* found = nullptr;
+        if (argument.name.word == Word::end_of_file) {
+            if (position < type.members.size()) found = type.members[position++];
+        } else {
+            for (Variable* member : type.members)
+                if (same_name(member->text, argument.name.text)) found = member;
+        }
+        argument.variable = found;
+        if (!found) {
+            fail("L0907", argument.name.text.empty() ? argument.value->place : argument.name.place,
+                 fmt::format("{} has no argument '{}'", type.name, argument.name.text),
+                 suggest(argument.name.text, names));
+            continue;
+        }
+        check_argument(call, argument, *found);
+    }
+}
+
+// Standard functions.
+
+const Type* Checker::check_standard_function(Expression& call, const Type* expected) {
+    const Token& name = call.operands[0]->token;
+    call.standard = find_standard_function(name.text);
+    for (Argument& argument : call.arguments)
+        if (argument.is_output)
+            return fail("L0907", argument.name.place,
+                        "a standard function has no output but its value");
+    if (call.standard < 0) {
+        if (const Type* type = check_conversion(call, name.text)) return type;
+        if (call.type || call.standard == -2) return nullptr;
+        std::vector<std::string> names = visible_names();
+        for (const StandardFunction& f : standard_functions()) names.emplace_back(f.name);
+        for (Argument& argument : call.arguments) check(*argument.value);
+        return fail("L0904", name.place, fmt::format("'{}' is not declared", name.text),
+                    suggest(name.text, nearest(name.text, names)));
+    }
+    const StandardFunction& f = standard_functions()[static_cast<std::size_t>(call.standard)];
+    const int count = static_cast<int>(call.arguments.size());
+    if (count < f.least || count > f.most)
+        return fail("L0907", call.operands[0]->place,
+                    fmt::format("{} takes {}{} argument{}", f.name, f.least,
+                                f.most > f.least ? " or more" : "", f.most == 1 ? "" : "s"));
+    for (int i = 0; i < count; ++i) {
+        const Argument& argument = call.arguments[static_cast<std::size_t>(i)];
+        if (argument.name.word == Word::end_of_file) continue;
+        if (!same_name(argument.name.text, argument_name(f, i)))
+            return fail(
+                "L0907", argument.name.place,
+                fmt::format("'{}' is not argument {} of {}", argument.name.text, i + 1, f.name),
+                fmt::format("it is called {}", argument_name(f, i)));
+    }
+    const bool first_differs = f.rule == Rule::select || f.rule == Rule::multiplex;
+    const bool passes =
+        f.rule == Rule::extremum || f.rule == Rule::limit || first_differs || f.rule == Rule::move;
+    for (int i = 0; i < count; ++i)
+        check(*call.arguments[static_cast<std::size_t>(i)].value,
+              passes && !(first_differs && i == 0) ? expected : nullptr);
+    for (const Argument& argument : call.arguments)
+        if (!argument.value->type) return nullptr;
+    return standard_result(call, expected);
+}
+
+namespace {
+
+const Type& real_for(const Type& type) {
+    return type.kind == Kind::real && type.bits == 32 ? real_type : lreal_type;
+}
+
+}  // namespace
+
+const Type* Checker::standard_result(Expression& call, const Type* expected) {
+    const StandardFunction& f = standard_functions()[static_cast<std::size_t>(call.standard)];
+    auto& arguments = call.arguments;
+    const auto coerce_from = [&](std::size_t first, const Type& type) {
+        bool good = true;
+        for (std::size_t i = first; i < arguments.size(); ++i)
+            good &= coerce(arguments[i].value, type);
+        return good;
+    };
+    /// The type that all from `first` on have in common.
+    const auto common_from = [&](std::size_t first) -> const Type* {
+        const Type* common = arguments[first].value->type;
+        for (std::size_t i = first + 1; i < arguments.size(); ++i) {
+            const Type& type = *arguments[i].value->type;
+            if (common->is_any() && (!type.is_any() || type.is_real()))
+                common = &type;
+            else if (!type.is_any() && !same_type(*common, type) && common->is_scalar())
+                common = common_type(*common, type);
+            if (!common) {
+                fail("L0906", call.place,
+                     fmt::format("the arguments of {} have no common type", f.name),
+                     "convert them");
+                return nullptr;
+            }
+        }
+        if (common->is_any() && expected && (expected->is_number())) common = &expected->plain();
+        if (common->is_any()) common = common->is_real() ? &lreal_type : &dint_type;
+        return coerce_from(first, common->plain()) ? &common->plain() : nullptr;
+    };
+    const Type& first = *arguments[0].value->type;
+    switch (f.rule) {
+        case Rule::real:
+        case Rule::square:
+        case Rule::fraction:
+        case Rule::finite: {
+            const Type& type = first.is_any() && expected && expected->kind == Kind::real
+                                   ? *expected
+                                   : real_for(first);
+            if (!coerce_from(0, type)) return nullptr;
+            return f.rule == Rule::finite ? &bool_type : &type;
+        }
+        case Rule::real_two:
+        case Rule::normalise: {
+            const Type* type = common_from(0);
+            if (!type) return nullptr;
+            const Type& real = type->is_real() ? real_for(*type) : lreal_type;
+            return coerce_from(0, real) ? &real : nullptr;
+        }
+        case Rule::scale: {
+            const Type* type = common_from(0);
+            if (!type) return nullptr;
+            return coerce_from(0, type->is_real() ? *type : lreal_type) ? type : nullptr;
+        }
+        case Rule::whole: {
+            if (!coerce_from(0, real_for(first))) return nullptr;
+            return expected && expected->kind == Kind::integer ? &expected->plain() : &dint_type;
+        }
+        case Rule::absolute:
+        case Rule::extremum:
+        case Rule::limit:
+        case Rule::move: {
+            const Type* type = common_from(0);
+            if (!type) return nullptr;
+            const bool number = type->is_number() || type->kind == Kind::time ||
+                                (f.rule == Rule::extremum && type->kind == Kind::bits);
+            if (number || f.rule == Rule::move) return type;
+            return fail("L0905", arguments[0].value->place,
+                        fmt::format("{} takes numbers, not {}", f.name, describe(*type)));
+        }
+        case Rule::select:
+            if (!coerce(arguments[0].value, bool_type)) return nullptr;
+            return common_from(1);
+        case Rule::multiplex:
+            if (first.is_any() ? !coerce(arguments[0].value, lint_type)
+                               : first.kind != Kind::integer)
+                return first.is_any()
+                           ? nullptr
+                           : fail("L0905", arguments[0].value->place, "K of MUX is a whole number");
+            return common_from(1);
+        case Rule::shift: {
+            const Type& count = *arguments[1].value->type;
+            if (!count.is_integer() && count.kind != Kind::any_bits)
+                return fail("L0905", arguments[1].value->place,
+                            "the number of places is an integer");
+            if (!coerce(arguments[1].value, count.is_any() ? lint_type : count)) return nullptr;
+            if (first.kind == Kind::bits || (first.kind == Kind::integer)) return &first.plain();
+            return fail("L0905", arguments[0].value->place,
+                        fmt::format("{} takes a bit string, not {}", f.name, describe(first)),
+                        "write its type, as in WORD#16#FF");
+        }
+        case Rule::operation: {
+            Expression* left = arguments[0].value;
+            for (std::size_t i = 1; i < arguments.size(); ++i) {
+                Expression* made = make(Expression::Kind::binary, call);
+                made->op = f.word;
+                made->token.place = call.operands[0]->place;
+                made->operands[0] = left;
+                made->operands[1] = arguments[i].value;
+                left = made;
+            }
+            const Type* type = check(*left, expected);
+            call = *left;
+            return type;
+        }
+    }
+    return nullptr;
+}
+
+/// `INT_TO_REAL(x)`, `TO_REAL(x)`, `REAL_TRUNC_INT(x)`: the call becomes a conversion.
+const Type* Checker::check_conversion(Expression& call, std::string_view name) {
+    std::string upper(name);
+    for (char& c : upper) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    const std::size_t to = upper.starts_with("TO_") ? 0 : upper.find("_TO_");
+    const std::size_t trunc = upper.starts_with("TRUNC_") ? 0 : upper.find("_TRUNC_");
+    const bool truncates = to == std::string::npos && trunc != std::string::npos;
+    const std::size_t at = truncates ? trunc : to;
+    if (at == std::string::npos) return nullptr;
+    const std::size_t skip = (truncates ? 6 : 3) + (at == 0 ? 0U : 1U);
+    const auto find = [&](std::string_view text) -> const Type* {
+        if (const Type* type = find_elementary(text)) return type;
+        const auto it = named_types_.find(text);
+        return it == named_types_.end() ? nullptr : it->second.type;
+    };
+    const Type* target = find(std::string_view(name).substr(at + skip));
+    const Type* source = at == 0 ? nullptr : find(std::string_view(name).substr(0, at));
+    if (!target || (at != 0 && !source)) return nullptr;
+    call.standard = -2;
+    if (call.arguments.size() != 1)
+        return fail("L0907", call.operands[0]->place, fmt::format("{} takes 1 argument", name));
+    Expression*& value = call.arguments[0].value;
+    const Type* given = check(*value, source);
+    if (!given) return nullptr;
+    if (given->is_any()) {
+        const Type& fallback = given->is_real() ? lreal_type : lint_type;
+        if (!coerce(value, source ? *source : fallback)) return nullptr;
+    } else if (source && !same_type(*given, *source)) {
+        if (!coerce(value, *source)) return nullptr;
+    }
+    const Type& from = *value->type;
+    const bool impossible = !from.is_scalar() || !target->is_scalar();
+    if (impossible && !(from.kind == Kind::text && target->is_scalar()) &&
+        !(target->kind == Kind::text && from.is_scalar()))
+        return fail(
+            "L0905", call.place,
+            fmt::format("there is no conversion of {} to {}", describe(from), describe(*target)));
+    if (same_type(from, *target)) {
+        Expression copy = *value;
+        call = copy;
+        return target;
+    }
+    Expression* operand = value;
+    convert(operand, *target);
+    if (operand->kind == Expression::Kind::converted && truncates) operand->op = Word::divided;
+    const Place place = call.place;
+    call = Expression(*operand);
+    call.place = place;
+    return target;
+}
+
+}  // namespace lineshaft::st

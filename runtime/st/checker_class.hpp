@@ -1,0 +1,155 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "runtime/st/checker.hpp"
+#include "runtime/st/elementary.hpp"
+
+namespace lineshaft::st {
+
+/// What check() keeps while it works: declarations.cpp, expressions.cpp, calls.cpp, statements.cpp.
+class Checker {
+  public:
+    Checker(Tree& tree, const Catalog& standard, Diagnostics& out)
+        : tree_(tree), standard_(standard), out_(out) {}
+
+    Checked check();
+
+  private:
+    using Kind = Type::Kind;
+    using Code = const char*;
+
+    struct NamedType {
+        const TypeDeclaration* declaration = nullptr;
+        const Type* type = nullptr;
+        bool visiting = false;
+    };
+
+    /// A value of an enumeration.
+    struct NamedValue {
+        const Type* type = nullptr;
+        std::size_t index = 0;
+        bool ambiguous = false;
+    };
+
+    // declarations.cpp
+    void collect_names();
+    void declare_globals();
+    void declare_routines();
+    void declare(Routine& routine, const DeclarationBlock& block);
+    void declare_result(Routine& routine);
+    Variable* add(std::deque<Variable>& to, const Declaration& declared, const Type* type);
+    bool is_new_name(Token name, NameMap<Place>& names);
+    void check_unit(Variable& variable, const Declaration& declared);
+    void check_initial_values();
+    void check_initial(Expression*& value, const Type& type);
+    void check_elements(Expression& list, const Type& array);
+    void check_members(Expression& list, const Type& type);
+    const Type* resolve(const TypeText& text);
+    const Type* resolve_name(const Token& name);
+    const Type* resolve_declared(NamedType& named);
+    const Type* resolve_array(const TypeText& text);
+    const Type* resolve_structure(const TypeText& text);
+    const Type* resolve_enumeration(const TypeText& text);
+    const Type* resolve_subrange(const TypeText& text);
+    const Type* resolve_text(const TypeText& text);
+    const Type* standard_type(std::string_view name);
+    Type& make_type(Kind kind, std::string name);
+    Routine& make_routine(Pou& pou, std::string name);
+    void depend(const Type* type, Place place);
+    void put_in_order();
+    void visit(Routine& routine, std::vector<const Routine*>& path);
+    void warn_of_unused();
+
+    // expressions.cpp
+    const Type* check(Expression& expression, const Type* expected = nullptr);
+    const Type* check_constant(Expression& expression, const Type* expected);
+    const Type* check_number(Expression& expression);
+    const Type* check_time(Expression& expression);
+    const Type* check_text(Expression& expression);
+    const Type* check_name(Expression& expression, const Type* expected);
+    const Type* use(Expression& expression, Variable& variable);
+    const Type* unknown_name(Expression& expression);
+    const Type* check_member(Expression& expression);
+    const Type* check_index(Expression& expression);
+    const Type* check_bit(Expression& expression);
+    const Type* check_unary(Expression& expression, const Type* expected);
+    const Type* check_binary(Expression& expression, const Type* expected);
+    const Type* check_logic(Expression& expression);
+    const Type* check_comparison(Expression& expression);
+    const Type* check_arithmetic(Expression& expression);
+    const Type* check_time_arithmetic(Expression& expression);
+    const Type* check_power(Expression& expression);
+    const Type* unite(Expression& expression);
+    const Type* check_typed(Expression& expression);
+    void fold(Expression& expression);
+    void fold_unary(Expression& expression, const Constant& value);
+    void fold_binary(Expression& expression, const Constant& a, const Constant& b);
+    void become(Expression& expression, const Type& type, Constant value);
+    void become_boolean(Expression& expression, bool value);
+    bool coerce(Expression*& expression, const Type& to);
+    bool coerce_constant(Expression& expression, const Type& to);
+    void convert(Expression*& expression, const Type& to);
+    bool fold_conversion(Expression& expression, const Type& to);
+    bool refuse_conversion(const Expression& expression, const Type& to);
+    std::optional<Wide> check_whole(Expression*& expression, const Type& type);
+    std::vector<std::string> visible_names() const;
+    Variable* find_variable(const Token& token) const;
+
+    // calls.cpp
+    const Type* check_call(Expression& call, bool as_statement, const Type* expected);
+    const Type* check_routine_call(Expression& call, Routine& routine, bool as_statement);
+    const Type* check_instance_call(Expression& call, const Type& type, bool as_statement);
+    void check_arguments(Expression& call, Routine& routine);
+    void check_argument(Expression& call, Argument& argument, Variable& parameter);
+    void check_standard_arguments(Expression& call, const Type& type);
+    Variable* find_parameter(Argument& argument, Routine& routine, std::size_t position);
+    const Type* check_standard_function(Expression& call, const Type* expected);
+    const Type* check_conversion(Expression& call, std::string_view name);
+    const Type* standard_result(Expression& call, const Type* expected);
+
+    // statements.cpp
+    void check_body(Routine& routine);
+    void check(Block& block);
+    void check(Statement& statement);
+    void check_assignment(Statement& statement);
+    void check_case(Statement& statement);
+    void check_for(Statement& statement);
+    void check_condition(Expression*& condition, std::string_view of);
+    bool check_target(Expression& target, std::string_view how = "assigned to");
+
+    template <class... T>
+    std::nullptr_t fail(Code code, Place place, std::string message, std::string help = {}) {
+        out_.add(code, place.mark(), std::move(message), std::move(help));
+        return nullptr;
+    }
+
+    Expression* make(Expression::Kind kind, const Expression& like) {
+        Expression& made = tree_.expressions.emplace_back();
+        made.kind = kind;
+        made.token = like.token;
+        made.place = like.place;
+        return &made;
+    }
+
+    Tree& tree_;
+    const Catalog& standard_;
+    Diagnostics& out_;
+    Checked checked_;
+    NameMap<NamedType> named_types_;
+    NameMap<NamedValue> values_;
+    NameMap<Routine*> routines_;
+    NameMap<Variable*> globals_;
+    NameMap<const Type*> standard_types_;
+    NameMap<Place> top_names_;
+    Routine* routine_ = nullptr;  ///< that is being checked
+    int loops_ = 0;               ///< around the statement
+};
+
+/// `INT`, `ARRAY[0..3] OF LREAL`: for messages.
+std::string describe(const Type& type);
+
+}  // namespace lineshaft::st

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runtime/model/catalog.hpp"
+#include "runtime/st/opcodes.hpp"
+#include "runtime/st/token.hpp"
+
+namespace lineshaft::st {
+
+struct Instruction {
+    Op op = Op::leave;
+    std::uint32_t a = 0, b = 0, c = 0;
+};
+static_assert(sizeof(Instruction) == 16);
+
+/// Of an index: `(value - lower) * stride`, where value is one of `count` from `lower` on. Of a
+/// look_up `lower` is the place of the first number.
+struct IndexTable {
+    std::int64_t lower = 0;
+    std::uint64_t count = 0, stride = 1;
+};
+
+struct CodeRoutine {
+    std::string name;
+    std::uint32_t entry = 0, end = 0;  ///< instructions
+    std::uint32_t frame = 0;           ///< slots that it may use, from its base on
+    std::uint32_t depth = 0;           ///< levels of calls below it
+};
+
+/// An instance begins with these slots. Then come the numbers of the data blocks among the
+/// program's instances, two slots for each call that runs (where it goes on, and on which frame),
+/// and its variables.
+enum HeaderSlot : std::uint32_t {
+    error_slot,     ///< BOOL: the last scan ended with a fault
+    error_id_slot,  ///< Fault
+    place_slot,     ///< the instruction it ended with
+    depth_slot,     ///< calls that ran then
+    counts_slot,    ///< executed instructions of each class, if they are counted
+    globals_slot = counts_slot + op_classes,
+};
+
+/// What all the sources together are compiled to.
+struct Code {
+    std::vector<Instruction> instructions;
+    std::vector<Place> places;  ///< of each instruction
+    std::vector<CodeRoutine> routines;
+    std::vector<IndexTable> tables;
+    std::vector<std::int64_t> numbers;       ///< of enumerations
+    std::vector<std::uint64_t> images;       ///< frames as they begin
+    std::vector<const BlockType*> standard;  ///< kinds of the catalogue that are called
+    std::uint32_t globals = 0;
+};
+
+/// Empty when every operand is within its routine's frame, every jump within its routine, every
+/// call's callee within the caller's frame, and every table is there; else what is wrong.
+std::string verify(const Code& code);
+
+/// An instruction a line: `12  add_lreal 4 5 6`.
+std::string listing(const Code& code);
+
+}  // namespace lineshaft::st

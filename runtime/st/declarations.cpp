@@ -1,0 +1,613 @@
+#include <algorithm>
+
+#include "runtime/source/units.hpp"
+#include "runtime/st/checker_class.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+constexpr Wide most_elements = 1 << 24;
+constexpr Wide longest_text = 65534;
+
+std::string quoted(std::string_view name) {
+    return fmt::format("'{}'", name);
+}
+
+/// Names of the standard for a kind of the catalogue, with the type that it counts in.
+struct Preset {
+    std::string_view name, kind;
+    std::int64_t value;
+    std::string_view type;
+};
+
+constexpr Preset counters[] = {{"ctu", "ctu", 0, "int"},         {"ctd", "ctd", 0, "int"},
+                               {"ctud", "ctud", 0, "int"},       {"ctu_int", "ctu", 0, "int"},
+                               {"ctd_int", "ctd", 0, "int"},     {"ctud_int", "ctud", 0, "int"},
+                               {"ctu_dint", "ctu", 1, "dint"},   {"ctd_dint", "ctd", 1, "dint"},
+                               {"ctud_dint", "ctud", 1, "dint"}, {"ctu_lint", "ctu", 2, "lint"},
+                               {"ctd_lint", "ctd", 2, "lint"},   {"ctud_lint", "ctud", 2, "lint"}};
+
+constexpr std::pair<std::string_view, std::string_view> aliases[] = {
+    {"ton_time", "ton"},  {"tof_time", "tof"}, {"tp_time", "tp"},   {"ton_ltime", "ton"},
+    {"tof_ltime", "tof"}, {"tp_ltime", "tp"},  {"iec_timer", "ton"}};
+
+}  // namespace
+
+Checked check(Tree& tree, const Catalog& standard, Diagnostics& out) {
+    return Checker(tree, standard, out).check();
+}
+
+Checked Checker::check() {
+    collect_names();
+    declare_globals();
+    declare_routines();
+    check_initial_values();
+    for (Routine& routine : checked_.routines) check_body(routine);
+    put_in_order();
+    if (out_.empty()) warn_of_unused();
+    return std::move(checked_);
+}
+
+Type& Checker::make_type(Kind kind, std::string name) {
+    Type& type = checked_.types.emplace_back();
+    type.kind = kind;
+    type.name = std::move(name);
+    type.slots = 0;
+    return type;
+}
+
+Routine& Checker::make_routine(Pou& pou, std::string name) {
+    Routine& routine = checked_.routines.emplace_back();
+    routine.pou = &pou;
+    routine.name = std::move(name);
+    return routine;
+}
+
+bool Checker::is_new_name(Token name, NameMap<Place>& names) {
+    const auto [it, added] = names.emplace(name.text, name.place);
+    if (added) return true;
+    fail("L0909", name.place, fmt::format("{} is declared twice", quoted(name.text)),
+         fmt::format("first in line {}", it->second.mark().line));
+    return false;
+}
+
+void Checker::collect_names() {
+    for (const TypeDeclaration& declared : tree_.types)
+        if (is_new_name(declared.name, top_names_))
+            named_types_.emplace(declared.name.text, NamedType{&declared});
+    for (Pou* pou : tree_.units) {
+        const bool added = is_new_name(pou->name, top_names_);
+        if (pou->kind == PouKind::data_block) continue;
+        Routine& routine = make_routine(*pou, std::string(pou->name.text));
+        if (added) routines_.emplace(pou->name.text, &routine);
+        if (routine.is_function()) continue;
+        routine.type = &make_type(Kind::block, routine.name);
+        routine.type->routine = &routine;
+        NameMap<Place> names;
+        for (Pou* method : pou->methods) {
+            Routine& made =
+                make_routine(*method, fmt::format("{}.{}", routine.name, method->name.text));
+            made.owner = &routine;
+            if (is_new_name(method->name, names)) routine.methods.emplace(method->name.text, &made);
+        }
+    }
+    for (const TypeDeclaration& declared : tree_.types)
+        if (const auto it = named_types_.find(declared.name.text); it != named_types_.end())
+            resolve_declared(it->second);
+}
+
+Variable* Checker::add(std::deque<Variable>& to, const Declaration& declared, const Type* type) {
+    Variable& variable = to.emplace_back();
+    variable.name = declared.name;
+    variable.text = declared.name.text;
+    variable.type = type;
+    variable.initial = declared.initial;
+    check_unit(variable, declared);
+    return &variable;
+}
+
+void Checker::check_unit(Variable& variable, const Declaration& declared) {
+    if (declared.unit.empty()) return;
+    variable.unit = declared.unit;
+    if (!Unit::parse(variable.unit))
+        fail("L0304", declared.unit_place, fmt::format("{} is not a unit", quoted(declared.unit)),
+             "lineshaft units lists them");
+}
+
+void Checker::declare_globals() {
+    Type* all = nullptr;
+    for (const DeclarationBlock& block : tree_.globals) {
+        if (!all) {
+            all = &make_type(Kind::structure, "globals");
+            checked_.globals.push_back({"globals", all});
+        }
+        for (const Declaration* declared : block.declarations) {
+            const Type* type = resolve(*declared->type);
+            if (!is_new_name(declared->name, top_names_)) continue;
+            Variable* variable = add(checked_.variables, *declared, type);
+            variable->section = Section::global;
+            variable->constant = block.constant;
+            variable->retain = block.retain;
+            variable->space = Space::global;
+            variable->global = 0;
+            all->members.push_back(variable);
+            globals_.emplace(declared->name.text, variable);
+        }
+    }
+    for (Pou* pou : tree_.units) {
+        if (pou->kind != PouKind::data_block) continue;
+        const int number = static_cast<int>(checked_.globals.size());
+        const Type* type = nullptr;
+        if (pou->base) {
+            type = resolve(*pou->base);
+        } else {
+            Type& made = make_type(Kind::structure, std::string(pou->name.text));
+            for (const DeclarationBlock& block : pou->blocks)
+                for (const Declaration* declared : block.declarations)
+                    made.members.push_back(
+                        add(checked_.variables, *declared, resolve(*declared->type)));
+            type = &made;
+        }
+        Variable& variable = checked_.variables.emplace_back();
+        variable.name = pou->name;
+        variable.text = pou->name.text;
+        variable.type = type;
+        variable.section = Section::global;
+        variable.space = Space::global;
+        variable.global = number;
+        checked_.globals.push_back({std::string(pou->name.text), type, pou});
+        globals_.emplace(pou->name.text, &variable);
+    }
+}
+
+void Checker::declare_routines() {
+    for (Routine& routine : checked_.routines) {
+        routine_ = &routine;
+        declare_result(routine);
+        for (const DeclarationBlock& block : routine.pou->blocks) declare(routine, block);
+    }
+    routine_ = nullptr;
+    for (Routine& method : checked_.routines)  // it works on what its block is made of
+        if (method.owner) {
+            const Routine& owner = *method.owner;
+            method.calls.insert(method.calls.end(), owner.calls.begin(), owner.calls.end());
+            method.call_places.insert(method.call_places.end(), owner.call_places.begin(),
+                                      owner.call_places.end());
+        }
+}
+
+void Checker::declare_result(Routine& routine) {
+    const TypeText* text = routine.pou->result;
+    if (!text || same_name(text->name.text, "void")) return;
+    if (routine.has_instances()) {
+        fail("L0914", text->place, "only functions and methods have a result",
+             "declare a VAR_OUTPUT");
+        return;
+    }
+    Variable& result = routine.variables.emplace_back();
+    result.name = routine.pou->name;
+    result.text = result.name.text;
+    result.type = resolve(*text);
+    result.section = Section::result;
+    result.of = routine.pou;
+    result.used = true;
+    routine.result = &result;
+    routine.names.emplace(result.text, &result);
+}
+
+void Checker::declare(Routine& routine, const DeclarationBlock& block) {
+    for (const Declaration* declared : block.declarations) {
+        const Type* type = resolve(*declared->type);
+        Variable* variable = add(routine.variables, *declared, type);
+        variable->section = block.section;
+        variable->constant = block.constant;
+        variable->retain = block.retain;
+        variable->of = routine.pou;
+        if (block.section == Section::in_out) variable->space = Space::reference;
+        const auto [it, added] = routine.names.emplace(variable->text, variable);
+        if (!added)
+            fail("L0909", declared->name.place,
+                 fmt::format("{} is declared twice", quoted(variable->text)),
+                 it->second->section == Section::result
+                     ? "the function's own name is that of its result"
+                     : fmt::format("first in line {}", it->second->name.place.mark().line));
+        if (type && type->is_instance() && !routine.has_instances() &&
+            block.section != Section::in_out)
+            fail("L0914", declared->name.place,
+                 "a function keeps nothing from call to call, so it has no instances",
+                 "pass the instance as VAR_IN_OUT");
+        depend(type, declared->name.place);
+        const bool folded =
+            block.constant && block.section != Section::input && type && type->is_scalar();
+        if (!folded) continue;
+        variable->space = Space::none;
+        if (!declared->initial) {
+            fail("L0913", declared->name.place,
+                 fmt::format("the constant {} has no value", quoted(variable->text)),
+                 "write ':= value' behind its type");
+            continue;
+        }
+        Expression* value = const_cast<Expression*>(declared->initial);
+        check_initial(value, *type);
+        if (value->kind == Expression::Kind::constant) variable->value = value->constant;
+    }
+}
+
+/// The routine runs, or is made of, what is in `type`.
+void Checker::depend(const Type* type, Place place) {
+    if (!type || !routine_) return;
+    if (type->kind == Kind::array) return depend(type->element, place);
+    if (type->kind == Kind::structure)
+        for (const Variable* member : type->members) depend(member->type, place);
+    if (type->kind != Kind::block) return;
+    const auto add_call = [&](Routine* routine) {
+        routine_->calls.push_back(routine);
+        routine_->call_places.push_back(place);
+    };
+    add_call(type->routine);
+    for (const Pou* method : type->routine->pou->methods)
+        if (const auto it = type->routine->methods.find(method->name.text);
+            it != type->routine->methods.end())
+            add_call(it->second);
+}
+
+// Initial values.
+
+void Checker::check_initial_values() {
+    const auto check_one = [&](const Variable& variable) {
+        if (!variable.initial || !variable.type || variable.space == Space::none) return;
+        auto* value = const_cast<Expression*>(variable.initial);
+        check_initial(value, *variable.type);
+        const_cast<Variable&>(variable).initial = value;
+    };
+    for (Variable& variable : checked_.variables) check_one(variable);
+    for (Routine& routine : checked_.routines) {
+        routine_ = &routine;
+        for (const Variable& variable : routine.variables) {
+            if (variable.initial && variable.section == Section::in_out)
+                fail("L0914", variable.name.place, "a VAR_IN_OUT has no initial value",
+                     "leave ':= ...' out; the caller gives the variable");
+            check_one(variable);
+        }
+    }
+    routine_ = nullptr;
+}
+
+void Checker::check_initial(Expression*& value, const Type& type) {
+    if (value->kind == Expression::Kind::list) {
+        value->type = &type;
+        const bool named =
+            !value->arguments.empty() && value->arguments.front().name.word != Word::end_of_file;
+        if (type.kind == Kind::array && !named) return check_elements(*value, type);
+        if ((type.kind == Kind::structure || type.is_instance()) && named)
+            return check_members(*value, type);
+        fail("L0905", value->place, fmt::format("this is not a value of {}", describe(type)),
+             type.kind == Kind::array ? "write its elements in brackets: [1, 2, 3]" : "");
+        return;
+    }
+    if (value->kind == Expression::Kind::repeated && type.kind == Kind::array) {
+        Expression* list = make(Expression::Kind::list, *value);
+        list->arguments.push_back({{}, false, value, nullptr});
+        value = list;
+        return check_initial(value, type);
+    }
+    if (value->type) return;  // of `a, b : INT := 5`, seen before
+    if (!check(*value, &type)) return;
+    if (!coerce(value, type)) return;
+    if (value->kind != Expression::Kind::constant)
+        fail("L0913", value->place, "an initial value is a constant",
+             "assign it in the body, behind IF NOT started");
+}
+
+/// Of several dimensions either a list of lists, or all elements in one, the last index first.
+void Checker::check_elements(Expression& list, const Type& array) {
+    const bool nested = std::ranges::any_of(list.arguments, [](const Argument& argument) {
+        return argument.value->kind == Expression::Kind::list;
+    });
+    const Type& element = nested ? *array.element : array.innermost();
+    Wide room = Wide{array.upper} - array.lower + 1;
+    for (const Type* inner = &array; !nested && inner->has_inner; inner = inner->element)
+        room *= Wide{inner->element->upper} - inner->element->lower + 1;
+    Wide count = 0;
+    for (Argument& argument : list.arguments) {
+        Expression* value = argument.value;
+        if (value->kind != Expression::Kind::repeated) {
+            check_initial(argument.value, element);
+            ++count;
+            continue;
+        }
+        const auto times = check_whole(value->operands[0], lint_type);
+        for (Argument& repeated : value->arguments) check_initial(repeated.value, element);
+        const Wide one = static_cast<Wide>(std::max<std::size_t>(value->arguments.size(), 1));
+        if (times && *times >= 0 && *times <= most_elements) count += *times * one;
+    }
+    if (count > room)
+        fail("L0908", list.place,
+             fmt::format("{} values for {} elements", static_cast<std::int64_t>(count),
+                         static_cast<std::int64_t>(room)),
+             "leave some out, or make the array larger");
+}
+
+void Checker::check_members(Expression& list, const Type& type) {
+    for (Argument& argument : list.arguments) {
+        std::vector<std::string> names;
+        const auto& members = type.members;
+        for (const Variable* member : members) names.emplace_back(member->text);
+        Variable* found = nullptr;
+        if (type.kind == Kind::block) {
+            const auto it = type.routine->names.find(argument.name.text);
+            if (it != type.routine->names.end()) found = it->second;
+        }
+        for (Variable* member : members)
+            if (same_name(member->text, argument.name.text)) found = member;
+        argument.variable = found;
+        if (!found) {
+            fail("L0904", argument.name.place,
+                 fmt::format("{} has no '{}'", describe(type), argument.name.text),
+                 suggest(argument.name.text, names));
+        } else if (found->type) {
+            check_initial(argument.value, *found->type);
+        }
+    }
+}
+
+// Types.
+
+const Type* Checker::resolve(const TypeText& text) {
+    switch (text.kind) {
+        case TypeText::Kind::name:
+            return resolve_name(text.name);
+        case TypeText::Kind::array:
+            return resolve_array(text);
+        case TypeText::Kind::structure:
+            return resolve_structure(text);
+        case TypeText::Kind::enumeration:
+            return resolve_enumeration(text);
+        case TypeText::Kind::subrange:
+            return resolve_subrange(text);
+        case TypeText::Kind::text:
+            return resolve_text(text);
+    }
+    return nullptr;
+}
+
+const Type* Checker::resolve_name(const Token& name) {
+    if (const Type* type = find_elementary(name.text); type && !name.quoted) return type;
+    if (const auto it = named_types_.find(name.text); it != named_types_.end())
+        return resolve_declared(it->second);
+    if (const auto it = routines_.find(name.text); it != routines_.end()) {
+        if (it->second->type) return it->second->type;
+        return fail("L0905", name.place, fmt::format("'{}' is a function, not a type", name.text),
+                    "call it; only function blocks have instances");
+    }
+    if (const Type* type = standard_type(name.text)) return type;
+    if (const std::string_view instead = instead_of_type(name.text); !instead.empty())
+        return fail("L0903", name.place, fmt::format("the type {} is not supported", name.text),
+                    std::string(instead));
+    std::vector<std::string> names = {"BOOL", "INT",  "DINT",  "LINT", "UINT",  "UDINT",
+                                      "WORD", "REAL", "LREAL", "TIME", "STRING"};
+    for (const auto& [known, type] : named_types_) names.emplace_back(known);
+    for (const auto& [known, routine] : routines_)
+        if (routine->type) names.emplace_back(known);
+    for (const BlockType& kind : standard_.types()) names.emplace_back(kind.name);
+    std::ranges::sort(names);
+    const auto near = nearest(name.text, names);
+    return fail(
+        "L0904", name.place, fmt::format("'{}' is not a type", name.text),
+        near.empty() ? "declare it with TYPE, or as a FUNCTION_BLOCK" : suggest(name.text, near));
+}
+
+const Type* Checker::resolve_declared(NamedType& named) {
+    if (named.type) return named.type;
+    const TypeDeclaration& declared = *named.declaration;
+    if (named.visiting)
+        return fail("L0911", declared.name.place,
+                    fmt::format("the type '{}' contains itself", declared.name.text),
+                    "a value of it would have no end");
+    named.visiting = true;
+    const Type* type = resolve(*declared.type);
+    named.visiting = false;
+    if (!type) return nullptr;
+    const bool is_own = declared.type->kind != TypeText::Kind::name;
+    if (is_own) const_cast<Type*>(type)->name = std::string(declared.name.text);
+    if (declared.initial) {
+        Type& copy = checked_.types.emplace_back(*type);
+        copy.initial_value = declared.initial;
+        type = &copy;
+        auto* value = const_cast<Expression*>(declared.initial);
+        check_initial(value, copy);
+        copy.initial_value = value;
+    }
+    for (std::size_t i = 0; i < type->values.size() && is_own; ++i) {
+        const auto it = std::ranges::find_if(
+            values_, [&](const auto& entry) { return same_name(entry.first, type->values[i]); });
+        if (it != values_.end())
+            it->second.ambiguous = true;
+        else
+            values_.emplace(type->values[i], NamedValue{type, i});
+    }
+    if (declared.initial)
+        for (auto& [name, value] : values_)
+            if (value.type && value.type->name == type->name) value.type = type;
+    return named.type = type;
+}
+
+const Type* Checker::resolve_array(const TypeText& text) {
+    const Type* element = resolve(*text.element);
+    Wide total = 1;
+    for (auto it = text.ranges.rbegin(); it != text.ranges.rend(); ++it) {
+        Expression *from = it->first, *to = it->second;
+        const auto lower = check_whole(from, lint_type), upper = check_whole(to, lint_type);
+        if (!lower || !upper) return nullptr;
+        const Wide count = *upper - *lower + 1;
+        if (count < 1)
+            return fail("L0908", from->place.to(to->place), "the array has no element",
+                        "the first bound is the smaller one");
+        total *= count;
+        if (total > most_elements)
+            return fail("L0912", from->place.to(to->place), "the array is too large",
+                        "an array has at most 16777216 elements");
+        Type& array = make_type(Kind::array, {});
+        array.lower = static_cast<std::int64_t>(*lower);
+        array.upper = static_cast<std::int64_t>(*upper);
+        array.element = element;
+        array.has_inner = it != text.ranges.rbegin();
+        if (element) element = &array;
+    }
+    return element;
+}
+
+const Type* Checker::resolve_structure(const TypeText& text) {
+    Type& type = make_type(Kind::structure, "STRUCT");
+    NameMap<Place> names;
+    for (const Declaration* declared : text.members) {
+        const Type* member = resolve(*declared->type);
+        if (is_new_name(declared->name, names))
+            type.members.push_back(add(checked_.variables, *declared, member));
+    }
+    return &type;
+}
+
+const Type* Checker::resolve_enumeration(const TypeText& text) {
+    Type& type = make_type(Kind::enumeration, "enumeration");
+    type.slots = 1;
+    type.base = &int_type;
+    if (text.name.word != Word::end_of_file) type.base = resolve_name(text.name);
+    NameMap<Place> names;
+    std::int64_t number = 0;
+    for (const Argument& value : text.values) {
+        if (Expression* given = value.value)
+            if (const auto whole = check_whole(given, type.base ? *type.base : int_type))
+                number = static_cast<std::int64_t>(*whole);
+        if (!is_new_name(value.name, names)) continue;
+        type.counted &= number == static_cast<std::int64_t>(type.values.size());
+        type.values.emplace_back(value.name.text);
+        type.numbers.push_back(number++);
+    }
+    return &type;
+}
+
+const Type* Checker::resolve_subrange(const TypeText& text) {
+    const Type* base = resolve_name(text.name);
+    if (!base) return nullptr;
+    if (base->kind != Kind::integer)
+        return fail("L0905", text.place, fmt::format("{} has no subranges", describe(*base)),
+                    "a subrange is one of an integer type");
+    Expression *from = text.ranges.front().first, *to = text.ranges.front().second;
+    const auto lower = check_whole(from, *base), upper = check_whole(to, *base);
+    if (!lower || !upper) return nullptr;
+    if (*lower > *upper)
+        return fail("L0908", text.place, "the subrange has no value",
+                    "the first bound is the smaller one");
+    Type& type = checked_.types.emplace_back(*base);
+    type.name = fmt::format("{}({}..{})", base->name, static_cast<std::int64_t>(*lower),
+                            static_cast<std::int64_t>(*upper));
+    type.is_subrange = true;
+    type.base = base;
+    type.lower = static_cast<std::int64_t>(*lower);
+    type.upper = static_cast<std::int64_t>(*upper);
+    type.initial.integer = *lower > 0 || *upper < 0 ? *lower : 0;
+    return &type;
+}
+
+const Type* Checker::resolve_text(const TypeText& text) {
+    Expression* length = text.length;
+    const auto whole = check_whole(length, lint_type);
+    if (!whole) return nullptr;
+    if (*whole < 1 || *whole > longest_text)
+        return fail("L0908", length->place, "a STRING has between 1 and 65534 characters");
+    Type& type = make_type(Kind::text, fmt::format("STRING[{}]", static_cast<int>(*whole)));
+    type.length = static_cast<std::uint32_t>(*whole);
+    return &type;
+}
+
+const Type* Checker::standard_type(std::string_view name) {
+    if (const auto it = standard_types_.find(name); it != standard_types_.end()) return it->second;
+    const auto* preset = std::ranges::find_if(
+        counters, [&](const Preset& counter) { return same_name(counter.name, name); });
+    const auto* alias =
+        std::ranges::find_if(aliases, [&](const auto& a) { return same_name(a.first, name); });
+    std::string_view wanted = name;
+    if (preset != std::end(counters)) wanted = preset->kind;
+    if (alias != std::end(aliases)) wanted = alias->second;
+    const auto kind = std::ranges::find_if(
+        standard_.types(), [&](const BlockType& type) { return same_name(type.name, wanted); });
+    if (kind == standard_.types().end() || kind->is_device()) return nullptr;
+    Type& type = make_type(Kind::standard, std::string(name));
+    for (char& c : type.name) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    type.standard = &*kind;
+    type.slots = static_cast<std::uint32_t>((kind->size + 7) / 8);
+    for (const Field& field : kind->fields) {
+        Variable& member = checked_.variables.emplace_back();
+        member.text = field.name;
+        member.section = field.direction == Direction::output  ? Section::output
+                         : field.direction == Direction::local ? Section::local
+                                                               : Section::input;
+        member.slot = static_cast<std::uint32_t>(field.offset / 8);
+        member.byte = static_cast<std::uint32_t>(field.offset);
+        member.is_byte = field.type == lineshaft::Type::boolean;
+        member.type = field.type == lineshaft::Type::boolean ? &bool_type
+                      : field.type == lineshaft::Type::real  ? &lreal_type
+                      : field.unit == "ns"                   ? &time_type
+                                                             : &lint_type;
+        if (field.type == lineshaft::Type::enumeration) {
+            Type& values =
+                make_type(Kind::enumeration, fmt::format("{}.{}", kind->name, field.name));
+            values.slots = 1;
+            values.base = &lint_type;
+            for (const std::string_view value : field.names) {
+                values.numbers.push_back(static_cast<std::int64_t>(values.values.size()));
+                values.values.emplace_back(value);
+            }
+            member.type = &values;
+        }
+        const bool counts = same_name(field.name, "pv") || same_name(field.name, "cv");
+        if (preset != std::end(counters) && counts) member.type = find_elementary(preset->type);
+        type.members.push_back(&member);
+    }
+    if (preset != std::end(counters))
+        type.presets.push_back({"data_type", {.integer = preset->value}});
+    return standard_types_[type.name] = &type;
+}
+
+// The order of routines.
+
+void Checker::put_in_order() {
+    std::vector<const Routine*> path;
+    for (Routine& routine : checked_.routines) visit(routine, path);
+}
+
+void Checker::visit(Routine& routine, std::vector<const Routine*>& path) {
+    if (routine.state == Routine::State::done) return;
+    routine.state = Routine::State::visiting;
+    path.push_back(&routine);
+    for (std::size_t i = 0; i < routine.calls.size(); ++i) {
+        Routine& called = *routine.calls[i];
+        if (called.state != Routine::State::visiting) {
+            visit(called, path);
+            continue;
+        }
+        std::string hops;
+        for (auto it = std::ranges::find(path, &called); it != path.end(); ++it)
+            hops += fmt::format("{} -> ", (*it)->name);
+        fail("L0911", routine.call_places[i],
+             fmt::format("'{}' calls itself: {}{}", called.name, hops, called.name),
+             "a PLC has no stack that grows: write a loop");
+    }
+    path.pop_back();
+    routine.state = Routine::State::done;
+    checked_.order.push_back(&routine);
+}
+
+void Checker::warn_of_unused() {
+    for (const Routine& routine : checked_.routines)
+        for (const Variable& variable : routine.variables)
+            if (!variable.used &&
+                (variable.section == Section::local || variable.section == Section::temp))
+                out_.warn("L0921", variable.name.place.mark(),
+                          fmt::format("'{}' is declared and never used", variable.text),
+                          "remove it");
+}
+
+}  // namespace lineshaft::st

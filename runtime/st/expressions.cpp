@@ -1,0 +1,740 @@
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/source/units.hpp"
+#include "runtime/st/checker_class.hpp"
+#include "runtime/st/literals.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+using Kind = Type::Kind;
+
+bool is_constant(const Expression& expression) {
+    return expression.kind == Expression::Kind::constant && expression.type;
+}
+
+double as_real(const Expression& constant) {
+    return constant.type->is_real() ? constant.constant.real
+                                    : static_cast<double>(constant.constant.integer);
+}
+
+bool is_comparison(Word op) {
+    return op >= Word::less && op <= Word::unequal;
+}
+
+bool is_logic(Word op) {
+    return op == Word::and_ || op == Word::or_ || op == Word::xor_ || op == Word::and_then_ ||
+           op == Word::or_else_;
+}
+
+}  // namespace
+
+std::string describe(const Type& type) {
+    if (type.kind != Kind::array || !type.name.empty()) return type.name;
+    std::string bounds;
+    const Type* element = &type;
+    for (; element && element->kind == Kind::array && element->name.empty();
+         element = element->element)
+        bounds +=
+            fmt::format("{}{}..{}", bounds.empty() ? "" : ", ", element->lower, element->upper);
+    return fmt::format("ARRAY[{}] OF {}", bounds, element ? describe(*element) : "?");
+}
+
+const Type* Checker::check(Expression& e, const Type* expected) {
+    using E = Expression::Kind;
+    if (e.type) return e.type;
+    const Type* type = nullptr;
+    switch (e.kind) {
+        case E::constant:
+            type = check_constant(e, expected);
+            break;
+        case E::name:
+            type = check_name(e, expected);
+            break;
+        case E::member:
+            type = check_member(e);
+            break;
+        case E::index:
+            type = check_index(e);
+            break;
+        case E::bit:
+            type = check_bit(e);
+            break;
+        case E::call:
+            type = check_call(e, false, expected);
+            break;
+        case E::unary:
+            type = check_unary(e, expected);
+            break;
+        case E::binary:
+            type = check_binary(e, expected);
+            break;
+        case E::typed:
+            type = check_typed(e);
+            break;
+        case E::list:
+        case E::repeated:
+            return fail("L0905", e.place, "a list of values stands in a declaration only",
+                        "assign the elements one by one");
+        case E::converted:
+            type = e.type;
+    }
+    return e.type = type;
+}
+
+// Literals.
+
+const Type* Checker::check_constant(Expression& e, const Type*) {
+    switch (e.token.word) {
+        case Word::integer:
+        case Word::real:
+            return check_number(e);
+        case Word::duration:
+            return check_time(e);
+        case Word::text:
+            return check_text(e);
+        default:
+            return nullptr;
+    }
+}
+
+const Type* Checker::check_number(Expression& e) {
+    const std::string_view text = e.token.text;
+    if (e.token.word == Word::real) {
+        const auto value = read_real(text);
+        if (!value) return fail("L0908", e.place, fmt::format("'{}' is out of range", text));
+        e.constant.real = *value;
+        return &any_real_type;
+    }
+    const auto value = read_integer(text);
+    if (!value)
+        return fail("L0908", e.place, fmt::format("'{}' is not a number of at most 64 bits", text),
+                    "write 100, 1_000, 16#FF, 8#17 or 2#1010");
+    e.constant.integer = *value;
+    return text.find('#') == std::string_view::npos ? &any_integer_type : &any_bits_type;
+}
+
+const Type* Checker::check_time(Expression& e) {
+    const auto value = read_duration(e.token.text);
+    if (!value)
+        return fail("L0908", e.place, fmt::format("'{}' is not a time", e.place.text()),
+                    "write T#1h2m3.5s, with d, h, m, s, ms, us and ns in this order");
+    e.constant.integer = *value;
+    return &time_type;
+}
+
+const Type* Checker::check_text(Expression& e) {
+    const auto text = read_text(e.token.text);
+    if (!text)
+        return fail("L0908", e.place, "'$' is not followed by one of its characters",
+                    "write $$ for a '$', $' for a quote, $N for a new line, $0A for a byte");
+    e.constant.text = *text;
+    return &string_type;
+}
+
+const Type* Checker::check_typed(Expression& e) {
+    Expression& value = *e.operands[0];
+    Token name = e.token;
+    const auto it = named_types_.find(name.text);
+    const Type* type = find_elementary(name.text);
+    if (it != named_types_.end()) type = it->second.type;
+    if (!type) {
+        resolve_name(name);
+        return nullptr;
+    }
+    if (type->kind == Kind::enumeration && value.kind == Expression::Kind::name) {
+        const auto found = std::ranges::find_if(type->values, [&](const std::string& known) {
+            return same_name(known, value.token.text);
+        });
+        if (found == type->values.end())
+            return fail("L0904", value.place,
+                        fmt::format("{} has no value '{}'", type->name, value.token.text),
+                        suggest(value.token.text, type->values));
+        become(e, *type, {.integer = found - type->values.begin()});
+        return type;
+    }
+    if (!check(value, type)) return nullptr;
+    Expression* literal = &value;
+    if (!coerce(literal, *type)) return nullptr;
+    if (!is_constant(*literal))
+        return fail("L0913", value.place, fmt::format("a number is due after '{}#'", name.text));
+    become(e, *type, literal->constant);
+    return type;
+}
+
+void Checker::become(Expression& e, const Type& type, Constant value) {
+    e.kind = Expression::Kind::constant;
+    e.type = &type;
+    e.constant = std::move(value);
+}
+
+void Checker::become_boolean(Expression& e, bool value) {
+    become(e, bool_type, {.integer = value});
+}
+
+// Names.
+
+Variable* Checker::find_variable(const Token& token) const {
+    for (const Routine* r = routine_; r && !token.quoted; r = r->owner)
+        if (const auto it = r->names.find(token.text); it != r->names.end()) return it->second;
+    if (token.local) return nullptr;
+    const auto it = globals_.find(token.text);
+    if (it != globals_.end()) return it->second;
+    return token.quoted && routine_ && routine_->names.contains(token.text)
+               ? routine_->names.at(token.text)
+               : nullptr;
+}
+
+const Type* Checker::check_name(Expression& e, const Type* expected) {
+    const Token& token = e.token;
+    if (expected && expected->kind == Kind::enumeration && !token.local) {
+        const auto it = std::ranges::find_if(expected->values, [&](const std::string& known) {
+            return same_name(known, token.text);
+        });
+        if (it != expected->values.end() && !find_variable(token)) {
+            become(e, *expected, {.integer = it - expected->values.begin()});
+            return expected;
+        }
+    }
+    if (Variable* variable = find_variable(token)) return use(e, *variable);
+    if (same_name(token.text, "true") || same_name(token.text, "false")) {
+        become_boolean(e, same_name(token.text, "true"));
+        return &bool_type;
+    }
+    if (const auto it = values_.find(token.text); it != values_.end() && !token.local) {
+        if (it->second.ambiguous)
+            return fail("L0904", e.place,
+                        fmt::format("'{}' is a value of several enumerations", token.text),
+                        fmt::format("write {}#{}", it->second.type->name, token.text));
+        become(e, *it->second.type, {.integer = static_cast<Wide>(it->second.index)});
+        return it->second.type;
+    }
+    return unknown_name(e);
+}
+
+const Type* Checker::use(Expression& e, Variable& variable) {
+    variable.used = true;
+    e.variable = &variable;
+    if (!variable.type) return nullptr;
+    if (variable.space == Space::none) {
+        become(e, *variable.type, variable.value);
+        return variable.type;
+    }
+    if (variable.space == Space::global) depend(variable.type, e.place);
+    return variable.type;
+}
+
+const Type* Checker::unknown_name(Expression& e) {
+    const std::string_view name = e.token.text;
+    if (routines_.contains(name))
+        return fail("L0914", e.place, fmt::format("'{}' is a block, and has no value", name),
+                    fmt::format("declare an instance, or call a function: {}()", name));
+    return fail("L0904", e.place, fmt::format("'{}' is not declared", name),
+                suggest(name, nearest(name, visible_names())));
+}
+
+std::vector<std::string> Checker::visible_names() const {
+    std::vector<std::string> names;
+    for (const Routine* r = routine_; r; r = r->owner)
+        for (const Variable& variable : r->variables) names.emplace_back(variable.text);
+    for (const auto& [name, variable] : globals_) names.emplace_back(name);
+    for (const auto& [name, value] : values_) names.emplace_back(name);
+    for (const auto& [name, routine] : routines_)
+        if (!routine->type) names.emplace_back(name);
+    std::ranges::sort(names);
+    return names;
+}
+
+const Type* Checker::check_member(Expression& e) {
+    const Type* type = check(*e.operands[0]);
+    if (!type) return nullptr;
+    const std::string_view name = e.token.text;
+    std::vector<std::string> names;
+    if (type->kind == Kind::block) {
+        Routine& routine = *type->routine;
+        for (Variable& variable : routine.variables) {
+            names.emplace_back(variable.text);
+            if (!same_name(variable.text, name)) continue;
+            if (variable.section == Section::temp || variable.space == Space::none)
+                return fail("L0904", e.token.place,
+                            fmt::format("'{}' of {} is not seen from outside", name, type->name),
+                            "make it a VAR_OUTPUT");
+            variable.used = true;
+            e.variable = &variable;
+            return variable.type;
+        }
+    }
+    for (Variable* member : type->members) {
+        names.emplace_back(member->text);
+        if (!same_name(member->text, name)) continue;
+        e.variable = member;
+        return member->type;
+    }
+    if (names.empty())
+        return fail("L0905", e.token.place, fmt::format("{} has no parts", describe(*type)),
+                    "'.' takes a part of a structure or of an instance");
+    return fail("L0904", e.token.place, fmt::format("{} has no '{}'", describe(*type), name),
+                suggest(name, names));
+}
+
+const Type* Checker::check_index(Expression& e) {
+    const Type* type = check(*e.operands[0]);
+    for (Argument& argument : e.arguments) check(*argument.value);
+    for (Argument& argument : e.arguments) {
+        if (!type) return nullptr;
+        if (type->kind != Kind::array)
+            return fail("L0905", argument.value->place,
+                        fmt::format("{} has no elements", describe(*type)),
+                        e.arguments.size() > 1 ? "there are more indices than dimensions" : "");
+        const Type* given = argument.value->type;
+        if (!given) return nullptr;
+        if (!given->is_integer() && !given->is_bits())
+            return fail("L0905", argument.value->place,
+                        fmt::format("an index is a whole number, not {}", describe(*given)));
+        const Wide value = argument.value->constant.integer;
+        if (is_constant(*argument.value)) {
+            if (value < type->lower || value > type->upper)
+                return fail("L0908", argument.value->place,
+                            fmt::format("there is no element {}", to_string(value)),
+                            fmt::format("the index goes from {} to {}", type->lower, type->upper));
+            argument.value->type = &lint_type;
+        }
+        type = type->element;
+    }
+    return type;
+}
+
+const Type* Checker::check_bit(Expression& e) {
+    const Type* type = check(*e.operands[0]);
+    if (!type) return nullptr;
+    std::string_view text = e.token.text;
+    int bits = 1;
+    if (e.token.word == Word::direct) {
+        const char letter = text.size() > 1 ? text[1] : '\0';
+        const bool has_letter = letter < '0' || letter > '9';
+        bits = !has_letter || letter == 'X' || letter == 'x' ? 1
+               : letter == 'B' || letter == 'b'              ? 8
+               : letter == 'W' || letter == 'w'              ? 16
+               : letter == 'D' || letter == 'd'              ? 32
+                                                             : 0;
+        text.remove_prefix(has_letter ? 2 : 1);
+    }
+    const auto number = read_integer(text);
+    if (!number || bits == 0)
+        return fail("L0902", e.token.place, fmt::format("'{}' is not a bit", e.token.text),
+                    "write .%X0 for a bit, .%B0 for a byte, .%W0 for a word");
+    const bool whole = type->kind == Kind::bits || type->kind == Kind::integer;
+    if (!whole)
+        return fail("L0905", e.token.place, fmt::format("{} has no bits", describe(*type)),
+                    "bits are those of BYTE to LWORD and of integers");
+    if ((*number + 1) * bits > type->bits)
+        return fail("L0908", e.token.place,
+                    fmt::format("{} has no part '{}'", describe(*type), e.token.text),
+                    fmt::format("its bits are 0 to {}", type->bits - 1));
+    e.constant.integer = *number * bits + (Wide{bits} << 6);
+    return bits == 1 ? &bool_type : &bits_type(bits);
+}
+
+// Operators.
+
+const Type* Checker::check_unary(Expression& e, const Type* expected) {
+    Expression*& operand = e.operands[0];
+    const Type* type = check(*operand, expected);
+    if (!type) return nullptr;
+    const bool fits = e.op == Word::not_ ? type->kind == Kind::boolean || type->is_bits()
+                                         : type->is_integer() || type->is_real() ||
+                                               type->kind == Kind::time || type->is_bits();
+    if (!fits || (e.op == Word::minus && type->kind == Kind::bits))
+        return fail("L0905", e.place,
+                    fmt::format("{} does not go with {}", shown(e.op), describe(*type)),
+                    e.op == Word::not_ ? "NOT takes a BOOL or a bit string" : "");
+    if (e.op == Word::not_ && type->kind == Kind::any_bits)
+        return fail("L0905", e.place, "the width of this number is not known",
+                    "write its type: NOT WORD#16#FF");
+    e.type = &type->plain();
+    if (type->kind == Kind::any_bits) e.type = &any_integer_type;
+    if (is_constant(*operand)) fold_unary(e, operand->constant);
+    return e.type;
+}
+
+void Checker::fold_unary(Expression& e, const Constant& value) {
+    const Type& type = *e.type;
+    Constant result = value;
+    if (e.op == Word::minus) {
+        result.real = -value.real;
+        result.integer = type.is_any() ? -value.integer : wrapped(type, -value.integer);
+    } else if (e.op == Word::not_) {
+        result.integer = wrapped(type, ~value.integer);
+    }
+    become(e, type, result);
+}
+
+const Type* Checker::check_binary(Expression& e, const Type* expected) {
+    Expression *&left = e.operands[0], *&right = e.operands[1];
+    const Type* wanted = is_comparison(e.op) || is_logic(e.op) ? nullptr : expected;
+    const bool name_first = left->kind == Expression::Kind::name && is_comparison(e.op);
+    if (name_first && !find_variable(left->token)) {
+        check(*right);
+        check(*left, right->type);
+    }
+    check(*left, wanted);
+    check(*right, is_comparison(e.op) ? left->type : wanted);
+    if (!left->type || !right->type) return nullptr;
+    if (is_logic(e.op)) return check_logic(e);
+    if (is_comparison(e.op)) return check_comparison(e);
+    if (e.op == Word::power) return check_power(e);
+    return check_arithmetic(e);
+}
+
+/// Brings both operands to one type, if there is one.
+const Type* Checker::unite(Expression& e) {
+    Expression *&left = e.operands[0], *&right = e.operands[1];
+    const Type &a = *left->type, &b = *right->type;
+    const Type* common = nullptr;
+    if (a.is_any() && b.is_any()) {
+        common = a.is_real() ? &a : b.is_real() ? &b : &any_integer_type;
+        if (a.kind == b.kind) common = &a;
+    } else if (a.is_any()) {
+        common = &b.plain();
+    } else if (b.is_any()) {
+        common = &a.plain();
+    } else {
+        common = common_type(a, b);
+    }
+    const auto real_of = [](const Type& any, const Type& typed) -> const Type* {
+        if (any.kind != Kind::any_real || typed.kind != Kind::integer) return nullptr;
+        return common_type(typed, real_type);
+    };
+    if (const Type* real = a.is_any() ? real_of(a, b) : real_of(b, a)) common = real;
+    if (!common) {
+        const bool numbers = a.is_number() && b.is_number();
+        return fail(
+            numbers ? "L0906" : "L0905", e.token.place,
+            fmt::format("{} does not go with {} and {}", shown(e.op), describe(a), describe(b)),
+            numbers
+                ? fmt::format("convert one of them: {}_TO_{}(...)", a.plain().name, b.plain().name)
+                : "");
+    }
+    return coerce(left, *common) && coerce(right, *common) ? common : nullptr;
+}
+
+const Type* Checker::check_logic(Expression& e) {
+    const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
+    for (const Expression* operand : e.operands) {
+        const Type& type = *operand->type;
+        if (type.kind == Kind::boolean || type.is_bits() || type.kind == Kind::any_integer)
+            continue;
+        return fail("L0905", operand->place,
+                    fmt::format("{} does not go with {}", shown(e.op), describe(type)),
+                    type.is_number() ? "compare it first, as in 'x <> 0', or convert it to a WORD"
+                                     : "it takes BOOL and bit strings");
+    }
+    const bool lazy = e.op == Word::and_then_ || e.op == Word::or_else_;
+    if (lazy && (a.kind != Kind::boolean || b.kind != Kind::boolean))
+        return fail("L0905", e.token.place, fmt::format("{} takes two BOOL", shown(e.op)));
+    e.type = unite(e);
+    if (e.type) fold(e);
+    return e.type;
+}
+
+const Type* Checker::check_comparison(Expression& e) {
+    const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
+    const bool order = e.op != Word::equal && e.op != Word::unequal;
+    if (a.kind == Kind::text && b.kind == Kind::text) return &bool_type;
+    for (const Type* type : {&a, &b}) {
+        const bool fits = type->is_scalar() && !(order && type->kind == Kind::enumeration);
+        if (!fits)
+            return fail("L0905", e.token.place,
+                        fmt::format("'{}' does not compare {}", shown(e.op), describe(*type)),
+                        type->is_scalar() ? "the values of an enumeration are equal or not"
+                                          : "compare its parts one by one");
+    }
+    if (!unite(e)) return nullptr;
+    e.type = &bool_type;
+    fold(e);
+    return e.type;
+}
+
+const Type* Checker::check_arithmetic(Expression& e) {
+    const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
+    if (a.kind == Kind::time || b.kind == Kind::time) return check_time_arithmetic(e);
+    for (const Expression* operand : e.operands) {
+        const Type& type = *operand->type;
+        if (type.is_number() || type.is_any()) continue;
+        std::string help;
+        if (type.kind == Kind::bits)
+            help = fmt::format("convert it: {}_TO_{}(...)", type.name,
+                               integer_type(type.bits, false).name);
+        if (type.kind == Kind::boolean) help = "convert it: BOOL_TO_INT(...)";
+        if (type.kind == Kind::enumeration) help = "convert it: TO_INT(...)";
+        return fail("L0905", operand->place,
+                    fmt::format("'{}' does not go with {}", shown(e.op), describe(type)), help);
+    }
+    e.type = unite(e);
+    if (e.type && e.type->kind == Kind::any_bits) e.type = &any_integer_type;
+    if (e.type && e.op == Word::mod_ && e.type->is_real())
+        return fail("L0905", e.token.place, "MOD takes whole numbers",
+                    "write a - TRUNC(a / b) * b");
+    if (e.type) fold(e);
+    return e.type;
+}
+
+/// TIME + TIME, TIME * number, TIME / number.
+const Type* Checker::check_time_arithmetic(Expression& e) {
+    Expression *&left = e.operands[0], *&right = e.operands[1];
+    const bool both = left->type->kind == Kind::time && right->type->kind == Kind::time;
+    const bool adds = e.op == Word::plus || e.op == Word::minus || e.op == Word::mod_;
+    Expression*& number = left->type->kind == Kind::time ? right : left;
+    const bool scales = !both && number->type->is_number() &&
+                        (e.op == Word::times || (e.op == Word::divided && &number == &right));
+    if (!(both && adds) && !scales)
+        return fail("L0905", e.token.place,
+                    fmt::format("'{}' does not go with {} and {}", shown(e.op),
+                                describe(*left->type), describe(*right->type)),
+                    "times are added and subtracted, and multiplied or divided by a number; "
+                    "TIME_TO_LREAL gives seconds");
+    if (scales) {
+        const Type& to = number->type->is_real() ? lreal_type : lint_type;
+        const bool is_long = number->type->is_unsigned_64();
+        if (!is_long && !coerce(number, to)) return nullptr;
+    }
+    e.type = &time_type;
+    fold(e);
+    return e.type;
+}
+
+const Type* Checker::check_power(Expression& e) {
+    Expression *&left = e.operands[0], *&right = e.operands[1];
+    for (Expression* operand : e.operands)
+        if (!operand->type->is_number())
+            return fail("L0905", operand->place,
+                        fmt::format("'**' does not go with {}", describe(*operand->type)));
+    const bool whole = is_constant(*left) && is_constant(*right) &&
+                       left->type->kind == Kind::any_integer &&
+                       right->type->kind == Kind::any_integer && right->constant.integer >= 0;
+    if (whole) {
+        Wide value = 1;
+        for (Wide i = 0; i < right->constant.integer && value < (Wide{1} << 64); ++i)
+            value *= left->constant.integer;
+        if (right->constant.integer <= 64 || left->constant.integer <= 1) {
+            if (value >= (Wide{1} << 64))
+                return fail("L0908", e.place, "the result is out of range");
+            become(e, any_integer_type, {.integer = value});
+            return e.type;
+        }
+    }
+    const bool is_real = left->type->kind == Kind::real && left->type->bits == 32 &&
+                         (right->type->is_any() || right->type->bits <= 32);
+    const Type& type = is_real ? real_type : lreal_type;
+    const auto widen = [&](Expression*& operand) {
+        if (widens(*operand->type, type) || operand->type->is_any()) return coerce(operand, type);
+        convert(operand, type);
+        return true;
+    };
+    return widen(left) && widen(right) ? &type : nullptr;
+}
+
+void Checker::fold(Expression& e) {
+    if (!is_constant(*e.operands[0]) || !is_constant(*e.operands[1])) return;
+    fold_binary(e, e.operands[0]->constant, e.operands[1]->constant);
+}
+
+void Checker::fold_binary(Expression& e, const Constant& a, const Constant& b) {
+    const Type& operand = *e.operands[0]->type;
+    const bool real = operand.is_real() || e.operands[1]->type->is_real();
+    const double x = as_real(*e.operands[0]), y = as_real(*e.operands[1]);
+    const bool less = real ? x < y : a.integer < b.integer;
+    const bool same = real ? x == y : a.integer == b.integer;
+    const bool more = real ? x > y : a.integer > b.integer;
+    const bool divides = e.op == Word::divided || e.op == Word::mod_;
+    if (divides && !real && b.integer == 0) {
+        fail("L0908", e.operands[1]->place, "this divides by zero");
+        e.type = nullptr;
+        return;
+    }
+    Constant result;
+    switch (e.op) {
+        case Word::less:
+            return become_boolean(e, less);
+        case Word::less_or_equal:
+            return become_boolean(e, less || same);
+        case Word::greater:
+            return become_boolean(e, more);
+        case Word::greater_or_equal:
+            return become_boolean(e, more || same);
+        case Word::equal:
+            return become_boolean(e, same);
+        case Word::unequal:
+            return become_boolean(e, !same);
+        case Word::and_:
+        case Word::and_then_:
+            result.integer = a.integer & b.integer;
+            break;
+        case Word::or_:
+        case Word::or_else_:
+            result.integer = a.integer | b.integer;
+            break;
+        case Word::xor_:
+            result.integer = a.integer ^ b.integer;
+            break;
+        case Word::plus:
+            result = {a.integer + b.integer, x + y};
+            break;
+        case Word::minus:
+            result = {a.integer - b.integer, x - y};
+            break;
+        case Word::times:
+            result = {a.integer * b.integer, x * y};
+            break;
+        case Word::divided:
+            result = {real ? 0 : a.integer / b.integer, x / y};
+            break;
+        case Word::mod_:
+            result.integer = a.integer % b.integer;
+            break;
+        default:
+            return;
+    }
+    const Type& type = *e.type;
+    if (type.kind == Kind::time && real)
+        result.integer = static_cast<Wide>(std::nearbyint(result.real));
+    if (type.kind == Kind::real && type.bits == 32) result.real = static_cast<float>(result.real);
+    if (!type.is_any() && !type.is_real()) result.integer = wrapped(type, result.integer);
+    const Wide most = Wide{1} << 64;
+    if (type.is_any() && (result.integer >= most || result.integer <= -most)) {
+        fail("L0908", e.place, "the result is out of range");
+        e.type = nullptr;
+        return;
+    }
+    become(e, type, result);
+}
+
+// Conversions.
+
+bool Checker::coerce_constant(Expression& e, const Type& to) {
+    const Type& from = *e.type;
+    const Wide value = e.constant.integer;
+    const bool whole = from.kind == Kind::any_integer || from.kind == Kind::any_bits;
+    if (to.is_real() && (whole || from.kind == Kind::any_real)) {
+        double real = as_real(e);
+        if (to.kind == Kind::real && to.bits == 32) real = static_cast<float>(real);
+        if (!std::isfinite(real)) {
+            fail("L0908", e.place,
+                 fmt::format("'{}' is out of range for {}", e.place.text(), to.name));
+            return false;
+        }
+        become(e, to, {.real = real});
+        return true;
+    }
+    if (!whole) return refuse_conversion(e, to);
+    const bool bit = to.kind == Kind::boolean && (value == 0 || value == 1);
+    if (to.is_any() || bit) {
+        e.type = &to;
+        return true;
+    }
+    if (to.kind != Kind::integer && to.kind != Kind::bits) return refuse_conversion(e, to);
+    const Wide pattern = Wide{1} << to.bits;
+    const bool is_pattern = from.kind == Kind::any_bits && value < pattern && !to.is_subrange;
+    if (!is_pattern && (value < smallest(to) || value > largest(to))) {
+        fail("L0908", e.place,
+             fmt::format("{} is out of range for {}", to_string(value), describe(to)),
+             fmt::format("it goes from {} to {}", to_string(smallest(to)), to_string(largest(to))));
+        return false;
+    }
+    become(e, to, {.integer = is_pattern ? wrapped(to, value) : value});
+    return true;
+}
+
+bool Checker::coerce(Expression*& e, const Type& to) {
+    if (!e->type) return false;
+    const Type& from = *e->type;
+    if (&from == &to || same_type(from, to)) return true;
+    if (from.is_any()) return coerce_constant(*e, to);
+    if (from.kind == Kind::text && to.kind == Kind::text) return true;
+    if (to.is_subrange && same_type(from.plain(), to.plain())) {
+        if (is_constant(*e) && (e->constant.integer < to.lower || e->constant.integer > to.upper)) {
+            fail("L0908", e->place,
+                 fmt::format("{} is out of range for {}", to_string(e->constant.integer),
+                             describe(to)));
+            return false;
+        }
+        convert(e, to);
+        return true;
+    }
+    if (from.kind == Kind::enumeration && to.kind == Kind::enumeration && from.name == to.name &&
+        from.values == to.values)
+        return true;
+    if (!from.is_scalar() || !widens(from, to)) return refuse_conversion(*e, to);
+    convert(e, to);
+    return true;
+}
+
+bool Checker::refuse_conversion(const Expression& e, const Type& to) {
+    const Type& from = *e.type;
+    const bool any_real = from.kind == Kind::any_real;
+    if ((from.is_number() || from.is_bits()) && (to.is_number() || to.is_bits())) {
+        const std::string source = any_real ? "LREAL" : from.is_any() ? "LINT" : from.plain().name;
+        fail("L0906", e.place,
+             fmt::format("{} does not hold every {}", describe(to), any_real ? "LREAL" : from.name),
+             any_real && is_constant(e)
+                 ? "write a whole number, or ROUND(...)"
+                 : fmt::format("write {}_TO_{}(...) where it is meant", source, to.plain().name));
+        return false;
+    }
+    std::string help;
+    if (to.kind == Kind::time && from.is_number()) help = "write a time with its unit: T#500ms";
+    if (to.kind == Kind::boolean && from.is_number()) help = "compare it, as in 'x <> 0'";
+    if (to.kind == Kind::enumeration && !to.values.empty())
+        help = fmt::format("write one of its values, such as {}#{}", to.name, to.values.front());
+    if (from.kind == Kind::time && to.is_number())
+        help = fmt::format("write TIME_TO_{}(...)", to.is_any() ? "LREAL" : to.plain().name);
+    if (from.kind == Kind::enumeration && to.kind == Kind::integer)
+        help = fmt::format("write TO_{}(...)", to.plain().name);
+    fail("L0905", e.place, fmt::format("expected {}, found {}", describe(to), describe(from)),
+         help);
+    return false;
+}
+
+/// Puts a conversion in, or converts a constant at once.
+void Checker::convert(Expression*& e, const Type& to) {
+    if (is_constant(*e) && fold_conversion(*e, to)) return;
+    Expression* converted = make(Expression::Kind::converted, *e);
+    converted->operands[0] = e;
+    converted->type = &to;
+    converted->depth = e->depth;
+    e = converted;
+}
+
+bool Checker::fold_conversion(Expression& e, const Type& to) {
+    const Type& from = *e.type;
+    if (from.kind == Kind::text || to.kind == Kind::text || from.kind == Kind::enumeration)
+        return false;
+    if (to.is_real() && from.is_bits()) return false;
+    if (to.is_real()) {
+        double value = as_real(e);
+        if (from.kind == Kind::time) value /= 1e9;
+        if (to.bits == 32)
+            value = from.is_real() || from.kind == Kind::time
+                        ? static_cast<float>(value)
+                        : static_cast<float>(e.constant.integer);
+        become(e, to, {.real = value});
+        return true;
+    }
+    if (from.is_real()) return false;
+    if (to.kind == Kind::enumeration) return false;
+    become(e, to,
+           {.integer = to.kind == Kind::boolean ? Wide{e.constant.integer != 0}
+                                                : wrapped(to.plain(), e.constant.integer)});
+    return true;
+}
+
+std::optional<Wide> Checker::check_whole(Expression*& e, const Type& type) {
+    if (!check(*e, &type) || !coerce(e, type)) return {};
+    if (is_constant(*e)) return e->constant.integer;
+    fail("L0913", e->place, "a constant is due here", "declare it in VAR CONSTANT");
+    return {};
+}
+
+}  // namespace lineshaft::st

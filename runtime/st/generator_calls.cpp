@@ -1,0 +1,281 @@
+#include <algorithm>
+
+#include "runtime/st/generator_class.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+using Kind = Type::Kind;
+using E = Expression::Kind;
+using Mode = Location::Mode;
+
+bool has_call(const Expression& e) {
+    if (e.kind == E::call && e.routine) return true;
+    for (const Expression* operand : e.operands)
+        if (operand && has_call(*operand)) return true;
+    return std::ranges::any_of(e.arguments, [](const Argument& a) { return has_call(*a.value); });
+}
+
+}  // namespace
+
+Slot Generator::call(const Expression& e, Slot wanted) {
+    if (!e.routine) return standard(e, wanted);
+    call_routine(e);
+    const Routine& routine = *e.routine;
+    const Type& type = *routine.result->type;
+    const std::uint32_t slots = slots_of(type);
+    if (routine.is_function()) {
+        const Slot from = Region::window + routine.result->slot;
+        const Slot to = slots == 1 ? result(wanted) : new_temporary(slots);
+        if (slots == 1)
+            put(Op::move, to, from);
+        else
+            put(Op::copy, to, from, slots);
+        return to;
+    }
+    const Location from = part(method_base(e), *routine.result);
+    const Slot to = slots == 1 ? result(wanted) : new_temporary(slots);
+    if (slots == 1)
+        store({Mode::slot, to}, load(from, to));
+    else
+        copy({Mode::slot, to}, from, slots);
+    return to;
+}
+
+/// The instance that a method works on.
+Location Generator::method_base(const Expression& e) {
+    const Expression& callee = *e.operands[0];
+    if (callee.kind == E::member) return locate(*callee.operands[0]);
+    return {Mode::slot, 0};
+}
+
+/// A call whose arguments call functions themselves has them first, for they use the same memory.
+void Generator::call_routine(const Expression& e) {
+    const Routine& routine = *e.routine;
+    const bool is_function = routine.is_function();
+    const Location frame = is_function ? Location{Mode::slot, Region::window} : method_base(e);
+    give(frame, e, routine);
+    place_ = e.place;
+    if (frame.mode == Mode::slot)
+        put(Op::call, frame.slot, routine_number(routine));
+    else
+        put(Op::call_at, address_of(frame), routine_number(routine));
+    if (is_function) windows_ = std::max(windows_, routine.frame);
+    take(frame, e);
+}
+
+void Generator::call_instance(const Expression& e) {
+    const Expression& callee = *e.operands[0];
+    const Type& type = *callee.type;
+    Location frame = locate(callee);
+    if (frame.mode == Mode::indexed) frame = as_address(frame);
+    if (type.kind == Kind::block) {
+        const Routine& routine = *type.routine;
+        give(frame, e, routine);
+        place_ = e.place;
+        if (frame.mode == Mode::slot)
+            put(Op::call, frame.slot, routine_number(routine));
+        else
+            put(Op::call_at, address_of(frame), routine_number(routine));
+        return take(frame, e);
+    }
+    for (const Argument& argument : e.arguments)
+        if (!argument.is_output && argument.variable->section == Section::input)
+            assign(part(frame, *argument.variable), *argument.variable->type, *argument.value);
+    const auto [it, added] =
+        standard_numbers_.emplace(type.standard, static_cast<std::uint32_t>(code_.standard.size()));
+    if (added) code_.standard.push_back(type.standard);
+    place_ = e.place;
+    if (frame.mode == Mode::slot)
+        put(Op::call_block, frame.slot, it->second);
+    else
+        put(Op::call_block_at, address_of(frame), it->second);
+    take(frame, e);
+}
+
+/// Inputs and references, and what is left out.
+void Generator::give(const Location& frame, const Expression& e, const Routine& routine) {
+    const auto is_given = [](const Argument& argument) {
+        return argument.variable->section == Section::input ||
+               argument.variable->section == Section::in_out;
+    };
+    const bool nested = std::ranges::any_of(
+        e.arguments, [&](const Argument& a) { return is_given(a) && has_call(*a.value); });
+    std::vector<std::pair<Location, Slot>> later;
+    for (const Argument& argument : e.arguments) {
+        if (!is_given(argument)) continue;
+        const Variable& variable = *argument.variable;
+        const Location to = part(frame, variable.slot);
+        if (variable.section == Section::in_out) {
+            const Slot address = address_of(locate(*argument.value));
+            later.emplace_back(to, address);
+        } else if (!variable.type->is_scalar()) {
+            const Type& type = *variable.type;
+            if (!nested) {
+                assign(to, type, *argument.value);
+                continue;
+            }
+            const Location kept{Mode::slot, new_temporary(slots_of(type))};
+            assign(kept, type, *argument.value);
+            later.emplace_back(to, kept.slot);
+        } else if (nested) {
+            const Slot kept = new_temporary();
+            value_to(*argument.value, kept);
+            later.emplace_back(to, kept);
+        } else {
+            assign(to, *variable.type, *argument.value);
+        }
+    }
+    std::size_t next_later = 0;
+    for (const Argument& argument : e.arguments) {
+        if (!is_given(argument) || next_later == later.size()) continue;
+        const Variable& variable = *argument.variable;
+        const auto& [to, slot] = later[next_later];
+        const bool now = variable.section == Section::in_out || nested;
+        if (!now) continue;
+        ++next_later;
+        if (variable.section == Section::input && !variable.type->is_scalar())
+            copy(to, {Mode::slot, slot}, slots_of(*variable.type));
+        else
+            store(to, slot);
+    }
+    if (routine.has_instances()) return;
+    for (const Variable& variable : routine.variables) {
+        const bool missing = variable.section == Section::input &&
+                             std::ranges::none_of(e.arguments, [&](const Argument& argument) {
+                                 return argument.variable == &variable;
+                             });
+        if (!missing || variable.space == Space::none) continue;
+        const std::uint32_t slots = slots_of(*variable.type);
+        const Type* block = routine.owner ? routine.owner->type : nullptr;
+        const Slot made =
+            frame.mode == Mode::slot ? frame.slot + variable.slot : new_temporary(slots);
+        image_uses_.push_back({next(), block, &routine});
+        put(Op::initialise, made, variable.slot, slots);
+        if (frame.mode != Mode::slot) copy(part(frame, variable.slot), {Mode::slot, made}, slots);
+    }
+}
+
+/// Outputs.
+void Generator::take(const Location& frame, const Expression& e) {
+    for (const Argument& argument : e.arguments) {
+        const Variable& variable = *argument.variable;
+        if (variable.section != Section::output) continue;
+        const Location from = part(frame, variable);
+        const Location to = locate(*argument.value);
+        const Type &given = *variable.type, &wanted = *argument.value->type;
+        if (!given.is_scalar())
+            copy(to, from, slots_of(given));
+        else
+            store(to, convert(load(from), given, wanted, false, none));
+    }
+}
+
+// Standard functions.
+
+Slot Generator::standard(const Expression& e, Slot wanted) {
+    const StandardFunction& f = standard_functions()[static_cast<std::size_t>(e.standard)];
+    const auto argument = [&](std::size_t i) { return value(*e.arguments[i].value); };
+    const Type& type = *e.type;
+    const bool narrow = type.kind == Kind::real && type.bits == 32;
+    const auto rounded = [&](Slot slot) { return narrow ? emit(Op::narrow, wanted, slot) : slot; };
+    const Slot exact = narrow ? none : wanted;
+    switch (f.rule) {
+        case Rule::real:
+            return rounded(emit(f.op, exact, argument(0)));
+        case Rule::real_two: {
+            const Slot a = argument(0), b = argument(1);
+            return rounded(emit(f.op, exact, a, b));
+        }
+        case Rule::square: {
+            const Slot a = argument(0);
+            return emit(narrow ? Op::mul_real : Op::mul_lreal, wanted, a, a);
+        }
+        case Rule::fraction: {
+            const Slot a = argument(0);
+            return emit(Op::sub_lreal, wanted, a, emit(Op::truncate, none, a));
+        }
+        case Rule::whole:
+            return emit(of_type(Op::round_sint, type), wanted, emit(f.op, none, argument(0)));
+        case Rule::absolute: {
+            if (type.is_real()) return emit(Op::abs_lreal, wanted, argument(0));
+            if (!type.is_signed) return argument(0);
+            const Slot a = emit(Op::abs_signed, none, argument(0));
+            return emit(of_type(Op::wrap_sint, type), wanted, a);
+        }
+        case Rule::extremum:
+            return extremum(e, f.op == Op::max_signed, wanted);
+        case Rule::limit: {
+            const Op least = type.is_real()          ? Op::min_lreal
+                             : type.is_unsigned_64() ? Op::min_unsigned
+                                                     : Op::min_signed;
+            const Op greatest = type.is_real()          ? Op::max_lreal
+                                : type.is_unsigned_64() ? Op::max_unsigned
+                                                        : Op::max_signed;
+            const Slot mn = argument(0), in = argument(1), mx = argument(2);
+            return emit(least, wanted, emit(greatest, none, in, mn), mx);
+        }
+        case Rule::select: {
+            const Slot first = several(e, 1);
+            return emit(Op::select, wanted, argument(0), first);
+        }
+        case Rule::multiplex: {
+            const Slot first = several(e, 1);
+            const Slot index =
+                emit(Op::index, none, argument(0), table({0, e.arguments.size() - 1, 1}));
+            return emit(Op::load_at, wanted, first, index);
+        }
+        case Rule::shift: {
+            int width = 0;
+            while ((8 << width) < type.bits) ++width;
+            const Op op = static_cast<Op>(static_cast<int>(f.op) + 4 * width);
+            const Slot a = argument(0), n = argument(1);
+            if (!type.is_signed) return emit(op, wanted, a, n);
+            const Type& bits = bits_type(type.bits);
+            const Slot pattern = emit(of_type(Op::wrap_sint, bits), none, a);
+            return emit(of_type(Op::wrap_sint, type), wanted, emit(op, none, pattern, n));
+        }
+        case Rule::normalise: {
+            const Slot min = argument(0), in = argument(1), max = argument(2);
+            const Op sub = narrow ? Op::sub_real : Op::sub_lreal;
+            const Slot above = emit(sub, none, in, min), range = emit(sub, none, max, min);
+            return emit(narrow ? Op::div_real : Op::div_lreal, wanted, above, range);
+        }
+        case Rule::scale: {
+            const Slot min = argument(0), in = argument(1), max = argument(2);
+            const Slot range = emit(narrow ? Op::sub_real : Op::sub_lreal, none, max, min);
+            const Slot above = emit(narrow ? Op::mul_real : Op::mul_lreal, none, in, range);
+            return emit(narrow ? Op::add_real : Op::add_lreal, wanted, above, min);
+        }
+        case Rule::finite:
+            return emit(Op::is_finite, wanted, argument(0));
+        case Rule::move:
+        case Rule::operation:
+            return argument(0);
+    }
+    return none;
+}
+
+Slot Generator::extremum(const Expression& e, bool greatest, Slot wanted) {
+    const Type& type = *e.type;
+    const Op op = type.is_real()          ? (greatest ? Op::max_lreal : Op::min_lreal)
+                  : type.is_unsigned_64() ? (greatest ? Op::max_unsigned : Op::min_unsigned)
+                                          : (greatest ? Op::max_signed : Op::min_signed);
+    Slot so_far = value(*e.arguments[0].value);
+    for (std::size_t i = 1; i < e.arguments.size(); ++i) {
+        const bool last = i + 1 == e.arguments.size();
+        so_far = emit(op, last ? wanted : none, so_far, value(*e.arguments[i].value));
+    }
+    return so_far;
+}
+
+/// The values of the arguments from `first` on, one behind the other.
+Slot Generator::several(const Expression& e, std::size_t first) {
+    const auto count = static_cast<std::uint32_t>(e.arguments.size() - first);
+    const Slot slots = new_temporary(count);
+    for (std::uint32_t i = 0; i < count; ++i) value_to(*e.arguments[first + i].value, slots + i);
+    return slots;
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,411 @@
+#include "runtime/st/lexer.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "runtime/source/habits.hpp"
+#include "runtime/source/utf8.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+constexpr char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+constexpr bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+constexpr bool is_letter(char c) {
+    return (lower(c) >= 'a' && lower(c) <= 'z') || c == '_';
+}
+
+constexpr std::string_view word_names[] = {
+#define WORD(name) #name,
+    LINESHAFT_ST_WORDS(WORD)
+#undef WORD
+};
+
+constexpr std::string_view other_names[] = {"the end of the file",
+                                            "a name",
+                                            "a type",
+                                            "a number",
+                                            "a number",
+                                            "a time",
+                                            "a text",
+                                            "a direct address",
+                                            ":=",
+                                            "+=",
+                                            "-=",
+                                            "*=",
+                                            "/=",
+                                            "=>",
+                                            "REF=",
+                                            "**",
+                                            "*",
+                                            "/",
+                                            "+",
+                                            "-",
+                                            "<",
+                                            "<=",
+                                            ">",
+                                            ">=",
+                                            "=",
+                                            "<>",
+                                            "&",
+                                            "^",
+                                            "(",
+                                            ")",
+                                            "[",
+                                            "]",
+                                            ".",
+                                            "..",
+                                            ",",
+                                            ";",
+                                            ":"};
+
+const NameMap<Word>& words() {
+    static const NameMap<Word> map = [] {
+        NameMap<Word> made;
+        for (std::size_t i = 0; i < std::size(word_names); ++i)
+            made.emplace(word_names[i], static_cast<Word>(i));
+        return made;
+    }();
+    return map;
+}
+
+struct Sign {
+    std::string_view text;
+    Word word;
+};
+
+// The longer ones first.
+constexpr Sign signs[] = {{":=", Word::assign},
+                          {"+=", Word::plus_assign},
+                          {"-=", Word::minus_assign},
+                          {"*=", Word::times_assign},
+                          {"/=", Word::divided_assign},
+                          {"=>", Word::output},
+                          {"?=", Word::reference_assign},
+                          {"**", Word::power},
+                          {"<=", Word::less_or_equal},
+                          {">=", Word::greater_or_equal},
+                          {"<>", Word::unequal},
+                          {"..", Word::range},
+                          {"*", Word::times},
+                          {"/", Word::divided},
+                          {"+", Word::plus},
+                          {"-", Word::minus},
+                          {"<", Word::less},
+                          {">", Word::greater},
+                          {"=", Word::equal},
+                          {"&", Word::ampersand},
+                          {"^", Word::caret},
+                          {"(", Word::open},
+                          {")", Word::close},
+                          {"[", Word::open_bracket},
+                          {"]", Word::close_bracket},
+                          {".", Word::dot},
+                          {",", Word::comma},
+                          {";", Word::semicolon},
+                          {":", Word::colon}};
+
+constexpr std::string_view time_prefixes[] = {"t", "time", "lt", "ltime", "s5t", "s5time"};
+
+class Lexer {
+  public:
+    Lexer(const std::shared_ptr<const SourceFile>& file, Diagnostics& out)
+        : file_(file), text_(file->text), out_(out) {}
+
+    Tokens read() {
+        if (text_.starts_with(utf8_byte_order_mark)) at_ = utf8_byte_order_mark.size();
+        tokens_.tokens.reserve(text_.size() / 4 + 1);
+        for (skip_blanks(); at_ < text_.size(); skip_blanks()) read_token();
+        start_ = at_;
+        add(Word::end_of_file);
+        return std::move(tokens_);
+    }
+
+  private:
+    char peek(std::size_t ahead = 0) const {
+        return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0';
+    }
+    bool at(std::string_view text) const { return text_.substr(at_).starts_with(text); }
+    Place place(std::size_t begin, std::size_t end) const {
+        return {&file_, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+    }
+    template <class Condition>
+    void skip_while(Condition condition) {
+        while (at_ < text_.size() && condition(text_[at_])) ++at_;
+    }
+
+    Token& add(Word word) {
+        Token& token = tokens_.tokens.emplace_back();
+        token.word = word;
+        token.first_in_line = new_line_;
+        token.place = place(start_, at_);
+        token.text = text_.substr(start_, at_ - start_);
+        new_line_ = false;
+        return token;
+    }
+
+    void skip_blanks() {
+        for (; at_ < text_.size(); ++at_) {
+            if (text_[at_] == '\n')
+                new_line_ = true;
+            else if (at("(*") || at("/*"))
+                skip_comment();
+            else if (at("//"))
+                skip_line();
+            else if (text_[at_] == '{')
+                skip_pragma();
+            else if (text_[at_] != ' ' && text_[at_] != '\t' && text_[at_] != '\r')
+                return;
+        }
+    }
+
+    /// Stops before the end of the line.
+    void skip_line() {
+        skip_while([](char c) { return c != '\n'; });
+        --at_;
+    }
+
+    /// Stops at the comment's last character.
+    void skip_comment() {
+        const std::size_t begin = at_;
+        const std::string_view open = at("(*") ? "(*" : "/*", close = at("(*") ? "*)" : "*/";
+        std::size_t depth = 0;
+        for (; at_ < text_.size(); ++at_) {
+            if (at(open)) {
+                ++depth, ++at_;
+            } else if (at(close)) {
+                ++at_;
+                if (--depth == 0) return;
+            }
+        }
+        fail(place(begin, begin + 2), "the comment does not end",
+             fmt::format("it ends with '{}'; comments nest, so each '{}' needs one", close, open));
+    }
+
+    void skip_pragma() {
+        const std::size_t begin = at_;
+        char quote = '\0';
+        for (; at_ < text_.size(); ++at_) {
+            const char c = text_[at_];
+            if (quote != '\0' ? c == quote : c == '\'' || c == '"')
+                quote = quote != '\0' ? '\0' : c;
+            else if (c == '\n')
+                quote = '\0';
+            else if (c == '}' && quote == '\0')
+                break;
+        }
+        if (at_ == text_.size())
+            fail(place(begin, begin + 1), "the pragma does not end", "it ends with '}'");
+        tokens_.pragmas.push_back({tokens_.tokens.size(), new_line_, place(begin, at_ + 1)});
+    }
+
+    void read_token() {
+        start_ = at_;
+        const char c = peek();
+        if (is_letter(c)) return read_word();
+        if (is_digit(c)) return read_number();
+        if (c == '\'') return read_text();
+        if (c == '"' || c == '#') return read_marked_name();
+        if (c == '%') return read_direct();
+        for (const Sign& sign : signs) {
+            if (!at(sign.text)) continue;
+            at_ += sign.text.size();
+            add(sign.word);
+            return;
+        }
+        read_foreign();
+    }
+
+    void read_word() {
+        skip_while([](char c) { return is_letter(c) || is_digit(c); });
+        const std::string_view text = text_.substr(start_, at_ - start_);
+        const bool after_dot = !tokens_.tokens.empty() && tokens_.tokens.back().word == Word::dot;
+        if (peek() == '#' && !after_dot) return read_prefix(text);
+        if (same_name(text, "ref") && peek() == '=') {
+            ++at_;
+            add(Word::reference_assign);
+            return;
+        }
+        const auto it = words().find(text);
+        if (it == words().end() || after_dot) {
+            add(Word::name);
+            return;
+        }
+        add(it->second);
+        if (it->second == Word::region_ || it->second == Word::end_region_) skip_title();
+    }
+
+    /// `REGION any text`: up to the end of the line.
+    void skip_title() {
+        skip_while([](char c) { return c != '\n'; });
+    }
+
+    void read_prefix(std::string_view text) {
+        add(Word::prefix);
+        start_ = ++at_;
+        const auto is_prefix = [&](std::string_view p) { return same_name(p, text); };
+        if (std::ranges::none_of(time_prefixes, is_prefix)) return;
+        if (peek() == '-' || peek() == '+') ++at_;
+        skip_while([](char c) { return is_letter(c) || is_digit(c) || c == '.'; });
+        add(Word::duration);
+    }
+
+    void read_number() {
+        const auto digits = [&] { skip_while([](char c) { return is_digit(c) || c == '_'; }); };
+        digits();
+        if (peek() == '#') {
+            ++at_;
+            skip_while([](char c) { return is_letter(c) || is_digit(c); });
+            add(Word::integer);
+            return;
+        }
+        bool real = false;
+        if (peek() == '.' && is_digit(peek(1)) && !after_partial_dot()) {
+            real = true;
+            ++at_;
+            digits();
+        }
+        const std::size_t sign = peek(1) == '-' || peek(1) == '+' ? 2 : 1;
+        if (lower(peek()) == 'e' && is_digit(peek(sign))) {
+            real = true;
+            at_ += sign;
+            digits();
+        }
+        add(real ? Word::real : Word::integer);
+    }
+
+    /// After `word.` a number is that of a bit.
+    bool after_partial_dot() const {
+        return !tokens_.tokens.empty() && tokens_.tokens.back().word == Word::dot;
+    }
+
+    void read_text() {
+        ++at_;
+        while (at_ < text_.size() && text_[at_] != '\'' && text_[at_] != '\n')
+            at_ += text_[at_] == '$' && peek(1) != '\n' && peek(1) != '\0' ? 2 : 1;
+        const bool ends = peek() == '\'';
+        if (!ends) fail(place(start_, start_ + 1), "the text does not end", "it ends with \"'\"");
+        if (ends) ++at_;
+        Token& token = add(Word::text);
+        token.text = token.text.substr(1, token.text.size() - (ends ? 2 : 1));
+    }
+
+    void read_marked_name() {
+        const bool local = peek() == '#';
+        if (local) ++at_;
+        if (peek() == '"') {
+            const std::size_t begin = ++at_;
+            skip_while([](char c) { return c != '"' && c != '\n'; });
+            const std::string_view text = text_.substr(begin, at_ - begin);
+            if (peek() == '"')
+                ++at_;
+            else
+                fail(place(start_, start_ + 1), "the quoted name does not end",
+                     "it ends with '\"'");
+            Token& token = add(Word::name);
+            token.text = text;
+            token.quoted = !local;
+            token.local = local;
+            return;
+        }
+        skip_while([](char c) { return is_letter(c) || is_digit(c); });
+        Token& token = add(Word::name);
+        token.local = true;
+        token.text.remove_prefix(1);
+        if (!token.text.empty()) return;
+        fail(token.place, "'#' stands before a name, or between a type and its value", {});
+        tokens_.tokens.pop_back();
+    }
+
+    void read_direct() {
+        ++at_;
+        skip_while([](char c) { return is_letter(c) || is_digit(c); });
+        const bool partial = after_partial_dot();
+        while (!partial && peek() == '.' && is_digit(peek(1))) {
+            ++at_;
+            skip_while(is_digit);
+        }
+        add(Word::direct);
+    }
+
+    void read_foreign() {
+        const Utf8Character character = first_character(text_.substr(at_));
+        at_ += character.bytes;
+        const Place here = place(start_, at_);
+        if (const auto alike = find_look_alike(here.text()))
+            return out_.add("L0109", here.mark(),
+                            fmt::format("{} stands where {} is meant", alike->name, alike->instead),
+                            fmt::format("type {}", alike->instead));
+        if (last_foreign_ == start_) {
+            last_foreign_ = at_;
+            return;
+        }
+        last_foreign_ = at_;
+        if (!character.valid || is_control(character.code))
+            return fail(here, "the file has a byte that is not text", "save it as UTF-8");
+        fail(here, fmt::format("'{}' has no meaning here", here.text()),
+             "names have letters without accents, digits and '_'; others stand in quotes");
+    }
+
+    void fail(Place where, std::string message, std::string help) {
+        out_.add("L0901", where.mark(), std::move(message), std::move(help));
+    }
+
+    const std::shared_ptr<const SourceFile>& file_;
+    std::string_view text_;
+    Diagnostics& out_;
+    Tokens tokens_;
+    std::size_t at_ = 0, start_ = 0;
+    std::size_t last_foreign_ = std::string_view::npos;  ///< end of the last character of no token
+    bool new_line_ = true;
+};
+
+}  // namespace
+
+Mark Place::mark() const {
+    std::string_view before = std::string_view((*file)->text).substr(0, begin);
+    if (before.starts_with(utf8_byte_order_mark)) before.remove_prefix(utf8_byte_order_mark.size());
+    const auto line = std::ranges::count(before, '\n');
+    const std::size_t line_begin = before.rfind('\n') + 1;
+    const std::string_view marked = text().substr(0, text().find('\n'));
+    return {*file, static_cast<int>(line) + 1,
+            static_cast<int>(count_characters(before.substr(line_begin))) + 1,
+            std::max(1, static_cast<int>(count_characters(marked)))};
+}
+
+bool SameName::operator()(std::string_view a, std::string_view b) const {
+    return std::ranges::equal(a, b, {}, lower, lower);
+}
+
+std::size_t NameHash::operator()(std::string_view name) const {
+    std::size_t hash = 0xcbf29ce484222325;
+    for (const char c : name) hash = (hash ^ static_cast<unsigned char>(lower(c))) * 0x100000001b3;
+    return hash;
+}
+
+std::string_view shown(Word word) {
+    static const auto capitals = [] {
+        std::vector<std::string> made;
+        for (const std::string_view name : word_names) {
+            std::string& text = made.emplace_back(name);
+            for (char& c : text) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+        }
+        return made;
+    }();
+    const auto i = static_cast<std::size_t>(word);
+    return i < capitals.size() ? std::string_view(capitals[i]) : other_names[i - capitals.size()];
+}
+
+Tokens read_tokens(const std::shared_ptr<const SourceFile>& file, Diagnostics& out) {
+    return Lexer(file, out).read();
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,338 @@
+#include "runtime/st/library.hpp"
+
+#include <cassert>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "runtime/st/elementary.hpp"
+#include "runtime/st/generator.hpp"
+#include "runtime/st/parser.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+using Kind = Type::Kind;
+
+/// What the blocks of a kind share.
+struct KindContext {
+    const Code* code = nullptr;
+    const CodeRoutine* routine = nullptr;  ///< null: a data block
+    const std::uint64_t* image = nullptr;
+    std::size_t size = 0;
+    Options options;
+    std::string name, doc;
+    std::vector<Field> fields;
+    struct Check {
+        std::uint32_t slot;
+        const Type* type;
+    };
+    std::vector<Check> checks;  ///< inputs narrower than what a wire brings
+};
+
+bool is_in_range(const KindContext::Check& check, std::byte* instance) {
+    std::byte* place = instance + 8 * std::size_t{check.slot};
+    if (check.type->is_real()) {
+        double value = 0;
+        std::memcpy(&value, place, sizeof value);
+        const double narrow = double{static_cast<float>(value)};
+        std::memcpy(place, &narrow, sizeof narrow);
+        return true;
+    }
+    std::int64_t value = 0;
+    std::memcpy(&value, place, sizeof value);
+    return value >= smallest(*check.type) && value <= largest(*check.type);
+}
+
+bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
+              const Context& context) {
+    for (const KindContext::Check& check : kind.checks) {
+        if (is_in_range(check, instance)) continue;
+        const std::uint64_t header[] = {1, static_cast<std::uint64_t>(Fault::out_of_range),
+                                        kind.routine->entry, 0};
+        std::memcpy(instance, header, sizeof header);
+        return true;
+    }
+    return execute(*kind.code, *kind.routine, instance, now, context, kind.options.fuel,
+                   kind.options.counts) != Fault::none;
+}
+
+bool scan_blocks(std::byte* first, std::size_t count, const Scan& now, const Context& context) {
+    const auto& kind = *static_cast<const KindContext*>(context.kind);
+    if (!kind.routine) return false;
+    bool error = false;
+    for (; count > 0; --count, first += kind.size) error |= scan_one(kind, first, now, context);
+    return error;
+}
+
+void make(std::byte* place, const void* context) {
+    const auto& kind = *static_cast<const KindContext*>(context);
+    std::memcpy(place, kind.image, kind.size);
+}
+
+}  // namespace
+
+struct Library::Made {
+    std::vector<std::shared_ptr<const SourceFile>> sources;
+    Tree tree;
+    Checked checked;
+    Generated generated;
+    std::deque<KindContext> kinds;
+    std::deque<std::string> names;                     ///< of fields
+    std::deque<std::vector<std::string_view>> values;  ///< of enumerations
+};
+
+namespace {
+
+/// Writes down the fields of one kind.
+class FieldWriter {
+  public:
+    FieldWriter(Library::Made& made, KindContext& kind) : made_(made), kind_(kind) {}
+
+    void write_header(const Routine& routine) {
+        const bool own = routine.names.contains("error") || routine.names.contains("error_id");
+        Field error;
+        error.name = own ? "fault" : "error";
+        error.doc = "the last scan ended with a fault";
+        error.direction = Direction::output;
+        error.type = lineshaft::Type::boolean;
+        error.offset = 8 * error_slot;
+        kind_.fields.push_back(error);
+        Field id = error;
+        id.name = own ? "fault_id" : "error_id";
+        id.doc = "the fault of the last scan";
+        id.type = lineshaft::Type::enumeration;
+        id.offset = 8 * error_id_slot;
+        id.names = fault_names;
+        kind_.fields.push_back(id);
+        for (std::uint32_t i = 0; i < made_.checked.globals.size(); ++i) {
+            Field reference;
+            reference.name = reference.refers = made_.checked.globals[i].name;
+            reference.doc = "the data block of that name";
+            reference.direction = Direction::in_out;
+            reference.type = lineshaft::Type::integer;
+            reference.offset = 8 * std::size_t{globals_slot + i};
+            reference.required = true;
+            kind_.fields.push_back(reference);
+        }
+    }
+
+    void write(const Variable& variable, std::uint32_t at, const std::string& path,
+               Direction direction) {
+        if (variable.space != Space::frame || kind_.fields.size() >= Library::most_parts) return;
+        const std::size_t offset =
+            8 * std::size_t{at} +
+            (variable.is_byte ? variable.byte : 8 * std::size_t{variable.slot});
+        write(*variable.type, offset, path + std::string(variable.text), direction, variable);
+    }
+
+    /// Of a data block, whose variables are all its own.
+    void write_member(const Variable& member) {
+        write(*member.type, 8 * std::size_t{member.slot}, std::string(member.text),
+              Direction::local, member);
+    }
+
+    static Direction direction_of(const Variable& variable) {
+        if (variable.section == Section::input)
+            return variable.constant ? Direction::parameter : Direction::input;
+        return variable.section == Section::output ? Direction::output : Direction::local;
+    }
+
+  private:
+    void write(const Type& type, std::size_t offset, const std::string& name, Direction direction,
+               const Variable& variable) {
+        if (kind_.fields.size() >= Library::most_parts) return;
+        const auto slot = static_cast<std::uint32_t>(offset / 8);
+        switch (type.kind) {
+            case Kind::array:
+                write_elements(type, offset, name + "[", direction, variable);
+                return;
+            case Kind::structure:
+            case Kind::standard:
+                for (const Variable* member : type.members)
+                    write(*member, slot, name + ".", inner(direction));
+                return;
+            case Kind::block:
+                for (const Variable& member : type.routine->variables)
+                    if (member.section != Section::temp)
+                        write(member, slot, name + ".", inner(direction));
+                return;
+            case Kind::text:
+                return;
+            default:
+                write_scalar(type, offset, name, direction, variable);
+        }
+    }
+
+    /// `before` is `table[`, or of the next dimension `table[2,`.
+    void write_elements(const Type& array, std::size_t offset, const std::string& before,
+                        Direction direction, const Variable& variable) {
+        for (std::int64_t i = array.lower; i <= array.upper;
+             ++i, offset += 8 * element_slots(array)) {
+            if (kind_.fields.size() >= Library::most_parts) return;
+            const std::string name = before + std::to_string(i);
+            if (array.has_inner)
+                write_elements(*array.element, offset, name + ",", direction, variable);
+            else
+                write(*array.element, offset, name + "]", direction, variable);
+        }
+    }
+
+    static std::size_t element_slots(const Type& array) {
+        return array.element->kind == Kind::block ? array.element->routine->frame
+                                                  : array.element->slots;
+    }
+
+    /// Parts of an input are not wired one by one.
+    static Direction inner(Direction direction) {
+        return direction == Direction::output ? direction : Direction::local;
+    }
+
+    void write_scalar(const Type& type, std::size_t offset, const std::string& name,
+                      Direction direction, const Variable& variable) {
+        Field field;
+        field.name = made_.names.emplace_back(name);
+        field.unit =
+            type.kind == Kind::time ? std::string_view("ns") : std::string_view(variable.unit);
+        field.direction = direction;
+        field.offset = offset;
+        field.type = type.kind == Kind::boolean       ? lineshaft::Type::boolean
+                     : type.is_real()                 ? lineshaft::Type::real
+                     : type.kind == Kind::enumeration ? lineshaft::Type::enumeration
+                                                      : lineshaft::Type::integer;
+        if (type.kind == Kind::enumeration)
+            field.names = made_.values.emplace_back(type.values.begin(), type.values.end());
+        const bool limited = (type.kind == Kind::integer || type.kind == Kind::bits) &&
+                             (type.bits < 64 || type.is_subrange);
+        if (limited) {
+            field.minimum = static_cast<double>(smallest(type));
+            field.maximum = static_cast<double>(largest(type));
+        }
+        const bool wired = direction == Direction::input;
+        if (wired && (limited || (type.is_real() && type.bits == 32)))
+            kind_.checks.push_back({static_cast<std::uint32_t>(offset / 8), &type});
+        kind_.fields.push_back(field);
+    }
+
+    Library::Made& made_;
+    KindContext& kind_;
+};
+
+KindContext& add_kind(Library::Made& made, std::string name, const Type& type,
+                      const Options& options) {
+    KindContext& kind = made.kinds.emplace_back();
+    kind.code = &made.generated.code;
+    kind.options = options;
+    kind.name = std::move(name);
+    const auto& image = made.generated.images.at(&type);
+    kind.image = image.data();
+    kind.size = 8 * image.size();
+    return kind;
+}
+
+void add_routine(Library::Made& made, const Routine& routine, const CodeRoutine& code,
+                 const Options& options) {
+    KindContext& kind = add_kind(made, routine.name, *routine.type, options);
+    kind.routine = &code;
+    kind.doc = fmt::format("{} of {}",
+                           routine.pou->kind == PouKind::program ? "PROGRAM" : "FUNCTION_BLOCK",
+                           (*routine.pou->name.place.file)->path);
+    FieldWriter fields(made, kind);
+    fields.write_header(routine);
+    for (const Variable& variable : routine.variables)
+        fields.write(variable, 0, {}, FieldWriter::direction_of(variable));
+}
+
+void add_global(Library::Made& made, const Global& global, const Options& options) {
+    KindContext& kind = add_kind(made, global.name, *global.type, options);
+    kind.doc = global.pou ? "DATA_BLOCK" : "VAR_GLOBAL";
+    FieldWriter fields(made, kind);
+    if (global.type->kind == Kind::block) {
+        for (const Variable& variable : global.type->routine->variables)
+            if (variable.section != Section::temp) fields.write(variable, 0, {}, Direction::local);
+    }
+    for (const Variable* member : global.type->members) fields.write_member(*member);
+}
+
+BlockType block_type(const KindContext& kind, const std::shared_ptr<const Library::Made>& made) {
+    BlockType type;
+    type.name = kind.name;
+    type.doc = kind.doc;
+    type.fields = kind.fields;
+    type.size = kind.size;
+    type.alignment = alignof(std::max_align_t);
+    type.make = make;
+    type.scan_blocks = scan_blocks;
+    type.context = &kind;
+    type.owner = made;
+    return type;
+}
+
+}  // namespace
+
+std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFile>>& sources,
+                               const Catalog& standard, Diagnostics& out, const Options& options) {
+    const auto made = std::make_shared<Library::Made>();
+    made->sources = sources;
+    for (const auto& source : made->sources) parse(read_tokens(source, out), made->tree, out);
+    if (!out.empty()) return {};
+    made->checked = check(made->tree, standard, out);
+    if (!out.empty()) return {};
+    made->generated = generate(made->checked, out);
+    if (!out.empty()) return {};
+    const std::string wrong = verify(made->generated.code);
+    assert(wrong.empty());
+    if (!wrong.empty()) {
+        out.add("L0999", {sources.front()}, "the compiler made a mistake: " + wrong);
+        return {};
+    }
+    const auto& routines = made->generated.code.routines;
+    std::unordered_map<std::string_view, const CodeRoutine*> codes;
+    for (const CodeRoutine& code : routines) codes.emplace(code.name, &code);
+    for (const Routine& routine : made->checked.routines)
+        if (routine.has_instances() && !routine.owner)
+            add_routine(*made, routine, *codes.at(routine.name), options);
+    for (const Global& global : made->checked.globals) add_global(*made, global, options);
+    Library library;
+    library.made_ = made;
+    for (const KindContext& kind : made->kinds) library.kinds_.push_back(block_type(kind, made));
+    return library;
+}
+
+FaultPlace Library::fault(const BlockType&, const std::byte* instance) const {
+    const auto slot = [&](std::uint32_t number) {
+        std::uint64_t value = 0;
+        std::memcpy(&value, instance + 8 * std::size_t{number}, sizeof value);
+        return value;
+    };
+    const Code& code = made_->generated.code;
+    const auto place = [&](std::uint64_t instruction) { return code.places[instruction].mark(); };
+    const auto routine = [&](std::uint64_t instruction) -> const std::string& {
+        std::size_t i = 0;
+        while (code.routines[i].end <= instruction) ++i;
+        return code.routines[i].name;
+    };
+    FaultPlace found;
+    found.fault = static_cast<Fault>(slot(error_id_slot));
+    if (found.fault == Fault::none) return found;
+    std::uint64_t at = slot(place_slot);
+    found.mark = place(at);
+    const std::uint32_t stack = globals_slot + code.globals;
+    for (std::uint64_t level = slot(depth_slot);; --level) {
+        found.calls.push_back(fmt::format("{} (line {})", routine(at), place(at).line));
+        if (level == 0) return found;
+        at = slot(stack + 2 * static_cast<std::uint32_t>(level - 1)) - 1;
+    }
+}
+
+std::span<const std::uint64_t, op_classes> Library::counts(const std::byte* instance) const {
+    return std::span<const std::uint64_t, op_classes>(
+        std::launder(reinterpret_cast<const std::uint64_t*>(instance)) + counts_slot, op_classes);
+}
+
+std::string Library::listing() const {
+    return st::listing(made_->generated.code);
+}
+
+}  // namespace lineshaft::st

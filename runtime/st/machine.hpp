@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+
+#include "runtime/model/scan.hpp"
+#include "runtime/st/code.hpp"
+
+namespace lineshaft::st {
+
+/// Why a scan of a block ended before its end.
+enum class Fault : std::int64_t {
+    none,
+    array_bounds,
+    division_by_zero,
+    out_of_range,  ///< a value beyond its type: of a conversion, a subrange, an enumeration
+    no_end,        ///< more loops and calls than one scan may have
+};
+
+inline constexpr std::string_view fault_names[] = {"none", "array_bounds", "division_by_zero",
+                                                   "out_of_range", "no_end"};
+
+/// Executes the routine on an instance. Its header then says how that ended: the fault, and the
+/// instruction; the return addresses of the calls that ran are left for messages. Allocates
+/// nothing, throws nothing, and ends after at most `fuel` passes of loops and calls. With `counts`
+/// the header has how many instructions of each class were executed, at a third of the speed.
+Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, const Scan& now,
+              const Context& context, std::int64_t fuel, bool counts);
+
+}  // namespace lineshaft::st

@@ -1,0 +1,934 @@
+#include "runtime/st/parser.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace lineshaft::st {
+
+namespace {
+
+constexpr int deepest = 200;
+constexpr int longest_chain = 2000;
+
+struct Unsupported {
+    Word word;
+    std::string_view what, instead;
+};
+
+constexpr Unsupported unsupported[] = {
+    {Word::class_, "classes are", "write a FUNCTION_BLOCK with METHODs"},
+    {Word::interface_, "interfaces are", "write a FUNCTION_BLOCK with METHODs"},
+    {Word::namespace_, "namespaces are", "put the namespace before its blocks' names: Lib_Block"},
+    {Word::using_, "namespaces are", "leave it out, all sources see each other"},
+    {Word::configuration_, "configurations are", "write tasks into the program's YAML file"},
+    {Word::extends_, "inheritance is", "declare an instance of the other block and call it"},
+    {Word::implements_, "interfaces are", "leave it out, and call the block by its own type"},
+    {Word::property_, "properties are", "write a METHOD, or a VAR_OUTPUT"},
+    {Word::action_, "actions are", "write a METHOD"},
+    {Word::super_, "inheritance is", "declare an instance of the other block and call it"},
+    {Word::goto_, "GOTO is", "write IF, CASE, EXIT or RETURN"},
+    {Word::ref_to_, "references are", "pass the variable as VAR_IN_OUT"},
+    {Word::pointer_, "pointers are", "pass the variable as VAR_IN_OUT, or use an index"},
+    {Word::reference_assign, "references are", "pass the variable as VAR_IN_OUT"},
+    {Word::caret, "pointers are", "pass the variable as VAR_IN_OUT, and leave '^' out"},
+    {Word::var_access_, "access paths are", "declare the variable in VAR_GLOBAL"},
+    {Word::direct, "direct addresses are", "declare a VAR_INPUT or VAR_OUTPUT and wire it"},
+    {Word::override_, "inheritance is", "leave it out"},
+    {Word::final_, "inheritance is", "leave it out"},
+    {Word::test_, "tests beside blocks are", "put the TEST into a file of its own"},
+    {Word::setup_, "tests beside blocks are", "put the SETUP into a file of its own"},
+    {Word::teardown_, "tests beside blocks are", "put the TEARDOWN into a file of its own"},
+};
+
+/// Words that are names wherever a name may stand.
+constexpr Word soft_words[] = {Word::version_,   Word::test_,     Word::setup_,     Word::teardown_,
+                               Word::action_,    Word::class_,    Word::final_,     Word::at_,
+                               Word::internal_,  Word::using_,    Word::property_,  Word::network_,
+                               Word::method_,    Word::override_, Word::interface_, Word::type_,
+                               Word::namespace_, Word::begin_,    Word::pointer_};
+
+struct PouWords {
+    Word begin, end;
+    PouKind kind;
+};
+
+constexpr PouWords pou_words[] = {
+    {Word::program_, Word::end_program_, PouKind::program},
+    {Word::organization_block_, Word::end_organization_block_, PouKind::program},
+    {Word::function_block_, Word::end_function_block_, PouKind::function_block},
+    {Word::function_, Word::end_function_, PouKind::function},
+    {Word::data_block_, Word::end_data_block_, PouKind::data_block},
+    {Word::method_, Word::end_method_, PouKind::method}};
+
+struct SectionWord {
+    Word word;
+    Section section;
+};
+
+constexpr SectionWord section_words[] = {
+    {Word::var_, Section::local},         {Word::var_stat_, Section::local},
+    {Word::var_input_, Section::input},   {Word::var_output_, Section::output},
+    {Word::var_in_out_, Section::in_out}, {Word::var_temp_, Section::temp},
+    {Word::var_global_, Section::global}, {Word::var_external_, Section::external}};
+
+struct Binary {
+    Word word;
+    int binding;
+};
+
+// IEC 61131-3:2013, table 71.
+constexpr Binary binaries[] = {{Word::power, 8},     {Word::times, 7},
+                               {Word::divided, 7},   {Word::mod_, 7},
+                               {Word::plus, 6},      {Word::minus, 6},
+                               {Word::less, 5},      {Word::less_or_equal, 5},
+                               {Word::greater, 5},   {Word::greater_or_equal, 5},
+                               {Word::equal, 4},     {Word::unequal, 4},
+                               {Word::and_, 3},      {Word::ampersand, 3},
+                               {Word::and_then_, 3}, {Word::xor_, 2},
+                               {Word::or_, 1},       {Word::or_else_, 1}};
+
+bool is_end(Word word) {
+    return word >= Word::end_action_ && word <= Word::end_while_;
+}
+
+const PouWords* find_pou(Word word) {
+    const auto* it = std::ranges::find(pou_words, word, &PouWords::begin);
+    return it == std::end(pou_words) ? nullptr : it;
+}
+
+class Parser {
+  public:
+    Parser(const Tokens& tokens, Tree& tree, Diagnostics& out)
+        : tokens_(tokens.tokens), pragmas_(tokens.pragmas), tree_(tree), out_(out) {}
+
+    void read() {
+        while (here().word != Word::end_of_file) {
+            read_declaration();
+            if (panic_) skip_to_declaration();
+        }
+    }
+
+  private:
+    const Token& here() const { return tokens_[at_]; }
+    const Token& next(std::size_t ahead = 1) const {
+        return tokens_[std::min(at_ + ahead, tokens_.size() - 1)];
+    }
+    const Token& last() const { return tokens_[at_ == 0 ? 0 : at_ - 1]; }
+    bool is(Word word) const { return here().word == word; }
+    bool is_name() const { return is_name(here()); }
+    static bool is_name(const Token& token) {
+        return token.word == Word::name ||
+               std::ranges::find(soft_words, token.word) != std::end(soft_words);
+    }
+    const Token& take() { return is(Word::end_of_file) ? here() : tokens_[at_++]; }
+
+    bool accept(Word word) {
+        if (panic_ || !is(word)) return false;
+        take();
+        return true;
+    }
+
+    bool expect(Word word, std::string_view where = {}) {
+        if (accept(word)) return true;
+        expected(shown(word), where);
+        return false;
+    }
+
+    void expected(std::string_view what, std::string_view where = {}) {
+        if (panic_ || refuse_unsupported()) return;
+        const bool is_sign = what.size() <= 2;
+        fail("L0902", here().place,
+             fmt::format("expected {0}{1}{0}{2}{3}, found {4}", is_sign ? "'" : "", what,
+                         where.empty() ? "" : " ", where, found()));
+    }
+
+    std::string found() const {
+        const std::string_view text = here().place.text();
+        return is(Word::end_of_file) ? std::string(shown(Word::end_of_file))
+                                     : fmt::format("'{}'", text.substr(0, text.find('\n')));
+    }
+
+    bool refuse_unsupported() {
+        const auto* it = std::ranges::find(unsupported, here().word, &Unsupported::word);
+        if (it == std::end(unsupported)) return false;
+        fail("L0903", here().place, fmt::format("{} not supported", it->what),
+             std::string(it->instead));
+        return true;
+    }
+
+    /// Nothing more is told until the parser has found its feet again.
+    void fail(const char* code, Place place, std::string message, std::string help = {}) {
+        if (!panic_) tell(code, place, std::move(message), std::move(help));
+        panic_ = true;
+    }
+
+    void tell(const char* code, Place place, std::string message, std::string help = {}) {
+        out_.add(code, place.mark(), std::move(message), std::move(help));
+    }
+
+    /// The end of a block. One that is missing is told once, for the innermost.
+    bool close(Word end, const Token& opener) {
+        if (accept(end)) return true;
+        if (panic_ || unclosed_at_ == at_) return false;
+        const bool left = is(Word::end_of_file) || is_end(here().word) || is(Word::else_) ||
+                          is(Word::elsif_) || is(Word::until_) || find_pou(here().word);
+        if (!left) {
+            expected(shown(end));
+            return false;
+        }
+        unclosed_at_ = at_;
+        if (!else_ifs_.empty() && end == Word::end_if_) {
+            tell("L0902", else_ifs_.back(), "'ELSE IF' begins a second IF without an END_IF",
+                 "write ELSIF");
+            return false;
+        }
+        tell("L0902", here().place, fmt::format("expected {} before {}", shown(end), found()),
+             fmt::format("the {} in line {} does not end", shown(opener.word),
+                         opener.place.mark().line));
+        return false;
+    }
+
+    /// Counts levels while it lives.
+    struct Level {
+        explicit Level(Parser& of) : parser(of) {
+            if (++parser.depth_ > deepest) parser.too_deep(parser.here().place);
+        }
+        ~Level() { --parser.depth_; }
+        Parser& parser;
+    };
+
+    void too_deep(Place place) {
+        fail("L0912", place, fmt::format("this is nested deeper than {} levels", deepest),
+             "take it apart, into variables or functions");
+        at_ = tokens_.size() - 1;
+    }
+
+    void skip_to_declaration() {
+        panic_ = false;
+        while (!is(Word::end_of_file) && !find_pou(here().word) && !is(Word::var_global_) &&
+               !(is(Word::type_) && here().first_in_line))
+            take();
+    }
+
+    /// Behind the next `;`, or before what begins or ends a block.
+    void skip_to_statement() {
+        panic_ = false;
+        while (!is(Word::end_of_file) && !is_end(here().word) && !accept(Word::semicolon)) {
+            const bool begins = is(Word::if_) || is(Word::for_) || is(Word::while_) ||
+                                is(Word::case_) || is(Word::repeat_) || is(Word::else_) ||
+                                is(Word::elsif_) || is(Word::until_);
+            if (here().first_in_line && (begins || find_pou(here().word))) return;
+            take();
+        }
+    }
+
+    // Declarations.
+
+    void read_declaration() {
+        if (const PouWords* words = find_pou(here().word); words && !is(Word::method_))
+            return read_pou(*words);
+        if (is(Word::type_)) return read_types();
+        if (is(Word::var_global_)) return tree_.globals.push_back(read_section(Section::global));
+        expected("a FUNCTION_BLOCK, FUNCTION, PROGRAM, DATA_BLOCK or TYPE");
+        take();
+    }
+
+    Token read_name(std::string_view what) {
+        if (!panic_ && is_name()) return take();
+        expected(what);
+        return here();
+    }
+
+    void read_pou(const PouWords& words) {
+        if (Pou* pou = read_pou_of(words)) tree_.units.push_back(pou);
+    }
+
+    Pou* read_pou_of(const PouWords& words) {
+        const Token opener = take();
+        Pou& pou = tree_.pous.emplace_back();
+        pou.kind = words.kind;
+        if (accept(Word::private_)) pou.is_private = true;
+        accept(Word::public_) || accept(Word::protected_) || accept(Word::internal_);
+        pou.name = read_name(fmt::format("the name of the {}", shown(opener.word)));
+        pou.place = opener.place.to(pou.name.place);
+        if (accept(Word::colon)) pou.result = read_type();
+        if (panic_) skip_to_statement();
+        read_header(pou);
+        read_sections(pou, words.end);
+        accept(Word::begin_);
+        read_body(pou, words.end);
+        close(words.end, opener);
+        accept(Word::semicolon);
+        if (panic_) skip_past(words.end);
+        return &pou;
+    }
+
+    void skip_past(Word end) {
+        panic_ = false;
+        while (!is(Word::end_of_file) && !is(end) && !find_pou(here().word)) take();
+        accept(end);
+    }
+
+    /// `VERSION : 0.1`, `TITLE = ...`, `AUTHOR : ...`; of a data block its type.
+    void read_header(Pou& pou) {
+        if (is(Word::extends_) || is(Word::implements_)) refuse_unsupported();
+        if (panic_) skip_line();
+        static constexpr std::string_view words[] = {
+            "title", "author", "family", "name", "know_how_protect", "read_only", "unlinked"};
+        for (;;) {
+            const bool header =
+                is(Word::version_) || (is(Word::name) && !here().quoted && here().first_in_line &&
+                                       std::ranges::any_of(words, [&](std::string_view word) {
+                                           return same_name(word, here().text);
+                                       }));
+            if (!header) break;
+            skip_line();
+        }
+        accept(Word::non_retain_) || accept(Word::retain_);
+        if (pou.kind != PouKind::data_block) return;
+        if (is(Word::struct_) || is(Word::array_)) {
+            pou.base = read_type();
+            accept(Word::semicolon);
+        } else if (is_name() && !is(Word::begin_)) {
+            pou.base = read_type();
+            accept(Word::semicolon);
+        }
+    }
+
+    void skip_line() {
+        panic_ = false;
+        take();
+        while (!is(Word::end_of_file) && !here().first_in_line) take();
+    }
+
+    void read_sections(Pou& pou, Word end) {
+        while (!is(end) && !is(Word::end_of_file)) {
+            const auto* it = std::ranges::find(section_words, here().word, &SectionWord::word);
+            if (it == std::end(section_words)) return;
+            const DeclarationBlock block = read_section(it->section);
+            if (block.section != Section::external) pou.blocks.push_back(block);
+        }
+    }
+
+    DeclarationBlock read_section(Section section) {
+        const Token opener = take();
+        DeclarationBlock block;
+        block.section = section;
+        for (;;) {
+            if (accept(Word::constant_))
+                block.constant = true;
+            else if (accept(Word::retain_))
+                block.retain = true;
+            else if (!accept(Word::non_retain_) && !accept(Word::public_) &&
+                     !accept(Word::private_) && !accept(Word::protected_) &&
+                     !accept(Word::internal_))
+                break;
+        }
+        while (!is_end(here().word) && !is(Word::end_of_file) && !find_pou(here().word) &&
+               std::ranges::find(section_words, here().word, &SectionWord::word) ==
+                   std::end(section_words))
+            read_variables(block.declarations);
+        close(Word::end_var_, opener);
+        accept(Word::semicolon);
+        return block;
+    }
+
+    /// `a, b : INT := 5;`
+    void read_variables(std::vector<Declaration*>& to) {
+        const std::size_t first = at_;
+        std::vector<Token> names{read_name("the name of a variable")};
+        while (accept(Word::comma)) names.push_back(read_name("the name of a variable"));
+        if (is(Word::at_)) {
+            take();
+            fail("L0903", here().place, "direct addresses are not supported",
+                 "leave AT out, and wire the variable in the program");
+        }
+        expect(Word::colon, "after the name");
+        TypeText* type = read_type();
+        Expression* initial = accept(Word::assign) ? read_initial() : nullptr;
+        if (!panic_) end_of_statement();
+        if (panic_) return skip_declaration();
+        const auto [unit, place] = unit_of(first);
+        for (const Token& name : names)
+            to.push_back(
+                &tree_.declarations.emplace_back(Declaration{name, type, initial, unit, place}));
+    }
+
+    void skip_declaration() {
+        panic_ = false;
+        while (!is(Word::end_of_file) && !is_end(here().word) && !find_pou(here().word))
+            if (take().word == Word::semicolon) return;
+    }
+
+    /// Of a pragma between the tokens of a declaration, or behind it in its line.
+    std::pair<std::string_view, Place> unit_of(std::size_t first) const {
+        for (auto it = std::ranges::upper_bound(pragmas_, first, {}, &Pragma::before);
+             it != pragmas_.end() && it->before <= at_; ++it) {
+            if (it->before == at_ && it->first_in_line) continue;
+            std::string_view text = it->place.text();
+            text.remove_prefix(std::min(text.find_first_not_of("{ \t"), text.size()));
+            if (!same_name(text.substr(0, 4), "unit")) continue;
+            const std::size_t begin = text.find_first_of("'\""), end = text.find_last_of("'\"");
+            if (begin != end) return {text.substr(begin + 1, end - begin - 1), it->place};
+        }
+        return {};
+    }
+
+    void read_types() {
+        const Token opener = take();
+        while (!is(Word::end_type_) && !is(Word::end_of_file) && !find_pou(here().word)) {
+            TypeDeclaration declared;
+            declared.name = read_name("the name of a type");
+            while (is(Word::version_)) skip_line();
+            if (!is(Word::struct_)) expect(Word::colon, "after the name");
+            declared.type = read_type();
+            if (accept(Word::assign)) declared.initial = read_initial();
+            if (!accept(Word::semicolon) && !panic_ && !is(Word::end_type_)) end_of_statement();
+            if (panic_)
+                skip_declaration();
+            else
+                tree_.types.push_back(declared);
+        }
+        close(Word::end_type_, opener);
+        accept(Word::semicolon);
+    }
+
+    // Types.
+
+    TypeText* read_type() {
+        const Level level(*this);
+        TypeText& type = tree_.type_texts.emplace_back();
+        const Token first = here();
+        if (accept(Word::array_))
+            read_array(type);
+        else if (accept(Word::struct_))
+            read_struct(type, first);
+        else if (is(Word::open))
+            read_enumeration(type);
+        else
+            read_named(type);
+        type.place = first.place.to(last().place);
+        return &type;
+    }
+
+    void read_array(TypeText& type) {
+        type.kind = TypeText::Kind::array;
+        expect(Word::open_bracket, "after ARRAY");
+        do {
+            if (is(Word::times))
+                return fail("L0903", here().place, "arrays of any length are not supported",
+                            "write its bounds: ARRAY[0..9] OF ...");
+            Expression* from = read_expression();
+            if (!panic_ && !is(Word::range)) expected("..", "between the bounds");
+            accept(Word::range);
+            type.ranges.emplace_back(from, read_expression());
+        } while (accept(Word::comma));
+        expect(Word::close_bracket, "after the bounds");
+        expect(Word::of_, "before the type of the elements");
+        type.element = read_type();
+    }
+
+    void read_struct(TypeText& type, const Token& opener) {
+        type.kind = TypeText::Kind::structure;
+        while (!is_end(here().word) && !is(Word::end_of_file) && !find_pou(here().word))
+            read_variables(type.members);
+        close(Word::end_struct_, opener);
+    }
+
+    /// `(red, green := 5)`
+    void read_enumeration(TypeText& type) {
+        type.kind = TypeText::Kind::enumeration;
+        expect(Word::open);
+        do {
+            Argument& value = type.values.emplace_back();
+            value.name = read_name("the name of a value");
+            if (accept(Word::assign)) value.value = read_expression();
+        } while (accept(Word::comma));
+        expect(Word::close, "after the values");
+    }
+
+    void read_named(TypeText& type) {
+        if (is(Word::pointer_) && next().word == Word::to_) refuse_unsupported();
+        type.name = read_name("a type");
+        if (panic_) return;
+        if (same_name(type.name.text, "string") && (is(Word::open_bracket) || is(Word::open))) {
+            type.kind = TypeText::Kind::text;
+            const Word end = take().word == Word::open_bracket ? Word::close_bracket : Word::close;
+            type.length = read_expression();
+            expect(end, "after the length");
+        } else if (is(Word::open)) {
+            if (is_name(next()) && (next(2).word == Word::comma || next(2).word == Word::assign ||
+                                    next(2).word == Word::close))
+                return read_enumeration(type);
+            take();
+            type.kind = TypeText::Kind::subrange;
+            Expression* from = read_expression();
+            if (!accept(Word::range)) expected("..", "between the bounds");
+            type.ranges.emplace_back(from, read_expression());
+            expect(Word::close, "after the bounds");
+        }
+    }
+
+    // Expressions.
+
+    Expression* make(Expression::Kind kind, const Token& token) {
+        Expression& made = tree_.expressions.emplace_back();
+        made.kind = kind;
+        made.token = token;
+        made.place = token.place;
+        return &made;
+    }
+
+    /// Takes up `operand`, and makes the place as large.
+    void add_operand(Expression& to, int index, Expression* operand) {
+        to.operands[index] = operand;
+        to.place = index == 0 ? operand->place.to(to.place) : to.place.to(operand->place);
+        if (to.place.begin > to.place.end) std::swap(to.place.begin, to.place.end);
+        grow(to, *operand);
+    }
+
+    void grow(Expression& to, const Expression& part) {
+        to.depth = std::max<std::uint16_t>(to.depth, static_cast<std::uint16_t>(part.depth + 1));
+        if (to.depth > longest_chain) too_deep(to.token.place);
+    }
+
+    /// `[1, 4(0.0)]`, `(x := 1, y := 2)`, or an expression.
+    Expression* read_initial() {
+        const bool structure = is(Word::open) && is_name(next()) && next(2).word == Word::assign;
+        if (!structure && !is(Word::open_bracket)) return read_repeated();
+        const Level level(*this);
+        Expression* list = make(Expression::Kind::list, take());
+        const Word end = structure ? Word::close : Word::close_bracket;
+        read_arguments(*list, end, true);
+        return list;
+    }
+
+    Expression* read_repeated() {
+        if (!is(Word::integer) || next().word != Word::open) return read_expression();
+        const Level level(*this);
+        Expression* count = make(Expression::Kind::constant, take());
+        Expression* repeated = make(Expression::Kind::repeated, take());
+        read_arguments(*repeated, Word::close, true);
+        add_operand(*repeated, 0, count);
+        return repeated;
+    }
+
+    /// Up to and with `end`.
+    void read_arguments(Expression& to, Word end, bool initial) {
+        if (!panic_ && !is(end)) do {
+                Argument& argument = to.arguments.emplace_back();
+                const bool negated =
+                    is(Word::not_) && is_name(next()) && next(2).word == Word::output;
+                if (negated)
+                    return fail("L0903", here().place, "NOT before an output is not supported",
+                                "take the output, and write NOT where it is used");
+                if (is_name() && (next().word == Word::assign || next().word == Word::output)) {
+                    argument.name = take();
+                    argument.is_output = take().word == Word::output;
+                }
+                argument.value = initial ? read_initial() : read_expression();
+                if (panic_) return;
+                grow(to, *argument.value);
+            } while (accept(Word::comma));
+        to.place = to.place.to(here().place);
+        if (!expect(end)) to.place.end = last().place.end;
+    }
+
+    Expression* read_expression(int binding = 1) {
+        Expression* left = read_unary();
+        for (;;) {
+            const auto* it = std::ranges::find(binaries, here().word, &Binary::word);
+            if (panic_ || it == std::end(binaries) || it->binding < binding) return left;
+            Expression* made = make(Expression::Kind::binary, take());
+            made->op = it->word == Word::ampersand ? Word::and_ : it->word;
+            add_operand(*made, 0, left);
+            add_operand(*made, 1, read_expression(it->binding + 1));
+            left = made;
+        }
+    }
+
+    Expression* read_unary() {
+        if (!is(Word::minus) && !is(Word::plus) && !is(Word::not_)) return read_postfix();
+        const Level level(*this);
+        Expression* made = make(Expression::Kind::unary, take());
+        made->op = made->token.word;
+        Expression* operand = read_unary();
+        made->operands[0] = operand;
+        made->place = made->place.to(operand->place);
+        grow(*made, *operand);
+        return made;
+    }
+
+    Expression* read_postfix() {
+        Expression* left = read_primary();
+        while (!panic_) {
+            if (is(Word::open)) {
+                Expression* call = make(Expression::Kind::call, take());
+                read_arguments(*call, Word::close, false);
+                add_operand(*call, 0, left);
+                left = call;
+            } else if (is(Word::open_bracket)) {
+                Expression* index = make(Expression::Kind::index, take());
+                read_arguments(*index, Word::close_bracket, false);
+                add_operand(*index, 0, left);
+                left = index;
+            } else if (accept(Word::dot)) {
+                left = read_member(left);
+            } else {
+                break;
+            }
+        }
+        return left;
+    }
+
+    Expression* read_member(Expression* left) {
+        const bool bit = is(Word::direct) || is(Word::integer);
+        if (!bit && !is(Word::name)) expected("a name", "after '.'");
+        Expression* member = make(bit ? Expression::Kind::bit : Expression::Kind::member, take());
+        add_operand(*member, 0, left);
+        return member;
+    }
+
+    Expression* read_primary() {
+        const Level level(*this);
+        if (!panic_) {
+            switch (here().word) {
+                case Word::integer:
+                case Word::real:
+                case Word::text:
+                    return make(Expression::Kind::constant, take());
+                case Word::prefix:
+                    return read_typed();
+                case Word::open: {
+                    take();
+                    Expression* inner = read_expression();
+                    if (is(Word::assign)) compared_by_assignment();
+                    expect(Word::close);
+                    return inner;
+                }
+                default:
+                    if (is_name()) return make(Expression::Kind::name, take());
+            }
+        }
+        expected("a value");
+        return make(Expression::Kind::constant, here());
+    }
+
+    Expression* read_typed() {
+        const Token prefix = take();
+        if (is(Word::duration)) {
+            Expression* time = make(Expression::Kind::constant, take());
+            time->place = prefix.place.to(time->place);
+            return time;
+        }
+        Expression* typed = make(Expression::Kind::typed, prefix);
+        Expression* value = read_unary_literal();
+        typed->operands[0] = value;
+        typed->place = typed->place.to(value->place);
+        return typed;
+    }
+
+    Expression* read_unary_literal() {
+        if (!is(Word::minus) && !is(Word::plus)) return read_primary();
+        Expression* made = make(Expression::Kind::unary, take());
+        made->op = made->token.word;
+        made->operands[0] = read_primary();
+        made->place = made->place.to(made->operands[0]->place);
+        return made;
+    }
+
+    // Statements.
+
+    void read_body(Pou& pou, Word end) {
+        for (;;) {
+            read_statements(pou.body, end);
+            if (!is(Word::method_)) return;
+            const PouWords& words = *find_pou(Word::method_);
+            if (pou.kind != PouKind::function_block && pou.kind != PouKind::program) return;
+            if (Pou* method = read_pou_of(words)) pou.methods.push_back(method);
+        }
+    }
+
+    static constexpr bool ends_statements(Word word) {
+        return word == Word::end_of_file || word == Word::else_ || word == Word::elsif_ ||
+               word == Word::until_ || word == Word::method_;
+    }
+
+    bool at_end_of_statements() const {
+        if (is(Word::end_region_) || is(Word::end_network_)) return false;
+        if (is(Word::method_))
+            return is_name(next()) || next().word == Word::private_ || next().word == Word::public_;
+        return is_end(here().word) || ends_statements(here().word) || find_pou(here().word) ||
+               (is(Word::type_) && is_name(next()));
+    }
+
+    /// Up to `end`, or what ends a block around it.
+    void read_statements(Block& to, Word end, bool in_case = false) {
+        while (!panic_ && !is(end) && !at_end_of_statements() && !(in_case && at_label())) {
+            const std::size_t before = at_;
+            if (Statement* statement = read_statement(); statement && !panic_)
+                to.push_back(statement);
+            if (panic_) skip_to_statement();
+            if (at_ == before) take();
+        }
+    }
+
+    Statement* make(Statement::Kind kind, const Token& token) {
+        Statement& made = tree_.statements.emplace_back();
+        made.kind = kind;
+        made.place = token.place;
+        return &made;
+    }
+
+    Statement* read_statement() {
+        const Level level(*this);
+        if (panic_) return nullptr;
+        const Token first = here();
+        switch (first.word) {
+            case Word::semicolon:
+                take();
+                return nullptr;
+            case Word::region_:
+            case Word::network_:
+            case Word::end_region_:
+            case Word::end_network_:
+                if (first.word != Word::network_ || !is_assigned(next())) {
+                    take();
+                    accept(Word::semicolon);
+                    return nullptr;
+                }
+                return read_simple();
+            case Word::if_:
+                return closed(read_if());
+            case Word::case_:
+                return closed(read_case());
+            case Word::for_:
+                return closed(read_for());
+            case Word::while_:
+                return closed(read_while());
+            case Word::repeat_:
+                return closed(read_repeat());
+            case Word::exit_:
+                return ended(make(Statement::Kind::exit, take()));
+            case Word::continue_:
+                return ended(make(Statement::Kind::continue_, take()));
+            case Word::return_:
+                return ended(make(Statement::Kind::return_, take()));
+            default:
+                return read_simple();
+        }
+    }
+
+    static bool is_assigned(const Token& token) { return token.word == Word::assign; }
+
+    Statement* ended(Statement* statement) {
+        end_of_statement();
+        return statement;
+    }
+
+    Statement* closed(Statement* statement) {
+        accept(Word::semicolon);
+        return statement;
+    }
+
+    /// Where the next thing begins a line or ends a block, only the ';' is missing.
+    void end_of_statement() {
+        if (panic_ || accept(Word::semicolon)) return;
+        if (!here().first_in_line && !is_end(here().word) && !ends_statements(here().word))
+            return expected(";", "after the statement");
+        Place place = last().place;
+        place.begin = place.end - 1;
+        tell("L0902", place, "expected ';' after this", "put a ';' at the end of the statement");
+    }
+
+    Statement* read_simple() {
+        if (!is_name()) {
+            expected("a statement");
+            return nullptr;
+        }
+        Expression* target = read_postfix();
+        if (panic_) return nullptr;
+        const Word op = here().word;
+        if (op >= Word::assign && op <= Word::divided_assign) return read_assignment(target);
+        if (op == Word::equal) return assigned_by_comparison(target);
+        Statement* statement = make(Statement::Kind::call, target->token);
+        statement->place = target->place;
+        statement->value = target;
+        if (target->kind != Expression::Kind::call) {
+            if (is(Word::semicolon) || here().first_in_line)
+                fail("L0902", target->place, "this does nothing",
+                     "write 'name := value;', or a call 'name();'");
+            else
+                expected(":=", "or '('");
+            return nullptr;
+        }
+        return ended(statement);
+    }
+
+    Statement* read_assignment(Expression* target) {
+        Statement* statement = make(Statement::Kind::assign, here());
+        statement->op = take().word;
+        statement->target = target;
+        statement->value = read_initial();
+        statement->place = target->place.to(last().place);
+        if (is(Word::assign)) {
+            fail("L0903", here().place, "an assignment gives one variable its value",
+                 "write two statements");
+        }
+        return ended(statement);
+    }
+
+    Statement* assigned_by_comparison(Expression* target) {
+        tell("L0902", here().place, "'=' compares and does not assign", "write ':='");
+        take();
+        read_expression();
+        end_of_statement();
+        (void)target;
+        return nullptr;
+    }
+
+    void compared_by_assignment() {
+        tell("L0902", here().place, "':=' assigns and does not compare", "write '='");
+        take();
+        read_expression();
+    }
+
+    Expression* read_condition(Word end, std::string_view where) {
+        Expression* condition = read_expression();
+        if (!panic_ && is(Word::assign)) compared_by_assignment();
+        if (!accept(end) && !panic_) {
+            expected(shown(end), where);
+            panic_ = false;
+        }
+        return condition;
+    }
+
+    Statement* read_if() {
+        const Token opener = take();
+        Statement* statement = make(Statement::Kind::if_, opener);
+        const std::size_t else_ifs = else_ifs_.size();
+        do {
+            Branch branch;
+            branch.condition = read_condition(Word::then_, "after the condition");
+            if (panic_) skip_to_statement();
+            read_statements(branch.body, Word::end_if_);
+            statement->branches.push_back(std::move(branch));
+        } while (accept(Word::elsif_));
+        if (is(Word::else_)) {
+            const Token word = take();
+            if (is(Word::if_) && !here().first_in_line)
+                else_ifs_.push_back(word.place.to(here().place));
+            read_statements(statement->body, Word::end_if_);
+        }
+        close(Word::end_if_, opener);
+        else_ifs_.resize(else_ifs);
+        return statement;
+    }
+
+    /// Names, numbers, ranges and commas, and then a colon.
+    bool at_label() const {
+        for (std::size_t i = at_; i < tokens_.size(); ++i) {
+            switch (tokens_[i].word) {
+                case Word::colon:
+                    return i > at_;
+                case Word::integer:
+                case Word::prefix:
+                case Word::duration:
+                case Word::minus:
+                case Word::plus:
+                case Word::comma:
+                case Word::range:
+                case Word::dot:
+                case Word::text:
+                    continue;
+                default:
+                    if (!is_name(tokens_[i])) return false;
+            }
+        }
+        return false;
+    }
+
+    Statement* read_case() {
+        const Token opener = take();
+        Statement* statement = make(Statement::Kind::case_, opener);
+        statement->value = read_condition(Word::of_, "after the selector");
+        if (panic_) skip_to_statement();
+        while (!panic_ && at_label()) {
+            Branch branch;
+            do {
+                Expression* from = read_expression();
+                Expression* to = accept(Word::range) ? read_expression() : nullptr;
+                branch.labels.emplace_back(from, to);
+            } while (accept(Word::comma));
+            expect(Word::colon, "after the values");
+            if (panic_) skip_to_statement();
+            read_statements(branch.body, Word::end_case_, true);
+            statement->branches.push_back(std::move(branch));
+        }
+        if (accept(Word::else_)) {
+            accept(Word::colon);
+            read_statements(statement->body, Word::end_case_);
+        }
+        close(Word::end_case_, opener);
+        return statement;
+    }
+
+    Statement* read_for() {
+        const Token opener = take();
+        Statement* statement = make(Statement::Kind::for_, opener);
+        statement->target = read_postfix();
+        expect(Word::assign, "after the loop's variable");
+        statement->value = read_expression();
+        expect(Word::to_, "after the first value");
+        statement->limit = read_expression();
+        if (accept(Word::by_)) statement->step = read_expression();
+        expect(Word::do_, "after the last value");
+        if (panic_) skip_to_statement();
+        read_statements(statement->body, Word::end_for_);
+        close(Word::end_for_, opener);
+        return statement;
+    }
+
+    Statement* read_while() {
+        const Token opener = take();
+        Statement* statement = make(Statement::Kind::while_, opener);
+        statement->value = read_condition(Word::do_, "after the condition");
+        if (panic_) skip_to_statement();
+        read_statements(statement->body, Word::end_while_);
+        close(Word::end_while_, opener);
+        return statement;
+    }
+
+    Statement* read_repeat() {
+        const Token opener = take();
+        Statement* statement = make(Statement::Kind::repeat, opener);
+        read_statements(statement->body, Word::until_);
+        if (close(Word::until_, opener)) {
+            statement->value = read_expression();
+            if (!panic_ && is(Word::assign)) compared_by_assignment();
+            accept(Word::semicolon);
+        }
+        if (panic_) skip_to_statement();
+        close(Word::end_repeat_, opener);
+        return statement->value ? statement : nullptr;
+    }
+
+    const std::vector<Token>& tokens_;
+    const std::vector<Pragma>& pragmas_;
+    Tree& tree_;
+    Diagnostics& out_;
+    std::size_t at_ = 0;
+    std::size_t unclosed_at_ = static_cast<std::size_t>(-1);  ///< where an end was missed last
+    std::vector<Place> else_ifs_;                             ///< within the IFs that are open
+    int depth_ = 0;
+    bool panic_ = false;
+};
+
+}  // namespace
+
+void parse(const Tokens& tokens, Tree& tree, Diagnostics& out) {
+    Parser(tokens, tree, out).read();
+}
+
+}  // namespace lineshaft::st

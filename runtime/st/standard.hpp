@@ -1,0 +1,50 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/st/opcodes.hpp"
+#include "runtime/st/token.hpp"
+
+namespace lineshaft::st {
+
+/// What a standard function takes and gives.
+enum class Rule : std::uint8_t {
+    real,       ///< REAL or LREAL, as its argument is
+    real_two,   ///< the same of two
+    whole,      ///< of a real the integer that is wanted, else a DINT
+    absolute,   ///< any number
+    extremum,   ///< the least or greatest of several numbers, times
+    limit,      ///< LIMIT(mn, in, mx)
+    select,     ///< SEL(g, in0, in1)
+    multiplex,  ///< MUX(k, in0, ...)
+    shift,      ///< SHL(bits, n)
+    move,       ///< its argument
+    operation,  ///< ADD(a, b, ...): an operator
+    square,     ///< SQR
+    fraction,   ///< FRAC
+    normalise,  ///< NORM_X(min, value, max)
+    scale,      ///< SCALE_X(min, value, max)
+    finite,     ///< IS_VALID, of a real
+};
+
+/// A function of IEC 61131-3:2013, tables 28 to 33, or of Siemens' SCL.
+struct StandardFunction {
+    std::string_view name;
+    Rule rule = Rule::real;
+    int least = 1, most = 1;        ///< arguments
+    Op op = Op::move;               ///< of `real`, `whole`; of `shift` that of 8 bits
+    Word word = Word::end_of_file;  ///< of `operation`
+};
+
+std::span<const StandardFunction> standard_functions();
+
+/// Its place in the list, or -1.
+int find_standard_function(std::string_view name);
+
+/// `IN1`, `MN`: the standard's name of an argument.
+std::string argument_name(const StandardFunction& function, int argument);
+
+}  // namespace lineshaft::st

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "runtime/source/diagnostic.hpp"
+
+namespace lineshaft::st {
+
+/// Part of a source: bytes [begin, end) of its text.
+struct Place {
+    const std::shared_ptr<const SourceFile>* file = nullptr;
+    std::uint32_t begin = 0, end = 0;
+
+    std::string_view text() const {
+        return std::string_view((*file)->text).substr(begin, end - begin);
+    }
+    Place to(Place last) const { return {file, begin, last.end}; }
+    Mark mark() const;
+};
+
+/// Names are found without regard to case (ASCII).
+struct SameName {
+    using is_transparent = void;
+    bool operator()(std::string_view a, std::string_view b) const;
+};
+struct NameHash {
+    using is_transparent = void;
+    std::size_t operator()(std::string_view name) const;
+};
+template <class T>
+using NameMap = std::unordered_map<std::string_view, T, NameHash, SameName>;
+using NameSet = std::unordered_set<std::string_view, NameHash, SameName>;
+
+inline bool same_name(std::string_view a, std::string_view b) {
+    return SameName{}(a, b);
+}
+
+// Every word and sign of the language, as it is shown in messages.
+#define LINESHAFT_ST_WORDS(WORD)                                                                 \
+    WORD(action) WORD(and) WORD(and_then) WORD(array) WORD(at) WORD(begin) WORD(by) WORD(case)     \
+    WORD(class) WORD(configuration) WORD(constant) WORD(continue) WORD(data_block) WORD(do)        \
+    WORD(else) WORD(elsif) WORD(end_action) WORD(end_case) WORD(end_class) WORD(end_data_block)    \
+    WORD(end_for) WORD(end_function) WORD(end_function_block) WORD(end_if) WORD(end_interface)     \
+    WORD(end_method) WORD(end_namespace) WORD(end_network) WORD(end_organization_block)            \
+    WORD(end_program) WORD(end_property) WORD(end_region) WORD(end_repeat) WORD(end_setup)         \
+    WORD(end_struct) WORD(end_teardown) WORD(end_test) WORD(end_type) WORD(end_var)                \
+    WORD(end_while) WORD(exit) WORD(extends) WORD(final) WORD(for) WORD(function)                  \
+    WORD(function_block) WORD(goto) WORD(if) WORD(implements) WORD(interface) WORD(internal)       \
+    WORD(method) WORD(mod) WORD(namespace) WORD(network) WORD(non_retain) WORD(not) WORD(of)       \
+    WORD(or) WORD(or_else) WORD(organization_block) WORD(override) WORD(pointer) WORD(private)     \
+    WORD(program) WORD(property) WORD(protected) WORD(public) WORD(ref_to) WORD(region)            \
+    WORD(repeat) WORD(retain) WORD(return) WORD(setup) WORD(struct) WORD(super) WORD(teardown)     \
+    WORD(test) WORD(then) WORD(to) WORD(type) WORD(until) WORD(using) WORD(var) WORD(var_access)   \
+    WORD(var_external) WORD(var_global) WORD(var_in_out) WORD(var_input) WORD(var_output)          \
+    WORD(var_stat) WORD(var_temp) WORD(version) WORD(while) WORD(xor)
+
+enum class Word : std::uint8_t {
+#define WORD(name) name##_,
+    LINESHAFT_ST_WORDS(WORD)
+#undef WORD
+    // What follows is no reserved word.
+    end_of_file,
+    name,      ///< `speed`, `#speed`, `"speed"`
+    prefix,    ///< `INT#`, `Colour#`: what stands before a typed literal, without the `#`
+    integer,   ///< `1_000`, `16#FF`
+    real,      ///< `1.5`, `1e3`
+    duration,  ///< what follows `T#`, `LTIME#`: `1h2m3.5s`
+    text,      ///< `'...'`, with its quotes
+    direct,    ///< `%IX0.0`, and the `%X3` of a partial access
+    assign,    ///< `:=`
+    plus_assign,
+    minus_assign,
+    times_assign,
+    divided_assign,
+    output,            ///< `=>`
+    reference_assign,  ///< `?=`, `REF=`: not of this language
+    power,
+    times,
+    divided,
+    plus,
+    minus,
+    less,
+    less_or_equal,
+    greater,
+    greater_or_equal,
+    equal,
+    unequal,
+    ampersand,
+    caret,
+    open,
+    close,
+    open_bracket,
+    close_bracket,
+    dot,
+    range,  ///< `..`
+    comma,
+    semicolon,
+    colon,
+};
+
+/// As messages show it: `END_IF`, `:=`, `a name`.
+std::string_view shown(Word word);
+
+struct Token {
+    Word word = Word::end_of_file;
+    bool quoted = false;  ///< `"Block"`, whose text has no quotes
+    bool local = false;   ///< `#speed`, whose text has no `#`
+    bool first_in_line = false;
+    Place place = {};            ///< with quotes and `#`
+    std::string_view text = {};  ///< of a name, a number, a text without its quotes
+};
+
+}  // namespace lineshaft::st

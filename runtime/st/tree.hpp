@@ -1,0 +1,157 @@
+#pragma once
+
+#include <deque>
+#include <string_view>
+#include <vector>
+
+#include "runtime/st/constant.hpp"
+#include "runtime/st/token.hpp"
+
+/// What the parser makes of a source, and what the checker notes in it.
+namespace lineshaft::st {
+
+struct Type;
+struct Variable;
+struct Routine;
+struct Expression;
+
+/// `a := 1`, `q => x`, or a value by position: of a call, an index, an initial value.
+struct Argument {
+    Token name = {};         ///< `end_of_file` by position
+    bool is_output = false;  ///< `=>`
+    Expression* value = nullptr;
+    Variable* variable = nullptr;  ///< that it goes to or comes from, noted by the checker
+};
+
+struct Expression {
+    enum class Kind : std::uint8_t {
+        constant,  ///< a literal, or what the checker has folded to one
+        name,
+        member,  ///< operands[0] . name
+        index,   ///< operands[0] [arguments]
+        bit,     ///< operands[0] . %X3, .%B1, .3
+        call,    ///< operands[0] (arguments)
+        unary,
+        binary,
+        typed,      ///< `INT#5`, `Colour#red`: token.text # operands[0]
+        list,       ///< `[1, 4(0.0)]`: of arguments, or `(x := 1, y := 2)`
+        repeated,   ///< `4(0.0)`: operands[0] times what is in `arguments`
+        converted,  ///< operands[0] to `type`, put in by the checker
+    };
+
+    Kind kind = Kind::constant;
+    Word op = Word::end_of_file;  ///< of unary and binary
+    std::uint16_t depth = 1;      ///< of the tree
+    Token token = {};             ///< name, literal or operator
+    Place place = {};
+    Expression* operands[2] = {};
+    std::vector<Argument> arguments = {};
+
+    // Noted by the checker.
+    const Type* type = nullptr;    ///< null: wrong, already reported
+    Constant constant = {};        ///< of a constant
+    Variable* variable = nullptr;  ///< that a name or a member means
+    Routine* routine = nullptr;    ///< that a name means, or a call calls
+    int standard = -1;             ///< the standard function that a call calls
+};
+
+struct Statement;
+using Block = std::vector<Statement*>;
+
+/// The condition of an IF, or the values of a CASE, and what is then done.
+struct Branch {
+    Expression* condition = nullptr;
+    std::vector<std::pair<Expression*, Expression*>> labels = {};  ///< from, to; to may be null
+    Block body = {};
+};
+
+struct Statement {
+    enum class Kind : std::uint8_t {
+        assign,
+        call,
+        if_,
+        case_,
+        for_,
+        while_,
+        repeat,
+        exit,
+        continue_,
+        return_
+    };
+
+    Kind kind = Kind::assign;
+    Word op = Word::assign;  ///< `:=`, `+=`
+    Place place = {};
+    Expression* target = nullptr;  ///< of an assignment; of a FOR its variable
+    Expression* value = nullptr;   ///< assigned, called, tested; of a FOR its first one
+    Expression *limit = nullptr, *step = nullptr;  ///< of a FOR
+    std::vector<Branch> branches = {};             ///< of IF and CASE
+    Block body = {};                               ///< of a loop; of IF and CASE what ELSE does
+};
+
+/// A type as it is written.
+struct TypeText {
+    enum class Kind : std::uint8_t { name, array, structure, enumeration, subrange, text };
+
+    Kind kind = Kind::name;
+    Token name = {};  ///< also of the base of an enumeration or a subrange
+    Place place = {};
+    std::vector<std::pair<Expression*, Expression*>> ranges = {};  ///< of array and subrange
+    Expression* length = nullptr;                                  ///< STRING[length]
+    TypeText* element = nullptr;
+    std::vector<struct Declaration*> members = {};
+    std::vector<Argument> values = {};  ///< of an enumeration, with their numbers if given
+};
+
+/// `a, b : INT := 5;` has one for each name.
+struct Declaration {
+    Token name = {};
+    TypeText* type = nullptr;
+    Expression* initial = nullptr;
+    std::string_view unit = {};
+    Place unit_place = {};
+};
+
+enum class Section : std::uint8_t { input, output, in_out, local, temp, global, external, result };
+
+struct DeclarationBlock {
+    Section section = Section::local;
+    bool constant = false, retain = false;
+    std::vector<Declaration*> declarations = {};
+};
+
+enum class PouKind : std::uint8_t { program, function_block, function, method, data_block };
+
+/// A program organization unit.
+struct Pou {
+    PouKind kind = PouKind::program;
+    Token name = {};
+    Place place = {};            ///< its first line
+    TypeText* result = nullptr;  ///< null: none
+    TypeText* base = nullptr;    ///< of a data block that is an instance, or a structure
+    bool is_private = false;
+    std::vector<DeclarationBlock> blocks = {};
+    Block body = {};
+    std::vector<Pou*> methods = {};
+};
+
+struct TypeDeclaration {
+    Token name = {};
+    TypeText* type = nullptr;
+    Expression* initial = nullptr;
+};
+
+/// Owns all nodes, so that they need no owners among themselves.
+struct Tree {
+    std::deque<Expression> expressions;
+    std::deque<Statement> statements;
+    std::deque<TypeText> type_texts;
+    std::deque<Declaration> declarations;
+    std::deque<Pou> pous;
+
+    std::vector<TypeDeclaration> types;  ///< in the order of the sources, as all lists
+    std::vector<Pou*> units;             ///< all but methods
+    std::vector<DeclarationBlock> globals;
+};
+
+}  // namespace lineshaft::st

@@ -1,0 +1,343 @@
+#include <algorithm>
+
+#include "runtime/st/generator_class.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+using Kind = Type::Kind;
+using E = Expression::Kind;
+using Mode = Location::Mode;
+
+}  // namespace
+
+/// The families of integers stand in the order SINT, INT, DINT, LINT, USINT, UINT, UDINT, ULINT.
+Op of_type(Op first, const Type& type) {
+    constexpr int distance = static_cast<int>(Op::add_int) - static_cast<int>(Op::add_sint);
+    int width = 0;
+    while ((8 << width) < type.bits) ++width;
+    const int number = type.is_signed ? width : width + 4;
+    return static_cast<Op>(static_cast<int>(first) + number * distance);
+}
+
+Slot Generator::emit(Op op, Slot wanted, Slot b, Slot c) {
+    const Slot to = result(wanted);
+    put(op, to, b, c);
+    return to;
+}
+
+/// The slot that has the value: `wanted` if something had to be computed, else where it is.
+Slot Generator::value(const Expression& e, Slot wanted) {
+    switch (e.kind) {
+        case E::constant:
+            return constant_slot(*e.type, e.constant);
+        case E::name:
+        case E::member:
+        case E::index:
+            return load(locate(e), wanted);
+        case E::bit:
+            return bit(e, wanted);
+        case E::call:
+            return call(e, wanted);
+        case E::unary:
+            return unary(e, wanted);
+        case E::binary:
+            return binary(e, wanted);
+        case E::converted:
+            return converted(e, wanted);
+        default:
+            return constant_slot(0);
+    }
+}
+
+void Generator::value_to(const Expression& e, Slot to) {
+    const Slot from = value(e, to);
+    if (from != to) put(Op::move, to, from);
+}
+
+Slot Generator::unary(const Expression& e, Slot wanted) {
+    const Slot operand = value(*e.operands[0]);
+    const Type& type = *e.type;
+    if (e.op == Word::plus) return operand;
+    if (e.op == Word::not_) {
+        if (type.kind == Kind::boolean) return emit(Op::not_bool, wanted, operand);
+        return emit(Op::not_bits, wanted, operand, static_cast<Slot>(type.bits));
+    }
+    if (type.is_real()) return emit(Op::neg_lreal, wanted, operand);
+    return emit(of_type(Op::neg_sint, type), wanted, operand);
+}
+
+Slot Generator::binary(const Expression& e, Slot wanted) {
+    if (e.op >= Word::less && e.op <= Word::unequal) return comparison(e, wanted);
+    if (e.op == Word::and_then_ || e.op == Word::or_else_) return lazy(e);
+    const Type& type = *e.type;
+    Slot a = value(*e.operands[0]), b = value(*e.operands[1]);
+    if (type.kind == Kind::time && e.operands[1]->type->is_real()) {
+        const Slot real = emit(Op::lreal_from_signed, none, a);
+        const Slot product =
+            emit(e.op == Word::times ? Op::mul_lreal : Op::div_lreal, none, real, b);
+        return emit(Op::round_lint, wanted, product);
+    }
+    if (type.kind == Kind::time && e.operands[0]->type->is_real()) {
+        const Slot real = emit(Op::lreal_from_signed, none, b);
+        return emit(Op::round_lint, wanted, emit(Op::mul_lreal, none, a, real));
+    }
+    if (e.op == Word::and_) return emit(Op::and_bits, wanted, a, b);
+    if (e.op == Word::or_) return emit(Op::or_bits, wanted, a, b);
+    if (e.op == Word::xor_) return emit(Op::xor_bits, wanted, a, b);
+    if (e.op == Word::power) {
+        const bool narrow = type.bits == 32;
+        const Slot power = emit(Op::power, narrow ? none : wanted, a, b);
+        return narrow ? emit(Op::narrow, wanted, power) : power;
+    }
+    const auto of_op = [&](Op plus, Op minus, Op times, Op divided) {
+        return e.op == Word::plus    ? plus
+               : e.op == Word::minus ? minus
+               : e.op == Word::times ? times
+                                     : divided;
+    };
+    if (type.is_real())
+        return emit(type.bits == 32
+                        ? of_op(Op::add_real, Op::sub_real, Op::mul_real, Op::div_real)
+                        : of_op(Op::add_lreal, Op::sub_lreal, Op::mul_lreal, Op::div_lreal),
+                    wanted, a, b);
+    const Op family = e.op == Word::mod_
+                          ? Op::mod_sint
+                          : of_op(Op::add_sint, Op::sub_sint, Op::mul_sint, Op::div_sint);
+    return emit(of_type(family, type), wanted, a, b);
+}
+
+Slot Generator::comparison(const Expression& e, Slot wanted) {
+    const Type& type = *e.operands[0]->type;
+    Slot a = value(*e.operands[0]), b = value(*e.operands[1]);
+    if (e.op == Word::greater || e.op == Word::greater_or_equal) std::swap(a, b);
+    if (e.op == Word::equal || e.op == Word::unequal) {
+        const bool is_equal = e.op == Word::equal;
+        if (type.is_real()) return emit(is_equal ? Op::eq_float : Op::ne_float, wanted, a, b);
+        return emit(is_equal ? Op::eq_word : Op::ne_word, wanted, a, b);
+    }
+    const bool less = e.op == Word::less || e.op == Word::greater;
+    if (type.is_real()) return emit(less ? Op::lt_float : Op::le_float, wanted, a, b);
+    if (type.is_unsigned_64()) return emit(less ? Op::lt_unsigned : Op::le_unsigned, wanted, a, b);
+    return emit(less ? Op::lt_signed : Op::le_signed, wanted, a, b);
+}
+
+/// AND_THEN, OR_ELSE. Not into a variable, which the right side may read.
+Slot Generator::lazy(const Expression& e) {
+    const Slot to = new_temporary();
+    value_to(*e.operands[0], to);
+    std::vector<std::uint32_t> end;
+    jump(e.op == Word::and_then_ ? Op::jump_unless : Op::jump_if, 0, to, end);
+    value_to(*e.operands[1], to);
+    land(end);
+    return to;
+}
+
+Slot Generator::bit(const Expression& e, Slot wanted) {
+    return emit(Op::get_bits, wanted, value(*e.operands[0]), static_cast<Slot>(e.constant.integer));
+}
+
+void Generator::store_bits(const Expression& target, const Expression& from) {
+    const Slot bits = value(from);
+    const Location whole = locate(*target.operands[0]);
+    const Type& type = *target.operands[0]->type;
+    const Slot slot = load(whole);
+    put(Op::set_bits, slot, bits, static_cast<Slot>(target.constant.integer));
+    if (type.is_signed && type.bits < 64) put(of_type(Op::wrap_sint, type), slot, slot);
+    if (whole.mode != Mode::slot) store(whole, slot);
+}
+
+// Conversions.
+
+Slot Generator::converted(const Expression& e, Slot wanted) {
+    const Expression& operand = *e.operands[0];
+    return convert(value(operand), *operand.type, *e.type, e.op == Word::divided, wanted);
+}
+
+Slot Generator::convert(Slot slot, const Type& given_from, const Type& given_to, bool truncates,
+                        Slot wanted) {
+    const Type &from = given_from.plain(), &to = given_to.plain();
+    if (given_to.is_subrange) {
+        const Slot whole = convert(slot, from, to, truncates, none);
+        put(Op::within, 0, whole,
+            table({given_to.lower, static_cast<std::uint64_t>(given_to.upper - given_to.lower) + 1,
+                   1}));
+        return whole;
+    }
+    if (from.kind == Kind::time || to.kind == Kind::time)
+        return convert_time(slot, from, to, wanted);
+    if (from.is_real() || to.is_real()) return convert_real(slot, from, to, truncates, wanted);
+    if (to.kind == Kind::boolean) return emit(Op::ne_word, wanted, slot, constant_slot(0));
+    if (from.kind == Kind::enumeration && !from.counted) {
+        const auto first = static_cast<std::int64_t>(code_.numbers.size());
+        code_.numbers.insert(code_.numbers.end(), from.numbers.begin(), from.numbers.end());
+        slot = emit(Op::look_up, wanted, slot, table({first, from.numbers.size(), 1}));
+        return widens(*from.base, to) ? slot : emit(of_type(Op::wrap_sint, to), wanted, slot);
+    }
+    if (to.kind == Kind::enumeration) {
+        put(Op::within, 0, slot, table({0, to.values.size(), 1}));
+        return slot;
+    }
+    if (widens(from, to) || from.kind == Kind::boolean || from.kind == Kind::enumeration)
+        return slot;
+    return emit(of_type(Op::wrap_sint, to), wanted, slot);
+}
+
+Slot Generator::convert_real(Slot slot, const Type& from, const Type& to, bool truncates,
+                             Slot wanted) {
+    if (from.is_real() && to.is_real())
+        return to.bits < from.bits ? emit(Op::narrow, wanted, slot) : slot;
+    if (to.is_real()) {
+        if (from.kind == Kind::bits && from.bits == to.bits)
+            return to.bits == 32 ? emit(Op::real_of_bits, wanted, slot) : slot;
+        const bool big = from.is_unsigned_64();
+        if (to.bits == 32)
+            return emit(big ? Op::real_from_unsigned : Op::real_from_signed, wanted, slot);
+        return emit(big ? Op::lreal_from_unsigned : Op::lreal_from_signed, wanted, slot);
+    }
+    if (to.kind == Kind::boolean) return emit(Op::ne_float, wanted, slot, constant_slot(0));
+    if (to.kind == Kind::bits && from.bits == to.bits)
+        return to.bits == 32 ? emit(Op::real_bits, wanted, slot) : slot;
+    if (truncates) slot = emit(Op::truncate, none, slot);
+    const Type& whole = to.kind == Kind::enumeration ? lint_type : to;
+    return emit(of_type(Op::round_sint, whole), wanted, slot);
+}
+
+/// A time is in s as a real number, in ms as an integer of up to 32 bits, in ns as one of 64.
+Slot Generator::convert_time(Slot slot, const Type& from, const Type& to, Slot wanted) {
+    const Constant billion{.integer = 1'000'000'000, .real = 1e9};
+    const Slot million = constant_slot(1'000'000);
+    if (to.kind == Kind::time && from.kind == Kind::time) return slot;
+    if (to.kind == Kind::time) {
+        if (from.is_real())
+            return emit(Op::round_lint, wanted,
+                        emit(Op::mul_lreal, none, slot, constant_slot(lreal_type, billion)));
+        return from.bits < 64 ? emit(Op::mul_lint, wanted, slot, million) : slot;
+    }
+    if (to.is_real()) {
+        const Slot real = emit(Op::lreal_from_signed, none, slot);
+        const Slot seconds = emit(Op::div_lreal, wanted, real, constant_slot(lreal_type, billion));
+        return to.bits == 32 ? emit(Op::narrow, wanted, seconds) : seconds;
+    }
+    if (to.kind == Kind::boolean) return emit(Op::ne_word, wanted, slot, constant_slot(0));
+    if (to.bits == 64) return slot;
+    return emit(of_type(Op::wrap_sint, to), wanted, emit(Op::div_lint, none, slot, million));
+}
+
+// Places.
+
+Location Generator::locate(const Expression& e) {
+    if (e.kind == E::member) return part(locate(*e.operands[0]), *e.variable);
+    if (e.kind == E::index) return locate_element(e);
+    const Variable& variable = *e.variable;
+    if (variable.space == Space::reference) return {Mode::address, 0, variable.slot, 0};
+    if (variable.space == Space::global) {
+        const Slot address = new_temporary();
+        put(Op::set_global, address, static_cast<Slot>(variable.global));
+        return {Mode::address, 0, address, variable.slot};
+    }
+    return {Mode::slot, variable.slot};
+}
+
+Location Generator::part(Location of, const Variable& member) {
+    if (member.is_byte) {
+        if (of.mode == Mode::indexed) of = as_address(of);
+        of.byte = member.byte;
+        return of;
+    }
+    if (member.space == Space::reference) return {Mode::address, 0, load(part(of, member.slot)), 0};
+    return part(of, member.slot);
+}
+
+Location Generator::part(Location of, std::uint32_t slots) {
+    (of.mode == Mode::address ? of.offset : of.slot) += slots;
+    return of;
+}
+
+Location Generator::locate_element(const Expression& e) {
+    Location at = locate(*e.operands[0]);
+    const Type* type = e.operands[0]->type;
+    Slot index = none;
+    for (const Argument& argument : e.arguments) {
+        const std::uint32_t stride = slots_of(*type->element);
+        const Expression& number = *argument.value;
+        if (number.kind == E::constant) {
+            const auto place = static_cast<std::uint32_t>(number.constant.integer - type->lower);
+            at = part(at, place * stride);
+        } else {
+            const IndexTable made{
+                type->lower, static_cast<std::uint64_t>(type->upper - type->lower) + 1, stride};
+            const Slot given = value(number);
+            if (index == none)
+                index = emit(Op::index, none, given, table(made));
+            else
+                put(Op::index_more, index, given, table(made));
+        }
+        type = type->element;
+    }
+    if (index == none) return at;
+    if (at.mode == Mode::slot) return {Mode::indexed, at.slot, index};
+    if (at.mode == Mode::indexed) {
+        const Slot sum = emit(Op::offset_by, none, at.index, index);
+        return {Mode::indexed, at.slot, sum};
+    }
+    return {Mode::address, 0, emit(Op::offset_by, none, at.index, index), at.offset};
+}
+
+Location Generator::as_address(Location location) {
+    if (location.mode == Mode::address) return location;
+    Slot address = emit(Op::set_address, none, location.slot);
+    if (location.mode == Mode::indexed)
+        address = emit(Op::offset_by, none, address, location.index);
+    Location made{Mode::address, 0, address, 0};
+    made.byte = location.byte;
+    return made;
+}
+
+Slot Generator::address_of(Location location) {
+    const Location at = as_address(location);
+    return at.offset == 0 ? at.index : emit(Op::offset, none, at.index, at.offset);
+}
+
+Slot Generator::load(const Location& from, Slot wanted) {
+    if (from.byte && from.mode == Mode::slot)
+        return emit(Op::get_byte, wanted, from.slot, *from.byte);
+    if (from.byte) return emit(Op::load_byte, wanted, from.index, from.offset * 8 + *from.byte);
+    if (from.mode == Mode::slot) return from.slot;
+    if (from.mode == Mode::indexed) return emit(Op::load_at, wanted, from.slot, from.index);
+    return emit(Op::load, wanted, from.index, from.offset);
+}
+
+void Generator::store(const Location& to, Slot from) {
+    if (to.byte && to.mode == Mode::slot) return put(Op::set_byte, from, to.slot, *to.byte);
+    if (to.byte) return put(Op::store_byte, from, to.index, to.offset * 8 + *to.byte);
+    if (to.mode == Mode::indexed) return put(Op::store_at, from, to.slot, to.index);
+    if (to.mode == Mode::address) return put(Op::store, from, to.index, to.offset);
+    if (to.slot != from) put(Op::move, to.slot, from);
+}
+
+void Generator::copy(const Location& to, const Location& from, std::uint32_t slots) {
+    const bool direct_to = to.mode == Mode::slot, direct_from = from.mode == Mode::slot;
+    if (direct_to && direct_from) return put(Op::copy, to.slot, from.slot, slots);
+    if (direct_to) return put(Op::copy_from, to.slot, address_of(from), slots);
+    if (direct_from) return put(Op::copy_to, address_of(to), from.slot, slots);
+    put(Op::copy_between, address_of(to), address_of(from), slots);
+}
+
+void Generator::assign(const Location& to, const Type& type, const Expression& from) {
+    if (!type.is_scalar()) return copy_value(to, type, from);
+    if (to.mode == Mode::slot && !to.byte) return value_to(from, to.slot);
+    store(to, value(from));
+}
+
+/// An array or a structure.
+void Generator::copy_value(const Location& to, const Type& type, const Expression& from) {
+    if (from.kind == E::call) {
+        const Location made{Mode::slot, call(from, none)};
+        return copy(to, made, slots_of(type));
+    }
+    copy(to, locate(from), slots_of(type));
+}
+
+}  // namespace lineshaft::st

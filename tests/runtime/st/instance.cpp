@@ -1,0 +1,67 @@
+#include "tests/runtime/st/instance.hpp"
+
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+
+namespace lineshaft::st {
+
+std::shared_ptr<const SourceFile> read(const std::string& path) {
+    std::ifstream file(path);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return std::make_shared<const SourceFile>(
+        SourceFile{path.substr(path.rfind('/') + 1), text.str()});
+}
+
+std::shared_ptr<const SourceFile> source(std::string text) {
+    return std::make_shared<const SourceFile>(SourceFile{"job.st", std::move(text)});
+}
+
+Instances::Instances(const Library& library) : library_(library) {
+    for (const BlockType& kind : library.kinds()) {
+        memory_.emplace_back(kind.size / 8);
+        places_.push_back(reinterpret_cast<std::byte*>(memory_.back().data()));
+        kind.construct(places_.back());
+    }
+    for (std::size_t i = 0; i < places_.size(); ++i)
+        for (const Field& field : library.kinds()[i].fields)
+            for (std::size_t k = 0; k < places_.size(); ++k)
+                if (field.direction == Direction::in_out && library.kinds()[k].name == field.refers)
+                    store(Type::integer, places_[i] + field.offset, static_cast<std::int64_t>(k));
+}
+
+void Instances::scan(std::int64_t time, std::int64_t interval) {
+    const auto is_program = [](const BlockType& kind) { return kind.doc.starts_with("PROGRAM"); };
+    bool has_program = false;
+    for (const BlockType& kind : library_.kinds()) has_program |= is_program(kind);
+    const Scan now{time, interval, interval == 0 ? 0 : time / interval};
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        const BlockType& kind = library_.kinds()[i];
+        if (is_program(kind) || !has_program)
+            kind.scan_blocks(places_[i], 1, now, {kind.context, places_.data()});
+    }
+}
+
+std::vector<std::string> Instances::faults() const {
+    std::vector<std::string> found;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        const FaultPlace fault = library_.fault(library_.kinds()[i], places_[i]);
+        if (fault.fault != Fault::none)
+            found.push_back(fmt::format("{} {}", fault.mark.line,
+                                        fault_names[static_cast<std::size_t>(fault.fault)]));
+    }
+    return found;
+}
+
+std::string Instances::text(const std::string& name) const {
+    for (std::size_t i = 0; i < places_.size(); ++i)
+        for (const Field& field : library_.kinds()[i].fields)
+            if (same_name(field.name, name))
+                return describe(load(field.type, places_[i] + field.offset), field.type,
+                                field.names, {});
+    return "no such field";
+}
+
+}  // namespace lineshaft::st

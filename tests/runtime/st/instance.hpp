@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runtime/st/library.hpp"
+
+namespace lineshaft::st {
+
+std::shared_ptr<const SourceFile> read(const std::string& path);
+std::shared_ptr<const SourceFile> source(std::string text);
+
+/// One instance of each kind of a library, data blocks bound, without a net.
+class Instances {
+  public:
+    explicit Instances(const Library& library);
+
+    /// All programs, in the order of the source; if there is none, all function blocks.
+    void scan(std::int64_t time, std::int64_t interval);
+
+    /// `12 array_bounds` of each that ended with a fault in the last scan.
+    std::vector<std::string> faults() const;
+
+    /// Of the first kind that has a field of that name; enumerations by their names.
+    std::string text(const std::string& field) const;
+    std::byte* memory(std::size_t kind) { return places_[kind]; }
+
+  private:
+    const Library& library_;
+    std::vector<std::vector<std::uint64_t>> memory_;
+    std::vector<std::byte*> places_;
+};
+
+}  // namespace lineshaft::st
