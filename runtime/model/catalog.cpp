@@ -4,16 +4,26 @@
 
 namespace lineshaft {
 
+bool same_letters(std::string_view a, std::string_view b) {
+    const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+    return std::ranges::equal(a, b, {}, small, small);
+}
+
+bool BlockType::is_called(std::string_view a, std::string_view b) const {
+    return owner ? same_letters(a, b) : a == b;
+}
+
 const Field* BlockType::find_settable(std::string_view field) const {
     for (const Field& f : fields)
-        if (f.name == field && f.direction != Direction::output && f.direction != Direction::local)
+        if (is_called(f.name, field) && f.direction != Direction::output &&
+            f.direction != Direction::local)
             return &f;
     return nullptr;
 }
 
 const Field* BlockType::find_readable(std::string_view field) const {
     for (const Field& f : fields)
-        if (f.name == field &&
+        if (is_called(f.name, field) &&
             (f.direction == Direction::output || f.direction == Direction::local))
             return &f;
     const Field* settable = find_settable(field);
@@ -27,7 +37,8 @@ const TableField* BlockType::find_table(std::string_view table) const {
 }
 
 const BlockType* Catalog::find(std::string_view name) const {
-    const auto it = std::ranges::find(types_, name, &BlockType::name);
+    const auto it = std::ranges::find_if(
+        types_, [&](const BlockType& type) { return type.is_called(type.name, name); });
     return it == types_.end() ? nullptr : &*it;
 }
 

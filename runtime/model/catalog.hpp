@@ -48,12 +48,18 @@ struct BlockType {
     std::optional<Misfit> (*misfit)(const std::byte* block,
                                     const IsConstant& is_constant) = nullptr;  ///< or null
     void (*shift)(std::byte* block, std::int64_t by) = nullptr;                ///< or null
+    std::string (*why)(const std::byte* block,
+                       const void* context) = nullptr;  ///< where its last error came from; or null
+    bool single = false;                     ///< one a program, without an entry: a data block
     const void* context = nullptr;           ///< what all blocks of the kind share; may be null
     std::shared_ptr<const void> owner = {};  ///< of a kind that a program brings along
 
+    /// Whether `b` means the name `a` of the kind or of one of its fields.
+    bool is_called(std::string_view a, std::string_view b) const;
     bool is_device() const { return device.advance != nullptr; }
     void construct(std::byte* place) const { make(place, context); }
 
+    /// Of a kind with an owner capital letters make no difference.
     /// What a program may set (a parameter, an input, a reference), or what it may read (an output
     /// or a local, else an input or a parameter). An output may bear an input's name: `velocity` is
     /// set as the wanted one and read as the axis' own. Null when there is none.
@@ -61,6 +67,9 @@ struct BlockType {
     const Field* find_readable(std::string_view field) const;
     const TableField* find_table(std::string_view name) const;
 };
+
+/// Equal but for capital letters.
+bool same_letters(std::string_view a, std::string_view b);
 
 namespace detail {
 

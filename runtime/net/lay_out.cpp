@@ -96,6 +96,8 @@ void add_error_flag(const Instance& block, std::byte* live, Task& task) {
         flag.names = id->names;
     }
     flag.block = block.described();
+    flag.type = block.type;
+    flag.memory = live;
     task.errors.push_back(std::move(flag));
 }
 

@@ -71,6 +71,8 @@ struct ErrorFlag {
     const std::int64_t* error_id = nullptr;   ///< may be null
     std::span<const std::string_view> names;  ///< of error_id
     std::string block;                        ///< `'slave' (gear_axis)`
+    const BlockType* type = nullptr;
+    const std::byte* memory = nullptr;  ///< of the block
 };
 
 /// What a device puts up with and goes on from: its outputs `warnings`, a count, and `warning_id`,

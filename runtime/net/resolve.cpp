@@ -57,10 +57,11 @@ void resolve_outputs(Resolving& to) {
 
 }  // namespace
 
-Net resolve(const Program& program, const Catalog& catalog, Diagnostics& out) {
+Net resolve(const Program& program, const Catalog& catalog, std::shared_ptr<const Catalog> kinds,
+            Diagnostics& out) {
     Resolving to{program, catalog, Reader(out)};
     to.net.catalog = &catalog;
-    to.net.kinds = program.kinds;
+    to.net.kinds = std::move(kinds);
     resolve_tasks(to);
     resolve_instances(to);
     resolve_inputs(to);

@@ -7,8 +7,10 @@ namespace lineshaft {
 
 /// Gives every name of the program's tasks, inputs, blocks, wires and outputs its number, and
 /// checks types, units, limits and the order of scanning. What is wrong goes to `out`; the net is
-/// then of what could be understood. `catalog` outlives it.
-Net resolve(const Program& program, const Catalog& catalog, Diagnostics& out);
+/// then of what could be understood. `catalog` outlives it. `kinds` are those that the program
+/// brings along; null where they could not be understood, which is reported.
+Net resolve(const Program& program, const Catalog& catalog, std::shared_ptr<const Catalog> kinds,
+            Diagnostics& out);
 
 /// `NOT previous(a.b)` taken apart.
 struct WireText {

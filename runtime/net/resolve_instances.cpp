@@ -21,20 +21,58 @@ void add_cost(Resolving& to, const BlockPlan& plan, Instance& block) {
                                  task.name));
 }
 
-void find_type(Resolving& to, const Node& name, Instance& block) {
-    if (name.text.empty()) return;
-    if (to.program.kinds) block.type = to.program.kinds->find(name.text);
-    if (!block.type) block.type = to.catalog.find(name.text);
-    if (!block.type) {
-        auto names = to.catalog.names();
-        if (to.program.kinds)
-            std::ranges::copy(to.program.kinds->names(), std::back_inserter(names));
-        return to.read.fail("L0205", name, fmt::format("there is no block type '{}'", name.text),
-                            suggest(name.text, names));
-    }
+void construct(Instance& block) {
     block.image.resize(block.type->size);
     block.wired.resize(block.type->fields.size());
     block.type->construct(block.image.data());
+}
+
+void find_type(Resolving& to, const Node& name, Instance& block) {
+    if (name.text.empty()) return;
+    if (to.net.kinds) block.type = to.net.kinds->find(name.text);
+    if (!block.type) block.type = to.catalog.find(name.text);
+    if (block.type) return construct(block);
+    if (!to.net.kinds) return;
+    auto names = to.catalog.names();
+    std::ranges::copy(to.net.kinds->names(), std::back_inserter(names));
+    to.read.fail("L0205", name, fmt::format("there is no block type '{}'", name.text),
+                 suggest(name.text, names));
+}
+
+/// Data blocks have no entry in the program: they belong to the main task.
+void add_single_blocks(Resolving& to) {
+    if (!to.net.kinds || to.net.main_task < 0) return;
+    for (const BlockType& type : to.net.kinds->types()) {
+        if (!type.single) continue;
+        const auto number = static_cast<int>(to.net.instances.size());
+        const auto [it, added] = to.net.instance_numbers.emplace(type.name, number);
+        if (!added) {
+            const Instance& other = to.net.instance(it->second);
+            if (other.type != &type)
+                to.read.fail("L0212", to.program.blocks[static_cast<std::size_t>(it->second)].name,
+                             fmt::format("'{}' is the name of a data block, too", type.name));
+            continue;
+        }
+        Instance block{.name = std::string(type.name), .type = &type, .task = to.net.main_task};
+        construct(block);
+        to.net.instances.push_back(std::move(block));
+    }
+}
+
+/// References to data blocks, which a program does not write down.
+void refer_to_single_blocks(Resolving& to) {
+    for (int number = 0; number < static_cast<int>(to.net.instances.size()); ++number) {
+        Instance& block = to.net.instances[static_cast<std::size_t>(number)];
+        if (!block.known()) continue;
+        for (const Field& field : block.type->fields) {
+            const auto it = to.net.instance_numbers.find(std::string(field.refers));
+            if (field.direction != Direction::in_out || it == to.net.instance_numbers.end() ||
+                !to.net.instance(it->second).known() || !to.net.instance(it->second).type->single)
+                continue;
+            to.net.references.push_back({to.net.port(number, field), it->second});
+            store(field.type, block.image.data() + field.offset, std::int64_t{it->second});
+        }
+    }
 }
 
 std::optional<WireText> parse_wire(const Node& node) {
@@ -73,8 +111,12 @@ void refuse_port(Resolving& to, const Instance& block, const Node& key) {
 
 void check_required(const Resolving& to, const BlockPlan& plan, const Instance& block) {
     for (const Field& field : block.type->fields) {
-        const auto is_field = [&](const auto& port) { return port.first.text == field.name; };
-        if (!field.required || std::ranges::any_of(plan.ports, is_field)) continue;
+        const auto is_field = [&](const auto& port) {
+            return block.type->is_called(field.name, port.first.text);
+        };
+        const BlockType* kind = to.net.kinds ? to.net.kinds->find(field.refers) : nullptr;
+        if (!field.required || (kind && kind->single) || std::ranges::any_of(plan.ports, is_field))
+            continue;
         to.read.fail("L0403", plan.name,
                      fmt::format("{} needs its {} '{}': {}", block.described(),
                                  name_of(field.direction), field.name, field.doc));
@@ -130,6 +172,8 @@ void resolve_instances(Resolving& to) {
         to.net.instance_numbers.emplace(block.name, static_cast<int>(to.net.instances.size()));
         to.net.instances.push_back(std::move(block));
     }
+    add_single_blocks(to);
+    refer_to_single_blocks(to);
 }
 
 void resolve_assignments(Resolving& to) {

@@ -115,6 +115,7 @@ Meaning meaning_of(const Program& program) {
     for (const ForcePlan& force : program.forces)
         text += fmt::format("{} {} {} {} ", force.from, force.until, force.signal.text,
                             canonical.scalar(force.value, measured));
+    for (const auto& source : program.texts) text += text_hash(source->text);
     meaning.in_force = text_hash(meaning.controller + text);
     return meaning;
 }

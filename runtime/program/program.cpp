@@ -93,6 +93,12 @@ bool are_known(const Node& tasks) {
     });
 }
 
+bool is_structured_text(const fs::path& file) {
+    const std::string extension = file.extension().string();
+    return same_letters(extension, ".st") || same_letters(extension, ".scl") ||
+           same_letters(extension, ".s7dcl");
+}
+
 /// A text from the command line: it has no place.
 Node node_of(std::string_view text) {
     Node node;
@@ -118,6 +124,7 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
         (named || tasks) && program_.tasks_known && (!tasks || are_known(*tasks));
     read_form(program_form(), read_, *root, program_);
     for (const std::string& text : options_.forces) force(text);
+    for (const Node& source : program_.sources) find_source(source);
     for (ReplayPlan& replay : program_.replays) find_file(replay);
     std::erase_if(program_.replays, [](const ReplayPlan& r) { return r.file.is_empty(); });
     for (const BlockPlan& block : program_.blocks) check_attached(block.task);
@@ -214,6 +221,36 @@ void ProgramReader::find_file(ReplayPlan& replay) const {
         replay.path = *path;
     else if (path)
         read_.fail("L0001", replay.file, fmt::format("there is no file '{}'", *path));
+}
+
+/// A file, or a folder with all that lie below it.
+void ProgramReader::find_source(const Node& named) {
+    if (named.is_unknown_parameter()) return;
+    const auto path = resolve_path(named.text, program_.file->path, options_.include_dirs,
+                                   named.mark, read_.diagnostics());
+    if (!path) return;
+    std::error_code unknown;
+    if (!fs::is_directory(*path, unknown)) return read_source_file(*path, named.mark);
+    std::vector<std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(*path, unknown))
+        if (is_structured_text(entry.path()) && entry.is_regular_file(unknown))
+            files.push_back(entry.path().string());
+    if (files.empty())
+        read_.fail("L0001", named,
+                   fmt::format("the folder '{}' has no file of Structured Text", named.text),
+                   "their names end with .st, .scl or .s7dcl");
+    std::ranges::sort(files);
+    for (const std::string& file : files) read_source_file(file, named.mark);
+}
+
+void ProgramReader::read_source_file(const std::string& path, const Mark& mark) {
+    Diagnostics& out = read_.diagnostics();
+    const auto file =
+        options_.files ? options_.files->source(path, out, mark) : read_source(path, out, mark);
+    if (!file) program_.sources_known = false;
+    if (file &&
+        std::ranges::find(program_.texts, file->path, &SourceFile::path) == program_.texts.end())
+        program_.texts.push_back(file);
 }
 
 /// `signal=value`, then `@from..until`; without one of the times from the start or to the end.

@@ -132,7 +132,9 @@ struct Program {
     std::vector<TaskPlan> tasks;
     bool tasks_known = true;  ///< false: not all could be read, a name may be one of the missing
     std::vector<BlockPlan> blocks;
-    std::shared_ptr<const Catalog> kinds;  ///< of block that the program brings along; may be null
+    std::vector<Node> sources;                             ///< files and folders of Structured Text
+    std::vector<std::shared_ptr<const SourceFile>> texts;  ///< what they are
+    bool sources_known = true;                             ///< false: not all could be read
     std::vector<std::pair<Node, Node>> inputs;
     std::vector<std::pair<Node, Node>> outputs;  ///< name and the signal it shows
     std::vector<Node> retain;                    ///< blocks, signals

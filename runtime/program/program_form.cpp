@@ -563,6 +563,11 @@ const Form& program_form() {
                   "names and values; $NAME stands for the value, --set and studies change it"),
               key("controller", a_value, "a file with tasks, relative to this one"),
               tasks_key<read_tasks>("tasks, or changes to the controller's"),
+              key<&Program::sources>(
+                  "sources",
+                  one_or_list(a_value.as("a file of 'sources'"), "'sources' has no file"),
+                  "Structured Text (.st, .scl, .s7dcl), files or folders, relative to this file: "
+                  "its programs and function blocks are types of blocks"),
               key<read_blocks>(
                   "blocks",
                   named("a block", a_block(block_form)).filled("'blocks' has no block", block_help),

@@ -29,6 +29,8 @@ class ProgramReader {
     void controller(const Node& node);
     void check_attached(const Node& task) const;
     void find_file(ReplayPlan& replay) const;
+    void find_source(const Node& named);
+    void read_source_file(const std::string& path, const Mark& mark);
     void force(const std::string& text);
 
     const LoadOptions& options_;

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const std::string name_pattern = "[A-Za-z_][A-Za-z0-9_]*";
-const std::string signal_pattern = name_pattern + "\\." + name_pattern;
+const std::string signal_pattern = name_pattern + "(\\." + name_pattern + "(\\[[-0-9,]+\\])?)+";
 const std::string number_pattern = "([0-9._]+([eE][-+]?[0-9]+)?|(2|8|16)#[0-9A-Fa-f_]+)";
 
 /// A schema of one keyword. Braces alone would leave it to the compiler what a list of one is.
@@ -156,11 +156,11 @@ Json block_type(const BlockType& type, const Json& common) {
     return described(type.doc, out);
 }
 
-/// A type from the catalogue, and then the keys of that type.
+/// A type from the catalogue, and then the keys of that type; or one of the program's sources.
 Json block(const Catalog& catalog) {
     Json out = of_type("object");
     out["required"] = Json::array_t{"type", "task"};
-    out["properties"]["type"] = any_of({keyword("enum", catalog.names()), reference("parameter")});
+    out["properties"]["type"] = any_of({reference("name"), reference("parameter")});
     Json::array_t cases;
     for (const BlockType& type : catalog.types()) {
         Json is_type;
@@ -168,6 +168,19 @@ Json block(const Catalog& catalog) {
         cases.push_back(if_then(is_type, reference("block_" + std::string(type.name))));
     }
     out["allOf"] = std::move(cases);
+    return out;
+}
+
+/// Without sources, the types of blocks are those of the catalogue.
+Json types_without_sources(const Catalog& catalog) {
+    Json of_block;
+    of_block["properties"]["type"] =
+        any_of({keyword("enum", catalog.names()), reference("parameter")});
+    Json blocks;
+    blocks["properties"]["blocks"]["additionalProperties"] = std::move(of_block);
+    Json out;
+    out["if"] = required("sources");
+    out["else"] = std::move(blocks);
     return out;
 }
 
@@ -369,6 +382,11 @@ nlohmann::ordered_json file_schema(const Catalog& catalog, std::span<const FormO
         const Form& form = file();
         const bool parameters = &form == &files.front()();
         Json schema = writer.form(form, parameters);
+        if (parameters) {
+            Json program;
+            program["allOf"] = Json::array_t{schema, types_without_sources(catalog)};
+            schema = std::move(program);
+        }
         if (!choice.is_null()) {
             Json other = if_then(required(form.keys.front().name), std::move(schema));
             other["else"] = std::move(choice);

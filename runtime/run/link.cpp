@@ -8,11 +8,27 @@
 #include "runtime/net/outside.hpp"
 #include "runtime/net/resolve.hpp"
 #include "runtime/scan/expectations.hpp"
+#include "runtime/st/library.hpp"
 #include "runtime/trace/trace_setup.hpp"
 
 namespace lineshaft {
 
 namespace {
+
+/// What the program's Structured Text brings along; null if there is a mistake in it.
+std::shared_ptr<const Catalog> kinds_of(const Program& program, const Catalog& catalog,
+                                        Diagnostics& out) {
+    if (!program.sources_known) return {};
+    auto kinds = std::make_shared<Catalog>();
+    if (program.texts.empty()) return kinds;
+    Diagnostics found;
+    const auto library = st::compile(program.texts, catalog, found);
+    for (const Diagnostic& d : found.warnings()) out.warn(d.code, d.mark, d.message, d.help);
+    for (const Diagnostic& d : found.list()) out.add(d.code, d.mark, d.message, d.help);
+    if (!library) return {};
+    for (const BlockType& kind : library->kinds()) kinds->add(kind);
+    return kinds;
+}
 
 /// Where a value stands that something in the program takes.
 std::set<const std::byte*> places_read(Linked& linked) {
@@ -45,9 +61,11 @@ void warn_of_unused_inputs(const Program& program, Linked& linked, Diagnostics& 
 
 }  // namespace
 
-Linked link(const Program& program, const Catalog& catalog, Diagnostics& out) {
+Linked link(const Program& program, const Catalog& catalog, Diagnostics& out,
+            std::shared_ptr<const Catalog> kinds) {
     Linked linked;
-    linked.net = resolve(program, catalog, out);
+    if (!kinds) kinds = kinds_of(program, catalog, out);
+    linked.net = resolve(program, catalog, std::move(kinds), out);
     linked.machine = lay_out(linked.net);
     Connecting to{program, linked.net, linked.machine, Reader(out)};
     connect_outside(to);

@@ -20,7 +20,9 @@ struct Linked {
 };
 
 /// Checks every name, type, unit, limit and wire of `program` and lays its blocks out in memory.
-/// What is wrong goes to `out`; the result is usable only when nothing went there.
-Linked link(const Program& program, const Catalog& catalog, Diagnostics& out);
+/// What is wrong goes to `out`; the result is usable only when nothing went there. `kinds` are used
+/// in place of those that the program's sources are compiled to.
+Linked link(const Program& program, const Catalog& catalog, Diagnostics& out,
+            std::shared_ptr<const Catalog> kinds = nullptr);
 
 }  // namespace lineshaft

@@ -92,11 +92,22 @@ bool is_identifier(std::string_view text) {
            std::ranges::all_of(text, [](char c) { return is_letter(c) || is_digit(c); });
 }
 
+/// `x`, or a part of it as `table[1,2].x`.
+bool is_path(std::string_view text) {
+    const auto is_part = [](char c) {
+        return is_letter(c) || is_digit(c) || c == '.' || c == '[' || c == ']' || c == ',' ||
+               c == '-';
+    };
+    const bool ends = !text.empty() && text.back() != '.' && text.back() != '[';
+    return ends && is_letter(text.front()) && std::ranges::all_of(text, is_part) &&
+           (text.find('-') == std::string_view::npos || text.back() == ']');
+}
+
 std::optional<SignalName> split_signal(std::string_view text) {
     const auto dot = text.find('.');
     if (dot == std::string_view::npos) return {};
     const SignalName name{text.substr(0, dot), text.substr(dot + 1)};
-    if (!is_identifier(name.owner) || !is_identifier(name.port)) return {};
+    if (!is_identifier(name.owner) || !is_path(name.port)) return {};
     return name;
 }
 

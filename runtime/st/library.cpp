@@ -66,6 +66,40 @@ bool scan_blocks(std::byte* first, std::size_t count, const Scan& now, const Con
     return error;
 }
 
+FaultPlace fault_of(const Code& code, const std::byte* instance) {
+    const auto slot = [&](std::uint32_t number) {
+        std::uint64_t value = 0;
+        std::memcpy(&value, instance + 8 * std::size_t{number}, sizeof value);
+        return value;
+    };
+    const auto place = [&](std::uint64_t instruction) { return code.places[instruction].mark(); };
+    const auto routine = [&](std::uint64_t instruction) -> const std::string& {
+        std::size_t i = 0;
+        while (code.routines[i].end <= instruction) ++i;
+        return code.routines[i].name;
+    };
+    FaultPlace found;
+    found.fault = static_cast<Fault>(slot(error_id_slot));
+    if (found.fault == Fault::none) return found;
+    std::uint64_t at = slot(place_slot);
+    found.mark = place(at);
+    const std::uint32_t stack = globals_slot + code.globals;
+    for (std::uint64_t level = slot(depth_slot);; --level) {
+        found.calls.push_back(fmt::format("{} (line {})", routine(at), place(at).line));
+        if (level == 0) return found;
+        at = slot(stack + 2 * static_cast<std::uint32_t>(level - 1)) - 1;
+    }
+}
+
+std::string why(const std::byte* block, const void* context) {
+    const FaultPlace found = fault_of(*static_cast<const KindContext*>(context)->code, block);
+    std::string text =
+        fmt::format("at {}:{}:{}", found.mark.file->path, found.mark.line, found.mark.column);
+    for (std::size_t i = 0; i < found.calls.size(); ++i)
+        text += (i == 0 ? " in " : ", called by ") + found.calls[i];
+    return text;
+}
+
 void make(std::byte* place, const void* context) {
     const auto& kind = *static_cast<const KindContext*>(context);
     std::memcpy(place, kind.image, kind.size);
@@ -264,6 +298,8 @@ BlockType block_type(const KindContext& kind, const std::shared_ptr<const Librar
     type.alignment = alignof(std::max_align_t);
     type.make = make;
     type.scan_blocks = scan_blocks;
+    type.why = why;
+    type.single = !kind.routine;
     type.context = &kind;
     type.owner = made;
     return type;
@@ -301,29 +337,7 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
 }
 
 FaultPlace Library::fault(const BlockType&, const std::byte* instance) const {
-    const auto slot = [&](std::uint32_t number) {
-        std::uint64_t value = 0;
-        std::memcpy(&value, instance + 8 * std::size_t{number}, sizeof value);
-        return value;
-    };
-    const Code& code = made_->generated.code;
-    const auto place = [&](std::uint64_t instruction) { return code.places[instruction].mark(); };
-    const auto routine = [&](std::uint64_t instruction) -> const std::string& {
-        std::size_t i = 0;
-        while (code.routines[i].end <= instruction) ++i;
-        return code.routines[i].name;
-    };
-    FaultPlace found;
-    found.fault = static_cast<Fault>(slot(error_id_slot));
-    if (found.fault == Fault::none) return found;
-    std::uint64_t at = slot(place_slot);
-    found.mark = place(at);
-    const std::uint32_t stack = globals_slot + code.globals;
-    for (std::uint64_t level = slot(depth_slot);; --level) {
-        found.calls.push_back(fmt::format("{} (line {})", routine(at), place(at).line));
-        if (level == 0) return found;
-        at = slot(stack + 2 * static_cast<std::uint32_t>(level - 1)) - 1;
-    }
+    return fault_of(made_->generated.code, instance);
 }
 
 std::span<const std::uint64_t, op_classes> Library::counts(const std::byte* instance) const {

@@ -228,8 +228,7 @@ TEST_CASE("a program brings kinds of block along, with what each kind shares") {
             {}, out);
         auto kinds = std::make_shared<Catalog>();
         kinds->add(Times::type("triple", 3)).add(Times::type("sevenfold", 7));
-        plan.kinds = kinds;
-        program = linked(plan, out);
+        program = link(plan, catalog(), out, kinds);
     }
     INFO(out.render());
     REQUIRE(out.empty());
