@@ -119,7 +119,7 @@ class Checker {
     void check_case(Statement& statement);
     void check_for(Statement& statement);
     void check_condition(Expression*& condition, std::string_view of);
-    bool check_target(Expression& target, std::string_view how = "assigned to");
+    bool check_target(Expression& target, std::string_view how = "assigned");
 
     template <class... T>
     std::nullptr_t fail(Code code, Place place, std::string message, std::string help = {}) {

@@ -1,7 +1,7 @@
 #include "runtime/st/library.hpp"
 
-#include <cassert>
 #include <cstring>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -282,11 +282,7 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     made->generated = generate(made->checked, out);
     if (!out.empty()) return {};
     const std::string wrong = verify(made->generated.code);
-    assert(wrong.empty());
-    if (!wrong.empty()) {
-        out.add("L0999", {sources.front()}, "the compiler made a mistake: " + wrong);
-        return {};
-    }
+    if (!wrong.empty()) throw std::logic_error("Structured Text was compiled wrong: " + wrong);
     const auto& routines = made->generated.code.routines;
     std::unordered_map<std::string_view, const CodeRoutine*> codes;
     for (const CodeRoutine& code : routines) codes.emplace(code.name, &code);
