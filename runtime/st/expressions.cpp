@@ -714,13 +714,12 @@ bool Checker::fold_conversion(Expression& e, const Type& to) {
     if (from.kind == Kind::text || to.kind == Kind::text || from.kind == Kind::enumeration)
         return false;
     if (to.is_real() && from.is_bits()) return false;
+    if ((from.kind == Kind::time) != (to.kind == Kind::time)) return false;
     if (to.is_real()) {
         double value = as_real(e);
-        if (from.kind == Kind::time) value /= 1e9;
         if (to.bits == 32)
-            value = from.is_real() || from.kind == Kind::time
-                        ? static_cast<float>(value)
-                        : static_cast<float>(e.constant.integer);
+            value =
+                from.is_real() ? static_cast<float>(value) : static_cast<float>(e.constant.integer);
         become(e, to, {.real = value});
         return true;
     }

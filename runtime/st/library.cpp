@@ -296,7 +296,8 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     return library;
 }
 
-FaultPlace Library::fault(const BlockType&, const std::byte* instance) const {
+FaultPlace Library::fault(const BlockType& kind, const std::byte* instance) const {
+    if (!static_cast<const KindContext*>(kind.context)->routine) return {};
     const auto slot = [&](std::uint32_t number) {
         std::uint64_t value = 0;
         std::memcpy(&value, instance + 8 * std::size_t{number}, sizeof value);
