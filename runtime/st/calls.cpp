@@ -35,26 +35,27 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
             }
         }
     }
-    if (callee.kind == Expression::Kind::name && !find_variable(callee.token)) {
+    if (callee.kind == Expression::Kind::name && !is_instance(callee.token)) {
         const std::string_view name = callee.token.text;
         for (const Routine* r = routine_; r; r = r->owner)
             if (const auto it = r->methods.find(name); it != r->methods.end())
                 return check_routine_call(call, *it->second, as_statement);
         if (const auto it = routines_.find(name); it != routines_.end() && !it->second->type)
             return check_routine_call(call, *it->second, as_statement);
-        if (!callee.token.quoted) return check_standard_function(call, expected);
-    }
-    if (callee.kind == Expression::Kind::name && routine_ && !routine_->names.empty()) {
-        const auto it = routines_.find(callee.token.text);
-        const bool own = it != routines_.end() && it->second == routine_;
-        if (own && routine_->is_function())
-            return check_routine_call(call, *routine_, as_statement);
+        if (!callee.token.quoted && !find_variable(callee.token))
+            return check_standard_function(call, expected);
     }
     const Type* type = check(callee);
     if (!type) return nullptr;
     if (type->is_instance()) return check_instance_call(call, *type, as_statement);
     return fail("L0907", callee.place, fmt::format("{} cannot be called", describe(*type)),
                 "functions, methods and instances of function blocks are called");
+}
+
+/// A variable may bear a function's name, but no instance can be meant then.
+bool Checker::is_instance(const Token& name) const {
+    const Variable* variable = find_variable(name);
+    return variable && variable->type && variable->type->is_instance();
 }
 
 const Type* Checker::check_routine_call(Expression& call, Routine& routine, bool as_statement) {
@@ -240,6 +241,13 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
 
 namespace {
 
+/// Of a number without type and one with; one of them is real.
+const Type* mixed(const Type& a, const Type& b) {
+    if (a.is_any() && b.is_any()) return a.is_real() ? &a : &b;
+    const Type &any = a.is_any() ? a : b, &typed = a.is_any() ? b : a;
+    return any.is_real() ? common_type(typed, real_type) : &typed;
+}
+
 const Type& real_for(const Type& type) {
     return type.kind == Kind::real && type.bits == 32 ? real_type : lreal_type;
 }
@@ -260,7 +268,11 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         const Type* common = arguments[first].value->type;
         for (std::size_t i = first + 1; i < arguments.size(); ++i) {
             const Type& type = *arguments[i].value->type;
-            if (common->is_any() && (!type.is_any() || type.is_real()))
+            const bool one_is_real = common->is_real() || type.is_real();
+            const bool one_is_any = common->is_any() || type.is_any();
+            if (one_is_any && one_is_real && common->is_real() != type.is_real())
+                common = mixed(*common, type);
+            else if (common->is_any() && (!type.is_any() || type.is_real()))
                 common = &type;
             else if (!type.is_any() && !same_type(*common, type) && common->is_scalar())
                 common = common_type(*common, type);

@@ -40,11 +40,14 @@ class Checker {
     void declare_globals();
     void declare_routines();
     void declare(Routine& routine, const DeclarationBlock& block);
+    void make_constant(Variable& variable);
     void declare_result(Routine& routine);
     Variable* add(std::deque<Variable>& to, const Declaration& declared, const Type* type);
     bool is_new_name(Token name, NameMap<Place>& names);
     void check_unit(Variable& variable, const Declaration& declared);
     void check_initial_values();
+    void check_data_block(const Global& global);
+    bool is_constant_place(const Expression& place) const;
     void check_initial(Expression*& value, const Type& type);
     void check_elements(Expression& list, const Type& array);
     void check_members(Expression& list, const Type& type);
@@ -103,6 +106,7 @@ class Checker {
     const Type* check_call(Expression& call, bool as_statement, const Type* expected);
     const Type* check_routine_call(Expression& call, Routine& routine, bool as_statement);
     const Type* check_instance_call(Expression& call, const Type& type, bool as_statement);
+    bool is_instance(const Token& name) const;
     void check_arguments(Expression& call, Routine& routine);
     void check_argument(Expression& call, Argument& argument, Variable& parameter);
     void check_standard_arguments(Expression& call, const Type& type);
@@ -119,7 +123,7 @@ class Checker {
     void check_case(Statement& statement);
     void check_for(Statement& statement);
     void check_condition(Expression*& condition, std::string_view of);
-    bool check_target(Expression& target, std::string_view how = "assigned to");
+    bool check_target(Expression& target, std::string_view how = "assigned");
 
     template <class... T>
     std::nullptr_t fail(Code code, Place place, std::string message, std::string help = {}) {

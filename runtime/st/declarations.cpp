@@ -131,7 +131,8 @@ void Checker::declare_globals() {
             variable->retain = block.retain;
             variable->space = Space::global;
             variable->global = 0;
-            all->members.push_back(variable);
+            if (block.constant) make_constant(*variable);
+            if (variable->space != Space::none) all->members.push_back(variable);
             globals_.emplace(declared->name.text, variable);
         }
     }
@@ -218,20 +219,23 @@ void Checker::declare(Routine& routine, const DeclarationBlock& block) {
                  "a function keeps nothing from call to call, so it has no instances",
                  "pass the instance as VAR_IN_OUT");
         depend(type, declared->name.place);
-        const bool folded =
-            block.constant && block.section != Section::input && type && type->is_scalar();
-        if (!folded) continue;
-        variable->space = Space::none;
-        if (!declared->initial) {
-            fail("L0913", declared->name.place,
-                 fmt::format("the constant {} has no value", quoted(variable->text)),
-                 "write ':= value' behind its type");
-            continue;
-        }
-        Expression* value = const_cast<Expression*>(declared->initial);
-        check_initial(value, *type);
-        if (value->kind == Expression::Kind::constant) variable->value = value->constant;
+        if (block.constant && block.section != Section::input) make_constant(*variable);
     }
+}
+
+/// A constant scalar takes no memory.
+void Checker::make_constant(Variable& variable) {
+    if (!variable.type || !variable.type->is_scalar()) return;
+    variable.space = Space::none;
+    if (!variable.initial) {
+        fail("L0913", variable.name.place,
+             fmt::format("the constant {} has no value", quoted(variable.text)),
+             "write ':= value' behind its type");
+        return;
+    }
+    auto* value = const_cast<Expression*>(variable.initial);
+    check_initial(value, *variable.type);
+    if (value->kind == Expression::Kind::constant) variable.value = value->constant;
 }
 
 /// The routine runs, or is made of, what is in `type`.
@@ -262,6 +266,7 @@ void Checker::check_initial_values() {
         const_cast<Variable&>(variable).initial = value;
     };
     for (Variable& variable : checked_.variables) check_one(variable);
+    for (const Global& global : checked_.globals) check_data_block(global);
     for (Routine& routine : checked_.routines) {
         routine_ = &routine;
         for (const Variable& variable : routine.variables) {
@@ -272,6 +277,34 @@ void Checker::check_initial_values() {
         }
     }
     routine_ = nullptr;
+}
+
+/// What stands behind BEGIN of a data block: assignments of constants to its parts.
+void Checker::check_data_block(const Global& global) {
+    if (!global.pou || !global.type) return;
+    Routine parts;
+    parts.pou = global.pou;
+    for (Variable* member : global.type->members) parts.names.emplace(member->text, member);
+    if (global.type->kind == Kind::block) parts.names = global.type->routine->names;
+    routine_ = &parts;
+    for (Statement* s : global.pou->body) {
+        if (s->kind != Statement::Kind::assign || s->op != Word::assign) {
+            fail("L0914", s->place, "a data block has no code",
+                 "assign constants, and write statements in a block");
+            continue;
+        }
+        const Type* type = check(*s->target);
+        if (!is_constant_place(*s->target))
+            fail("L0913", s->target->place, "the index is not a constant");
+        if (type) check_initial(s->value, *type);
+    }
+    routine_ = nullptr;
+}
+
+bool Checker::is_constant_place(const Expression& place) const {
+    for (const Argument& index : place.arguments)
+        if (index.value->kind != Expression::Kind::constant) return false;
+    return !place.operands[0] || is_constant_place(*place.operands[0]);
 }
 
 void Checker::check_initial(Expression*& value, const Type& type) {

@@ -37,7 +37,7 @@ const Type table[] = {
     elementary(Kind::time, "LTIME", 64, true),   text_type()};
 
 const Type any_integer = elementary(Kind::any_integer, "a whole number", 64, true);
-const Type any_real = elementary(Kind::any_real, "a number");
+const Type any_real = elementary(Kind::any_real, "a real number");
 const Type any_bits = elementary(Kind::any_bits, "a whole number");
 
 struct Foreign {

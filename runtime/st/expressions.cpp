@@ -674,13 +674,15 @@ bool Checker::coerce(Expression*& e, const Type& to) {
 bool Checker::refuse_conversion(const Expression& e, const Type& to) {
     const Type& from = *e.type;
     const bool any_real = from.kind == Kind::any_real;
+    if (any_real && !to.is_real() && to.is_number()) {
+        fail("L0906", e.place, fmt::format("expected {}, found a real number", describe(to)),
+             "write a whole number, or convert it: ROUND(...)");
+        return false;
+    }
     if ((from.is_number() || from.is_bits()) && (to.is_number() || to.is_bits())) {
-        const std::string source = any_real ? "LREAL" : from.is_any() ? "LINT" : from.plain().name;
-        fail("L0906", e.place,
-             fmt::format("{} does not hold every {}", describe(to), any_real ? "LREAL" : from.name),
-             any_real && is_constant(e)
-                 ? "write a whole number, or ROUND(...)"
-                 : fmt::format("write {}_TO_{}(...) where it is meant", source, to.plain().name));
+        const std::string source = from.is_any() ? "LINT" : from.plain().name;
+        fail("L0906", e.place, fmt::format("{} does not hold every {}", describe(to), from.name),
+             fmt::format("write {}_TO_{}(...) where it is meant", source, to.plain().name));
         return false;
     }
     std::string help;
@@ -712,13 +714,12 @@ bool Checker::fold_conversion(Expression& e, const Type& to) {
     if (from.kind == Kind::text || to.kind == Kind::text || from.kind == Kind::enumeration)
         return false;
     if (to.is_real() && from.is_bits()) return false;
+    if ((from.kind == Kind::time) != (to.kind == Kind::time)) return false;
     if (to.is_real()) {
         double value = as_real(e);
-        if (from.kind == Kind::time) value /= 1e9;
         if (to.bits == 32)
-            value = from.is_real() || from.kind == Kind::time
-                        ? static_cast<float>(value)
-                        : static_cast<float>(e.constant.integer);
+            value =
+                from.is_real() ? static_cast<float>(value) : static_cast<float>(e.constant.integer);
         become(e, to, {.real = value});
         return true;
     }
@@ -731,10 +732,13 @@ bool Checker::fold_conversion(Expression& e, const Type& to) {
 }
 
 std::optional<Wide> Checker::check_whole(Expression*& e, const Type& type) {
-    if (!check(*e, &type) || !coerce(e, type)) return {};
-    if (is_constant(*e)) return e->constant.integer;
-    fail("L0913", e->place, "a constant is due here", "declare it in VAR CONSTANT");
-    return {};
+    if (!check(*e, &type)) return {};
+    if (!is_constant(*e)) {
+        fail("L0913", e->place, "a constant is due here", "declare it in VAR CONSTANT");
+        return {};
+    }
+    if (!coerce(e, type)) return {};
+    return e->constant.integer;
 }
 
 }  // namespace lineshaft::st

@@ -184,11 +184,12 @@ void Generator::fill_elements(Image& image, std::uint32_t at, const Type& type,
 void Generator::fill_data_block(Image& image, const Global& global) {
     if (!global.pou) return;
     for (const Statement* s : global.pou->body) {
-        if (s->kind != Statement::Kind::assign || s->value->kind != Expression::Kind::constant)
-            continue;
         const Location to = locate(*s->target);
-        if (to.mode == Location::Mode::address && !to.byte)
-            fill(image, to.offset, *s->target->type, *s->value);
+        if (to.byte)
+            reinterpret_cast<char*>(&image[to.slot])[*to.byte] =
+                static_cast<char>(s->value->constant.integer);
+        else
+            fill(image, to.slot, *s->target->type, *s->value);
     }
 }
 

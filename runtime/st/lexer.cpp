@@ -124,7 +124,7 @@ class Lexer {
         if (text_.starts_with(utf8_byte_order_mark)) at_ = utf8_byte_order_mark.size();
         tokens_.tokens.reserve(text_.size() / 4 + 1);
         for (skip_blanks(); at_ < text_.size(); skip_blanks()) read_token();
-        start_ = at_;
+        start_ = at_ = text_.size();
         add(Word::end_of_file);
         return std::move(tokens_);
     }
@@ -133,7 +133,9 @@ class Lexer {
     char peek(std::size_t ahead = 0) const {
         return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0';
     }
-    bool at(std::string_view text) const { return text_.substr(at_).starts_with(text); }
+    bool at(std::string_view text) const {
+        return text_.substr(std::min(at_, text_.size())).starts_with(text);
+    }
     Place place(std::size_t begin, std::size_t end) const {
         return {&file_, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
     }
@@ -204,7 +206,8 @@ class Lexer {
         }
         if (at_ == text_.size())
             fail(place(begin, begin + 1), "the pragma does not end", "it ends with '}'");
-        tokens_.pragmas.push_back({tokens_.tokens.size(), new_line_, place(begin, at_ + 1)});
+        tokens_.pragmas.push_back(
+            {tokens_.tokens.size(), new_line_, place(begin, std::min(at_ + 1, text_.size()))});
     }
 
     void read_token() {
@@ -340,6 +343,7 @@ class Lexer {
         const Utf8Character character = first_character(text_.substr(at_));
         at_ += character.bytes;
         const Place here = place(start_, at_);
+        tokens_.mistakes.push_back(here.begin);
         if (const auto alike = find_look_alike(here.text()))
             return out_.add("L0109", here.mark(),
                             fmt::format("{} stands where {} is meant", alike->name, alike->instead),
@@ -356,6 +360,7 @@ class Lexer {
     }
 
     void fail(Place where, std::string message, std::string help) {
+        tokens_.mistakes.push_back(where.begin);
         out_.add("L0901", where.mark(), std::move(message), std::move(help));
     }
 

@@ -17,6 +17,7 @@ struct Pragma {
 struct Tokens {
     std::vector<Token> tokens;  ///< the last is `end_of_file`
     std::vector<Pragma> pragmas;
+    std::vector<std::uint32_t> mistakes;  ///< where something was reported, in bytes
 };
 
 /// Takes a source apart. Comments `//`, `(* *)` and `/* */` (the last two nested) are left out;

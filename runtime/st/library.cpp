@@ -1,7 +1,7 @@
 #include "runtime/st/library.hpp"
 
-#include <cassert>
 #include <cstring>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -318,11 +318,7 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     made->generated = generate(made->checked, out);
     if (!out.empty()) return {};
     const std::string wrong = verify(made->generated.code);
-    assert(wrong.empty());
-    if (!wrong.empty()) {
-        out.add("L0999", {sources.front()}, "the compiler made a mistake: " + wrong);
-        return {};
-    }
+    if (!wrong.empty()) throw std::logic_error("Structured Text was compiled wrong: " + wrong);
     const auto& routines = made->generated.code.routines;
     std::unordered_map<std::string_view, const CodeRoutine*> codes;
     for (const CodeRoutine& code : routines) codes.emplace(code.name, &code);
@@ -336,7 +332,8 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     return library;
 }
 
-FaultPlace Library::fault(const BlockType&, const std::byte* instance) const {
+FaultPlace Library::fault(const BlockType& kind, const std::byte* instance) const {
+    if (!static_cast<const KindContext*>(kind.context)->routine) return {};
     return fault_of(made_->generated.code, instance);
 }
 

@@ -100,7 +100,11 @@ const PouWords* find_pou(Word word) {
 class Parser {
   public:
     Parser(const Tokens& tokens, Tree& tree, Diagnostics& out)
-        : tokens_(tokens.tokens), pragmas_(tokens.pragmas), tree_(tree), out_(out) {}
+        : tokens_(tokens.tokens),
+          pragmas_(tokens.pragmas),
+          mistakes_(tokens.mistakes),
+          tree_(tree),
+          out_(out) {}
 
     void read() {
         while (here().word != Word::end_of_file) {
@@ -129,6 +133,12 @@ class Parser {
         return true;
     }
 
+    bool accept_any(Word word) {
+        const bool there = is(word);
+        if (there) take();
+        return there;
+    }
+
     bool expect(Word word, std::string_view where = {}) {
         if (accept(word)) return true;
         expected(shown(word), where);
@@ -137,10 +147,41 @@ class Parser {
 
     void expected(std::string_view what, std::string_view where = {}) {
         if (panic_ || refuse_unsupported()) return;
-        const bool is_sign = what.size() <= 2;
+        panic_ = unclosed_at_ == at_ || follows_mistake();
+        const char first = what.front();
+        const bool is_word = (first >= 'A' && first <= 'Z') || (first >= 'a' && first <= 'z');
         fail("L0902", here().place,
-             fmt::format("expected {0}{1}{0}{2}{3}, found {4}", is_sign ? "'" : "", what,
-                         where.empty() ? "" : " ", where, found()));
+             fmt::format("expected {0}{1}{0}{2}{3}, found {4}", is_word ? "" : "'", what,
+                         where.empty() ? "" : " ", where, found()),
+             habit());
+    }
+
+    /// The lexer left something out just before.
+    bool follows_mistake() const {
+        const std::string_view before =
+            std::string_view((*here().place.file)->text).substr(0, last().place.begin);
+        const std::size_t line = before.rfind('\n') + 1;
+        return std::ranges::any_of(
+            mistakes_, [&](std::uint32_t at) { return at >= line && at <= here().place.begin; });
+    }
+
+    /// What is written here in other languages.
+    std::string habit() const {
+        const bool touches = last().place.end == here().place.begin;
+        const auto is_pair = [&](Word word) { return is(word) && last().word == word && touches; };
+        if (is_pair(Word::equal)) return "write '=' to compare";
+        if (is_pair(Word::ampersand)) return "write AND";
+        const bool before_pair =
+            next().word == here().word && here().place.end == next().place.begin;
+        if (before_pair && is(Word::plus)) return "write 'name += 1;'";
+        if (before_pair && is(Word::minus)) return "write 'name -= 1;'";
+        if (is(Word::comma) && last().word == Word::integer && next().word == Word::integer)
+            return "write a decimal point: 1.5";
+        if (same_name(last().text, "elseif") || same_name(last().text, "elif"))
+            return "write ELSIF";
+        if (is(Word::assign) && !is_in_body_)
+            return "statements stand in a PROGRAM, FUNCTION_BLOCK or FUNCTION";
+        return {};
     }
 
     std::string found() const {
@@ -257,8 +298,10 @@ class Parser {
         read_header(pou);
         read_sections(pou, words.end);
         accept(Word::begin_);
+        is_in_body_ = true;
         read_body(pou, words.end);
         close(words.end, opener);
+        is_in_body_ = false;
         accept(Word::semicolon);
         if (panic_) skip_past(words.end);
         return &pou;
@@ -325,11 +368,14 @@ class Parser {
                      !accept(Word::internal_))
                 break;
         }
-        while (!is_end(here().word) && !is(Word::end_of_file) && !find_pou(here().word) &&
+        section_left_ = false;
+        while (!section_left_ && !is_end(here().word) && !is(Word::end_of_file) &&
+               !find_pou(here().word) &&
                std::ranges::find(section_words, here().word, &SectionWord::word) ==
                    std::end(section_words))
             read_variables(block.declarations);
-        close(Word::end_var_, opener);
+        if (section_left_) panic_ = false;
+        if (!section_left_) close(Word::end_var_, opener);
         accept(Word::semicolon);
         return block;
     }
@@ -337,6 +383,9 @@ class Parser {
     /// `a, b : INT := 5;`
     void read_variables(std::vector<Declaration*>& to) {
         const std::size_t first = at_;
+        const Word behind = next().word;
+        if (is_name() && (behind == Word::assign || behind == Word::open || behind == Word::dot))
+            return missing_end_var();
         std::vector<Token> names{read_name("the name of a variable")};
         while (accept(Word::comma)) names.push_back(read_name("the name of a variable"));
         if (is(Word::at_)) {
@@ -353,6 +402,14 @@ class Parser {
         for (const Token& name : names)
             to.push_back(
                 &tree_.declarations.emplace_back(Declaration{name, type, initial, unit, place}));
+    }
+
+    /// A statement stands where a declaration is due.
+    void missing_end_var() {
+        fail("L0902", here().place, fmt::format("expected END_VAR before {}", found()),
+             "declarations look like 'name : INT := 1;', and statements follow END_VAR");
+        unclosed_at_ = at_;
+        section_left_ = true;
     }
 
     void skip_declaration() {
@@ -431,7 +488,7 @@ class Parser {
 
     void read_struct(TypeText& type, const Token& opener) {
         type.kind = TypeText::Kind::structure;
-        while (!is_end(here().word) && !is(Word::end_of_file) && !find_pou(here().word))
+        while (!panic_ && !is_end(here().word) && !is(Word::end_of_file) && !find_pou(here().word))
             read_variables(type.members);
         close(Word::end_struct_, opener);
     }
@@ -689,6 +746,11 @@ class Parser {
             case Word::semicolon:
                 take();
                 return nullptr;
+            case Word::action_:
+                if (!is_name(next())) return read_simple();
+                refuse_unsupported();
+                while (!is(Word::end_of_file) && !accept_any(Word::end_action_)) take();
+                return nullptr;
             case Word::region_:
             case Word::network_:
             case Word::end_region_:
@@ -916,6 +978,7 @@ class Parser {
 
     const std::vector<Token>& tokens_;
     const std::vector<Pragma>& pragmas_;
+    const std::vector<std::uint32_t>& mistakes_;
     Tree& tree_;
     Diagnostics& out_;
     std::size_t at_ = 0;
@@ -923,6 +986,8 @@ class Parser {
     std::vector<Place> else_ifs_;                             ///< within the IFs that are open
     int depth_ = 0;
     bool panic_ = false;
+    bool section_left_ = false;  ///< a VAR ended without END_VAR
+    bool is_in_body_ = false;    ///< of a POU
 };
 
 }  // namespace

@@ -106,7 +106,7 @@ void Checker::check_assignment(Statement& s) {
 bool Checker::check_target(Expression& target, std::string_view how) {
     using E = Expression::Kind;
     const auto refuse = [&](std::string what, std::string help) {
-        fail("L0910", target.place, fmt::format("{} is not {}", what, how), std::move(help));
+        fail("L0910", target.place, fmt::format("{} cannot be {}", what, how), std::move(help));
         return false;
     };
     if (target.kind == E::constant && target.variable)

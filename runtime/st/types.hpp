@@ -46,7 +46,7 @@ struct Type {
     bool is_subrange = false;
     const Type* base = nullptr;              ///< of a subrange; of an enumeration with numbers
     const Type* element = nullptr;           ///< of an array
-    bool has_inner = false;  ///< of an array: its element is its next dimension
+    bool has_inner = false;                  ///< of an array: its element is its next dimension
     std::uint32_t length = 0;                ///< of a text, in characters
     std::vector<Variable*> members = {};     ///< of a structure
     std::vector<std::string> values = {};    ///< of an enumeration
