@@ -94,6 +94,7 @@ Json bare_number(const Field& field) {
 
 /// The forms of a constant for `field`.
 Json::array_t constants(const BlockType& type, const Field& field) {
+    if (field.direction == Direction::in_out) return {reference("name")};
     if (field.type == Type::enumeration) return {keyword("enum", field.names)};
     if (field.type == Type::boolean) return {of_type("boolean")};
     static const Unit second = *Unit::parse("s");
@@ -107,6 +108,9 @@ Json::array_t constants(const BlockType& type, const Field& field) {
 }
 
 std::string description(const BlockType& type, const Field& field) {
+    if (field.direction == Direction::in_out)
+        return fmt::format("reference to a block of type {}: {}; must be set", field.refers,
+                           field.doc);
     std::vector<std::byte> fresh(type.size);
     type.construct(fresh.data());
     std::string unit(field.unit);
@@ -141,7 +145,7 @@ Json block_type(const BlockType& type, const Json& common) {
     properties["type"] = keyword("const", type.name);
     Json::array_t needed = common.at("required");
     for (const Field& field : type.fields) {
-        if (field.direction == Direction::output) continue;
+        if (field.direction == Direction::output || field.direction == Direction::local) continue;
         Json::array_t forms = constants(type, field);
         if (field.direction == Direction::input) forms.push_back(reference("wire"));
         forms.push_back(reference("parameter"));

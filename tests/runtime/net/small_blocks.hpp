@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -81,6 +82,26 @@ struct Probe {
         return table;
     }
     void scan(const Scan&) {}
+};
+
+/// Reads a counter that it refers to.
+struct Display {
+    std::int64_t counter = -1, shown = 0, highest = 0;
+
+    static constexpr std::string_view type = "display";
+    static constexpr std::string_view doc = "Shows a counter";
+    static std::span<const Field> fields() {
+        static const Field table[] = {
+            in_out("counter", &Display::counter, "counter", "that is shown"),
+            output("shown", &Display::shown, "", "its count"),
+            local("highest", &Display::highest, "", "greatest count so far"),
+        };
+        return table;
+    }
+    void scan(const Scan&, const Context& context) {
+        shown = context.instance<Counter>(counter).count;
+        highest = std::max(highest, shown);
+    }
 };
 
 inline Catalog small_catalog() {

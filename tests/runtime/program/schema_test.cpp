@@ -61,6 +61,19 @@ TEST_CASE("schema: the forms of a value") {
             CHECK(has_form(value, reference("parameter")));
 }
 
+TEST_CASE("schema: a reference is a block's name, a local is not a key") {
+    static constexpr FormOf files[] = {program_form, controller_form};
+    const Json schema = file_schema(small_catalog().add<Display>(), files);
+    const Json& display = schema.at("definitions").at("block_display");
+    const Json& counter = display.at("properties").at("counter");
+    CHECK(counter.at("anyOf") == Json::array({reference("name"), reference("parameter")}));
+    CHECK(counter.at("description") ==
+          "reference to a block of type counter: that is shown; must be set");
+    CHECK(display.at("required") == Json::array({"type", "task", "counter"}));
+    CHECK_FALSE(display.at("properties").contains("shown"));
+    CHECK_FALSE(display.at("properties").contains("highest"));
+}
+
 TEST_CASE("schema: every reference leads somewhere") {
     const Json schema = small_schema();
     int references = 0;
