@@ -71,7 +71,7 @@ struct ErrorFlag {
     const std::int64_t* error_id = nullptr;   ///< may be null
     std::span<const std::string_view> names;  ///< of error_id
     std::string block;                        ///< `'slave' (gear_axis)`
-    const BlockType* type = nullptr;
+    const BlockType* type = nullptr;          ///< may be null
     const std::byte* memory = nullptr;  ///< of the block
 };
 
