@@ -20,21 +20,24 @@ bool resembles_wire(const Node& node) {
            node.text.find_first_of(".(") != std::string::npos;
 }
 
-/// `every(servo)`: the interval of a task, for blocks that reckon with a clock. Times that are
-/// integers are in ns.
-std::optional<Value> interval_of(const Resolving& to, const Node& value, const Field& field,
+/// `every(servo)`: the interval of a task, for blocks that reckon with a clock; `every()` that of the
+/// block's own. Times that are integers are in ns.
+std::optional<Value> interval_of(const Resolving& to, const Assignment& assignment,
                                  const Unit& unit) {
+    const Field& field = *assignment.field;
+    const Node& value = *assignment.value;
     static const Unit second = *Unit::parse("s");
     if (!value.text.starts_with("every(") || !value.text.ends_with(')') ||
         !unit.same_dimension(second))
         return {};
     const std::string name = value.text.substr(6, value.text.size() - 7);
-    const int number = to.net.find_task(to.read, value, name);
+    const int number = name.empty() ? to.net.instance(assignment.instance).task
+                                    : to.net.find_task(to.read, value, name);
     if (number < 0) return 0.0;
     const TaskSettings& task = to.net.tasks[static_cast<std::size_t>(number)];
     if (task.on_event) {
         to.read.fail("L0213", value,
-                     fmt::format("'{}' is an event task: it has no interval", name));
+                     fmt::format("'{}' is an event task: it has no interval", task.name));
         return 0.0;
     }
     if (field.type == Type::integer) return task.every;
@@ -64,7 +67,7 @@ std::string meant_by(const Resolving& to, const std::string& word) {
 void set_constant(Resolving& to, const Assignment& assignment) {
     const auto& [number, field, value, wire] = assignment;
     const Unit& unit = to.net.unit_of(to.net.port(number, *field));
-    std::optional<Value> constant = interval_of(to, *value, *field, unit);
+    std::optional<Value> constant = interval_of(to, assignment, unit);
     if (!constant && field->direction == Direction::input && resembles_wire(*value))
         return to.read.fail("L0208", *value,
                             fmt::format("'{}' is neither a constant nor a wire", value->text),

@@ -36,7 +36,10 @@ TEST_CASE("reader: names") {
     REQUIRE(split_signal("a.b"));
     CHECK(split_signal("a.b")->owner == "a");
     CHECK(split_signal("a.b")->port == "b");
-    for (const char* bad : {"a", "a.", ".b", "a.b.c", "NOT a.b"}) CHECK_FALSE(split_signal(bad));
+    REQUIRE(split_signal("a.table[1,-2].x"));
+    CHECK(split_signal("a.table[1,-2].x")->port == "table[1,-2].x");
+    for (const char* bad : {"a", "a.", ".b", "a.b.", "a.b[", "a.b-c", "NOT a.b"})
+        CHECK_FALSE(split_signal(bad));
 }
 
 TEST_CASE("reader: booleans are true and false only") {
