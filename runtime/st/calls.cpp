@@ -348,6 +348,22 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
                         fmt::format("{} takes a bit string, not {}", f.name, describe(first)),
                         "write its type, as in WORD#16#FF");
         }
+        case Rule::length:
+        case Rule::find:
+        case Rule::text: {
+            const std::size_t texts = f.rule == Rule::text ? static_cast<std::size_t>(f.texts) : 2;
+            for (std::size_t i = 0; i < arguments.size(); ++i) {
+                const Type& type = *arguments[i].value->type;
+                if (i < texts ? type.kind == Kind::text : type.is_integer()) {
+                    if (type.is_any() && !coerce(arguments[i].value, lint_type)) return nullptr;
+                    continue;
+                }
+                return fail("L0905", arguments[i].value->place,
+                            fmt::format("expected {}, found {}",
+                                        i < texts ? "a STRING" : "a whole number", describe(type)));
+            }
+            return f.rule == Rule::text ? &string_type : &int_type;
+        }
         case Rule::operation: {
             Expression* left = arguments[0].value;
             for (std::size_t i = 1; i < arguments.size(); ++i) {
@@ -408,6 +424,15 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
         call = copy;
         return target;
     }
+    if (from.kind == Kind::text && !target->is_number())
+        return fail(
+            "L0905", call.place,
+            fmt::format("there is no conversion of {} to {}", describe(from), describe(*target)));
+    if (target->kind == Kind::enumeration && !target->counted)
+        return fail("L0903", call.place,
+                    fmt::format("a conversion to {}, whose values have gaps, is not supported",
+                                target->name),
+                    "write a CASE");
     Expression* operand = value;
     convert(operand, *target);
     if (operand->kind == Expression::Kind::converted && truncates) operand->op = Word::divided;

@@ -11,6 +11,9 @@
 
 namespace lineshaft::st {
 
+/// Characters that the result of a function of texts may have.
+inline constexpr std::int64_t longest_result = 254;
+
 struct Instruction {
     Op op = Op::leave;
     std::uint32_t a = 0, b = 0, c = 0;

@@ -248,6 +248,14 @@ Slot Generator::standard(const Expression& e, Slot wanted) {
             const Slot above = emit(narrow ? Op::mul_real : Op::mul_lreal, none, in, range);
             return emit(narrow ? Op::add_real : Op::add_lreal, wanted, above, min);
         }
+        case Rule::length:
+            return emit(Op::text_length, wanted, text_address(*e.arguments[0].value));
+        case Rule::find: {
+            const Slot in = text_address(*e.arguments[0].value);
+            return emit(Op::text_find, wanted, in, text_address(*e.arguments[1].value));
+        }
+        case Rule::text:
+            return text_address(e);
         case Rule::finite:
             return emit(Op::is_finite, wanted, argument(0));
         case Rule::move:

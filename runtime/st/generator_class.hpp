@@ -98,6 +98,11 @@ class Generator {
     void copy(const Location& to, const Location& from, std::uint32_t slots);
     void assign(const Location& to, const Type& type, const Expression& from);
     void copy_value(const Location& to, const Type& type, const Expression& from);
+    Slot text_address(const Expression& e);
+    Slot new_text(Slot& address);
+    Slot text_function(const Expression& e);
+    Slot text_conversion(const Expression& e);
+    void append(Slot to, Slot from, Slot first, Slot count);
     void store_bits(const Expression& target, const Expression& from);
 
     // generator_calls.cpp

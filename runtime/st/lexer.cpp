@@ -356,7 +356,9 @@ class Lexer {
         if (!character.valid || is_control(character.code))
             return fail(here, "the file has a byte that is not text", "save it as UTF-8");
         fail(here, fmt::format("'{}' has no meaning here", here.text()),
-             "names have letters without accents, digits and '_'; others stand in quotes");
+             text_.substr(start_).starts_with("!=")
+                 ? "write '<>'"
+                 : "names have letters without accents, digits and '_'; others stand in quotes");
     }
 
     void fail(Place where, std::string message, std::string help) {

@@ -24,11 +24,13 @@ struct KindContext {
     Options options;
     std::string name, doc;
     std::vector<Field> fields;
+    std::vector<std::string_view> retained;  ///< names of those in VAR RETAIN
     struct Check {
         std::uint32_t slot;
         const Type* type;
     };
-    std::vector<Check> checks;  ///< inputs narrower than what a wire brings
+    std::vector<Check> checks;              ///< inputs narrower than what a wire brings
+    std::vector<std::uint32_t> references;  ///< slots of VAR_IN_OUT, which a call fills
 };
 
 bool is_in_range(const KindContext::Check& check, std::byte* instance) {
@@ -45,15 +47,22 @@ bool is_in_range(const KindContext::Check& check, std::byte* instance) {
     return value >= smallest(*check.type) && value <= largest(*check.type);
 }
 
+/// Before the first instruction.
+bool refuse(const KindContext& kind, std::byte* instance, Fault fault) {
+    const std::uint64_t header[] = {1, static_cast<std::uint64_t>(fault), kind.routine->entry, 0};
+    std::memcpy(instance, header, sizeof header);
+    return true;
+}
+
 bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
               const Context& context) {
-    for (const KindContext::Check& check : kind.checks) {
-        if (is_in_range(check, instance)) continue;
-        const std::uint64_t header[] = {1, static_cast<std::uint64_t>(Fault::out_of_range),
-                                        kind.routine->entry, 0};
-        std::memcpy(instance, header, sizeof header);
-        return true;
+    for (const std::uint32_t slot : kind.references) {
+        std::uint64_t address = 0;
+        std::memcpy(&address, instance + 8 * std::size_t{slot}, sizeof address);
+        if (address == 0) return refuse(kind, instance, Fault::no_reference);
     }
+    for (const KindContext::Check& check : kind.checks)
+        if (!is_in_range(check, instance)) return refuse(kind, instance, Fault::out_of_range);
     return execute(*kind.code, *kind.routine, instance, now, context, kind.options.fuel,
                    kind.options.counts) != Fault::none;
 }
@@ -274,8 +283,13 @@ void add_routine(Library::Made& made, const Routine& routine, const CodeRoutine&
                            (*routine.pou->name.place.file)->path);
     FieldWriter fields(made, kind);
     fields.write_header(routine);
-    for (const Variable& variable : routine.variables)
+    for (const Variable& variable : routine.variables) {
+        const std::size_t before = kind.fields.size();
         fields.write(variable, 0, {}, FieldWriter::direction_of(variable));
+        for (std::size_t i = before; variable.retain && i < kind.fields.size(); ++i)
+            kind.retained.push_back(kind.fields[i].name);
+        if (variable.space == Space::reference) kind.references.push_back(variable.slot);
+    }
 }
 
 void add_global(Library::Made& made, const Global& global, const Options& options) {
@@ -340,6 +354,10 @@ FaultPlace Library::fault(const BlockType& kind, const std::byte* instance) cons
 std::span<const std::uint64_t, op_classes> Library::counts(const std::byte* instance) const {
     return std::span<const std::uint64_t, op_classes>(
         std::launder(reinterpret_cast<const std::uint64_t*>(instance)) + counts_slot, op_classes);
+}
+
+std::span<const std::string_view> Library::retained(const BlockType& kind) const {
+    return static_cast<const KindContext*>(kind.context)->retained;
 }
 
 std::string Library::listing() const {

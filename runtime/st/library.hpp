@@ -57,6 +57,9 @@ class Library {
     /// Options::counts.
     std::span<const std::uint64_t, op_classes> counts(const std::byte* instance) const;
 
+    /// Fields of the kind that stand in VAR RETAIN (and all parts of theirs).
+    std::span<const std::string_view> retained(const BlockType& kind) const;
+
     /// For tests and people: the code of all.
     std::string listing() const;
 

@@ -1,9 +1,12 @@
 #include "runtime/st/machine.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <string_view>
 
 #include <sleef.h>
 
@@ -111,6 +114,55 @@ std::uint64_t rotate_right(std::uint64_t value, std::uint64_t places) {
 
 double narrow(double value) {
     return double{static_cast<float>(value)};
+}
+
+// Texts: the length, then the characters.
+
+std::string_view text_at(const std::byte* place) {
+    return {reinterpret_cast<const char*>(place + 8), static_cast<std::size_t>(word(place, 0))};
+}
+
+void copy_text(std::byte* to, const std::byte* from, std::uint32_t room) {
+    const std::uint64_t length = std::min<std::uint64_t>(word(from, 0), room);
+    std::memmove(to + 8, from + 8, length);
+    set_word(to, 0, length);
+}
+
+/// Of `from` those characters from `first` (0) on, to a text that has room for `longest_result`.
+void append_text(std::byte* to, const std::byte* from, std::int64_t first, std::int64_t count) {
+    const auto length = static_cast<std::int64_t>(word(from, 0));
+    first = std::clamp<std::int64_t>(first, 0, length);
+    count = std::clamp<std::int64_t>(count, 0, length - first);
+    const auto before = static_cast<std::int64_t>(word(to, 0));
+    count = std::clamp<std::int64_t>(longest_result - before, 0, count);
+    std::memmove(to + 8 + before, from + 8 + first, static_cast<std::size_t>(count));
+    set_word(to, 0, static_cast<std::uint64_t>(before + count));
+}
+
+std::int64_t compare_texts(const std::byte* a, const std::byte* b) {
+    return text_at(a).compare(text_at(b));
+}
+
+/// The first place, counted from 1, or 0.
+std::uint64_t find_text(const std::byte* in, const std::byte* what) {
+    return text_at(what).empty() ? 0 : text_at(in).find(text_at(what)) + 1;
+}
+
+template <class T>
+void write_number(std::byte* to, T value) {
+    char* first = reinterpret_cast<char*>(to + 8);
+    const auto [end, error] = std::to_chars(first, first + longest_result, value);
+    set_word(to, 0, error == std::errc() ? static_cast<std::uint64_t>(end - first) : 0);
+}
+
+template <class T>
+bool read_number(const std::byte* from, auto put) {
+    const std::string_view text = text_at(from);
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return false;
+    put(value);
+    return true;
 }
 
 /// Memory by its address: the number of an instance of the program plus 1, or 0 for the block

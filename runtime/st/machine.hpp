@@ -13,11 +13,12 @@ enum class Fault : std::int64_t {
     array_bounds,
     division_by_zero,
     out_of_range,  ///< a value beyond its type: of a conversion, a subrange, an enumeration
+    no_reference,  ///< a block with VAR_IN_OUT that no other block calls
     no_end,        ///< more loops and calls than one scan may have
 };
 
-inline constexpr std::string_view fault_names[] = {"none", "array_bounds", "division_by_zero",
-                                                   "out_of_range", "no_end"};
+inline constexpr std::string_view fault_names[] = {
+    "none", "array_bounds", "division_by_zero", "out_of_range", "no_reference", "no_end"};
 
 /// Executes the routine on an instance. Its header then says how that ended: the fault, and the
 /// instruction; the return addresses of the calls that ran are left for messages. Allocates

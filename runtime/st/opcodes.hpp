@@ -104,6 +104,16 @@
     OP(real_bits, real, "wr-", put(a, std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(R(b)))})) \
     OP(real_of_bits, real, "wr-", put(a, double{std::bit_cast<float>(static_cast<std::uint32_t>(U(b)))})) \
     OP(is_finite, real, "wr-", put(a, std::uint64_t{std::isfinite(R(b))}))                           \
+    OP(text_copy, text, "rrn", copy_text(target(U(a)), target(U(b)), c))                             \
+    OP(text_append, text, "rrs", append_text(target(U(a)), target(U(b)), I(c), I(c + 1)))            \
+    OP(text_length, text, "wr-", put(a, word(target(U(b)), 0)))                                      \
+    OP(text_compare, text, "wrr", put(a, compare_texts(target(U(b)), target(U(c)))))                 \
+    OP(text_find, text, "wrr", put(a, find_text(target(U(b)), target(U(c)))))                        \
+    OP(text_of_signed, text, "rr-", write_number(target(U(a)), I(b)))                                \
+    OP(text_of_unsigned, text, "rr-", write_number(target(U(a)), U(b)))                              \
+    OP(text_of_real, text, "rr-", write_number(target(U(a)), R(b)))                                  \
+    OP(integer_of_text, text, "wr-", if (!read_number<std::int64_t>(target(U(b)), [&](auto v) { put(a, v); })) FAIL(out_of_range)) \
+    OP(real_of_text, text, "wr-", if (!read_number<double>(target(U(b)), [&](auto v) { put(a, v); })) FAIL(out_of_range)) \
     OP(select, move, "wrs", put(a, word(at(c), U(b) & 1)))                                           \
     OP(look_up, move, "wrx", if (!look_up(a, b, c)) FAIL(out_of_range))
 

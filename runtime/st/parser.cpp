@@ -242,7 +242,7 @@ class Parser {
     void too_deep(Place place) {
         fail("L0912", place, fmt::format("this is nested deeper than {} levels", deepest),
              "take it apart, into variables or functions");
-        at_ = tokens_.size() - 1;
+        at_ = unclosed_at_ = tokens_.size() - 1;
     }
 
     void skip_to_declaration() {
@@ -434,7 +434,7 @@ class Parser {
 
     void read_types() {
         const Token opener = take();
-        while (!is(Word::end_type_) && !is(Word::end_of_file) && !find_pou(here().word)) {
+        while (!is_end(here().word) && !is(Word::end_of_file) && !find_pou(here().word)) {
             TypeDeclaration declared;
             declared.name = read_name("the name of a type");
             while (is(Word::version_)) skip_line();
@@ -573,6 +573,7 @@ class Parser {
 
     /// Up to and with `end`.
     void read_arguments(Expression& to, Word end, bool initial) {
+        const Level level(*this);
         if (!panic_ && !is(end)) do {
                 Argument& argument = to.arguments.emplace_back();
                 const bool negated =

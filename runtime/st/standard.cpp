@@ -55,6 +55,15 @@ constexpr StandardFunction functions[] = {
     {"NORM_X", Rule::normalise, 3, 3},
     {"SCALE_X", Rule::scale, 3, 3},
     {"IS_VALID", Rule::finite},
+    {"LEN", Rule::length},
+    {"FIND", Rule::find, 2, 2},
+    {"CONCAT", Rule::text, 2, several, Op::move, Word::end_of_file, several},
+    {"LEFT", Rule::text, 2, 2},
+    {"RIGHT", Rule::text, 2, 2},
+    {"MID", Rule::text, 3, 3},
+    {"DELETE", Rule::text, 3, 3},
+    {"INSERT", Rule::text, 3, 3, Op::move, Word::end_of_file, 2},
+    {"REPLACE", Rule::text, 4, 4, Op::move, Word::end_of_file, 2},
 };
 
 }  // namespace
@@ -85,6 +94,10 @@ std::string argument_name(const StandardFunction& function, int argument) {
         case Rule::normalise:
         case Rule::scale:
             return one_of({"MIN", "VALUE", "MAX"});
+        case Rule::text:
+            if (argument >= function.texts)
+                return argument + 1 == function.most ? function.most == 2 ? "L" : "P" : "L";
+            return function.texts == 1 ? "IN" : fmt::format("IN{}", argument + 1);
         default:
             return function.most == 1 ? "IN" : fmt::format("IN{}", argument + 1);
     }

@@ -27,6 +27,9 @@ enum class Rule : std::uint8_t {
     fraction,   ///< FRAC
     normalise,  ///< NORM_X(min, value, max)
     scale,      ///< SCALE_X(min, value, max)
+    length,     ///< LEN(text)
+    find,       ///< FIND(text, text)
+    text,       ///< CONCAT, LEFT, ...: texts, then numbers; gives a text
     finite,     ///< IS_VALID, of a real
 };
 
@@ -37,6 +40,7 @@ struct StandardFunction {
     int least = 1, most = 1;        ///< arguments
     Op op = Op::move;               ///< of `real`, `whole`; of `shift` that of 8 bits
     Word word = Word::end_of_file;  ///< of `operation`
+    int texts = 1;                  ///< of `text`: arguments that are texts
 };
 
 std::span<const StandardFunction> standard_functions();

@@ -109,8 +109,16 @@ Slot Generator::binary(const Expression& e, Slot wanted) {
 }
 
 Slot Generator::comparison(const Expression& e, Slot wanted) {
-    const Type& type = *e.operands[0]->type;
-    Slot a = value(*e.operands[0]), b = value(*e.operands[1]);
+    const bool texts = e.operands[0]->type->kind == Kind::text;
+    const Type& type = texts ? lint_type : *e.operands[0]->type;
+    Slot a = none, b = none;
+    if (texts) {
+        const Slot left = text_address(*e.operands[0]), right = text_address(*e.operands[1]);
+        a = emit(Op::text_compare, none, left, right);
+        b = constant_slot(0);
+    } else {
+        a = value(*e.operands[0]), b = value(*e.operands[1]);
+    }
     if (e.op == Word::greater || e.op == Word::greater_or_equal) std::swap(a, b);
     if (e.op == Word::equal || e.op == Word::unequal) {
         const bool is_equal = e.op == Word::equal;
@@ -152,6 +160,15 @@ void Generator::store_bits(const Expression& target, const Expression& from) {
 
 Slot Generator::converted(const Expression& e, Slot wanted) {
     const Expression& operand = *e.operands[0];
+    if (operand.type->kind == Kind::text) {
+        const Slot text = text_address(operand);
+        if (e.type->kind == Kind::real) {
+            const Slot real = emit(Op::real_of_text, none, text);
+            return e.type->bits == 32 ? emit(Op::narrow, wanted, real) : real;
+        }
+        return emit(of_type(Op::wrap_sint, e.type->plain()), wanted,
+                    emit(Op::integer_of_text, none, text));
+    }
     return convert(value(operand), *operand.type, *e.type, e.op == Word::divided, wanted);
 }
 
@@ -331,8 +348,12 @@ void Generator::assign(const Location& to, const Type& type, const Expression& f
     store(to, value(from));
 }
 
-/// An array or a structure.
+/// An array, a structure, a text.
 void Generator::copy_value(const Location& to, const Type& type, const Expression& from) {
+    if (type.kind == Kind::text) {
+        const Slot text = text_address(from);
+        return put(Op::text_copy, address_of(to), text, type.length);
+    }
     if (from.kind == E::call) {
         const Location made{Mode::slot, call(from, none)};
         return copy(to, made, slots_of(type));

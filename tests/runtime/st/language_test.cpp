@@ -51,7 +51,8 @@ std::string wanted(const std::vector<Expectation>& expectations, const std::stri
 
 /// `x = 5, y = 2.5`: split at commas that stand outside of brackets.
 std::vector<std::pair<std::string, std::string>> pairs_of(const std::string& text) {
-    static const std::regex pattern(R"(\s*([\w.]+(?:\[[\d,-]+\][\w.]*)*)\s*=\s*([^,]+?)\s*(?:,|$))");
+    static const std::regex pattern(
+        R"(\s*([\w.]+(?:\[[\d,-]+\][\w.]*)*)\s*=\s*([^,]+?)\s*(?:,|$))");
     std::vector<std::pair<std::string, std::string>> pairs;
     for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it)
         pairs.emplace_back((*it)[1], (*it)[2]);
@@ -96,8 +97,7 @@ int judge(const std::filesystem::path& path) {
 TEST_CASE("Structured Text: every line of tests/st does what stands beside it", "[st]") {
     int cases = 0;
     std::vector<std::filesystem::path> files;
-    for (const auto& entry :
-         std::filesystem::directory_iterator(LINESHAFT_SOURCE_DIR "/tests/st"))
+    for (const auto& entry : std::filesystem::directory_iterator(LINESHAFT_SOURCE_DIR "/tests/st"))
         if (entry.path().extension() == ".st" || entry.path().extension() == ".scl")
             files.push_back(entry.path());
     std::ranges::sort(files);

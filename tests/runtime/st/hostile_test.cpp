@@ -1,0 +1,102 @@
+#include <filesystem>
+#include <random>
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include "blocks/catalog.hpp"
+#include "runtime/st/lexer.hpp"
+#include "tests/runtime/st/instance.hpp"
+
+using namespace lineshaft;
+
+namespace {
+
+/// Compiles it, and if it is right scans it a few times with little fuel. It must come back.
+void try_out(const std::string& text) {
+    Diagnostics out;
+    const auto library =
+        st::compile({st::source(text)}, standard_blocks(), out, {.fuel = 2000, .counts = false});
+    CHECK(library.has_value() == out.empty());
+    if (!out.empty()) {
+        CHECK(!out.render().empty());
+        for (const Diagnostic& d : out.list()) CHECK(d.mark.line > 0);
+    }
+    if (!library) return;
+    for (const BlockType& kind : library->kinds())
+        if (kind.size > 1 << 20) return;
+    st::Instances instances(*library);
+    for (int i = 0; i < 3; ++i) instances.scan(i, 1);
+}
+
+std::vector<std::string> sources() {
+    std::vector<std::string> texts;
+    std::vector<std::filesystem::path> paths;
+    for (const auto& entry : std::filesystem::directory_iterator(LINESHAFT_SOURCE_DIR "/tests/st"))
+        if (entry.is_regular_file() && entry.path().extension() != ".md") paths.push_back(entry);
+    std::ranges::sort(paths);
+    for (const auto& path : paths) texts.push_back(st::read(path.string())->text);
+    return texts;
+}
+
+}  // namespace
+
+TEST_CASE("Structured Text: sources cut off anywhere, and with one byte changed", "[st]") {
+    std::mt19937 random(7);
+    const std::string bytes = "();:=.,'\"#%[]{}*/ \nA5_-+\xC3\x00";
+    for (const std::string& text : sources()) {
+        for (std::size_t end = random() % 99; end < text.size(); end += 1 + random() % 400)
+            try_out(text.substr(0, end));
+        for (int i = 0; i < 15; ++i) {
+            std::string changed = text;
+            const std::size_t at = random() % text.size();
+            changed[at] = bytes[random() % bytes.size()];
+            INFO("byte " << at << " changed to '" << changed[at] << "' in " << text.substr(0, 60));
+            try_out(changed);
+        }
+    }
+}
+
+TEST_CASE("Structured Text: sources with words left out, doubled and exchanged", "[st]") {
+    std::mt19937 random(8);
+    for (const std::string& text : sources()) {
+        Diagnostics out;
+        const auto source = st::source(text);
+        const auto tokens = st::read_tokens(source, out).tokens;
+        for (int i = 0; i < 15; ++i) {
+            const auto& a = tokens[random() % tokens.size()];
+            const auto& b = tokens[random() % tokens.size()];
+            std::string changed = text;
+            changed.replace(a.place.begin, a.place.end - a.place.begin,
+                            random() % 3 == 0 ? std::string() : std::string(b.place.text()));
+            INFO("'" << a.place.text() << "' at byte " << a.place.begin << " changed to '"
+                     << b.place.text() << "' in " << text.substr(0, 60));
+            try_out(changed);
+        }
+    }
+}
+
+TEST_CASE("Structured Text: nesting without end is told with its place", "[st]") {
+    const auto repeated = [](const std::string& text, int times) {
+        std::string all;
+        for (int i = 0; i < times; ++i) all += text;
+        return all;
+    };
+    const auto told = [](const std::string& body) {
+        Diagnostics out;
+        st::compile({st::source("PROGRAM p VAR x : DINT; END_VAR\n" + body + "\nEND_PROGRAM\n")},
+                    standard_blocks(), out);
+        std::string codes;
+        for (const Diagnostic& d : out.list()) codes += fmt::format("{} ", d.code);
+        return codes;
+    };
+    constexpr int many = 100'000;
+    CHECK(told("x := " + repeated("(", many) + "1" + repeated(")", many) + ";") == "L0912 ");
+    CHECK(told(repeated("IF x = 1 THEN ", many) + repeated("END_IF;", many)) == "L0912 ");
+    CHECK(told("x := " + repeated("-", many) + "1;") == "L0912 ");
+    CHECK(told("x := 1" + repeated("+ x", many) + ";") == "L0912 ");
+    CHECK(told("x := x" + repeated("[1", many) + repeated("]", many) + ";") == "L0912 ");
+    CHECK(told(repeated("(*", many) + repeated("*)", many)).empty());
+    CHECK(told(repeated("(*", many)) == "L0901 L0902 ");
+    CHECK(told("x := " + repeated("(", 60) + "1" + repeated(")", 60) + ";").empty());
+}
