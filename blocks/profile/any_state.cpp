@@ -17,6 +17,31 @@ double sum_error(double a, double b, double sum) {
     return (a - (sum - bb)) + (b - bb);
 }
 
+/// A number with twice the digits, for what is left of great terms that cancel.
+struct Twice {
+    double high, low = 0;
+
+    static Twice sum(double a, double b, double low) {
+        const double s = a + b;
+        return {s, sum_error(a, b, s) + low};
+    }
+    friend Twice operator+(Twice a, Twice b) { return sum(a.high, b.high, a.low + b.low); }
+    friend Twice operator-(Twice a, Twice b) { return sum(a.high, -b.high, a.low - b.low); }
+    friend Twice operator*(Twice a, Twice b) {
+        const double p = a.high * b.high;
+        return sum(p, product_error(a.high, b.high, p) + (a.high * b.low + a.low * b.high), 0);
+    }
+    friend Twice operator/(Twice a, double b) {
+        const double q = a.high / b;
+        return sum(q, (a - Twice{q} * Twice{b}).value() / b, 0);
+    }
+    friend Twice root(Twice a) {
+        const double r = std::sqrt(std::max(a.value(), 0.0));
+        return r > 0 ? sum(r, (a - Twice{r} * Twice{r}).value() / (2 * r), 0) : Twice{0};
+    }
+    double value() const { return high + low; }
+};
+
 /// A motion as its jerks, with the acceleration at the end of each.
 struct Steps {
     struct Step {
@@ -40,18 +65,19 @@ struct Frame {
     double sign;
     double v, a, vf, way;
     double e;            ///< velocity missing once a is at zero at once
-    double tau, vb, vz;  ///< a/J; velocities of the virtual point, and with a at zero at once
-    double S, Dv;        ///< vb + vf, vb - vf
-    double L;            ///< way from the virtual point to the goal
+    double tau, vb, vt;  ///< a/J; velocities of the virtual point, and at the jerk time tau
+    double Dv;           ///< vb - vf
+    double ramp = 0;     ///< way of the direct ramp from the virtual point
+    double miss = 0;     ///< from its end to the goal
+
+    double vz() const { return a > 0 ? vt : vb; }  ///< with a at zero at once
 };
 
 Frame frame(const MotionLimits& limits, double sign, const MotionState& s, double vf, double way,
             double e) {
     const double v = sign * s.velocity, a = sign * s.acceleration, goal = sign * vf;
     const double tau = a * limits.per_J, gain = 0.5 * a * tau;
-    const double vb = v - gain;
     const double missing = e == 0 ? std::copysign(gain, a) : goal - v;
-    const double L = sign * way + tau * (v - a * tau * (1.0 / 3));
     return {&limits.side[sign < 0],
             limits.J,
             limits.per_J,
@@ -62,52 +88,46 @@ Frame frame(const MotionLimits& limits, double sign, const MotionState& s, doubl
             sign * way,
             sign * e,
             tau,
-            vb,
-            a > 0 ? v + gain : vb,
-            vb + goal,
-            -missing - gain,
-            L};
+            v - gain,
+            v + gain,
+            -missing - gain};
 }
 
 /// Jerk +J for q - tau, hold, -J for q, cruise, -J for r, hold, +J for r.
 struct Peak {
     double rise, up_hold, q, cruise, r, down_hold, turn;
+    double v;  ///< velocity at the peak, a virtual one in a dip
 };
-
-Peak peak(const Frame& f, double q, double up_hold, double r, double down_hold) {
-    return {std::max(q - f.tau, 0.0), up_hold, q, 0, r, down_hold, q + r};
-}
-
-double velocity(const Frame& f, const Peak& p) {
-    return f.vb + f.J * p.q * (p.q + p.up_hold);
-}
 
 /// The way from the virtual point.
 double reach(const Frame& f, const Peak& p) {
-    const double vp = velocity(f, p);
-    return (f.vb + vp) * (p.q + 0.5 * p.up_hold) + (vp + f.vf) * (p.r + 0.5 * p.down_hold) +
-           vp * p.cruise;
+    return (f.vb + p.v) * (p.q + 0.5 * p.up_hold) + (p.v + f.vf) * (p.r + 0.5 * p.down_hold) +
+           p.v * p.cruise;
 }
 
-/// The time from the virtual point.
+/// The way left to the goal.
+double left(const Frame& f, const Peak& p) {
+    return f.miss - (reach(f, p) - f.ramp);
+}
+
 double time(const Peak& p) {
-    return p.q + p.up_hold + p.turn + p.cruise + p.down_hold + p.r;
+    return p.rise + p.up_hold + p.turn + p.cruise + p.down_hold + p.r;
 }
 
 /// The direct ramp.
 Peak direct(const Frame& f) {
     if (f.e > 0 || (f.e == 0 && f.a < 0)) {
         const RampShape s = ramp_shape(f.a, f.e, f.side->A, f.J);
-        return {s.to_peak, s.hold, s.to_zero, 0, 0, 0, s.to_zero};
+        return {s.to_peak, s.hold, s.to_zero, 0, 0, 0, s.to_zero, f.vf};
     }
     const RampShape s = ramp_shape(-f.a, -f.e, f.side->D, f.J);
-    return {0, 0, f.tau, 0, s.to_zero, s.hold, s.to_peak};
+    return {0, 0, f.tau, 0, s.to_zero, s.hold, s.to_peak, f.vt};
 }
 
 /// The same ramp in the mirrored frame.
 Peak mirrored(const Frame& f, const Peak& p) {
-    if (p.r == 0) return {0, 0, f.tau, 0, p.q, p.up_hold, p.rise};
-    return {p.turn, p.down_hold, p.r, 0, 0, 0, p.r};
+    if (p.r == 0) return {0, 0, f.tau, 0, p.q, p.up_hold, p.rise, f.vt};
+    return {p.turn, p.down_hold, p.r, 0, 0, 0, p.r, f.vf};
 }
 
 struct Ramp {
@@ -122,157 +142,190 @@ Ramp ramp(double dv, double per_J, double per_limit, double jerk_time, double tr
 }
 
 /// Both ramps over a peak velocity that a does not overshoot.
-Peak over(const Frame& f, double vp) {
-    const Ramp up = ramp(vp - f.vb, f.per_J, f.side->per_A, f.side->alpha, f.side->rise);
-    const Ramp down = ramp(vp - f.vf, f.per_J, f.side->per_D, f.side->delta, f.side->fall);
-    return peak(f, std::max(up.jerk_time, f.tau), up.hold, down.jerk_time, down.hold);
+Peak over(const Frame& f, double v) {
+    const Ramp up = ramp(v - f.vb, f.per_J, f.side->per_A, f.side->alpha, f.side->rise);
+    const Ramp down = ramp(v - f.vf, f.per_J, f.side->per_D, f.side->delta, f.side->fall);
+    const double q = std::max(up.jerk_time, f.tau);
+    return {q - f.tau, up.hold, q, 0, down.jerk_time, down.hold, q + down.jerk_time, v};
 }
 
-Peak triangular(const Frame& f, double m) {
-    const double difference = f.Dv / (f.J * m);
-    const double q = 0.5 * (m - difference);
-    return peak(f, f.a > 0 ? std::max(q, f.tau) : q, 0, std::max(0.5 * (m + difference), 0.0), 0);
+/// A motion of the side, and which of its ramps stay as they are but for their holds when it gets
+/// fuller.
+struct Section {
+    Peak from;
+    bool up_held = false, down_held = false;
+    double high = HUGE_VAL;  ///< what is unknown is no more
+};
+
+/// Both ramps triangular, the sum of their jerk times y longer.
+Peak longer(const Frame& f, Peak p, double y) {
+    if (!(y > 0)) return p;
+    const double m = p.turn + y, half = 0.5 * y / m;
+    const double up = half * (2 * p.r + y);
+    p.v += f.J * up * (2 * p.q + up);
+    p.rise += up;
+    p.r = std::max(p.r + half * (2 * p.q + y), 0.0);
+    p.q += up;
+    p.turn = m;
+    return p;
 }
 
-Peak up_triangular(const Frame& f, double q) {
-    const double fall = f.Dv + f.J * q * q;
-    return peak(f, q, 0, f.side->delta, std::max(fall * f.side->per_D - f.side->delta, 0.0));
+/// The way up triangular, its jerk time x longer, the way down held.
+Peak longer_up(const Frame& f, Peak p, double x) {
+    const double gain = f.J * x * (2 * p.q + x);
+    p.down_hold = std::max(p.down_hold + gain * f.side->per_D, 0.0);
+    p.v += gain;
+    p.rise += x;
+    p.q += x;
+    p.turn += x;
+    return p;
 }
 
-Peak down_triangular(const Frame& f, double r) {
-    const double rise = f.J * r * r - f.Dv;
-    return peak(f, f.side->alpha, std::max(rise * f.side->per_A - f.side->alpha, 0.0), r, 0);
+/// The way down triangular, its jerk time x longer, the way up held.
+Peak longer_down(const Frame& f, Peak p, double x) {
+    const double gain = f.J * x * (2 * p.r + x);
+    p.up_hold += gain * f.side->per_A;
+    p.v += gain;
+    p.r += x;
+    p.turn += x;
+    return p;
 }
 
-Peak trapezoidal(const Frame& f, double vp) {
-    return peak(f, f.side->alpha, std::max((vp - f.vb) * f.side->per_A - f.side->alpha, 0.0),
-                f.side->delta, std::max((vp - f.vf) * f.side->per_D - f.side->delta, 0.0));
+/// Both ramps held, the peak faster by gain.
+Peak faster(const Frame& f, Peak p, double gain) {
+    p.up_hold += gain * f.side->per_A;
+    p.down_hold += gain * f.side->per_D;
+    p.v += gain;
+    return p;
 }
 
-double rest_beside_down(const Frame& f) {
-    return f.L - 0.5 * f.S * (f.side->delta + f.Dv * f.side->per_D);
-}
-double rest_beside_up(const Frame& f) {
-    return f.L - 0.5 * f.S * (f.side->alpha - f.Dv * f.side->per_A);
-}
-
-Peak solve_triangular(const Frame& f, const Peak& from) {
-    const double low = std::max(from.q + from.r, std::sqrt(std::abs(f.Dv) * f.per_J));
-    return triangular(
-        f, triangular_sum(f.J, f.S, f.Dv, f.L, low, std::max(low, f.side->alpha + f.side->delta)));
-}
-
-Peak solve_up_triangular(const Frame& f, const Peak& from) {
-    const double low = std::max(from.q, 0.0);
-    return up_triangular(f, mixed_time(f.J, f.vb, f.side->delta, f.side->fall, rest_beside_down(f),
-                                       low, std::max(low, f.side->alpha)));
-}
-
-Peak solve_down_triangular(const Frame& f, const Peak& from) {
-    const double low = from.q < 0 ? std::sqrt(std::max(f.Dv, 0.0) * f.per_J) : from.r;
-    return down_triangular(f, mixed_time(f.J, f.vf, f.side->alpha, f.side->rise, rest_beside_up(f),
-                                         low, std::max(low, f.side->delta)));
-}
-
-/// From the velocity `low` on, where the way is still too short, it is quadratic in what is added.
-Peak solve_trapezoidal(const Frame& f, double low) {
-    const double missing = std::max(f.L - reach(f, trapezoidal(f, low)), 0.0);
-    const double slope =
-        low * (f.side->per_A + f.side->per_D) + 0.5 * (f.side->alpha + f.side->delta);
-    const double curvature = f.side->per_A + f.side->per_D;
-    const double root = std::sqrt(slope * slope + 2 * curvature * missing);
-    return trapezoidal(
-        f, low + (slope > 0 ? 2 * missing / (slope + root) : (root - slope) / curvature));
-}
-
-/// The peak lies below V.
-Peak solve_below(const Frame& f, const Peak& from) {
-    const double holds_up = f.vb + f.side->rise, holds_down = f.vf + f.side->fall;
-    const double start = std::max({f.vf, f.vz, from.q > 0 ? velocity(f, from) : f.vz});
-    const double first = std::min(holds_up, holds_down), both = std::max(holds_up, holds_down);
-    const auto passes = [&](double vp) {
-        return vp <= start || (vp < f.side->V && f.L > reach(f, over(f, vp)));
-    };
-    if (!passes(first)) return solve_triangular(f, from);
-    if (passes(both)) return solve_trapezoidal(f, std::max(both, start));
-    return holds_up < holds_down ? solve_down_triangular(f, from) : solve_up_triangular(f, from);
-}
-
-/// Where the way rises from `low` to its greatest before `high`, or falls, to its end; the first
-/// crossing of L in there.
-template <class Make>
-bool cross(const Frame& f, const Quartic& equation, double low, double top, double high,
-           const Make& make, Peak& found) {
-    const auto enough = [&](double x) { return f.L <= reach(f, make(x)); };
-    const bool inside = low < top && top < high;
-    if (inside && enough(top))
-        high = top;
-    else if (!enough(high))
-        return false;
-    else if (inside)
-        low = top;
-    found =
-        make(rising_root(equation, 0.5 * (low + high), 4 * ulp * std::max(-low, high), low, high));
-    return true;
-}
-
-/// In the dip the motion turns down before the acceleration has come to zero: q < 0.
-bool solve_dip(const Frame& f, const Peak& from, Peak& found) {
-    double low = std::max(f.tau, from.q);
+/// The q < 0 at which the hold of a dip ends, or 0.
+double end_of_hold(const Frame& f) {
     const double square = f.side->delta * f.side->delta - f.Dv * f.per_J;
-    const double border = square > 0 ? -std::sqrt(square) : 0;
-    if (low < border) {
-        const double root = f.side->D * f.side->D - 16 * f.J * f.vb;
-        const double top = root > 0 ? -0.25 * (f.side->D + std::sqrt(root)) * f.per_J : border;
-        if (cross(
-                f, mixed_equation(f.J, f.vb, f.side->delta, f.side->fall, rest_beside_down(f)), low,
-                top, border, [&](double q) { return up_triangular(f, q); }, found))
-            return true;
-        low = border;
+    return square > 0 ? -std::sqrt(square) : 0;
+}
+
+/// From a motion below V on over the shapes' borders that `beyond` tells to lie before the goal.
+template <class Beyond>
+Section section(const Frame& f, const Peak& from, const Beyond& beyond) {
+    Section s{from};
+    if (from.q < 0 && from.down_hold > 0) {
+        const double q = end_of_hold(f);
+        if (q < 0 && q > from.q) {
+            Peak border = longer_up(f, from, q - from.q);
+            if (!beyond(border)) return {from, false, true};
+            border.down_hold = 0;
+            s.from = border;
+        }
     }
-    if (!(low < 0) || square <= 0) return false;
-    const double Dv_per_J = f.Dv * f.per_J;
-    const double first = low + std::sqrt(low * low + Dv_per_J), last = std::sqrt(Dv_per_J);
-    const double root = 4 * f.S * f.S - 3 * f.Dv * f.Dv;
-    const double square_top = f.S < 0 && root > 0 ? (-2 * f.S - std::sqrt(root)) * (1.0 / 3) : 0;
-    return cross(
-        f, {0.25 * f.J, 0, f.S, -f.L, -0.25 * f.Dv * Dv_per_J}, first,
-        std::sqrt(square_top * f.per_J), last, [&](double m) { return triangular(f, m); }, found);
+    const double start = std::max({f.vf, f.vz(), from.q > 0 ? from.v : f.vf});
+    const double holds_up = f.vb + f.side->rise, holds_down = f.vf + f.side->fall;
+    const bool up_first = holds_up < holds_down;
+    for (const bool up : {up_first, !up_first}) {
+        const double v = up ? holds_up : holds_down;
+        if (v > start) {
+            if (!(v < f.side->V)) break;
+            const Peak border = over(f, v);
+            if (!beyond(border)) break;
+            s.from = border;
+        }
+        (up ? s.up_held : s.down_held) = true;
+    }
+    return s;
+}
+
+/// The motion of the section that goes `miss` farther.
+Peak farther(const Frame& f, const Section& s, double miss) {
+    const Peak& p = s.from;
+    const MotionLimits::Side& side = *f.side;
+    const auto high = [&](double x) { return std::min(std::max(x, 0.0), s.high); };
+    if (!(miss > 0)) return p;
+    if (s.up_held && s.down_held) {
+        const double curvature = side.per_A + side.per_D;
+        const double slope = p.v * curvature + 0.5 * (side.alpha + side.delta);
+        const double root = std::sqrt(slope * slope + 2 * curvature * miss);
+        return faster(f, p, slope > 0 ? 2 * miss / (slope + root) : (root - slope) / curvature);
+    }
+    if (s.down_held)
+        return longer_up(
+            f, p,
+            mixed_step({f.J, p.v, p.q, p.r, p.turn}, side.delta, miss, high(side.alpha - p.q)));
+    if (s.up_held)
+        return longer_down(
+            f, p,
+            mixed_step({f.J, p.v, p.r, p.q, p.turn}, side.alpha, miss, high(side.delta - p.r)));
+    return longer(f, p,
+                  triangular_step({f.J, p.v, p.q, p.r, p.turn}, miss,
+                                  high(side.alpha + side.delta - p.turn)));
+}
+
+/// The motion of the section that lasts `time` longer.
+Peak longer_lasting(const Frame& f, const Section& s, double time) {
+    const Peak& p = s.from;
+    const MotionLimits::Side& side = *f.side;
+    const auto step = [&](double q, double t) {
+        const double u = 1 + q / t;
+        return time / (u + std::sqrt(u * u + time / t));
+    };
+    if (!(time > 0)) return p;
+    if (s.up_held && s.down_held) return faster(f, p, time / (side.per_A + side.per_D));
+    if (s.down_held) return longer_up(f, p, step(p.q, side.delta));
+    if (s.up_held) return longer_down(f, p, step(p.r, side.alpha));
+    return longer(f, p, 0.5 * time);
+}
+
+/// How much longer q, or q + r, is where the way in a dip is greatest.
+double top_of_dip(const Frame& f, const Section& s) {
+    if (s.down_held) {
+        const double square = f.side->D * f.side->D - 16 * f.J * f.vb;
+        return square > 0 ? -0.25 * (f.side->D + std::sqrt(square)) * f.per_J - s.from.q : 0;
+    }
+    const double S = f.vb + f.vf, square = 4 * S * S - 3 * f.Dv * f.Dv;
+    if (!(S < 0 && square > 0)) return 0;
+    return std::sqrt((-2 * S - std::sqrt(square)) * (1.0 / 3) * f.per_J) - s.from.turn;
+}
+
+/// For vf < 0 the way has a greatest value in a dip at most: whether the goal is hit before.
+bool hits_in_dip(const Frame& f, const Peak& from, Section& s) {
+    s = {from, false, from.down_hold > 0};
+    if (s.down_held) {
+        const double last = end_of_hold(f), end = last - from.q, top = top_of_dip(f, s);
+        s.high = top > 0 && top < end ? top : end;
+        if (s.high > 0 && left(f, longer_up(f, from, s.high)) <= 0) return true;
+        if (last == 0) return false;
+        s = {longer_up(f, from, std::max(end, 0.0))};
+        s.from.down_hold = 0;
+    }
+    s.high = top_of_dip(f, s);
+    const Peak highest = longer(f, s.from, s.high);
+    return s.high > 0 && highest.q < 0 && left(f, highest) <= 0;
 }
 
 /// The first motion after `from` that ends at the goal.
 Peak solve(const Frame& f, const Peak& from) {
-    Peak p;
-    if (f.a < 0 && f.Dv > 0 && from.q < 0 && solve_dip(f, from, p)) return p;
-    p = over(f, f.side->V);
-    const double left = f.L - reach(f, p);
-    if (left < 0 && std::max(f.vf, f.vz) < f.side->V) return solve_below(f, from);
-    p.cruise = std::max(left, 0.0) / f.side->V;
-    return p;
+    Section s;
+    if (f.vf < 0 && from.q < 0 && hits_in_dip(f, from, s)) return farther(f, s, left(f, s.from));
+    Peak fullest = over(f, f.side->V);
+    const double rest = left(f, fullest);
+    if (rest < 0 && (from.q < 0 || std::max(f.vf, f.vz()) < f.side->V)) {
+        s = section(f, from, [&](const Peak& border) { return left(f, border) > 0; });
+        return farther(f, s, left(f, s.from));
+    }
+    fullest.cruise = std::max(rest, 0.0) / f.side->V;
+    return fullest;
 }
 
-/// The motion to the greatest position that is reached at time u from the virtual point.
-Peak timed(const Frame& f, double u) {
-    Peak p = triangular(f, 0.5 * u);
-    const double holds_up = f.vb + f.side->rise, holds_down = f.vf + f.side->fall;
-    if (p.q > f.side->alpha || p.r > f.side->delta) {
-        const auto square = [](double c, double t) {
-            return c / (1 + std::sqrt(std::max(1 + c / t, 0.0)));
-        };
-        const bool down_first = p.q < 0 || holds_down <= holds_up;
-        p = down_first
-                ? up_triangular(f, square(u - f.side->delta - f.Dv * f.side->per_D, f.side->delta))
-                : down_triangular(f,
-                                  square(u - f.side->alpha + f.Dv * f.side->per_A, f.side->alpha));
-        if (down_first ? p.q > f.side->alpha : p.r > f.side->delta)
-            p = trapezoidal(f, (u - f.side->alpha - f.side->delta + f.vb * f.side->per_A +
-                                f.vf * f.side->per_D) /
-                                   (f.side->per_A + f.side->per_D));
+/// The motion to the greatest position that is reached in a time.
+Peak timed(const Frame& f, const Peak& from, double duration) {
+    Peak fullest = over(f, f.side->V);
+    const double rest = duration - time(fullest);
+    if (rest < 0 && (from.q < 0 || std::max(f.vf, f.vz()) < f.side->V)) {
+        const Section s =
+            section(f, from, [&](const Peak& border) { return time(border) < duration; });
+        return longer_lasting(f, s, duration - time(s.from));
     }
-    if (p.q < 0 || velocity(f, p) <= f.side->V) return p;
-    p = over(f, f.side->V);
-    p.cruise = std::max(u - time(p), 0.0);
-    return p;
+    fullest.cruise = std::max(rest, 0.0);
+    return fullest;
 }
 
 /// What rounding takes from one jerk time the later ones make up for, so that little acceleration
@@ -434,7 +487,8 @@ PlanResult check(const MotionLimits& limits, const MotionState& from, const Goal
                : PlanResult::velocity_above_limit;
 }
 
-/// Runs the steps; what they miss is the drift.
+/// Runs the steps forwards to the last one, which is run back from the end: a state within it is
+/// as near to the goal as rounding allows.
 PlanResult write(const Steps& steps, const MotionLimits& limits, const MotionState& from,
                  const Goal& to, MotionPlan& out) {
     const double gain = from.acceleration * from.acceleration * limits.per_J;
@@ -443,24 +497,37 @@ PlanResult write(const Steps& steps, const MotionLimits& limits, const MotionSta
     if (!std::isfinite(std::abs(from.position) + greatest * steps.duration))
         return PlanResult::not_finite;
     double x = 0, v = from.velocity, a = from.acceleration, begin = 0;
+    out.phases[0] = {0, 0, {from.position, v, a, 0}};
     for (std::size_t i = 0; i < steps.count; ++i) {
         const Steps::Step& step = steps.list[i];
         out.phases[i] = {begin, step.duration, {from.position + x, v, a, step.jerk}};
+        if (i + 1 == steps.count) break;
         const MotionState end = MotionState{x, v, a, step.jerk}.after(step.duration);
         x = end.position;
         v = end.velocity;
         a = step.acceleration;
         begin += step.duration;
     }
+    out.missed = 0;
+    if (steps.count > 1) {
+        MotionPlan::Phase& last = out.phases[steps.count - 1];
+        const MotionState back =
+            MotionState{0, to.velocity, 0, last.start.jerk}.after(-last.duration);
+        out.missed = ((to.position - from.position) + back.position) - x;
+        last.start.position = to.position + back.position;
+        last.start.velocity = back.velocity;
+        begin += last.duration;
+    } else if (steps.count > 0) {
+        begin = steps.list[0].duration;
+    }
     out.count = steps.count;
     out.duration = begin;
+    out.haste = MotionPlan::spread / begin;
     out.end = {to.position, to.velocity, 0, 0};
-    const double drift = ((to.position - from.position) - x) / begin;
-    out.drift = std::isfinite(drift) ? drift : 0;
     return PlanResult::ok;
 }
 
-void add_fitted(const Frame& f, Peak& p, double a_rest, Steps& steps) {
+void add_fitted(const Frame& f, Peak p, double a_rest, Steps& steps) {
     fit(f, a_rest, p);
     add(f, p, steps);
 }
@@ -479,14 +546,30 @@ struct Start {
     /// the square root of a rounding would be far more than a rounding of the duration.
     double missing(const MotionLimits& limits, const MotionState& from, const Goal& to,
                    double slack) const {
-        const double e =
-            missing_velocity(state.velocity, state.acceleration, vf, 0.5 * limits.per_J);
-        const double tau = std::abs(state.acceleration) * limits.per_J;
+        const double a = state.acceleration, tau = std::abs(a) * limits.per_J;
+        const double e = (vf - state.velocity) - 0.5 * a * tau;
         const double v = std::max(std::abs(state.velocity), std::abs(vf));
-        if (std::abs(e) > slack * std::max(v, std::abs(state.acceleration) * tau)) return e;
-        const double x = tau * (state.velocity + state.acceleration * tau * (1.0 / 3));
+        if (std::abs(e) > slack * std::max(v, std::abs(a) * tau)) return e;
+        const double x = tau * (state.velocity + a * tau * (1.0 / 3));
         const double size = std::max({std::abs(from.position), std::abs(to.position), v * tau});
-        return std::abs(way - x) <= slack * size ? 0 : e;
+        if (std::abs(way - x) <= slack * size) return 0;
+        return (Twice{vf} - Twice{state.velocity} - Twice{a} * Twice{0.5 * std::abs(a)} / limits.J)
+            .value();
+    }
+
+    /// From the end of the direct ramp to the goal with twice the digits: near the optimum's jump
+    /// the duration changes with its cube root.
+    double exact_miss(const MotionState& from, const Goal& to) const {
+        const bool up = ramp.r == 0;
+        const double sign = up ? 1 : -1, limit = up ? ahead.side->A : ahead.side->D;
+        const Twice a{ahead.a}, v{ahead.v}, goal{vf}, tau = a * Twice{sign} / ahead.J;
+        const Twice foot = v - a * tau * Twice{0.5}, dv = (goal - foot) * Twice{sign};
+        const Twice half = ramp.up_hold > 0 || ramp.down_hold > 0
+                               ? (Twice{limit} / ahead.J + dv / limit) * Twice{0.5}
+                               : root(dv / ahead.J);
+        const Twice missed = Twice{to.position} - Twice{from.position} - Twice{state.position} +
+                             tau * (v - a * tau / 3) - (foot + goal) * half;
+        return missed.value();
     }
 
     Start(const MotionLimits& limits, const MotionState& from, const Goal& to,
@@ -498,13 +581,20 @@ struct Start {
               frame(limits, 1, state, vf, way, missing(limits, from, to, options.tolerance * ulp))),
           ramp(direct(ahead)) {
         const double path = duration() * std::max(std::abs(state.velocity), std::abs(vf));
-        tolerance = options.tolerance * ulp *
-                    std::max({std::abs(from.position), std::abs(to.position), path});
+        const double grain = ulp * std::max({std::abs(from.position), std::abs(to.position), path});
+        tolerance = options.tolerance * grain;
+        ahead.ramp = reach(ahead, ramp);
+        ahead.miss = way + ahead.tau * (ahead.v - ahead.a * ahead.tau * (1.0 / 3)) - ahead.ramp;
+        if (std::abs(ahead.miss) > tolerance && std::abs(ahead.miss) < 0x1p20 * grain)
+            ahead.miss = exact_miss(from, to);
     }
 
-    double duration() const { return time(ramp) - ahead.tau; }
+    double duration() const { return time(ramp); }
     Frame back(const MotionLimits& limits) const {
-        return frame(limits, -1, state, vf, way, ahead.e);
+        Frame f = frame(limits, -1, state, vf, way, ahead.e);
+        f.ramp = reach(f, mirrored(f, ramp));
+        f.miss = -ahead.miss;
+        return f;
     }
 };
 
@@ -516,7 +606,7 @@ void add_solved(const Frame& f, const Peak& from, Start& start) {
 }
 
 void add_soonest(const MotionLimits& limits, Start& start) {
-    const double missing = start.ahead.L - reach(start.ahead, start.ramp);
+    const double missing = start.ahead.miss;
     if (std::abs(missing) <= start.tolerance) {
         add_fitted(start.ahead, start.ramp, start.a_rest, start.steps);
     } else if (missing > 0) {
@@ -536,10 +626,10 @@ bool add_timed(const MotionLimits& limits, Start& start, double duration) {
         return duration == start.duration();
     }
     const Frame back = start.back(limits);
-    Peak up = timed(start.ahead, duration + start.ahead.tau);
-    Peak down = timed(back, duration + back.tau);
-    const double above = start.ahead.L - reach(start.ahead, up);
-    const double below = back.L - reach(back, down);
+    const Peak up = timed(start.ahead, start.ramp, duration);
+    const Peak down = timed(back, mirrored(back, start.ramp), duration);
+    const double above = left(start.ahead, up);
+    const double below = left(back, down);
     if (above > start.tolerance || below > start.tolerance) {
         if (above > start.tolerance)
             add_solved(start.ahead, up, start);
@@ -619,11 +709,14 @@ MotionState MotionPlan::at(double t, std::size_t& phase) const {
         const double beyond = t - duration;
         return {end.position + end.velocity * beyond, end.velocity, 0, 0};
     }
-    t = t > 0 ? t : 0;
+    if (!(t > 0)) return phases[0].start;
     while (phase + 1 < count && t >= phases[phase + 1].begin) ++phase;
     while (phase > 0 && t < phases[phase].begin) --phase;
-    MotionState s = phases[phase].start.after(t - phases[phase].begin);
-    s.position += drift * t;
+    const Phase& now = phases[phase];
+    if (phase + 1 == count)
+        return MotionState{end.position, end.velocity, 0, now.start.jerk}.after(t - duration);
+    MotionState s = now.start.after(t - now.begin);
+    s.position += missed * std::min(t * haste, 1.0);
     return s;
 }
 
