@@ -96,7 +96,8 @@ Frame frame(const MotionLimits& limits, double sign, const MotionState& s, doubl
 /// Jerk +J for q - tau, hold, -J for q, cruise, -J for r, hold, +J for r.
 struct Peak {
     double rise, up_hold, q, cruise, r, down_hold, turn;
-    double v;  ///< velocity at the peak, a virtual one in a dip
+    double v;                             ///< velocity at the peak, a virtual one in a dip
+    double rise_rest = 0, turn_rest = 0;  ///< what the rise and the turn have lost by rounding
 };
 
 /// The way from the virtual point.
@@ -225,7 +226,16 @@ Section section(const Frame& f, const Peak& from, const Beyond& beyond) {
         const double v = up ? holds_up : holds_down;
         if (v > start) {
             if (!(v < f.side->V)) break;
-            const Peak border = over(f, v);
+            Peak border = over(f, v);
+            if (up) {
+                border.q = f.side->alpha;
+                border.rise = border.q - f.tau;
+                border.up_hold = 0;
+            } else {
+                border.r = f.side->delta;
+                border.down_hold = 0;
+            }
+            border.turn = border.q + border.r;
             if (!beyond(border)) break;
             s.from = border;
         }
@@ -305,19 +315,19 @@ bool hits_in_dip(const Frame& f, const Peak& from, Section& s) {
 Peak solve(const Frame& f, const Peak& from) {
     Section s;
     if (f.vf < 0 && from.q < 0 && hits_in_dip(f, from, s)) return farther(f, s, left(f, s.from));
-    Peak fullest = over(f, f.side->V);
+    Peak fullest = over(f, std::max(f.side->V, f.vz()));
     const double rest = left(f, fullest);
     if (rest < 0 && (from.q < 0 || std::max(f.vf, f.vz()) < f.side->V)) {
         s = section(f, from, [&](const Peak& border) { return left(f, border) > 0; });
         return farther(f, s, left(f, s.from));
     }
-    fullest.cruise = std::max(rest, 0.0) / f.side->V;
+    fullest.cruise = std::max(rest, 0.0) / fullest.v;
     return fullest;
 }
 
 /// The motion to the greatest position that is reached in a time.
 Peak timed(const Frame& f, const Peak& from, double duration) {
-    Peak fullest = over(f, f.side->V);
+    Peak fullest = over(f, std::max(f.side->V, f.vz()));
     const double rest = duration - time(fullest);
     if (rest < 0 && (from.q < 0 || std::max(f.vf, f.vz()) < f.side->V)) {
         const Section s =
@@ -328,51 +338,65 @@ Peak timed(const Frame& f, const Peak& from, double duration) {
     return fullest;
 }
 
-/// What rounding takes from one jerk time the later ones make up for, so that little acceleration
-/// is left over in a hold, in a cruise and at the end; and a hold lasts by what it is.
+/// What rounding takes from one jerk time the later ones make up for. Where acceleration left over
+/// would matter in a hold or a cruise, a phase as short as the rounding frees it of that before.
 void fit(const Frame& f, double a_rest, Peak& p) {
     if (!(p.up_hold > 0 || p.down_hold > 0 || p.cruise > 0)) return;
+    const double grain = ulp * f.per_J * std::max({std::abs(f.v), std::abs(f.vf), std::abs(p.v)});
+    const auto matters = [&](double rest, double time) { return std::abs(rest) * time > grain; };
     const double product = f.J * f.tau;
-    const double tau_rest =
+    double sum = p.rise + f.tau;
+    double rest =
+        sum_error(p.rise, f.tau, sum) +
         ((f.a - product) - product_error(f.J, f.tau, product) + f.sign * a_rest) * f.per_J;
-    const double sum = p.rise + f.tau;
-    const double rest = sum_error(p.rise, f.tau, sum) + tau_rest;
-    const double q = sum + rest;
-    if (p.up_hold > 0) p.up_hold *= p.q / q;
-    if (p.cruise > 0) {
-        p.q = q;
-    } else {
-        const double r = p.turn - sum;
-        const double fitted = r + (sum_error(p.turn, -sum, r) - rest);
-        if (p.down_hold > 0) p.down_hold *= p.r / fitted;
-        p.r = fitted;
+    if (const double missing = (p.q - sum) - rest; matters(missing, p.up_hold)) {
+        p.rise_rest = missing;
+        sum = p.q;
+        rest = 0;
     }
-}
-
-void add(const Frame& f, const Peak& p, Steps& steps) {
-    const double J = f.sign * f.J, up = J * p.q, down = -J * p.r;
-    steps.add(p.rise, J, up);
-    steps.add(p.up_hold, 0, up);
     if (p.cruise > 0) {
-        steps.add(p.q, -J, 0);
-        steps.add(p.cruise, 0, 0);
-        steps.add(p.r, -J, down);
-    } else {
-        steps.add(p.turn, -J, down);
+        p.q = std::max(sum + rest, 0.0);
+        const double left_over = (sum - p.q) + rest;
+        p.turn_rest = matters(left_over, p.cruise) ? left_over : 0;
+        return;
     }
-    steps.add(p.down_hold, 0, down);
-    steps.add(p.r, J, 0);
+    const double r = p.turn - sum;
+    const double left_over = (r - p.r) + (sum_error(p.turn, -sum, r) - rest);
+    if (matters(left_over, p.down_hold))
+        p.turn_rest = -left_over;
+    else
+        p.r += left_over;
 }
 
 /// The cruise makes up for what rounding does to the ramps.
 void fit_cruise(const Frame& f, Peak& p) {
-    if (!(p.cruise > 0)) return;
     MotionState s{0, f.v, f.a, f.J};
     s = s.after(p.rise);
     s = MotionState{s.position, s.velocity, f.J * p.q, 0}.after(p.up_hold);
     s = MotionState{s.position, s.velocity, f.J * p.q, -f.J}.after(p.q);
-    const double down = (f.side->V + f.vf) * (p.r + 0.5 * p.down_hold);
-    p.cruise = std::max(f.way - s.position - down, 0.0) / f.side->V;
+    const double down = (p.v + f.vf) * (p.r + 0.5 * p.down_hold);
+    p.cruise = std::max(f.way - s.position - down, 0.0) / p.v;
+}
+
+void add(const Frame& f, const Peak& p, Steps& steps) {
+    const double J = f.sign * f.J, up = J * p.q, down = -J * p.r;
+    const auto add_rest = [&](double rest, double jerk, double acceleration) {
+        if (rest != 0) steps.add(std::abs(rest), std::copysign(jerk, rest * jerk), acceleration);
+    };
+    steps.add(p.rise, J, up);
+    add_rest(p.rise_rest, J, up);
+    steps.add(p.up_hold, 0, up);
+    if (p.cruise > 0) {
+        steps.add(p.q, -J, 0);
+        add_rest(p.turn_rest, -J, 0);
+        steps.add(p.cruise, 0, 0);
+        steps.add(p.r, -J, down);
+    } else {
+        steps.add(p.turn, -J, down);
+        add_rest(p.turn_rest, -J, down);
+    }
+    steps.add(p.down_hold, 0, down);
+    steps.add(p.r, J, 0);
 }
 
 /// Along `sign`: the velocity above the limit once a is at zero.
@@ -381,44 +405,55 @@ double excess(const MotionLimits& limits, const MotionState& s, double sign) {
     return (v - limits.side[sign < 0].V) + 0.5 * a * std::abs(a) * limits.per_J;
 }
 
-/// A state under way back inside its limits, its position counted from the first one's.
+/// A state under way back inside its limits, its position counted from the first one's. With twice
+/// the digits: what is left of a far too great velocity is small beside it.
 struct Return {
     const MotionLimits& limits;
     Steps& steps;
+    Twice x, v, a;
     MotionState s;
-    double a_rest = 0;  ///< what rounding has left of the acceleration beside that of the state
 
-    void run(double time, double jerk, double acceleration) {
+    Return(const MotionLimits& l, Steps& list, const MotionState& from)
+        : limits(l),
+          steps(list),
+          x{0},
+          v{from.velocity},
+          a{from.acceleration},
+          s{0, from.velocity, from.acceleration, 0} {}
+
+    void run(double time, double jerk) {
         if (!(time > 0)) return;
-        steps.add(time, jerk, acceleration);
-        const double change = acceleration - s.acceleration, product = jerk * time;
-        a_rest += (product - change) + (product_error(jerk, time, product) -
-                                        sum_error(acceleration, -s.acceleration, change));
-        s.jerk = jerk;
-        s = s.after(time);
-        s.acceleration = acceleration;
+        const Twice t{time}, j{jerk};
+        x = x + t * (v + t * (a + t * j / 3) * Twice{0.5});
+        v = v + t * (a + t * j * Twice{0.5});
+        a = a + t * j;
+        s = {x.value(), v.value(), a.value(), 0};
+        steps.add(time, jerk, s.acceleration);
     }
+
+    /// What rounding has left of the acceleration beside that of the state.
+    double a_rest() const { return (a - Twice{s.acceleration}).value(); }
 
     /// Until V is joined tangentially: the velocity ramp to it without its last jerk.
     void gently(double sign, double over) {
         const RampShape ramp =
             ramp_shape(-sign * s.acceleration, over, limits.side[sign < 0].D, limits.J);
-        run(ramp.to_peak, -sign * limits.J, -sign * ramp.peak);
-        run(ramp.hold, 0, -sign * ramp.peak);
+        run(ramp.to_peak, -sign * limits.J);
+        run(ramp.hold, 0);
     }
 
     /// Until V is kept, or the limit of the other side could not be any more.
     void soon(double sign) {
         const MotionLimits::Side& side = limits.side[sign < 0];
         const double back = limits.side[sign > 0].V, J = limits.J;
-        const double v = sign * s.velocity, a = sign * s.acceleration;
-        const double keeps = std::sqrt(std::max(a * a + 2 * J * (v - side.V), 0.0));
-        const double turns = std::sqrt(std::max(0.5 * a * a + J * (v + back), 0.0));
+        const double v0 = sign * s.velocity, a0 = sign * s.acceleration;
+        const double keeps = std::sqrt(std::max(a0 * a0 + 2 * J * (v0 - side.V), 0.0));
+        const double turns = std::sqrt(std::max(0.5 * a0 * a0 + J * (v0 + back), 0.0));
         const double peak = std::min({keeps, turns, side.D});
-        run((a + peak) * limits.per_J, -sign * J, -sign * peak);
+        run((a0 + peak) * limits.per_J, -sign * J);
         if (peak < side.D) return;
         const double now = sign * s.velocity;
-        run(std::min(now - side.V, now + back - 0.5 * side.fall) * side.per_D, 0, -sign * peak);
+        run(std::min(now - side.V, now + back - 0.5 * side.fall) * side.per_D, 0);
     }
 };
 
@@ -435,14 +470,13 @@ MotionState enter(const MotionLimits& limits, const MotionState& from, const Pla
                   Steps& steps, double& a_rest) {
     if (is_inside(limits, from)) return {0, from.velocity, from.acceleration, 0};
     const double slack = options.tolerance * ulp;
-    Return back{limits, steps, {0, from.velocity, from.acceleration, 0}, 0};
+    Return back(limits, steps, from);
     for (const double sign : {1.0, -1.0}) {
         const MotionLimits::Side& side = limits.side[sign < 0];
         const double room = slack * std::max(side.V, std::abs(from.velocity));
         if (sign * back.s.acceleration > side.A * (1 + slack) &&
             excess(limits, back.s, sign) <= room)
-            back.run((sign * back.s.acceleration - side.A) * limits.per_J, -sign * limits.J,
-                     sign * side.A);
+            back.run((sign * back.s.acceleration - side.A) * limits.per_J, -sign * limits.J);
     }
     for (const double sign : {1.0, -1.0}) {
         const double V = limits.side[sign < 0].V;
@@ -456,7 +490,7 @@ MotionState enter(const MotionLimits& limits, const MotionState& from, const Pla
             continue;
         break;
     }
-    a_rest = back.a_rest;
+    a_rest = back.a_rest();
     return back.s;
 }
 
@@ -525,11 +559,6 @@ PlanResult write(const Steps& steps, const MotionLimits& limits, const MotionSta
     out.haste = MotionPlan::spread / begin;
     out.end = {to.position, to.velocity, 0, 0};
     return PlanResult::ok;
-}
-
-void add_fitted(const Frame& f, Peak p, double a_rest, Steps& steps) {
-    fit(f, a_rest, p);
-    add(f, p, steps);
 }
 
 /// The problem from where the state is inside the limits, with its direct ramp.
@@ -601,14 +630,17 @@ struct Start {
 /// The first motion of the frame's side after `from` that ends at the goal.
 void add_solved(const Frame& f, const Peak& from, Start& start) {
     Peak p = solve(f, from);
-    fit_cruise(f, p);
-    add_fitted(f, p, start.a_rest, start.steps);
+    fit(f, start.a_rest, p);
+    if (p.cruise > 0) fit_cruise(f, p);
+    add(f, p, start.steps);
 }
 
 void add_soonest(const MotionLimits& limits, Start& start) {
     const double missing = start.ahead.miss;
     if (std::abs(missing) <= start.tolerance) {
-        add_fitted(start.ahead, start.ramp, start.a_rest, start.steps);
+        Peak p = start.ramp;
+        fit(start.ahead, start.a_rest, p);
+        add(start.ahead, p, start.steps);
     } else if (missing > 0) {
         add_solved(start.ahead, start.ramp, start);
     } else {
@@ -638,8 +670,8 @@ bool add_timed(const MotionLimits& limits, Start& start, double duration) {
         return false;
     }
     Steps upper, lower;
-    add_fitted(start.ahead, up, start.a_rest, upper);
-    add_fitted(back, down, start.a_rest, lower);
+    add(start.ahead, up, upper);
+    add(back, down, lower);
     const double room = -above - below;
     const double lambda = room > 0 ? std::min(std::max(-below / room, 0.0), 1.0) : 1;
     blend(upper, lower, lambda, start.state.acceleration, start.steps);
