@@ -494,19 +494,29 @@ MotionState enter(const MotionLimits& limits, const MotionState& from, const Pla
     return back.s;
 }
 
-/// The mean of two motions of equal duration, one of weight lambda.
-void blend(const Steps& one, const Steps& other, double lambda, double a, Steps& out) {
+/// The mean of two motions of equal duration, one of weight lambda. Where acceleration left over by
+/// rounding would change the velocity of a hold by more than `grain`, a short phase frees it of
+/// that.
+void blend(const Steps& one, const Steps& other, double lambda, Twice a, double J, double grain,
+           Steps& out) {
     const auto mean = [&](double x, double y) { return lambda * x + (1 - lambda) * y; };
     std::size_t i = 0, k = 0;
     double left_i = one.list[0].duration, left_k = other.list[0].duration;
-    double a_i = a, a_k = a;
+    double a_i = a.high, a_k = a.high, begin = a.high;
     while (i < one.count && k < other.count) {
         const Steps::Step &x = one.list[i], &y = other.list[k];
-        const double time = std::min(left_i, left_k);
+        const double time = std::min(left_i, left_k), jerk = mean(x.jerk, y.jerk);
+        const double rest = (Twice{begin} - a).value();
+        if (jerk == 0 && std::abs(rest) * time > grain) {
+            out.add(std::abs(rest) / J, std::copysign(J, rest), begin);
+            a = {begin};
+        }
         const bool ends_i = left_i <= time, ends_k = left_k <= time;
         a_i = ends_i ? x.acceleration : a_i + x.jerk * time;
         a_k = ends_k ? y.acceleration : a_k + y.jerk * time;
-        out.add(time, mean(x.jerk, y.jerk), mean(a_i, a_k));
+        begin = mean(a_i, a_k);
+        out.add(time, jerk, begin);
+        a = a + Twice{time} * Twice{jerk};
         left_i = ends_i ? one.list[++i].duration : left_i - time;
         left_k = ends_k ? other.list[++k].duration : left_k - time;
     }
@@ -674,7 +684,9 @@ bool add_timed(const MotionLimits& limits, Start& start, double duration) {
     add(back, down, lower);
     const double room = -above - below;
     const double lambda = room > 0 ? std::min(std::max(-below / room, 0.0), 1.0) : 1;
-    blend(upper, lower, lambda, start.state.acceleration, start.steps);
+    const double velocity = std::max({std::abs(up.v), std::abs(down.v), std::abs(start.vf)});
+    blend(upper, lower, lambda, {start.state.acceleration, start.a_rest}, limits.J, ulp * velocity,
+          start.steps);
     return true;
 }
 

@@ -256,6 +256,9 @@ TEST_CASE("a given duration is kept, or the next feasible one is", "[any_state]"
             }
             most = std::max(most, out.count);
             const Run r = run(p, out, family.outside, true);
+            figures.position.push_back(static_cast<float>(r.position));
+            figures.velocity.push_back(static_cast<float>(r.velocity));
+            figures.over = std::max(figures.over, r.over);
             const double wrong = family.bar / std::numeric_limits<double>::epsilon();
             if (!(r.over <= family.bar)) figures.fail("over a limit", p);
             if (!(r.position <= wrong && r.velocity <= wrong)) figures.fail("misses the goal", p);
@@ -267,6 +270,7 @@ TEST_CASE("a given duration is kept, or the next feasible one is", "[any_state]"
         }
         INFO(family.name << ", seed " << seed);
         CHECK(figures.failed == 0);
+        figures.print(family.name);
     }
     CHECK(blocked > 0);
     if (std::getenv("LINESHAFT_FIGURES") != nullptr)
