@@ -46,13 +46,16 @@ struct Twice {
 struct Steps {
     struct Step {
         double duration, jerk, acceleration;
+        MotionState start;  ///< counted from the first one's position
     };
     std::array<Step, MotionPlan::most_phases + 1> list;
     std::size_t count = 0;
     double duration = 0;
 
     void add(double time, double jerk, double acceleration) {
-        list[count] = {time, jerk, acceleration};
+        list[count].duration = time;
+        list[count].jerk = jerk;
+        list[count].acceleration = acceleration;
         count += time > 0 ? 1 : 0;
         duration += time;
     }
@@ -532,41 +535,53 @@ PlanResult check(const MotionLimits& limits, const MotionState& from, const Goal
 }
 
 /// Runs the steps forwards to the last one, which is run back from the end: a state within it is
-/// as near to the goal as rounding allows.
-PlanResult write(const Steps& steps, const MotionLimits& limits, const MotionState& from,
-                 const Goal& to, MotionPlan& out) {
-    const double gain = from.acceleration * from.acceleration * limits.per_J;
-    const double greatest =
-        std::abs(from.velocity) + gain + std::max(limits.side[0].V, limits.side[1].V);
-    if (!std::isfinite(std::abs(from.position) + greatest * steps.duration))
-        return PlanResult::not_finite;
-    double x = 0, v = from.velocity, a = from.acceleration, begin = 0;
-    out.phases[0] = {0, 0, {from.position, v, a, 0}};
+/// as near to the goal as rounding allows. `duration` is what their sum stands for. Refuses what
+/// misses by more than rounding can tell: the numbers are too many decades apart.
+PlanResult write(Steps& steps, const MotionState& from, const Goal& to, double duration,
+                 MotionPlan& out) {
+    constexpr double most = 1e-6;
+    double x = 0, v = from.velocity, path = 0,
+           fastest = std::max(std::abs(v), std::abs(to.velocity));
+    MotionState back{0, to.velocity, 0, 0};
     for (std::size_t i = 0; i < steps.count; ++i) {
-        const Steps::Step& step = steps.list[i];
-        out.phases[i] = {begin, step.duration, {from.position + x, v, a, step.jerk}};
-        if (i + 1 == steps.count) break;
-        const MotionState end = MotionState{x, v, a, step.jerk}.after(step.duration);
+        Steps::Step& step = steps.list[i];
+        const double a = i == 0 ? from.acceleration : steps.list[i - 1].acceleration;
+        step.start = {x, v, a, step.jerk};
+        if (i + 1 == steps.count) {
+            back.jerk = step.jerk;
+            back = back.after(-step.duration);
+            break;
+        }
+        const MotionState end = step.start.after(step.duration);
+        path += std::abs(end.position - x);
+        fastest = std::max(fastest, std::abs(end.velocity));
         x = end.position;
         v = end.velocity;
-        a = step.acceleration;
+    }
+    const double missed = ((to.position - from.position) + back.position) - x;
+    const double size =
+        std::max({std::abs(from.position), std::abs(to.position), path + std::abs(back.position)});
+    if (!(std::abs(missed) <= most * size && std::abs(back.velocity - v) <= most * fastest &&
+          std::abs(duration - steps.duration) <= most * duration &&
+          std::isfinite(size + fastest * duration)))
+        return PlanResult::not_finite;
+    out.phases[0] = {0, 0, from};
+    double begin = 0;
+    for (std::size_t i = 0; i < steps.count; ++i) {
+        const Steps::Step& step = steps.list[i];
+        out.phases[i] = {begin, step.duration, step.start};
+        out.phases[i].start.position += from.position;
         begin += step.duration;
     }
-    out.missed = 0;
     if (steps.count > 1) {
-        MotionPlan::Phase& last = out.phases[steps.count - 1];
-        const MotionState back =
-            MotionState{0, to.velocity, 0, last.start.jerk}.after(-last.duration);
-        out.missed = ((to.position - from.position) + back.position) - x;
-        last.start.position = to.position + back.position;
-        last.start.velocity = back.velocity;
-        begin += last.duration;
-    } else if (steps.count > 0) {
-        begin = steps.list[0].duration;
+        MotionState& last = out.phases[steps.count - 1].start;
+        last.position = to.position + back.position;
+        last.velocity = back.velocity;
     }
     out.count = steps.count;
-    out.duration = begin;
-    out.haste = MotionPlan::spread / begin;
+    out.duration = duration;
+    out.missed = steps.count > 1 ? missed : 0;
+    out.haste = duration > 0 ? MotionPlan::spread / duration : 0;
     out.end = {to.position, to.velocity, 0, 0};
     return PlanResult::ok;
 }
@@ -665,7 +680,7 @@ void add_soonest(const MotionLimits& limits, Start& start) {
 bool add_timed(const MotionLimits& limits, Start& start, double duration) {
     if (duration <= start.duration()) {
         add_soonest(limits, start);
-        return duration == start.duration();
+        return false;
     }
     const Frame back = start.back(limits);
     const Peak up = timed(start.ahead, start.ramp, duration);
@@ -710,7 +725,7 @@ PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal&
     if (const PlanResult result = check(limits, from, to); result != PlanResult::ok) return result;
     Start start(limits, from, to, options);
     add_soonest(limits, start);
-    return write(start.steps, limits, from, to, out);
+    return write(start.steps, from, to, start.steps.duration, out);
 }
 
 PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal& to,
@@ -719,27 +734,23 @@ PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal&
     if (const PlanResult result = check(limits, from, to); result != PlanResult::ok) return result;
     Start start(limits, from, to, options);
     const bool kept = add_timed(limits, start, duration - start.steps.duration);
-    const PlanResult result = write(start.steps, limits, from, to, out);
-    if (result == PlanResult::ok && kept) out.duration = duration;
-    return result;
+    const double taken = kept ? duration : std::max(start.steps.duration, duration);
+    return write(start.steps, from, to, taken, out);
 }
 
 PlanResult synchronise(std::span<const AxisMove> axes, std::span<MotionPlan> out, double least,
                        const PlanOptions& options) {
     double duration = least;
     MotionPlan tried;
-    for (const AxisMove& axis : axes) {
+    for (std::size_t i = 0, kept = 0; kept < axes.size(); i = (i + 1) % axes.size()) {
+        const AxisMove& axis = axes[i];
         const PlanResult result = plan(*axis.limits, axis.from, axis.to, duration, tried, options);
         if (result != PlanResult::ok) return result;
-        duration = std::max(duration, tried.duration);
+        kept = tried.duration > duration ? 1 : kept + 1;
+        duration = tried.duration;
     }
-    for (std::size_t i = 0, kept = 0; kept < axes.size(); i = (i + 1) % axes.size()) {
-        const PlanResult result =
-            plan(*axes[i].limits, axes[i].from, axes[i].to, duration, out[i], options);
-        if (result != PlanResult::ok) return result;
-        kept = out[i].duration > duration ? 1 : kept + 1;
-        duration = out[i].duration;
-    }
+    for (std::size_t i = 0; i < axes.size(); ++i)
+        plan(*axes[i].limits, axes[i].from, axes[i].to, duration, out[i], options);
     return PlanResult::ok;
 }
 
