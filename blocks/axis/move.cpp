@@ -113,7 +113,7 @@ void Move::publish_plan() {
     if (positioning.from_any_state) {
         const MotionPlan& motion = positioning.motion;
         kind = MoveKind::from_any_state;
-        displacement_error = std::abs(motion.drift * motion.duration);
+        displacement_error = std::abs(motion.missed);
         greatest_velocity = motion.greatest_velocity();
         greatest_acceleration = motion.greatest_acceleration();
     } else {

@@ -17,17 +17,45 @@ double sum_error(double a, double b, double sum) {
     return (a - (sum - bb)) + (b - bb);
 }
 
+/// A number with twice the digits, for what is left of great terms that cancel.
+struct Twice {
+    double high, low = 0;
+
+    static Twice sum(double a, double b, double low) {
+        const double s = a + b;
+        return {s, sum_error(a, b, s) + low};
+    }
+    friend Twice operator+(Twice a, Twice b) { return sum(a.high, b.high, a.low + b.low); }
+    friend Twice operator-(Twice a, Twice b) { return sum(a.high, -b.high, a.low - b.low); }
+    friend Twice operator*(Twice a, Twice b) {
+        const double p = a.high * b.high;
+        return sum(p, product_error(a.high, b.high, p) + (a.high * b.low + a.low * b.high), 0);
+    }
+    friend Twice operator/(Twice a, double b) {
+        const double q = a.high / b;
+        return sum(q, (a - Twice{q} * Twice{b}).value() / b, 0);
+    }
+    friend Twice root(Twice a) {
+        const double r = std::sqrt(std::max(a.value(), 0.0));
+        return r > 0 ? sum(r, (a - Twice{r} * Twice{r}).value() / (2 * r), 0) : Twice{0};
+    }
+    double value() const { return high + low; }
+};
+
 /// A motion as its jerks, with the acceleration at the end of each.
 struct Steps {
     struct Step {
         double duration, jerk, acceleration;
+        MotionState start;  ///< counted from the first one's position
     };
     std::array<Step, MotionPlan::most_phases + 1> list;
     std::size_t count = 0;
     double duration = 0;
 
     void add(double time, double jerk, double acceleration) {
-        list[count] = {time, jerk, acceleration};
+        list[count].duration = time;
+        list[count].jerk = jerk;
+        list[count].acceleration = acceleration;
         count += time > 0 ? 1 : 0;
         duration += time;
     }
@@ -40,18 +68,19 @@ struct Frame {
     double sign;
     double v, a, vf, way;
     double e;            ///< velocity missing once a is at zero at once
-    double tau, vb, vz;  ///< a/J; velocities of the virtual point, and with a at zero at once
-    double S, Dv;        ///< vb + vf, vb - vf
-    double L;            ///< way from the virtual point to the goal
+    double tau, vb, vt;  ///< a/J; velocities of the virtual point, and at the jerk time tau
+    double Dv;           ///< vb - vf
+    double ramp = 0;     ///< way of the direct ramp from the virtual point
+    double miss = 0;     ///< from its end to the goal
+
+    double vz() const { return a > 0 ? vt : vb; }  ///< with a at zero at once
 };
 
 Frame frame(const MotionLimits& limits, double sign, const MotionState& s, double vf, double way,
             double e) {
     const double v = sign * s.velocity, a = sign * s.acceleration, goal = sign * vf;
     const double tau = a * limits.per_J, gain = 0.5 * a * tau;
-    const double vb = v - gain;
     const double missing = e == 0 ? std::copysign(gain, a) : goal - v;
-    const double L = sign * way + tau * (v - a * tau * (1.0 / 3));
     return {&limits.side[sign < 0],
             limits.J,
             limits.per_J,
@@ -62,52 +91,47 @@ Frame frame(const MotionLimits& limits, double sign, const MotionState& s, doubl
             sign * way,
             sign * e,
             tau,
-            vb,
-            a > 0 ? v + gain : vb,
-            vb + goal,
-            -missing - gain,
-            L};
+            v - gain,
+            v + gain,
+            -missing - gain};
 }
 
 /// Jerk +J for q - tau, hold, -J for q, cruise, -J for r, hold, +J for r.
 struct Peak {
     double rise, up_hold, q, cruise, r, down_hold, turn;
+    double v;                             ///< velocity at the peak, a virtual one in a dip
+    double rise_rest = 0, turn_rest = 0;  ///< what the rise and the turn have lost by rounding
 };
-
-Peak peak(const Frame& f, double q, double up_hold, double r, double down_hold) {
-    return {std::max(q - f.tau, 0.0), up_hold, q, 0, r, down_hold, q + r};
-}
-
-double velocity(const Frame& f, const Peak& p) {
-    return f.vb + f.J * p.q * (p.q + p.up_hold);
-}
 
 /// The way from the virtual point.
 double reach(const Frame& f, const Peak& p) {
-    const double vp = velocity(f, p);
-    return (f.vb + vp) * (p.q + 0.5 * p.up_hold) + (vp + f.vf) * (p.r + 0.5 * p.down_hold) +
-           vp * p.cruise;
+    return (f.vb + p.v) * (p.q + 0.5 * p.up_hold) + (p.v + f.vf) * (p.r + 0.5 * p.down_hold) +
+           p.v * p.cruise;
 }
 
-/// The time from the virtual point.
+/// The way left to the goal.
+double left(const Frame& f, const Peak& p) {
+    return f.miss - (reach(f, p) - f.ramp);
+}
+
 double time(const Peak& p) {
-    return p.q + p.up_hold + p.turn + p.cruise + p.down_hold + p.r;
+    return p.rise + p.up_hold + p.turn + p.cruise + p.down_hold + p.r;
 }
 
 /// The direct ramp.
 Peak direct(const Frame& f) {
     if (f.e > 0 || (f.e == 0 && f.a < 0)) {
         const RampShape s = ramp_shape(f.a, f.e, f.side->A, f.J);
-        return {s.to_peak, s.hold, s.to_zero, 0, 0, 0, s.to_zero};
+        return {s.to_peak, s.hold, s.to_zero, 0, 0, 0, s.to_zero, f.vf};
     }
     const RampShape s = ramp_shape(-f.a, -f.e, f.side->D, f.J);
-    return {0, 0, f.tau, 0, s.to_zero, s.hold, s.to_peak};
+    return {0, 0, f.tau, 0, s.to_zero, s.hold, s.to_peak, f.vt};
 }
 
 /// The same ramp in the mirrored frame.
 Peak mirrored(const Frame& f, const Peak& p) {
-    if (p.r == 0) return {0, 0, f.tau, 0, p.q, p.up_hold, p.rise};
-    return {p.turn, p.down_hold, p.r, 0, 0, 0, p.r};
+    if (p.r == 0) return {0, 0, f.tau, 0, p.q, p.up_hold, p.rise, f.vt};
+    return {p.turn, p.down_hold, p.r, 0, 0, 0, p.r, f.vf};
 }
 
 struct Ramp {
@@ -122,204 +146,260 @@ Ramp ramp(double dv, double per_J, double per_limit, double jerk_time, double tr
 }
 
 /// Both ramps over a peak velocity that a does not overshoot.
-Peak over(const Frame& f, double vp) {
-    const Ramp up = ramp(vp - f.vb, f.per_J, f.side->per_A, f.side->alpha, f.side->rise);
-    const Ramp down = ramp(vp - f.vf, f.per_J, f.side->per_D, f.side->delta, f.side->fall);
-    return peak(f, std::max(up.jerk_time, f.tau), up.hold, down.jerk_time, down.hold);
+Peak over(const Frame& f, double v) {
+    const Ramp up = ramp(v - f.vb, f.per_J, f.side->per_A, f.side->alpha, f.side->rise);
+    const Ramp down = ramp(v - f.vf, f.per_J, f.side->per_D, f.side->delta, f.side->fall);
+    const double q = std::max(up.jerk_time, f.tau);
+    return {q - f.tau, up.hold, q, 0, down.jerk_time, down.hold, q + down.jerk_time, v};
 }
 
-Peak triangular(const Frame& f, double m) {
-    const double difference = f.Dv / (f.J * m);
-    const double q = 0.5 * (m - difference);
-    return peak(f, f.a > 0 ? std::max(q, f.tau) : q, 0, std::max(0.5 * (m + difference), 0.0), 0);
+/// A motion of the side, and which of its ramps stay as they are but for their holds when it gets
+/// fuller.
+struct Section {
+    Peak from;
+    bool up_held = false, down_held = false;
+    double high = HUGE_VAL;  ///< what is unknown is no more
+};
+
+/// Both ramps triangular, the sum of their jerk times y longer.
+Peak longer(const Frame& f, Peak p, double y) {
+    if (!(y > 0)) return p;
+    const double m = p.turn + y, half = 0.5 * y / m;
+    const double up = half * (2 * p.r + y);
+    p.v += f.J * up * (2 * p.q + up);
+    p.rise += up;
+    p.r = std::max(p.r + half * (2 * p.q + y), 0.0);
+    p.q += up;
+    p.turn = m;
+    return p;
 }
 
-Peak up_triangular(const Frame& f, double q) {
-    const double fall = f.Dv + f.J * q * q;
-    return peak(f, q, 0, f.side->delta, std::max(fall * f.side->per_D - f.side->delta, 0.0));
+/// The way up triangular, its jerk time x longer, the way down held.
+Peak longer_up(const Frame& f, Peak p, double x) {
+    const double gain = f.J * x * (2 * p.q + x);
+    p.down_hold = std::max(p.down_hold + gain * f.side->per_D, 0.0);
+    p.v += gain;
+    p.rise += x;
+    p.q += x;
+    p.turn += x;
+    return p;
 }
 
-Peak down_triangular(const Frame& f, double r) {
-    const double rise = f.J * r * r - f.Dv;
-    return peak(f, f.side->alpha, std::max(rise * f.side->per_A - f.side->alpha, 0.0), r, 0);
+/// The way down triangular, its jerk time x longer, the way up held.
+Peak longer_down(const Frame& f, Peak p, double x) {
+    const double gain = f.J * x * (2 * p.r + x);
+    p.up_hold += gain * f.side->per_A;
+    p.v += gain;
+    p.r += x;
+    p.turn += x;
+    return p;
 }
 
-Peak trapezoidal(const Frame& f, double vp) {
-    return peak(f, f.side->alpha, std::max((vp - f.vb) * f.side->per_A - f.side->alpha, 0.0),
-                f.side->delta, std::max((vp - f.vf) * f.side->per_D - f.side->delta, 0.0));
+/// Both ramps held, the peak faster by gain.
+Peak faster(const Frame& f, Peak p, double gain) {
+    p.up_hold += gain * f.side->per_A;
+    p.down_hold += gain * f.side->per_D;
+    p.v += gain;
+    return p;
 }
 
-double rest_beside_down(const Frame& f) {
-    return f.L - 0.5 * f.S * (f.side->delta + f.Dv * f.side->per_D);
-}
-double rest_beside_up(const Frame& f) {
-    return f.L - 0.5 * f.S * (f.side->alpha - f.Dv * f.side->per_A);
-}
-
-Peak solve_triangular(const Frame& f, const Peak& from) {
-    const double low = std::max(from.q + from.r, std::sqrt(std::abs(f.Dv) * f.per_J));
-    return triangular(
-        f, triangular_sum(f.J, f.S, f.Dv, f.L, low, std::max(low, f.side->alpha + f.side->delta)));
-}
-
-Peak solve_up_triangular(const Frame& f, const Peak& from) {
-    const double low = std::max(from.q, 0.0);
-    return up_triangular(f, mixed_time(f.J, f.vb, f.side->delta, f.side->fall, rest_beside_down(f),
-                                       low, std::max(low, f.side->alpha)));
-}
-
-Peak solve_down_triangular(const Frame& f, const Peak& from) {
-    const double low = from.q < 0 ? std::sqrt(std::max(f.Dv, 0.0) * f.per_J) : from.r;
-    return down_triangular(f, mixed_time(f.J, f.vf, f.side->alpha, f.side->rise, rest_beside_up(f),
-                                         low, std::max(low, f.side->delta)));
-}
-
-/// From the velocity `low` on, where the way is still too short, it is quadratic in what is added.
-Peak solve_trapezoidal(const Frame& f, double low) {
-    const double missing = std::max(f.L - reach(f, trapezoidal(f, low)), 0.0);
-    const double slope =
-        low * (f.side->per_A + f.side->per_D) + 0.5 * (f.side->alpha + f.side->delta);
-    const double curvature = f.side->per_A + f.side->per_D;
-    const double root = std::sqrt(slope * slope + 2 * curvature * missing);
-    return trapezoidal(
-        f, low + (slope > 0 ? 2 * missing / (slope + root) : (root - slope) / curvature));
-}
-
-/// The peak lies below V.
-Peak solve_below(const Frame& f, const Peak& from) {
-    const double holds_up = f.vb + f.side->rise, holds_down = f.vf + f.side->fall;
-    const double start = std::max({f.vf, f.vz, from.q > 0 ? velocity(f, from) : f.vz});
-    const double first = std::min(holds_up, holds_down), both = std::max(holds_up, holds_down);
-    const auto passes = [&](double vp) {
-        return vp <= start || (vp < f.side->V && f.L > reach(f, over(f, vp)));
-    };
-    if (!passes(first)) return solve_triangular(f, from);
-    if (passes(both)) return solve_trapezoidal(f, std::max(both, start));
-    return holds_up < holds_down ? solve_down_triangular(f, from) : solve_up_triangular(f, from);
-}
-
-/// Where the way rises from `low` to its greatest before `high`, or falls, to its end; the first
-/// crossing of L in there.
-template <class Make>
-bool cross(const Frame& f, const Quartic& equation, double low, double top, double high,
-           const Make& make, Peak& found) {
-    const auto enough = [&](double x) { return f.L <= reach(f, make(x)); };
-    const bool inside = low < top && top < high;
-    if (inside && enough(top))
-        high = top;
-    else if (!enough(high))
-        return false;
-    else if (inside)
-        low = top;
-    found =
-        make(rising_root(equation, 0.5 * (low + high), 4 * ulp * std::max(-low, high), low, high));
-    return true;
-}
-
-/// In the dip the motion turns down before the acceleration has come to zero: q < 0.
-bool solve_dip(const Frame& f, const Peak& from, Peak& found) {
-    double low = std::max(f.tau, from.q);
+/// The q < 0 at which the hold of a dip ends, or 0.
+double end_of_hold(const Frame& f) {
     const double square = f.side->delta * f.side->delta - f.Dv * f.per_J;
-    const double border = square > 0 ? -std::sqrt(square) : 0;
-    if (low < border) {
-        const double root = f.side->D * f.side->D - 16 * f.J * f.vb;
-        const double top = root > 0 ? -0.25 * (f.side->D + std::sqrt(root)) * f.per_J : border;
-        if (cross(
-                f, mixed_equation(f.J, f.vb, f.side->delta, f.side->fall, rest_beside_down(f)), low,
-                top, border, [&](double q) { return up_triangular(f, q); }, found))
-            return true;
-        low = border;
+    return square > 0 ? -std::sqrt(square) : 0;
+}
+
+/// From a motion below V on over the shapes' borders that `beyond` tells to lie before the goal.
+template <class Beyond>
+Section section(const Frame& f, const Peak& from, const Beyond& beyond) {
+    Section s{from};
+    if (from.q < 0 && from.down_hold > 0) {
+        const double q = end_of_hold(f);
+        if (q < 0 && q > from.q) {
+            Peak border = longer_up(f, from, q - from.q);
+            if (!beyond(border)) return {from, false, true};
+            border.down_hold = 0;
+            s.from = border;
+        }
     }
-    if (!(low < 0) || square <= 0) return false;
-    const double Dv_per_J = f.Dv * f.per_J;
-    const double first = low + std::sqrt(low * low + Dv_per_J), last = std::sqrt(Dv_per_J);
-    const double root = 4 * f.S * f.S - 3 * f.Dv * f.Dv;
-    const double square_top = f.S < 0 && root > 0 ? (-2 * f.S - std::sqrt(root)) * (1.0 / 3) : 0;
-    return cross(
-        f, {0.25 * f.J, 0, f.S, -f.L, -0.25 * f.Dv * Dv_per_J}, first,
-        std::sqrt(square_top * f.per_J), last, [&](double m) { return triangular(f, m); }, found);
+    const double start = std::max({f.vf, f.vz(), from.q > 0 ? from.v : f.vf});
+    const double holds_up = f.vb + f.side->rise, holds_down = f.vf + f.side->fall;
+    const bool up_first = holds_up < holds_down;
+    for (const bool up : {up_first, !up_first}) {
+        const double v = up ? holds_up : holds_down;
+        if (v > start) {
+            if (!(v < f.side->V)) break;
+            Peak border = over(f, v);
+            if (up) {
+                border.q = f.side->alpha;
+                border.rise = border.q - f.tau;
+                border.up_hold = 0;
+            } else {
+                border.r = f.side->delta;
+                border.down_hold = 0;
+            }
+            border.turn = border.q + border.r;
+            if (!beyond(border)) break;
+            s.from = border;
+        }
+        (up ? s.up_held : s.down_held) = true;
+    }
+    return s;
+}
+
+/// The motion of the section that goes `miss` farther.
+Peak farther(const Frame& f, const Section& s, double miss) {
+    const Peak& p = s.from;
+    const MotionLimits::Side& side = *f.side;
+    const auto high = [&](double x) { return std::min(std::max(x, 0.0), s.high); };
+    if (!(miss > 0)) return p;
+    if (s.up_held && s.down_held) {
+        const double curvature = side.per_A + side.per_D;
+        const double slope = p.v * curvature + 0.5 * (side.alpha + side.delta);
+        const double root = std::sqrt(slope * slope + 2 * curvature * miss);
+        return faster(f, p, slope > 0 ? 2 * miss / (slope + root) : (root - slope) / curvature);
+    }
+    if (s.down_held)
+        return longer_up(
+            f, p,
+            mixed_step({f.J, p.v, p.q, p.r, p.turn}, side.delta, miss, high(side.alpha - p.q)));
+    if (s.up_held)
+        return longer_down(
+            f, p,
+            mixed_step({f.J, p.v, p.r, p.q, p.turn}, side.alpha, miss, high(side.delta - p.r)));
+    return longer(f, p,
+                  triangular_step({f.J, p.v, p.q, p.r, p.turn}, miss,
+                                  high(side.alpha + side.delta - p.turn)));
+}
+
+/// The motion of the section that lasts `time` longer.
+Peak longer_lasting(const Frame& f, const Section& s, double time) {
+    const Peak& p = s.from;
+    const MotionLimits::Side& side = *f.side;
+    const auto step = [&](double q, double t) {
+        const double u = 1 + q / t;
+        return time / (u + std::sqrt(u * u + time / t));
+    };
+    if (!(time > 0)) return p;
+    if (s.up_held && s.down_held) return faster(f, p, time / (side.per_A + side.per_D));
+    if (s.down_held) return longer_up(f, p, step(p.q, side.delta));
+    if (s.up_held) return longer_down(f, p, step(p.r, side.alpha));
+    return longer(f, p, 0.5 * time);
+}
+
+/// How much longer q, or q + r, is where the way in a dip is greatest.
+double top_of_dip(const Frame& f, const Section& s) {
+    if (s.down_held) {
+        const double square = f.side->D * f.side->D - 16 * f.J * f.vb;
+        return square > 0 ? -0.25 * (f.side->D + std::sqrt(square)) * f.per_J - s.from.q : 0;
+    }
+    const double S = f.vb + f.vf, square = 4 * S * S - 3 * f.Dv * f.Dv;
+    if (!(S < 0 && square > 0)) return 0;
+    return std::sqrt((-2 * S - std::sqrt(square)) * (1.0 / 3) * f.per_J) - s.from.turn;
+}
+
+/// For vf < 0 the way has a greatest value in a dip at most: whether the goal is hit before.
+bool hits_in_dip(const Frame& f, const Peak& from, Section& s) {
+    s = {from, false, from.down_hold > 0};
+    if (s.down_held) {
+        const double last = end_of_hold(f), end = last - from.q, top = top_of_dip(f, s);
+        s.high = top > 0 && top < end ? top : end;
+        if (s.high > 0 && left(f, longer_up(f, from, s.high)) <= 0) return true;
+        if (last == 0) return false;
+        s = {longer_up(f, from, std::max(end, 0.0))};
+        s.from.down_hold = 0;
+    }
+    s.high = top_of_dip(f, s);
+    const Peak highest = longer(f, s.from, s.high);
+    return s.high > 0 && highest.q < 0 && left(f, highest) <= 0;
 }
 
 /// The first motion after `from` that ends at the goal.
 Peak solve(const Frame& f, const Peak& from) {
-    Peak p;
-    if (f.a < 0 && f.Dv > 0 && from.q < 0 && solve_dip(f, from, p)) return p;
-    p = over(f, f.side->V);
-    const double left = f.L - reach(f, p);
-    if (left < 0 && std::max(f.vf, f.vz) < f.side->V) return solve_below(f, from);
-    p.cruise = std::max(left, 0.0) / f.side->V;
-    return p;
-}
-
-/// The motion to the greatest position that is reached at time u from the virtual point.
-Peak timed(const Frame& f, double u) {
-    Peak p = triangular(f, 0.5 * u);
-    const double holds_up = f.vb + f.side->rise, holds_down = f.vf + f.side->fall;
-    if (p.q > f.side->alpha || p.r > f.side->delta) {
-        const auto square = [](double c, double t) {
-            return c / (1 + std::sqrt(std::max(1 + c / t, 0.0)));
-        };
-        const bool down_first = p.q < 0 || holds_down <= holds_up;
-        p = down_first
-                ? up_triangular(f, square(u - f.side->delta - f.Dv * f.side->per_D, f.side->delta))
-                : down_triangular(f,
-                                  square(u - f.side->alpha + f.Dv * f.side->per_A, f.side->alpha));
-        if (down_first ? p.q > f.side->alpha : p.r > f.side->delta)
-            p = trapezoidal(f, (u - f.side->alpha - f.side->delta + f.vb * f.side->per_A +
-                                f.vf * f.side->per_D) /
-                                   (f.side->per_A + f.side->per_D));
+    Section s;
+    if (f.vf < 0 && from.q < 0 && hits_in_dip(f, from, s)) return farther(f, s, left(f, s.from));
+    Peak fullest = over(f, std::max(f.side->V, f.vz()));
+    const double rest = left(f, fullest);
+    if (rest < 0 && (from.q < 0 || std::max(f.vf, f.vz()) < f.side->V)) {
+        s = section(f, from, [&](const Peak& border) { return left(f, border) > 0; });
+        return farther(f, s, left(f, s.from));
     }
-    if (p.q < 0 || velocity(f, p) <= f.side->V) return p;
-    p = over(f, f.side->V);
-    p.cruise = std::max(u - time(p), 0.0);
-    return p;
+    fullest.cruise = std::max(rest, 0.0) / fullest.v;
+    return fullest;
 }
 
-/// What rounding takes from one jerk time the later ones make up for, so that little acceleration
-/// is left over in a hold, in a cruise and at the end; and a hold lasts by what it is.
+/// The motion to the greatest position that is reached in a time.
+Peak timed(const Frame& f, const Peak& from, double duration) {
+    Peak fullest = over(f, std::max(f.side->V, f.vz()));
+    const double rest = duration - time(fullest);
+    if (rest < 0 && (from.q < 0 || std::max(f.vf, f.vz()) < f.side->V)) {
+        const Section s =
+            section(f, from, [&](const Peak& border) { return time(border) < duration; });
+        return longer_lasting(f, s, duration - time(s.from));
+    }
+    fullest.cruise = std::max(rest, 0.0);
+    return fullest;
+}
+
+/// What rounding takes from one jerk time the later ones make up for. Where acceleration left over
+/// would matter in a hold or a cruise, a phase as short as the rounding frees it of that before.
 void fit(const Frame& f, double a_rest, Peak& p) {
     if (!(p.up_hold > 0 || p.down_hold > 0 || p.cruise > 0)) return;
+    const double grain = ulp * f.per_J * std::max({std::abs(f.v), std::abs(f.vf), std::abs(p.v)});
+    const auto matters = [&](double rest, double time) { return std::abs(rest) * time > grain; };
     const double product = f.J * f.tau;
-    const double tau_rest =
+    double sum = p.rise + f.tau;
+    double rest =
+        sum_error(p.rise, f.tau, sum) +
         ((f.a - product) - product_error(f.J, f.tau, product) + f.sign * a_rest) * f.per_J;
-    const double sum = p.rise + f.tau;
-    const double rest = sum_error(p.rise, f.tau, sum) + tau_rest;
-    const double q = sum + rest;
-    if (p.up_hold > 0) p.up_hold *= p.q / q;
-    if (p.cruise > 0) {
-        p.q = q;
-    } else {
-        const double r = p.turn - sum;
-        const double fitted = r + (sum_error(p.turn, -sum, r) - rest);
-        if (p.down_hold > 0) p.down_hold *= p.r / fitted;
-        p.r = fitted;
+    if (const double missing = (p.q - sum) - rest; matters(missing, p.up_hold)) {
+        p.rise_rest = missing;
+        sum = p.q;
+        rest = 0;
     }
-}
-
-void add(const Frame& f, const Peak& p, Steps& steps) {
-    const double J = f.sign * f.J, up = J * p.q, down = -J * p.r;
-    steps.add(p.rise, J, up);
-    steps.add(p.up_hold, 0, up);
     if (p.cruise > 0) {
-        steps.add(p.q, -J, 0);
-        steps.add(p.cruise, 0, 0);
-        steps.add(p.r, -J, down);
-    } else {
-        steps.add(p.turn, -J, down);
+        p.q = std::max(sum + rest, 0.0);
+        const double left_over = (sum - p.q) + rest;
+        p.turn_rest = matters(left_over, p.cruise) ? left_over : 0;
+        return;
     }
-    steps.add(p.down_hold, 0, down);
-    steps.add(p.r, J, 0);
+    const double r = p.turn - sum;
+    const double left_over = (r - p.r) + (sum_error(p.turn, -sum, r) - rest);
+    if (matters(left_over, p.down_hold))
+        p.turn_rest = -left_over;
+    else
+        p.r += left_over;
 }
 
 /// The cruise makes up for what rounding does to the ramps.
 void fit_cruise(const Frame& f, Peak& p) {
-    if (!(p.cruise > 0)) return;
     MotionState s{0, f.v, f.a, f.J};
     s = s.after(p.rise);
     s = MotionState{s.position, s.velocity, f.J * p.q, 0}.after(p.up_hold);
     s = MotionState{s.position, s.velocity, f.J * p.q, -f.J}.after(p.q);
-    const double down = (f.side->V + f.vf) * (p.r + 0.5 * p.down_hold);
-    p.cruise = std::max(f.way - s.position - down, 0.0) / f.side->V;
+    const double down = (p.v + f.vf) * (p.r + 0.5 * p.down_hold);
+    p.cruise = std::max(f.way - s.position - down, 0.0) / p.v;
+}
+
+void add(const Frame& f, const Peak& p, Steps& steps) {
+    const double J = f.sign * f.J, up = J * p.q, down = -J * p.r;
+    const auto add_rest = [&](double rest, double jerk, double acceleration) {
+        if (rest != 0) steps.add(std::abs(rest), std::copysign(jerk, rest * jerk), acceleration);
+    };
+    steps.add(p.rise, J, up);
+    add_rest(p.rise_rest, J, up);
+    steps.add(p.up_hold, 0, up);
+    if (p.cruise > 0) {
+        steps.add(p.q, -J, 0);
+        add_rest(p.turn_rest, -J, 0);
+        steps.add(p.cruise, 0, 0);
+        steps.add(p.r, -J, down);
+    } else {
+        steps.add(p.turn, -J, down);
+        add_rest(p.turn_rest, -J, down);
+    }
+    steps.add(p.down_hold, 0, down);
+    steps.add(p.r, J, 0);
 }
 
 /// Along `sign`: the velocity above the limit once a is at zero.
@@ -328,44 +408,55 @@ double excess(const MotionLimits& limits, const MotionState& s, double sign) {
     return (v - limits.side[sign < 0].V) + 0.5 * a * std::abs(a) * limits.per_J;
 }
 
-/// A state under way back inside its limits, its position counted from the first one's.
+/// A state under way back inside its limits, its position counted from the first one's. With twice
+/// the digits: what is left of a far too great velocity is small beside it.
 struct Return {
     const MotionLimits& limits;
     Steps& steps;
+    Twice x, v, a;
     MotionState s;
-    double a_rest = 0;  ///< what rounding has left of the acceleration beside that of the state
 
-    void run(double time, double jerk, double acceleration) {
+    Return(const MotionLimits& l, Steps& list, const MotionState& from)
+        : limits(l),
+          steps(list),
+          x{0},
+          v{from.velocity},
+          a{from.acceleration},
+          s{0, from.velocity, from.acceleration, 0} {}
+
+    void run(double time, double jerk) {
         if (!(time > 0)) return;
-        steps.add(time, jerk, acceleration);
-        const double change = acceleration - s.acceleration, product = jerk * time;
-        a_rest += (product - change) + (product_error(jerk, time, product) -
-                                        sum_error(acceleration, -s.acceleration, change));
-        s.jerk = jerk;
-        s = s.after(time);
-        s.acceleration = acceleration;
+        const Twice t{time}, j{jerk};
+        x = x + t * (v + t * (a + t * j / 3) * Twice{0.5});
+        v = v + t * (a + t * j * Twice{0.5});
+        a = a + t * j;
+        s = {x.value(), v.value(), a.value(), 0};
+        steps.add(time, jerk, s.acceleration);
     }
+
+    /// What rounding has left of the acceleration beside that of the state.
+    double a_rest() const { return (a - Twice{s.acceleration}).value(); }
 
     /// Until V is joined tangentially: the velocity ramp to it without its last jerk.
     void gently(double sign, double over) {
         const RampShape ramp =
             ramp_shape(-sign * s.acceleration, over, limits.side[sign < 0].D, limits.J);
-        run(ramp.to_peak, -sign * limits.J, -sign * ramp.peak);
-        run(ramp.hold, 0, -sign * ramp.peak);
+        run(ramp.to_peak, -sign * limits.J);
+        run(ramp.hold, 0);
     }
 
     /// Until V is kept, or the limit of the other side could not be any more.
     void soon(double sign) {
         const MotionLimits::Side& side = limits.side[sign < 0];
         const double back = limits.side[sign > 0].V, J = limits.J;
-        const double v = sign * s.velocity, a = sign * s.acceleration;
-        const double keeps = std::sqrt(std::max(a * a + 2 * J * (v - side.V), 0.0));
-        const double turns = std::sqrt(std::max(0.5 * a * a + J * (v + back), 0.0));
+        const double v0 = sign * s.velocity, a0 = sign * s.acceleration;
+        const double keeps = std::sqrt(std::max(a0 * a0 + 2 * J * (v0 - side.V), 0.0));
+        const double turns = std::sqrt(std::max(0.5 * a0 * a0 + J * (v0 + back), 0.0));
         const double peak = std::min({keeps, turns, side.D});
-        run((a + peak) * limits.per_J, -sign * J, -sign * peak);
+        run((a0 + peak) * limits.per_J, -sign * J);
         if (peak < side.D) return;
         const double now = sign * s.velocity;
-        run(std::min(now - side.V, now + back - 0.5 * side.fall) * side.per_D, 0, -sign * peak);
+        run(std::min(now - side.V, now + back - 0.5 * side.fall) * side.per_D, 0);
     }
 };
 
@@ -382,14 +473,13 @@ MotionState enter(const MotionLimits& limits, const MotionState& from, const Pla
                   Steps& steps, double& a_rest) {
     if (is_inside(limits, from)) return {0, from.velocity, from.acceleration, 0};
     const double slack = options.tolerance * ulp;
-    Return back{limits, steps, {0, from.velocity, from.acceleration, 0}, 0};
+    Return back(limits, steps, from);
     for (const double sign : {1.0, -1.0}) {
         const MotionLimits::Side& side = limits.side[sign < 0];
         const double room = slack * std::max(side.V, std::abs(from.velocity));
         if (sign * back.s.acceleration > side.A * (1 + slack) &&
             excess(limits, back.s, sign) <= room)
-            back.run((sign * back.s.acceleration - side.A) * limits.per_J, -sign * limits.J,
-                     sign * side.A);
+            back.run((sign * back.s.acceleration - side.A) * limits.per_J, -sign * limits.J);
     }
     for (const double sign : {1.0, -1.0}) {
         const double V = limits.side[sign < 0].V;
@@ -403,23 +493,33 @@ MotionState enter(const MotionLimits& limits, const MotionState& from, const Pla
             continue;
         break;
     }
-    a_rest = back.a_rest;
+    a_rest = back.a_rest();
     return back.s;
 }
 
-/// The mean of two motions of equal duration, one of weight lambda.
-void blend(const Steps& one, const Steps& other, double lambda, double a, Steps& out) {
+/// The mean of two motions of equal duration, one of weight lambda. Where acceleration left over by
+/// rounding would change the velocity of a hold by more than `grain`, a short phase frees it of
+/// that.
+void blend(const Steps& one, const Steps& other, double lambda, Twice a, double J, double grain,
+           Steps& out) {
     const auto mean = [&](double x, double y) { return lambda * x + (1 - lambda) * y; };
     std::size_t i = 0, k = 0;
     double left_i = one.list[0].duration, left_k = other.list[0].duration;
-    double a_i = a, a_k = a;
+    double a_i = a.high, a_k = a.high, begin = a.high;
     while (i < one.count && k < other.count) {
         const Steps::Step &x = one.list[i], &y = other.list[k];
-        const double time = std::min(left_i, left_k);
+        const double time = std::min(left_i, left_k), jerk = mean(x.jerk, y.jerk);
+        const double rest = (Twice{begin} - a).value();
+        if (jerk == 0 && std::abs(rest) * time > grain) {
+            out.add(std::abs(rest) / J, std::copysign(J, rest), begin);
+            a = {begin};
+        }
         const bool ends_i = left_i <= time, ends_k = left_k <= time;
         a_i = ends_i ? x.acceleration : a_i + x.jerk * time;
         a_k = ends_k ? y.acceleration : a_k + y.jerk * time;
-        out.add(time, mean(x.jerk, y.jerk), mean(a_i, a_k));
+        begin = mean(a_i, a_k);
+        out.add(time, jerk, begin);
+        a = a + Twice{time} * Twice{jerk};
         left_i = ends_i ? one.list[++i].duration : left_i - time;
         left_k = ends_k ? other.list[++k].duration : left_k - time;
     }
@@ -434,35 +534,56 @@ PlanResult check(const MotionLimits& limits, const MotionState& from, const Goal
                : PlanResult::velocity_above_limit;
 }
 
-/// Runs the steps; what they miss is the drift.
-PlanResult write(const Steps& steps, const MotionLimits& limits, const MotionState& from,
-                 const Goal& to, MotionPlan& out) {
-    const double gain = from.acceleration * from.acceleration * limits.per_J;
-    const double greatest =
-        std::abs(from.velocity) + gain + std::max(limits.side[0].V, limits.side[1].V);
-    if (!std::isfinite(std::abs(from.position) + greatest * steps.duration))
-        return PlanResult::not_finite;
-    double x = 0, v = from.velocity, a = from.acceleration, begin = 0;
+/// Runs the steps forwards to the last one, which is run back from the end: a state within it is
+/// as near to the goal as rounding allows. `duration` is what their sum stands for. Refuses what
+/// misses by more than rounding can tell: the numbers are too many decades apart.
+PlanResult write(Steps& steps, const MotionState& from, const Goal& to, double duration,
+                 MotionPlan& out) {
+    constexpr double most = 1e-6;
+    double x = 0, v = from.velocity, path = 0,
+           fastest = std::max(std::abs(v), std::abs(to.velocity));
+    MotionState back{0, to.velocity, 0, 0};
     for (std::size_t i = 0; i < steps.count; ++i) {
-        const Steps::Step& step = steps.list[i];
-        out.phases[i] = {begin, step.duration, {from.position + x, v, a, step.jerk}};
-        const MotionState end = MotionState{x, v, a, step.jerk}.after(step.duration);
+        Steps::Step& step = steps.list[i];
+        const double a = i == 0 ? from.acceleration : steps.list[i - 1].acceleration;
+        step.start = {x, v, a, step.jerk};
+        if (i + 1 == steps.count) {
+            back.jerk = step.jerk;
+            back = back.after(-step.duration);
+            break;
+        }
+        const MotionState end = step.start.after(step.duration);
+        path += std::abs(end.position - x);
+        fastest = std::max(fastest, std::abs(end.velocity));
         x = end.position;
         v = end.velocity;
-        a = step.acceleration;
+    }
+    const double missed = ((to.position - from.position) + back.position) - x;
+    const double size =
+        std::max({std::abs(from.position), std::abs(to.position), path + std::abs(back.position)});
+    if (!(std::abs(missed) <= most * size && std::abs(back.velocity - v) <= most * fastest &&
+          std::abs(duration - steps.duration) <= most * duration &&
+          std::isfinite(size + fastest * duration)))
+        return PlanResult::not_finite;
+    out.phases[0] = {0, 0, from};
+    double begin = 0;
+    for (std::size_t i = 0; i < steps.count; ++i) {
+        const Steps::Step& step = steps.list[i];
+        out.phases[i] = {begin, step.duration, step.start};
+        out.phases[i].start.position += from.position;
         begin += step.duration;
     }
+    if (steps.count > 1) {
+        MotionState& last = out.phases[steps.count - 1].start;
+        last.position = to.position + back.position;
+        last.velocity = back.velocity;
+    }
     out.count = steps.count;
-    out.duration = begin;
+    out.duration = duration;
+    out.missed = steps.count > 1 ? missed : 0;
+    out.haste = duration > 0 ? MotionPlan::spread / duration : 0;
     out.end = {to.position, to.velocity, 0, 0};
-    const double drift = ((to.position - from.position) - x) / begin;
-    out.drift = std::isfinite(drift) ? drift : 0;
     return PlanResult::ok;
-}
-
-void add_fitted(const Frame& f, Peak& p, double a_rest, Steps& steps) {
-    fit(f, a_rest, p);
-    add(f, p, steps);
 }
 
 /// The problem from where the state is inside the limits, with its direct ramp.
@@ -479,14 +600,30 @@ struct Start {
     /// the square root of a rounding would be far more than a rounding of the duration.
     double missing(const MotionLimits& limits, const MotionState& from, const Goal& to,
                    double slack) const {
-        const double e =
-            missing_velocity(state.velocity, state.acceleration, vf, 0.5 * limits.per_J);
-        const double tau = std::abs(state.acceleration) * limits.per_J;
+        const double a = state.acceleration, tau = std::abs(a) * limits.per_J;
+        const double e = (vf - state.velocity) - 0.5 * a * tau;
         const double v = std::max(std::abs(state.velocity), std::abs(vf));
-        if (std::abs(e) > slack * std::max(v, std::abs(state.acceleration) * tau)) return e;
-        const double x = tau * (state.velocity + state.acceleration * tau * (1.0 / 3));
+        if (std::abs(e) > slack * std::max(v, std::abs(a) * tau)) return e;
+        const double x = tau * (state.velocity + a * tau * (1.0 / 3));
         const double size = std::max({std::abs(from.position), std::abs(to.position), v * tau});
-        return std::abs(way - x) <= slack * size ? 0 : e;
+        if (std::abs(way - x) <= slack * size) return 0;
+        return (Twice{vf} - Twice{state.velocity} - Twice{a} * Twice{0.5 * std::abs(a)} / limits.J)
+            .value();
+    }
+
+    /// From the end of the direct ramp to the goal with twice the digits: near the optimum's jump
+    /// the duration changes with its cube root.
+    double exact_miss(const MotionState& from, const Goal& to) const {
+        const bool up = ramp.r == 0;
+        const double sign = up ? 1 : -1, limit = up ? ahead.side->A : ahead.side->D;
+        const Twice a{ahead.a}, v{ahead.v}, goal{vf}, tau = a * Twice{sign} / ahead.J;
+        const Twice foot = v - a * tau * Twice{0.5}, dv = (goal - foot) * Twice{sign};
+        const Twice half = ramp.up_hold > 0 || ramp.down_hold > 0
+                               ? (Twice{limit} / ahead.J + dv / limit) * Twice{0.5}
+                               : root(dv / ahead.J);
+        const Twice missed = Twice{to.position} - Twice{from.position} - Twice{state.position} +
+                             tau * (v - a * tau / 3) - (foot + goal) * half;
+        return missed.value();
     }
 
     Start(const MotionLimits& limits, const MotionState& from, const Goal& to,
@@ -498,27 +635,37 @@ struct Start {
               frame(limits, 1, state, vf, way, missing(limits, from, to, options.tolerance * ulp))),
           ramp(direct(ahead)) {
         const double path = duration() * std::max(std::abs(state.velocity), std::abs(vf));
-        tolerance = options.tolerance * ulp *
-                    std::max({std::abs(from.position), std::abs(to.position), path});
+        const double grain = ulp * std::max({std::abs(from.position), std::abs(to.position), path});
+        tolerance = options.tolerance * grain;
+        ahead.ramp = reach(ahead, ramp);
+        ahead.miss = way + ahead.tau * (ahead.v - ahead.a * ahead.tau * (1.0 / 3)) - ahead.ramp;
+        if (std::abs(ahead.miss) > tolerance && std::abs(ahead.miss) < 0x1p20 * grain)
+            ahead.miss = exact_miss(from, to);
     }
 
-    double duration() const { return time(ramp) - ahead.tau; }
+    double duration() const { return time(ramp); }
     Frame back(const MotionLimits& limits) const {
-        return frame(limits, -1, state, vf, way, ahead.e);
+        Frame f = frame(limits, -1, state, vf, way, ahead.e);
+        f.ramp = reach(f, mirrored(f, ramp));
+        f.miss = -ahead.miss;
+        return f;
     }
 };
 
 /// The first motion of the frame's side after `from` that ends at the goal.
 void add_solved(const Frame& f, const Peak& from, Start& start) {
     Peak p = solve(f, from);
-    fit_cruise(f, p);
-    add_fitted(f, p, start.a_rest, start.steps);
+    fit(f, start.a_rest, p);
+    if (p.cruise > 0) fit_cruise(f, p);
+    add(f, p, start.steps);
 }
 
 void add_soonest(const MotionLimits& limits, Start& start) {
-    const double missing = start.ahead.L - reach(start.ahead, start.ramp);
+    const double missing = start.ahead.miss;
     if (std::abs(missing) <= start.tolerance) {
-        add_fitted(start.ahead, start.ramp, start.a_rest, start.steps);
+        Peak p = start.ramp;
+        fit(start.ahead, start.a_rest, p);
+        add(start.ahead, p, start.steps);
     } else if (missing > 0) {
         add_solved(start.ahead, start.ramp, start);
     } else {
@@ -533,13 +680,13 @@ void add_soonest(const MotionLimits& limits, Start& start) {
 bool add_timed(const MotionLimits& limits, Start& start, double duration) {
     if (duration <= start.duration()) {
         add_soonest(limits, start);
-        return duration == start.duration();
+        return false;
     }
     const Frame back = start.back(limits);
-    Peak up = timed(start.ahead, duration + start.ahead.tau);
-    Peak down = timed(back, duration + back.tau);
-    const double above = start.ahead.L - reach(start.ahead, up);
-    const double below = back.L - reach(back, down);
+    const Peak up = timed(start.ahead, start.ramp, duration);
+    const Peak down = timed(back, mirrored(back, start.ramp), duration);
+    const double above = left(start.ahead, up);
+    const double below = left(back, down);
     if (above > start.tolerance || below > start.tolerance) {
         if (above > start.tolerance)
             add_solved(start.ahead, up, start);
@@ -548,11 +695,13 @@ bool add_timed(const MotionLimits& limits, Start& start, double duration) {
         return false;
     }
     Steps upper, lower;
-    add_fitted(start.ahead, up, start.a_rest, upper);
-    add_fitted(back, down, start.a_rest, lower);
+    add(start.ahead, up, upper);
+    add(back, down, lower);
     const double room = -above - below;
     const double lambda = room > 0 ? std::min(std::max(-below / room, 0.0), 1.0) : 1;
-    blend(upper, lower, lambda, start.state.acceleration, start.steps);
+    const double velocity = std::max({std::abs(up.v), std::abs(down.v), std::abs(start.vf)});
+    blend(upper, lower, lambda, {start.state.acceleration, start.a_rest}, limits.J, ulp * velocity,
+          start.steps);
     return true;
 }
 
@@ -576,7 +725,7 @@ PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal&
     if (const PlanResult result = check(limits, from, to); result != PlanResult::ok) return result;
     Start start(limits, from, to, options);
     add_soonest(limits, start);
-    return write(start.steps, limits, from, to, out);
+    return write(start.steps, from, to, start.steps.duration, out);
 }
 
 PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal& to,
@@ -585,27 +734,23 @@ PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal&
     if (const PlanResult result = check(limits, from, to); result != PlanResult::ok) return result;
     Start start(limits, from, to, options);
     const bool kept = add_timed(limits, start, duration - start.steps.duration);
-    const PlanResult result = write(start.steps, limits, from, to, out);
-    if (result == PlanResult::ok && kept) out.duration = duration;
-    return result;
+    const double taken = kept ? duration : std::max(start.steps.duration, duration);
+    return write(start.steps, from, to, taken, out);
 }
 
 PlanResult synchronise(std::span<const AxisMove> axes, std::span<MotionPlan> out, double least,
                        const PlanOptions& options) {
     double duration = least;
     MotionPlan tried;
-    for (const AxisMove& axis : axes) {
+    for (std::size_t i = 0, kept = 0; kept < axes.size(); i = (i + 1) % axes.size()) {
+        const AxisMove& axis = axes[i];
         const PlanResult result = plan(*axis.limits, axis.from, axis.to, duration, tried, options);
         if (result != PlanResult::ok) return result;
-        duration = std::max(duration, tried.duration);
+        kept = tried.duration > duration ? 1 : kept + 1;
+        duration = tried.duration;
     }
-    for (std::size_t i = 0, kept = 0; kept < axes.size(); i = (i + 1) % axes.size()) {
-        const PlanResult result =
-            plan(*axes[i].limits, axes[i].from, axes[i].to, duration, out[i], options);
-        if (result != PlanResult::ok) return result;
-        kept = out[i].duration > duration ? 1 : kept + 1;
-        duration = out[i].duration;
-    }
+    for (std::size_t i = 0; i < axes.size(); ++i)
+        plan(*axes[i].limits, axes[i].from, axes[i].to, duration, out[i], options);
     return PlanResult::ok;
 }
 
@@ -619,11 +764,14 @@ MotionState MotionPlan::at(double t, std::size_t& phase) const {
         const double beyond = t - duration;
         return {end.position + end.velocity * beyond, end.velocity, 0, 0};
     }
-    t = t > 0 ? t : 0;
+    if (!(t > 0)) return phases[0].start;
     while (phase + 1 < count && t >= phases[phase + 1].begin) ++phase;
     while (phase > 0 && t < phases[phase].begin) --phase;
-    MotionState s = phases[phase].start.after(t - phases[phase].begin);
-    s.position += drift * t;
+    const Phase& now = phases[phase];
+    if (phase + 1 == count)
+        return MotionState{end.position, end.velocity, 0, now.start.jerk}.after(t - duration);
+    MotionState s = now.start.after(t - now.begin);
+    s.position += missed * std::min(t * haste, 1.0);
     return s;
 }
 

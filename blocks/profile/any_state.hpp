@@ -46,8 +46,9 @@ namespace lineshaft {
 /// The optimum jumps at pf = d0, so a tolerance is part of the definition: the direct ramp is taken
 /// if |pf - d0| is within `tolerance` ulp of max(|p0|, |pf|, path), and a velocity or acceleration
 /// within as much of its limit keeps it. 64 is for one plan; a controller that plans anew each scan
-/// from its own rounded state takes 1024. What rounding leaves is spread over the duration, so that
-/// the end is exact.
+/// from its own rounded state takes 1024. What rounding leaves is spread over the first
+/// thousandth of the duration, so that every later state leads to the goal: over all of it, what
+/// each of ten thousand plans adds would come to more than the tolerance.
 ///
 /// For a given duration the motions of F+ and F- are closed forms: m = u/2 with u = T + tau, a
 /// quadratic in q or r, or linear in vp. All limits are convex, so a mean of both keeps them, and
@@ -69,19 +70,22 @@ struct PlanOptions {
     double tolerance = 64;  ///< [ulp], >= 0
 };
 
-/// Phases of constant jerk. A time-optimal one has 10 phases at most, one of given duration 16.
+/// Phases of constant jerk: 12 at most in the least time, 24 in a given one. Some last as long as a
+/// rounding does: they free a long cruise or hold of the acceleration that rounding has left.
 struct MotionPlan {
     struct Phase {
         double begin = 0, duration = 0;  ///< [s]; duration > 0
         MotionState start;               ///< its jerk lasts for the phase
     };
 
-    static constexpr std::size_t most_phases = 16;
+    static constexpr std::size_t most_phases = 24;
+    static constexpr double spread = 1024;
 
     std::array<Phase, most_phases> phases{};
     std::size_t count = 0;
     double duration = 0;  ///< [s]
-    double drift = 0;     ///< what rounding has left of the way, over the duration [u/s]
+    double missed = 0;    ///< what rounding has left of the way [u] ...
+    double haste = 0;     ///< ... and how fast it is made up for [1/s]
     MotionState end;      ///< exactly the goal
 
     /// State t seconds after the start; t < 0 is taken as 0; after the end: constant velocity.

@@ -18,27 +18,25 @@ struct Quartic {
 inline constexpr double householder_near = 3e-5;
 
 /// The root in [low, high] where p rises through zero, by Householder's iteration of the fourth
-/// order from x, until a step is no greater than grain. A step out of the bracket ends at its
-/// border, or halves it where that has been tried. NaN where a term is beyond a double.
-inline double rising_root(const Quartic& p, double x, double grain, double low, double high) {
-    bool low_tried = false, high_tried = false;
+/// order from x, until a step is no greater than near |x|. A step out of the bracket halves it.
+/// NaN where a term is beyond a double.
+inline double rising_root(const Quartic& p, double x, double near, double low, double high) {
     for (int i = 0; i < 100; ++i) {
         const double xx = x * x;
         const double f0 = ((p.c4 * xx + p.c2) * x + (p.c3 * xx + p.c1)) * x + p.c0;
         const double f1 = (4 * p.c4 * xx + 2 * p.c2) * x + (3 * p.c3 * xx + p.c1);
         const double f2 = 6 * p.c4 * xx + (3 * p.c3 * x + p.c2);
         const double f3 = 4 * p.c4 * x + p.c3;
+        if (f0 == 0) return x;
         (f0 < 0 ? low : high) = x;
-        (f0 < 0 ? low_tried : high_tried) = true;
         const double newton = f1 * f1 - f0 * f2;
         const double step = f0 * newton / (f1 * (newton - f0 * f2) + f0 * f0 * f3);
-        double next = f0 == 0 ? x : x - step;
-        if (std::isnan(next)) return next;
-        if (!(next >= low)) next = low_tried ? 0.5 * (low + high) : low;
-        if (!(next <= high)) next = high_tried ? 0.5 * (low + high) : high;
-        const bool done = std::abs(next - x) <= grain;
-        x = next;
-        if (done) break;
+        if (std::isnan(step)) return step;
+        const double next = x - step;
+        const bool inside = next >= low && next <= high;
+        const double last = x;
+        x = inside ? next : 0.5 * (low + high);
+        if (x == last || (inside && std::abs(step) <= near * x)) break;
     }
     return x;
 }
@@ -67,42 +65,48 @@ inline double rough_root(double a, double b, double k) {
     return k * g * (g + 0.602 * b) / (g * g + b * (0.770 * g + 0.602 * b));
 }
 
-/// Both ramps triangular: the sum m of their jerk times in [low, high],
-///     J/4 m^4 + S m^2 - L m - Dv^2/(4J) = 0,
-/// S and Dv sum and difference of the velocities at their feet, L the length of both.
-inline double triangular_sum(double J, double S, double Dv, double L, double low, double high) {
-    double guess = low;
-    if (L > 0 && S >= 0)
-        guess = rough_root(0.25 * J, S, rough_cube_root(4 * L / J));
-    else if (L > 0) {
-        const double k = rough_cube_root(4 * L / J);
-        guess = std::sqrt(k * k - 4 * S / J);
-    } else if (S < 0) {
-        guess = std::sqrt(-4 * S / J);
-    }
-    guess = std::max(low, std::min(high, guess));
-    return rising_root({0.25 * J, 0, S, -L, -0.25 * Dv * Dv / J}, guess, householder_near * guess,
-                       low, high);
+/// Where the equations begin: two ramps over the peak velocity v, whose triangular ones have the
+/// jerk times q and r and are to become longer.
+struct PeakStart {
+    double J, v, q, r;
+    double m;  ///< q + r, which may be less than both roundings
+};
+
+/// Both ramps triangular: the sum m + y of their jerk times that adds the length `miss` > 0,
+///     J/4 y^4 + J m y^3 + (2v + J (q^2 + 6qr + r^2)/2) y^2 + m (2v + Jqr) y = miss (m + y).
+inline Quartic triangular_equation(const PeakStart& s, double miss) {
+    const double qr = s.q * s.r, c2 = 2 * s.v + s.J * (0.5 * (s.q * s.q + s.r * s.r) + 3 * qr);
+    return {0.25 * s.J, s.J * s.m, c2, s.m * (2 * s.v + s.J * qr) - miss, -miss * s.m};
 }
 
-/// One ramp triangular, with velocity v at its foot, the other trapezoidal with jerk time t and c =
-/// J t^2: the jerk time s of the triangular one in [low, high],
-///     J/(2t) s^4 + J s^3 + (v + c/2)/t s^2 + 2 v s - rest = 0,
-/// rest the length that is left by a trapezoidal ramp from foot to foot.
-inline Quartic mixed_equation(double J, double v, double t, double c, double rest) {
-    return {0.5 * J / t, J, (v + 0.5 * c) / t, 2 * v, -rest};
+inline double triangular_step(const PeakStart& s, double miss, double high) {
+    const Quartic p = triangular_equation(s, miss);
+    const double k = rough_cube_root(miss / p.c4), part = 1 / (s.m + k);
+    const double a = (p.c4 * k + p.c3) * part, b = (p.c2 * k + p.c1 + miss) * part;
+    const double guess =
+        b >= 0 ? rough_root(a, b, k * rough_cube_root(p.c4 / a)) : std::sqrt(k * k - b / a);
+    return rising_root(p, std::min(high, guess), householder_near, 0, high);
 }
 
-inline double mixed_time(double J, double v, double t, double c, double rest, double low,
-                         double high) {
-    const double h = 1.7 * v / c;
-    const double r = 2 * rest / (c * t);
+/// One ramp triangular with the jerk time q, the other held after the jerk time t: the jerk time q
+/// + x that adds the length `miss` > 0,
+///     J/(2t) x^4 + J (1 + 2q/t) x^3 + (v/t + J (2q^2/t + 3q + t/2)) x^2 + (1 + q/t)(2v + Jqt) x =
+///     miss.
+inline Quartic mixed_equation(const PeakStart& s, double t, double miss) {
+    const double per_t = 1 / t, u = s.q * per_t;
+    return {0.5 * s.J * per_t, s.J * (1 + 2 * u), s.v * per_t + s.J * ((2 * u + 3) * s.q + 0.5 * t),
+            (1 + u) * (2 * s.v + s.J * s.q * t), -miss};
+}
+
+inline double mixed_step(const PeakStart& s, double t, double miss, double high) {
+    const Quartic p = mixed_equation(s, t, miss);
+    const double per_t = 1 / t, u = s.q * per_t, z0 = u * (u + 1), c = s.J * t * t;
+    const double h = 1.7 * (s.v / c - u * u);
+    const double r = z0 * z0 + 2 * h * z0 + 2 * miss * per_t / c;
     const double root = std::sqrt(std::max(0.0, h * h + r));
     const double z = h >= 0 ? r / (h + root) : root - h;
-    const double guess =
-        std::max(low, std::min(high, t * (2 * z / (1 + std::sqrt(std::max(0.0, 1 + 4 * z))))));
-    const double grain = std::max(householder_near * guess, 0x1p-53 * t);
-    return rising_root(mixed_equation(J, v, t, c, rest), guess, grain, low, high);
+    const double q = t * (2 * z / (1 + std::sqrt(std::max(0.0, 1 + 4 * z))));
+    return rising_root(p, std::max(0.0, std::min(high, q - s.q)), householder_near, 0, high);
 }
 
 }  // namespace lineshaft

@@ -66,7 +66,7 @@ Ramp accelerate(double V, const Frame& f) {
     }
     const double high = f.L / (2 * V) < f.tm ? f.L / (2 * V) : f.tm;
     const double guess = rough_root(f.J, 2 * V, rough_cube_root(f.L / f.J));
-    return {rising_root({0, f.J, 0, 2 * V, -f.L}, guess, householder_near * guess, 0, high), 0};
+    return {rising_root({0, f.J, 0, 2 * V, -f.L}, guess, householder_near, 0, high), 0};
 }
 
 /// Near the greatest length that a deceleration can cover the time changes with the square root of
@@ -112,8 +112,8 @@ Ramp decelerate(double V, const Frame& f) {
     const double high = std::sqrt(V / (1.5 * f.J));
     const double m = std::sqrt(above_zero(1 - 0.75 * f.L / (V * high)));
     const double guess = high * (1 - m) * (1 + m * (0.174 + 0.147 * m));
-    const double grain = householder_near * std::min(guess, high - guess);
-    const double s = rising_root({0, -f.J, 0, 2 * V, -f.L}, guess, grain, 0, high);
+    const double near = householder_near * std::min(1.0, (high - guess) / guess);
+    const double s = rising_root({0, -f.J, 0, 2 * V, -f.L}, guess, near, 0, high);
     return {m > 1e-2 ? s : refine_near_turn(s, V, f, high), 0};
 }
 
@@ -131,14 +131,15 @@ Ramps both_trapezoidal(const Frame& f) {
 
 Ramps one_trapezoidal(const Frame& f) {
     const double rest = f.L - 0.5 * (f.lo + f.hi) * (f.tm + f.D / f.A);
-    const double s = mixed_time(f.J, f.hi, f.tm, f.c, rest, 0, f.tm);
+    const double s = mixed_step({f.J, f.hi, 0, 0, 0}, f.tm, rest, f.tm);
     return {{s, 0}, {f.tm, above_zero((f.D + f.J * s * s) / f.A - f.tm)}};
 }
 
 Ramps neither_trapezoidal(const Frame& f) {
-    const double sum = triangular_sum(f.J, f.lo + f.hi, f.D, f.L, std::sqrt(f.D / f.J), 2 * f.tm);
-    const double difference = f.D / (f.J * sum);
-    return {{above_zero(0.5 * (sum - difference)), 0}, {0.5 * (sum + difference), 0}};
+    const double q = std::sqrt(f.D / f.J);
+    const double y = triangular_step({f.J, f.hi, q, 0, q}, f.L - (f.lo + f.hi) * q, 2 * f.tm - q);
+    const double half = 0.5 * y / (q + y);
+    return {{half * (2 * q + y), 0}, {q + half * y, 0}};
 }
 
 /// How many of the two ramps to a peak below Vm are triangular: the length at the borders decides.

@@ -208,8 +208,8 @@ inline const std::vector<Family>& families() {
         {"asymmetric limits",
          [](Random& r) {
              Problem p = random_limits(r);
-             p.D = p.A * r.decades(-2, 2);
-             p.Vmin = -p.V * r.decades(-2, 2);
+             p.D = p.A * r.decades(-4, 4);
+             p.Vmin = -p.V * r.decades(-4, 4);
              p.vf = r.one_in(2) ? 0 : r.between(p.Vmin, p.V);
              random_start(r, p);
              random_way(r, p);

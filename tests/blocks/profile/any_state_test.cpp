@@ -26,6 +26,23 @@ long wanted(const char* variable, long otherwise) {
     return text == nullptr ? otherwise : std::atol(text);
 }
 
+/// The length of the path within a time in which the acceleration keeps its sign.
+double path_within(double v, double a, double j, double d) {
+    const double end = d * (v + d * (a / 2 + d * j / 6));
+    const double last = v + d * (a + d * j / 2);
+    if (v * last >= 0) return std::abs(end);
+    const double root = std::sqrt(std::max(a * a - 2 * j * v, 0.0));
+    const double t = 2 * -v / (a + std::copysign(root, a == 0 ? last - v : a));
+    const double turn = t * (v + t * (a / 2 + t * j / 6));
+    return std::abs(turn) + std::abs(end - turn);
+}
+
+double path_of(double v, double a, double j, double d) {
+    const double turn = j == 0 ? 0 : -a / j;
+    if (!(turn > 0 && turn < d)) return path_within(v, a, j, d);
+    return path_within(v, a, j, turn) + path_within(v + turn * (a + turn * j / 2), 0, j, d - turn);
+}
+
 /// The phases run blindly in quadruple precision.
 struct Run {
     double position = 0, velocity = 0;  ///< errors at the end [ulp]
@@ -34,7 +51,8 @@ struct Run {
 
 Run run(const Problem& p, const MotionPlan& out, bool outside, bool timed = false) {
     Run result;
-    Quad x = p.p0, v = p.v0, a = p.a0, path = 0;
+    Quad x = p.p0, v = p.v0, a = p.a0;
+    double path = 0;
     bool inside = false;
     const double swing = outside ? std::max(std::abs(p.v0), std::abs(turned(p))) : 0;
     const double push = outside ? std::abs(p.a0) : 0;
@@ -52,17 +70,18 @@ Run run(const Problem& p, const MotionPlan& out, bool outside, bool timed = fals
     for (std::size_t i = 0; i < out.count; ++i) {
         const Quad d = out.phases[i].duration, j = out.phases[i].start.jerk;
         if (std::abs(static_cast<double>(j)) > p.J * (1 + 1e-9)) result.over = 1;
-        const Quad from = x;
+        path += path_of(static_cast<double>(v), static_cast<double>(a), static_cast<double>(j),
+                        static_cast<double>(d));
         if (const Quad turn = j == 0 ? Quad(0) : -a / j; turn > 0 && turn < d)
             look(v + turn * (a + turn * j / 2), 0);
         x += d * (v + d * (a / 2 + d * j / 6));
         v += d * (a + d * j / 2);
         a += d * j;
-        path += std::abs(static_cast<double>(x - from));
         look(v, a);
     }
     const double top = std::max({p.V, -p.Vmin, std::abs(p.v0), std::abs(turned(p))});
-    const double far = outside || timed ? top * out.duration : static_cast<double>(path);
+    // A given duration takes the mean of two motions that go as far as they can.
+    const double far = timed ? top * out.duration : path;
     const double size = std::max({std::abs(p.p0), std::abs(p.pf), far});
     result.position = std::abs(static_cast<double>(x - p.pf)) / oracle::ulp(size);
     result.velocity = std::abs(static_cast<double>(v - p.vf)) / oracle::ulp(top);
@@ -109,7 +128,7 @@ void check(const Problem& p, const Family& family, Figures& figures) {
     figures.velocity.push_back(static_cast<float>(r.velocity));
     figures.over = std::max(figures.over, r.over);
     if (!(r.over <= family.bar)) figures.fail("over a limit by " + std::to_string(r.over), p);
-    const double wrong = 10 * family.bar / std::numeric_limits<double>::epsilon();
+    const double wrong = family.bar / std::numeric_limits<double>::epsilon();
     if (!(r.position <= wrong && r.velocity <= wrong)) figures.fail("misses the goal", p);
     const double late = out.duration / duration(p) - 1;
     figures.late = std::max(figures.late, late);
@@ -177,7 +196,7 @@ struct Stream {
 
 TEST_CASE("planned anew every scan, a motion neither turns off nor sticks", "[any_state]") {
     const long scans = wanted("LINESHAFT_SCANS", 200000);
-    Random random{static_cast<std::uint64_t>(wanted("LINESHAFT_SEED", 22))};
+    Random random{static_cast<std::uint64_t>(wanted("LINESHAFT_SEED", 7))};
     long failures = 0, detours = 0, goals = 0, over = 0;
     double worst = 0;
     Stream s;
@@ -237,7 +256,10 @@ TEST_CASE("a given duration is kept, or the next feasible one is", "[any_state]"
             }
             most = std::max(most, out.count);
             const Run r = run(p, out, family.outside, true);
-            const double wrong = 10 * family.bar / std::numeric_limits<double>::epsilon();
+            figures.position.push_back(static_cast<float>(r.position));
+            figures.velocity.push_back(static_cast<float>(r.velocity));
+            figures.over = std::max(figures.over, r.over);
+            const double wrong = family.bar / std::numeric_limits<double>::epsilon();
             if (!(r.over <= family.bar)) figures.fail("over a limit", p);
             if (!(r.position <= wrong && r.velocity <= wrong)) figures.fail("misses the goal", p);
             if (!(out.duration >= asked)) figures.fail("sooner than asked for", p);
@@ -248,6 +270,7 @@ TEST_CASE("a given duration is kept, or the next feasible one is", "[any_state]"
         }
         INFO(family.name << ", seed " << seed);
         CHECK(figures.failed == 0);
+        figures.print(family.name);
     }
     CHECK(blocked > 0);
     if (std::getenv("LINESHAFT_FIGURES") != nullptr)
@@ -277,23 +300,19 @@ TEST_CASE("axes that are synchronised arrive together, at the least common durat
             axes[k] = {&limits[k], {p.p0, p.v0, p.a0, 0}, {p.pf, p.vf}};
         }
         REQUIRE(synchronise(axes, out) == PlanResult::ok);
-        double alone = 0;
-        const auto feasible = [&](double T) {
-            return std::ranges::all_of(
-                problems, [&](const Problem& p) { return duration(p, T) <= T * (1 + 1e-9); });
-        };
+        // Each axis in turn asks for its own next feasible duration, found by halving.
+        double least = 0;
+        for (std::size_t k = 0, kept = 0; kept < 3; k = (k + 1) % 3) {
+            const double next = duration(problems[k], least);
+            kept = next > least * (1 + 1e-10) ? 1 : kept + 1;
+            least = std::max(least, next);
+        }
+        INFO(line(problems[0]) << line(problems[1]) << line(problems[2]));
         for (std::size_t k = 0; k < 3; ++k) {
             REQUIRE(out[k].duration == out[0].duration);
             REQUIRE(run(problems[k], out[k], false, true).position < 4500);
-            alone = std::max(alone, duration(problems[k]));
         }
-        // Between the slowest axis and the result no duration is feasible: where there is a gap,
-        // the next feasible one from any point in it is the result.
-        const double T = out[0].duration;
-        INFO(line(problems[0]) << line(problems[1]) << line(problems[2]));
-        REQUIRE(T >= alone * (1 - 1e-9));
-        for (int k = 0; T > alone * (1 + 1e-8) && k < 40; ++k)
-            REQUIRE_FALSE(feasible(alone + (T - alone) * (k + 0.5) / 40.5));
+        REQUIRE(std::abs(out[0].duration - least) <= 1e-9 * least);
     }
 }
 
@@ -329,7 +348,59 @@ TEST_CASE("a plan says what it cannot do and is not written then", "[any_state]"
         CHECK(plan(limits, {0, huge, 0, 0}, {5, 0}, out) == PlanResult::not_finite);
         CHECK(plan(limits, {0, 0, huge, 0}, {5, 0}, out) == PlanResult::not_finite);
     }
+    // An acceleration limit 120 decades below the rest: the way back would take 1e120 s.
+    REQUIRE(limits.set(1, -2, 0x1p-399, 1, 4) == PlanResult::ok);
+    CHECK(plan(limits, {2, -1.0001, 0.5, 0}, {-3, -0.5}, out) == PlanResult::not_finite);
+    CHECK(plan(limits, {2, -1.0001, 0.5, 0}, {-3, -0.5}, 9, out) == PlanResult::not_finite);
     CHECK(out.duration == duration);
+}
+
+TEST_CASE("axes are planned together or not at all", "[any_state]") {
+    MotionLimits limits;
+    REQUIRE(limits.set(2, -1, 4, 3, 10) == PlanResult::ok);
+    const AxisMove good{&limits, {}, {5, 0}}, bad{&limits, {}, {5, 3}};
+    std::array<MotionPlan, 2> out;
+    CHECK(synchronise(std::array{good, bad}, out) == PlanResult::velocity_above_limit);
+    CHECK(synchronise(std::array{good, good}, out, HUGE_VAL) == PlanResult::not_finite);
+    CHECK(out[0].count + out[1].count == 0);
+    REQUIRE(synchronise(std::array{good, good}, out) == PlanResult::ok);
+    CHECK(out[0].duration == Approx(3.4333333333));
+    REQUIRE(synchronise(std::array{good, good}, out, 7) == PlanResult::ok);
+    CHECK(out[0].duration == 7);
+    CHECK(out[1].duration == 7);
+}
+
+TEST_CASE("a goal beside the end of the direct ramp loses no digits", "[any_state]") {
+    for (const Problem& p : {
+             Problem{0.6528473273379396, 1.3848704785435331, -9.5279708373075991,
+                     0.78703933072734222, 0, 118.98444094878565, -716.44986302238851,
+                     88.133133768632959, 88.133133768632959, 32.776432772275527},
+             Problem{-95.543140272823138, 10.454575332983609, -10.037780443064946,
+                     -88.284022515133998, 0, 1887.0873838815312, -16199.286868371153,
+                     180.51968032044422, 484.08552479463805, 4.8188010040578462},
+         }) {
+        Figures figures;
+        check(p, families().front(), figures);
+        CHECK(figures.failed == 0);
+    }
+}
+
+TEST_CASE("a state of a plan is on its way as exactly as rounding allows", "[any_state]") {
+    Random random{27};
+    for (int i = 0; i < 2000; ++i) {
+        const Problem p = any(random);
+        MotionPlan out, again;
+        REQUIRE(plan_of(p, out, {Entry::gentle, 1024}) == PlanResult::ok);
+        Problem q = p;
+        const double t = out.duration * random.between(0.01, 0.9999);
+        const MotionState s = out.at(t);
+        q.p0 = s.position;
+        q.v0 = s.velocity;
+        q.a0 = s.acceleration;
+        INFO(line(p) << ", at " << t);
+        REQUIRE(plan_of(q, again, {Entry::gentle, 1024}) == PlanResult::ok);
+        REQUIRE(std::abs(again.duration - (out.duration - t)) <= 1e-9 * out.duration);
+    }
 }
 
 TEST_CASE("the example of a dip and of a lowered velocity", "[any_state]") {
