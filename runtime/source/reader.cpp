@@ -94,13 +94,18 @@ bool is_identifier(std::string_view text) {
 
 /// `x`, or a part of it as `table[1,2].x`.
 bool is_path(std::string_view text) {
-    const auto is_part = [](char c) {
-        return is_letter(c) || is_digit(c) || c == '.' || c == '[' || c == ']' || c == ',' ||
-               c == '-';
-    };
-    const bool ends = !text.empty() && text.back() != '.' && text.back() != '[';
-    return ends && is_letter(text.front()) && std::ranges::all_of(text, is_part) &&
-           (text.find('-') == std::string_view::npos || text.back() == ']');
+    constexpr std::string_view marks = ".[],";
+    char before = '.';
+    for (const char c : text) {
+        const bool begins = before == '.' || before == '[' || before == ',';
+        const bool negative = c == '-' && (before == '[' || before == ',');
+        if (!is_letter(c) && !is_digit(c) && !negative &&
+            (begins || marks.find(c) == std::string_view::npos))
+            return false;
+        before = c;
+    }
+    return !text.empty() && is_letter(text.front()) &&
+           (before == ']' || marks.find(before) == std::string_view::npos);
 }
 
 std::optional<SignalName> split_signal(std::string_view text) {
