@@ -1,5 +1,6 @@
 #include "blocks/logic/signal.hpp"
 
+#include <bit>
 #include <limits>
 
 #include <sleef.h>
@@ -9,6 +10,33 @@ namespace lineshaft {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// 1 - exp(-dt / T); not a number where T is no time constant.
+double share_of(std::int64_t step, double time_constant) {
+    if (!all_finite(time_constant) || time_constant < 0) return not_a_number;
+    return time_constant > 0 ? -Sleef_cinz_expm1d1_u10purec(-seconds(step) / time_constant) : 1;
+}
+
+struct Share {
+    std::int64_t step = 0;            ///< [ns]
+    std::uint64_t time_constant = 0;  ///< its bits
+    double share = 1;
+};
+
+/// share_of(), from those used lately where it is among them: under jitter all filters of a task
+/// meet the same new interval, and the exponential takes ten times as long as the rest. A thread
+/// has its own, so that nobody waits; what is found is what would be computed.
+double recent_share(std::int64_t step, double time_constant) {
+    constexpr int bits = 8;
+    thread_local Share recent[1 << bits];
+    const auto constant = std::bit_cast<std::uint64_t>(time_constant);
+    const std::uint64_t mixed =
+        (static_cast<std::uint64_t>(step) ^ constant >> 20) * 0x9e3779b97f4a7c15u;
+    Share& share = recent[mixed >> (64 - bits)];
+    if (share.step != step || share.time_constant != constant)
+        share = {step, constant, share_of(step, time_constant)};
+    return share.share;
+}
 
 }  // namespace
 
@@ -70,9 +98,7 @@ void FilterPt1::scan(const Scan& now) {
 void FilterPt1::set_share(std::int64_t step) {
     share_step = step;
     share_constant = time_constant;
-    share = not_a_number;
-    if (!all_finite(time_constant) || time_constant < 0) return;
-    share = time_constant > 0 ? -Sleef_cinz_expm1d1_u10purec(-seconds(step) / time_constant) : 1;
+    share = recent_share(step, time_constant);
 }
 
 NumberError FilterPt1::why_not_finite() const {

@@ -19,7 +19,9 @@ Row row_of(std::span<const Copy> copies, Transfer transfer) {
         row.target_step = copies[1].target - next.target;
     }
     for (const Copy& copy : copies) {
-        if (copy.source != next.source || copy.target != next.target) break;
+        if (copy.source != next.source || copy.target != next.target ||
+            copy.negates != next.negates)
+            break;
         ++row.count;
         next.source += row.source_step;
         next.target += row.target_step;
@@ -44,14 +46,12 @@ std::uint32_t append(std::span<const Copy> copies, Transfer transfer, Wires& wir
 
 /// What feeds the inputs of a call's blocks, by what happens on the way.
 struct CallWires {
-    std::vector<Copy> words, booleans, negated, widened;
+    std::vector<Copy> booleans, words, widened;
     std::vector<ScaledCopy> scaled;
 };
 
 void add(const Wire& wire, Type type, Copy copy, CallWires& to) {
-    if (wire.negated)
-        to.negated.push_back(copy);
-    else if (wire.scaled)
+    if (wire.scaled)
         to.scaled.push_back({copy.source, copy.target, wire.factor, wire.divisor, wire.widens});
     else if (wire.widens)
         to.widened.push_back(copy);
@@ -65,7 +65,7 @@ CallWires wires_of(const Net& net, std::span<const int> blocks, Machine& machine
         for (const Wire& wire : net.wires_to(block)) {
             const std::byte* from = wire.late == Late::published ? machine.published(wire.from)
                                                                  : machine.live(wire.from);
-            add(wire, net.field(wire.to).type, {from, machine.live(wire.to)}, out);
+            add(wire, net.field(wire.to).type, {from, machine.live(wire.to), wire.negated}, out);
         }
     }
     return out;
@@ -80,6 +80,35 @@ std::vector<Transferred> by_input(std::vector<Transferred> wires, const Call& ca
     return wires;
 }
 
+/// True when the call holds them itself.
+bool hold(const CallWires& wires, Call& call) {
+    const auto only = [&](const std::vector<Copy>& copies, Feed one, Feed two) {
+        if (copies.empty() || copies.size() > std::size(call.copies)) return false;
+        call.feed = copies.size() == 1 ? one : two;
+        std::ranges::copy(copies, call.copies);
+        return true;
+    };
+    const auto& [booleans, words, widened, scaled] = wires;
+    const std::size_t count = booleans.size() + words.size() + widened.size() + scaled.size();
+    if (count == 0) return true;
+    if (count == booleans.size()) return only(booleans, Feed::boolean, Feed::two_booleans);
+    if (count == words.size()) return only(words, Feed::word, Feed::two_words);
+    return count == 1 && only(widened, Feed::widened, Feed::many);
+}
+
+void append_wires(const CallWires& own, Call& call, Wires& wires) {
+    if (hold(own, call)) return;
+    call.feed = Feed::many;
+    const std::size_t rows = wires.rows.size();
+    call.booleans = append(by_input(own.booleans, call), Transfer::boolean, wires);
+    call.words = append(by_input(own.words, call), Transfer::word, wires);
+    call.widened = append(by_input(own.widened, call), Transfer::widened, wires);
+    call.rows = static_cast<std::uint32_t>(wires.rows.size() - rows);
+    const auto scaled = by_input(own.scaled, call);
+    wires.scaled.insert(wires.scaled.end(), scaled.begin(), scaled.end());
+    call.scaled = static_cast<std::uint32_t>(scaled.size());
+}
+
 void append_call(const Net& net, std::span<const int> blocks, Machine& machine) {
     const Instance& first = net.instance(blocks.front());
     Task& task = machine.tasks[static_cast<std::size_t>(first.task)];
@@ -89,17 +118,7 @@ void append_call(const Net& net, std::span<const int> blocks, Machine& machine) 
     call.first = machine.blocks[static_cast<std::size_t>(blocks.front())].live;
     call.count = blocks.size();
     call.size = first.type->size;
-    const CallWires own = wires_of(net, blocks, machine);
-    Wires& wires = task.wires;
-    const std::size_t rows = wires.rows.size();
-    call.words = append(by_input(own.words, call), Transfer::word, wires);
-    call.booleans = append(by_input(own.booleans, call), Transfer::boolean, wires);
-    call.negated = append(by_input(own.negated, call), Transfer::negated, wires);
-    call.widened = append(by_input(own.widened, call), Transfer::widened, wires);
-    call.rows = static_cast<std::uint32_t>(wires.rows.size() - rows);
-    const auto scaled = by_input(own.scaled, call);
-    wires.scaled.insert(wires.scaled.end(), scaled.begin(), scaled.end());
-    call.scaled = static_cast<std::uint32_t>(scaled.size());
+    append_wires(wires_of(net, blocks, machine), call, task.wires);
 }
 
 }  // namespace

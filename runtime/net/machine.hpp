@@ -18,13 +18,13 @@ namespace lineshaft {
 struct Copy {
     const std::byte* source = nullptr;
     std::byte* target = nullptr;
+    bool negates = false;  ///< a boolean (`NOT x.q`)
 };
 
 /// What becomes of it on the way.
 enum class Transfer : std::uint8_t {
+    boolean,  ///< 1 byte, negated or as it is
     word,     ///< 8 bytes, as they are
-    boolean,  ///< 1 byte, as it is
-    negated,  ///< a boolean (`NOT x.q`)
     widened,  ///< an integer to a real
 };
 
@@ -47,20 +47,24 @@ struct ScaledCopy {
 
 /// What feeds the inputs of a call's blocks, or of all of a task's, one call after the other.
 struct Wires {
-    std::vector<Copy> copies;  ///< those in no row: of each call by their transfers
+    std::vector<Copy> copies;  ///< those in no row: of each call in the order of Transfer
     std::vector<Row> rows;
     std::vector<ScaledCopy> scaled;
 };
 
+/// What feeds a call: what most of them have, or else all kinds.
+enum class Feed : std::uint8_t { no_wire, boolean, two_booleans, word, two_words, widened, many };
+
 /// One entry of a task's list: blocks of one kind, of which none waits for another, one behind the
-/// other in memory. Their inputs are the next so many of the task's wires.
+/// other in memory.
 struct Call {
     ScanBlocks scan = nullptr;
     Context context = {};
     std::byte* first = nullptr;
     std::size_t count = 0, size = 0;  ///< of blocks; [bytes] of each
-    std::uint32_t words = 0, booleans = 0, negated = 0, widened = 0;  ///< of copies
-    std::uint32_t rows = 0, scaled = 0;
+    Feed feed = Feed::no_wire;
+    Copy copies[2] = {};  ///< where Feed::many does not take the next so many of the task's wires:
+    std::uint32_t booleans = 0, words = 0, widened = 0, rows = 0, scaled = 0;
 
     std::byte* block(std::size_t i) const { return first + i * size; }
 };

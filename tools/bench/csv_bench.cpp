@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -5,9 +6,11 @@
 #include <filesystem>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <benchmark/benchmark.h>
+#include <unistd.h>
 
 #include "runtime/trace/csv_writer.hpp"
 #include "tools/bench/circle_trace.hpp"
@@ -53,8 +56,7 @@ std::string file() {
 
 /// Before each writing: a file that is written over is flushed when it is closed, by ext4.
 void remove_file() {
-    std::filesystem::remove(file());
-    std::filesystem::remove(file() + ".part");
+    for (const char* end : {"", ".part", "-metadata.json"}) std::filesystem::remove(file() + end);
 }
 
 void writer(benchmark::State& state, Table (*make)()) {
@@ -71,6 +73,25 @@ void writer(benchmark::State& state, Table (*make)()) {
     remove_file();
 }
 
+/// As a run ends: the file is on the disk, whole, under its name.
+void writer_to_disk(benchmark::State& state, Table (*make)()) {
+    const Table table = make();
+    Quickest quickest;
+    for (auto _ : state) {
+        remove_file();
+        OutputSet files;
+        quickest.time([&] {
+            CsvWriter writer(file(), table.setup);
+            writer.rows(table.words.data(), table.rows());
+            writer.finish(files, {});
+            files.commit();
+        });
+        if (!files.error().empty()) state.SkipWithError(files.error().c_str());
+    }
+    quickest.count(state, table.words.size());
+    remove_file();
+}
+
 char* append(char* end, const Table& table, std::size_t i) {
     const std::size_t column = i % table.row_words();
     const std::uint64_t word = table.words[i];
@@ -81,8 +102,32 @@ char* append(char* end, const Table& table, std::size_t i) {
     return std::to_chars(end, limit, std::bit_cast<double>(word)).ptr;
 }
 
-/// The same rows with std::to_chars alone: what a plain loop takes.
-void bare(benchmark::State& state, Table (*make)()) {
+/// The rows with std::to_chars, each cell anew: what a plain loop takes. Returns the end.
+char* format_all(const Table& table, char* end) {
+    for (std::size_t i = 0; i < table.words.size(); ++i) {
+        end = append(end, table, i);
+        *end++ = (i + 1) % table.row_words() == 0 ? '\n' : ',';
+    }
+    return end;
+}
+
+/// Likewise, but a cell that is as in the row before is copied from there, as the writer does.
+char* format_changes(const Table& table, char* end) {
+    std::vector<std::string_view> before(table.row_words());
+    for (std::size_t i = 0; i < table.words.size(); ++i) {
+        const std::size_t column = i % table.row_words();
+        const bool is_same =
+            i >= table.row_words() && table.words[i] == table.words[i - table.row_words()];
+        char* const begin = end;
+        end = is_same ? std::ranges::copy(before[column], end).out : append(end, table, i);
+        before[column] = {begin, end};
+        *end++ = column + 1 == table.row_words() ? '\n' : ',';
+    }
+    return end;
+}
+
+void bare(benchmark::State& state, Table (*make)(), char* (*format)(const Table&, char*),
+          bool to_disk) {
     const Table table = make();
     std::vector<char> text(table.words.size() * 32);
     Quickest quickest;
@@ -90,12 +135,10 @@ void bare(benchmark::State& state, Table (*make)()) {
         remove_file();
         quickest.time([&] {
             std::FILE* out = std::fopen(file().c_str(), "wb");
-            char* end = text.data();
-            for (std::size_t i = 0; i < table.words.size(); ++i) {
-                end = append(end, table, i);
-                *end++ = (i + 1) % table.row_words() == 0 ? '\n' : ',';
-            }
+            const char* const end = format(table, text.data());
             std::fwrite(text.data(), 1, static_cast<std::size_t>(end - text.data()), out);
+            std::fflush(out);
+            if (to_disk) fsync(fileno(out));
             std::fclose(out);
         });
     }
@@ -106,7 +149,10 @@ void bare(benchmark::State& state, Table (*make)()) {
 }  // namespace
 
 BENCHMARK_CAPTURE(writer, circle, circle);
-BENCHMARK_CAPTURE(bare, circle, circle);
+BENCHMARK_CAPTURE(bare, circle, circle, format_all, false);
+BENCHMARK_CAPTURE(bare, circle_copying, circle, format_changes, false);
+BENCHMARK_CAPTURE(writer_to_disk, circle, circle);
+BENCHMARK_CAPTURE(bare, circle_copying_to_disk, circle, format_changes, true);
 BENCHMARK_CAPTURE(writer, random, random_reals);
-BENCHMARK_CAPTURE(bare, random, random_reals);
+BENCHMARK_CAPTURE(bare, random, random_reals, format_all, false);
 BENCHMARK_MAIN();

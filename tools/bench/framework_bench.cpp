@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/run/link.hpp"
+#include "runtime/run/single_run.hpp"
 #include "runtime/scan/executive.hpp"
 #include "tools/bench/hand_small_blocks.hpp"
 #include "tools/bench/quickest.hpp"
@@ -29,24 +31,47 @@ Linked linked(const std::string& text) {
     return result;
 }
 
-std::string head() {
+std::string head(const std::string& jitter = {}) {
     return fmt::format(
-        "lineshaft: 1\ntasks: {{m: {{every: {} ns}}}}\nrun: {{for: {} ns}}\nblocks:\n",
-        small_interval, static_cast<std::int64_t>(scans - 1) * small_interval);
+        "lineshaft: 1\ntasks: {{m: {{every: {} ns{}}}}}\nrun: {{for: {} ns}}\nblocks:\n",
+        small_interval, jitter, static_cast<std::int64_t>(scans - 1) * small_interval);
 }
 
-/// The program of hand_small_blocks.hpp.
-std::string small_blocks(std::size_t chains) {
-    std::string text = head();
+constexpr const char* jittered = ", jitter: 50 us";
+
+/// The program of hand_small_blocks.hpp, chain by chain; irregular: kind by kind.
+std::string small_blocks(SmallWiring wiring, std::size_t chains, const std::string& jitter = {}) {
+    std::string timers, edges, counters, filters, all;
+    const auto sources = small_sources(wiring, chains);
     for (std::size_t i = 0; i < chains; ++i) {
-        const std::string reset = i == 0 ? "" : fmt::format(", r: e{}.q", i - 1);
-        text += fmt::format(
-            "  t{0}: {{type: ton, task: m, in: NOT previous(t{0}.q), pt: {1} ns}}\n"
-            "  e{0}: {{type: r_trig, task: m, clk: t{0}.q}}\n"
-            "  c{0}: {{type: ctu, task: m, cu: e{0}.q, pv: 10{2}}}\n"
-            "  f{0}: {{type: filter_pt1, task: m, in: c{0}.cv, time_constant: {3} s}}\n",
-            i, small_preset(i), reset, small_time_constant);
+        const SmallSources& from = sources[i];
+        const std::string in =
+            from.timer < 0 ? fmt::format("previous(t{}.q)", i) : fmt::format("e{}.q", from.timer);
+        const std::string reset = from.reset < 0 ? "" : fmt::format(", r: e{}.q", from.reset);
+        timers += fmt::format("  t{}: {{type: ton, task: m, in: NOT {}, pt: {} ns}}\n", i, in,
+                              small_preset(wiring, i));
+        edges += fmt::format("  e{}: {{type: r_trig, task: m, clk: t{}.q}}\n", i, from.edge);
+        counters += fmt::format("  c{}: {{type: ctu, task: m, cu: e{}.q, pv: 10{}}}\n", i,
+                                from.counter, reset);
+        filters +=
+            fmt::format("  f{}: {{type: filter_pt1, task: m, in: c{}.cv, time_constant: {} s}}\n",
+                        i, from.filter, small_time_constant);
+        if (wiring == SmallWiring::irregular) continue;
+        all += timers + edges + counters + filters;
+        for (std::string* part : {&timers, &edges, &counters, &filters}) part->clear();
     }
+    return head(jitter) + all + timers + edges + counters + filters;
+}
+
+/// Filters in series behind a count, with one time constant or each with its own.
+std::string filter_chain(bool own, const std::string& jitter) {
+    std::string text = head(jitter) +
+                       "  t: {type: ton, task: m, in: NOT previous(t.q), pt: 3 ms}\n"
+                       "  c: {type: ctu, task: m, cu: t.q, pv: 10}\n";
+    for (int i = 0; i < 100; ++i)
+        text +=
+            fmt::format("  f{}: {{type: filter_pt1, task: m, in: {}, time_constant: {} us}}\n", i,
+                        i == 0 ? "c.cv" : fmt::format("f{}.out", i - 1), 5000 + (own ? i : 0));
     return text;
 }
 
@@ -61,25 +86,31 @@ std::string gear_axes(std::size_t axes) {
     return text;
 }
 
-/// Time of a scan over a thousand scans from the first on.
+/// Time of a task's scan, from the first on.
+void run(benchmark::State& state, Machine& machine) {
+    const std::vector<std::byte> start = machine.memory;
+    Quickest quickest;
+    RunResult result;
+    for (auto _ : state) {
+        std::ranges::copy(start, machine.memory.begin());
+        Executive executive(machine);
+        quickest.time([&] { benchmark::DoNotOptimize(result = executive.run({})); });
+    }
+    const std::int64_t all = std::accumulate(result.scans.begin(), result.scans.end(), 0L);
+    quickest.count(state, static_cast<std::size_t>(all));
+}
+
 void run(benchmark::State& state, const std::string& text) {
     Linked program = linked(text);
-    const std::vector<std::byte> start = program.machine.memory;
-    Quickest quickest;
-    for (auto _ : state) {
-        std::ranges::copy(start, program.machine.memory.begin());
-        Executive executive(program.machine);
-        quickest.time([&] { benchmark::DoNotOptimize(executive.run({})); });
-    }
-    quickest.count(state, scans);
+    run(state, program.machine);
 }
 
 std::size_t chains(const benchmark::State& state) {
     return static_cast<std::size_t>(state.range(0)) / 4;
 }
 
-void small(benchmark::State& state) {
-    run(state, small_blocks(chains(state)));
+void small(benchmark::State& state, SmallWiring wiring, const char* with_jitter) {
+    run(state, small_blocks(wiring, chains(state), with_jitter));
 }
 
 template <class Blocks>
@@ -98,13 +129,30 @@ void small_by_hand(benchmark::State& state) {
     quickest.count(state, scans);
 }
 
+void filters(benchmark::State& state, bool own, const char* with_jitter) {
+    run(state, filter_chain(own, with_jitter));
+}
+
+/// The course's machine, whose logic is serial; or its tasks alone, with nothing to call: the fixed
+/// cost of a scan.
+void machine_logic(benchmark::State& state, bool empty) {
+    Diagnostics problems;
+    auto loaded = load_program(LINESHAFT_SOURCE_DIR "/programs/06_machine_logic.yaml", {},
+                               standard_blocks(), problems);
+    if (!loaded) throw std::runtime_error(problems.render());
+    Machine& machine = loaded->linked.machine;
+    if (empty)
+        for (Task& task : machine.tasks) task.calls.clear();
+    run(state, machine);
+}
+
 void axes(benchmark::State& state) {
     run(state, gear_axes(static_cast<std::size_t>(state.range(0))));
 }
 
 /// Reading, checking and wiring a program: time of a block.
 void load(benchmark::State& state) {
-    const std::string text = small_blocks(chains(state));
+    const std::string text = small_blocks(SmallWiring::batched, chains(state));
     Quickest quickest;
     for (auto _ : state) quickest.time([&] { benchmark::DoNotOptimize(linked(text)); });
     quickest.count(state, static_cast<std::size_t>(state.range(0)));
@@ -139,29 +187,68 @@ class Beside : public Observer {
 
 /// Empty, or where the program and the chains by hand part.
 template <class Blocks>
-std::string difference() {
+std::string difference(SmallWiring wiring) {
     constexpr std::size_t chains = 25;
-    Linked program = linked(small_blocks(chains));
+    Linked program = linked(small_blocks(wiring, chains));
     Beside<Blocks> beside(program.machine, chains);
     Executive(program.machine).run({&beside});
     return beside.difference;
 }
 
+std::string difference() {
+    using enum SmallWiring;
+    for (const std::string& where : {difference<InlinedSmallBlocks<batched>>(batched),
+                                     difference<CalledSmallBlocks<batched>>(batched),
+                                     difference<CalledSmallBlocks<irregular>>(irregular),
+                                     difference<InlinedSmallBlocks<serial>>(serial),
+                                     difference<CalledSmallBlocks<serial>>(serial)})
+        if (!where.empty()) return where;
+    return {};
+}
+
 }  // namespace
 
-BENCHMARK(small)->Arg(100)->Arg(1000);
-BENCHMARK(small_by_hand<InlinedSmallBlocks>)->Name("small_inlined")->Arg(100)->Arg(1000);
-BENCHMARK(small_by_hand<CalledSmallBlocks>)->Name("small_called")->Arg(100)->Arg(1000);
+BENCHMARK_CAPTURE(small, batched, SmallWiring::batched, "")->Arg(100)->Arg(1000);
+BENCHMARK_CAPTURE(small, irregular, SmallWiring::irregular, "")->Arg(100)->Arg(1000);
+BENCHMARK_CAPTURE(small, serial, SmallWiring::serial, "")->Arg(4)->Arg(100)->Arg(1000);
+BENCHMARK_CAPTURE(small, batched_jittered, SmallWiring::batched, jittered)->Arg(100);
+BENCHMARK_CAPTURE(small, serial_jittered, SmallWiring::serial, jittered)->Arg(100);
+BENCHMARK_CAPTURE(filters, even, false, "");
+BENCHMARK_CAPTURE(filters, jittered, false, jittered);
+BENCHMARK_CAPTURE(filters, even_own_constants, true, "");
+BENCHMARK_CAPTURE(filters, jittered_own_constants, true, jittered);
+BENCHMARK_CAPTURE(machine_logic, whole, false);
+BENCHMARK_CAPTURE(machine_logic, empty, true);
+BENCHMARK(small_by_hand<InlinedSmallBlocks<SmallWiring::batched>>)
+    ->Name("inlined/batched")
+    ->Arg(100)
+    ->Arg(1000);
+BENCHMARK(small_by_hand<CalledSmallBlocks<SmallWiring::batched>>)
+    ->Name("called/batched")
+    ->Arg(100)
+    ->Arg(1000);
+BENCHMARK(small_by_hand<CalledSmallBlocks<SmallWiring::irregular>>)
+    ->Name("called/irregular")
+    ->Arg(100)
+    ->Arg(1000);
+BENCHMARK(small_by_hand<InlinedSmallBlocks<SmallWiring::serial>>)
+    ->Name("inlined/serial")
+    ->Arg(4)
+    ->Arg(100)
+    ->Arg(1000);
+BENCHMARK(small_by_hand<CalledSmallBlocks<SmallWiring::serial>>)
+    ->Name("called/serial")
+    ->Arg(4)
+    ->Arg(100)
+    ->Arg(1000);
 BENCHMARK(axes)->Arg(10)->Arg(100)->Arg(1000)->Arg(8'000);
 BENCHMARK(load)->Arg(1000)->Arg(2000)->Arg(4000);
 
 int main(int count, char** arguments) {
-    for (const std::string& where :
-         {difference<InlinedSmallBlocks>(), difference<CalledSmallBlocks>()})
-        if (!where.empty()) {
-            fmt::print(stderr, "the blocks by hand are not the program's: {}\n", where);
-            return 1;
-        }
+    if (const std::string where = difference(); !where.empty()) {
+        fmt::print(stderr, "the blocks by hand are not the program's: {}\n", where);
+        return 1;
+    }
     benchmark::Initialize(&count, arguments);
     benchmark::RunSpecifiedBenchmarks();
 }

@@ -4,21 +4,49 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <random>
 #include <vector>
 
 #include "blocks/logic/signal.hpp"
 
 /// Chains of small blocks written by hand, in two ways: what the executive is measured against.
-/// Each chain is a timer that restarts itself, an edge, a counter and a filter; its counter is
-/// reset by the edge of the chain before. The same results bit for bit as the program of
-/// framework_bench.
+/// Each chain is a timer, an edge of it, a counter of the edges and a filter of the count. The same
+/// results bit for bit as the program of framework_bench.
 namespace lineshaft {
 
 constexpr std::int64_t small_interval = 1'000'000;  // ns
 constexpr double small_time_constant = 0.005;       // s
 
-inline std::int64_t small_preset(std::size_t chain) {
-    return static_cast<std::int64_t>(3 + chain % 7) * 1'000'000;
+/// What feeds the blocks.
+enum class SmallWiring {
+    batched,  ///< each timer restarts itself, the edge before resets the counter: four calls, rows
+    irregular,  ///< likewise, but the wires come from chains drawn at random: four calls, no row
+    serial,     ///< each timer waits for the edge before: as many calls as blocks
+};
+
+/// Which chain each block of a chain is fed by; -1: the timer by itself, the reset by nothing.
+struct SmallSources {
+    std::ptrdiff_t timer = -1, edge = 0, counter = 0, reset = -1, filter = 0;
+};
+
+inline std::vector<SmallSources> small_sources(SmallWiring wiring, std::size_t chains) {
+    std::mt19937 random(24);
+    std::vector<SmallSources> sources(chains);
+    for (std::size_t i = 0; i < chains; ++i) {
+        const auto own = static_cast<std::ptrdiff_t>(i);
+        const auto drawn = [&] { return static_cast<std::ptrdiff_t>(random() % chains); };
+        sources[i] = wiring == SmallWiring::irregular
+                         ? SmallSources{-1, drawn(), drawn(), drawn(), drawn()}
+                         : SmallSources{wiring == SmallWiring::serial ? own - 1 : -1, own, own,
+                                        own - 1, own};
+    }
+    return sources;
+}
+
+/// In series the first one is the slowest, so that all the others come to their end.
+inline std::int64_t small_preset(SmallWiring wiring, std::size_t chain) {
+    const bool is_slowest = wiring == SmallWiring::serial && chain == 0;
+    return static_cast<std::int64_t>(is_slowest ? 10 : 3 + chain % 7) * 1'000'000;
 }
 
 /// The blocks' algorithms alone, without the errors that none of them can have here.
@@ -86,17 +114,19 @@ struct SmallFilter {
     }
 };
 
-/// One loop over structs, everything inlined: the limit.
+/// One loop over structs, everything inlined, no wire to follow: the limit. Batched or serial.
+template <SmallWiring wiring>
 class InlinedSmallBlocks {
   public:
     explicit InlinedSmallBlocks(std::size_t chains) : chains_(chains) {
-        for (std::size_t i = 0; i < chains; ++i) chains_[i].timer.pt = small_preset(i);
+        for (std::size_t i = 0; i < chains; ++i) chains_[i].timer.pt = small_preset(wiring, i);
     }
 
     void scan(std::int64_t time) {
+        bool before = wiring == SmallWiring::serial && chains_.front().timer.q;
         bool reset = false;
         for (Chain& chain : chains_) {
-            chain.timer.in = !chain.timer.q;
+            chain.timer.in = !(wiring == SmallWiring::serial ? before : chain.timer.q);
             chain.timer.scan(time);
             chain.edge.clk = chain.timer.q;
             chain.edge.scan();
@@ -105,7 +135,7 @@ class InlinedSmallBlocks {
             chain.counter.scan();
             chain.filter.in = static_cast<double>(chain.counter.cv);
             chain.filter.scan();
-            reset = chain.edge.q;
+            before = reset = chain.edge.q;
         }
     }
     double out(std::size_t chain) const { return chains_[chain].filter.out; }
@@ -121,23 +151,22 @@ class InlinedSmallBlocks {
 };
 
 /// A list of virtual calls; each block fetches its inputs by pointers.
+template <SmallWiring wiring>
 class CalledSmallBlocks {
   public:
     explicit CalledSmallBlocks(std::size_t chains) {
-        const bool* reset = &none_;
-        for (std::size_t i = 0; i < chains; ++i) {
-            auto& timer = add<Timer>();
-            timer.block.pt = small_preset(i);
-            auto& edge = add<Edge>();
-            edge.clk = &timer.block.q;
-            auto& counter = add<Counter>();
-            counter.cu = &edge.block.q;
-            counter.r = reset;
-            auto& filter = add<Filter>();
-            filter.in = &counter.block.cv;
-            outs_.push_back(&filter.block.out);
-            reset = &edge.block.q;
+        std::vector<Chain> made(chains);
+        if (wiring == SmallWiring::irregular) {  // by kind: the sources are in any chain
+            for (Chain& chain : made) chain.timer = add<Timer>();
+            for (Chain& chain : made) chain.edge = add<Edge>();
+            for (Chain& chain : made) chain.counter = add<Counter>();
+            for (Chain& chain : made) chain.filter = add<Filter>();
+        } else {
+            for (Chain& chain : made)
+                chain = {add<Timer>(), add<Edge>(), add<Counter>(), add<Filter>()};
         }
+        const auto sources = small_sources(wiring, chains);
+        for (std::size_t i = 0; i < chains; ++i) wire(made, made[i], sources[i], i);
     }
 
     void scan(std::int64_t time) {
@@ -152,8 +181,9 @@ class CalledSmallBlocks {
     };
     struct Timer : Call {
         SmallTimer block;
+        const bool* in = nullptr;
         void scan(std::int64_t time) override {
-            block.in = !block.q;
+            block.in = !*in;
             block.scan(time);
         }
     };
@@ -182,13 +212,31 @@ class CalledSmallBlocks {
             block.scan();
         }
     };
+    struct Chain {
+        Timer* timer = nullptr;
+        Edge* edge = nullptr;
+        Counter* counter = nullptr;
+        Filter* filter = nullptr;
+    };
 
     template <class T>
-    T& add() {
+    T* add() {
         auto call = std::make_unique<T>();
-        T& added = *call;
+        T* added = call.get();
         calls_.push_back(std::move(call));
         return added;
+    }
+
+    void wire(const std::vector<Chain>& made, const Chain& chain, const SmallSources& from,
+              std::size_t number) {
+        const auto at = [&](std::ptrdiff_t i) { return made[static_cast<std::size_t>(i)]; };
+        chain.timer->block.pt = small_preset(wiring, number);
+        chain.timer->in = from.timer < 0 ? &chain.timer->block.q : &at(from.timer).edge->block.q;
+        chain.edge->clk = &at(from.edge).timer->block.q;
+        chain.counter->cu = &at(from.counter).edge->block.q;
+        chain.counter->r = from.reset < 0 ? &none_ : &at(from.reset).edge->block.q;
+        chain.filter->in = &at(from.filter).counter->block.cv;
+        outs_.push_back(&chain.filter->block.out);
     }
 
     bool none_ = false;

@@ -77,13 +77,16 @@ std::vector<SevenSegment> problems_of(MoveKind kind) {
     return list;
 }
 
+/// Items of a loop.
+constexpr std::size_t share = 4096;
+
 struct Change {
     double v0, a0, v1, A, J;
 };
 
-std::vector<Change> changes() {
+std::vector<Change> changes(std::size_t count = share) {
     Random random{2025};
-    std::vector<Change> list(4096);
+    std::vector<Change> list(count);
     for (Change& c : list) {
         c.A = random.decades(0, 4);
         c.J = c.A * random.decades(0, 3);
@@ -131,28 +134,31 @@ void bare_ramp(benchmark::State& state) {
     measure(state, list.size(), [&] { benchmark::DoNotOptimize(bare_ramps(list)); });
 }
 
-void velocity_ramp(benchmark::State& state) {
-    const std::vector<Change> list = changes();
-    VelocityRamp ramp;
-    measure(state, list.size(), [&] {
-        for (const Change& c : list) {
-            benchmark::DoNotOptimize(ramp.plan(c.v0, c.a0, c.v1, c.A, c.J));
-            benchmark::ClobberMemory();
-        }
+/// Each loop takes the next few thousand items of the list: the processor foretells no branch that
+/// it has seen before, unless the list is that short.
+template <typename Item, typename Body>
+void measure_stream(benchmark::State& state, const std::vector<Item>& list, const Body& body) {
+    const std::size_t part = std::min(list.size(), share);
+    std::size_t next = 0;
+    measure(state, part, [&] {
+        if (next + part > list.size()) next = 0;
+        for (const std::size_t last = next + part; next < last; ++next) body(list[next]);
     });
 }
 
-/// Each loop takes the next few thousand problems of the list.
+void velocity_ramp(benchmark::State& state, const std::vector<Change>& list) {
+    VelocityRamp ramp;
+    measure_stream(state, list, [&](const Change& c) {
+        benchmark::DoNotOptimize(ramp.plan(c.v0, c.a0, c.v1, c.A, c.J));
+        benchmark::ClobberMemory();
+    });
+}
+
 void plan_all(benchmark::State& state, const std::vector<SevenSegment>& list) {
-    const std::size_t share = std::min<std::size_t>(list.size(), 4096);
-    std::size_t next = 0;
     SevenSegmentPlan out;
-    measure(state, share, [&] {
-        if (next + share > list.size()) next = 0;
-        for (const std::size_t last = next + share; next < last; ++next) {
-            benchmark::DoNotOptimize(plan(list[next], out));
-            benchmark::ClobberMemory();
-        }
+    measure_stream(state, list, [&](const SevenSegment& p) {
+        benchmark::DoNotOptimize(plan(p, out));
+        benchmark::ClobberMemory();
     });
 }
 
@@ -193,17 +199,11 @@ std::vector<Reach> reaches(From kind) {
 
 /// In the least time, or in a given one.
 void plan_reaches(benchmark::State& state, const std::vector<Reach>& list, bool timed) {
-    constexpr std::size_t share = 512;
-    std::size_t next = 0;
     MotionPlan out;
-    measure(state, share, [&] {
-        if (next + share > list.size()) next = 0;
-        for (const std::size_t last = next + share; next < last; ++next) {
-            const Reach& r = list[next];
-            benchmark::DoNotOptimize(timed ? plan(r.limits, r.from, r.to, r.duration, out)
-                                           : plan(r.limits, r.from, r.to, out));
-            benchmark::ClobberMemory();
-        }
+    measure_stream(state, list, [&](const Reach& r) {
+        benchmark::DoNotOptimize(timed ? plan(r.limits, r.from, r.to, r.duration, out)
+                                       : plan(r.limits, r.from, r.to, out));
+        benchmark::ClobberMemory();
     });
 }
 
@@ -228,6 +228,51 @@ void evaluate(benchmark::State& state, const Motion& motion) {
     });
 }
 
+/// A motion, and a time in it.
+template <typename Motion>
+struct Instant {
+    Motion motion;
+    double time = 0;
+};
+
+/// Each motion of a quarter of a million once in a round, at a time of its own: beyond the caches
+/// of one core.
+template <typename Motion, typename Make>
+void evaluate_stream(benchmark::State& state, const Make& make) {
+    Random random{2027};
+    std::vector<Instant<Motion>> list(std::size_t{1} << 18);
+    for (Instant<Motion>& each : list) {
+        make(random, each.motion);
+        each.time = each.motion.duration * random.unit();
+    }
+    measure_stream(state, list, [](const Instant<Motion>& each) {
+        benchmark::DoNotOptimize(each.motion.at(each.time).position);
+    });
+}
+
+void evaluate_ramps(benchmark::State& state) {
+    const std::vector<Change> list = changes(std::size_t{1} << 18);
+    std::size_t next = 0;
+    evaluate_stream<VelocityRamp>(state, [&](Random&, VelocityRamp& out) {
+        const Change& c = list[next++];
+        out.plan(c.v0, c.a0, c.v1, c.A, c.J);
+    });
+}
+
+void evaluate_plans(benchmark::State& state) {
+    evaluate_stream<SevenSegmentPlan>(state, [](Random& random, SevenSegmentPlan& out) {
+        while (plan(random_problem(random), out) != PlanResult::ok) continue;
+    });
+}
+
+void evaluate_reaches(benchmark::State& state, const std::vector<Reach>& list) {
+    std::size_t next = 0;
+    evaluate_stream<MotionPlan>(state, [&](Random&, MotionPlan& out) {
+        const Reach& r = list[next++ % list.size()];
+        plan(r.limits, r.from, r.to, out);
+    });
+}
+
 void evaluate_ramp(benchmark::State& state) {
     VelocityRamp ramp;
     ramp.plan(0, 0, 100, 500, 5000);
@@ -249,9 +294,12 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "ratio 1 = the bare ramp formula, %.2f ns\n", baseline);
 
     benchmark::RegisterBenchmark("bare_ramp", bare_ramp);
-    benchmark::RegisterBenchmark("velocity_ramp", velocity_ramp);
-    benchmark::RegisterBenchmark("velocity_ramp/at", evaluate_ramp);
-    benchmark::RegisterBenchmark("plan/at", evaluate_plan);
+    benchmark::RegisterBenchmark("velocity_ramp", velocity_ramp, changes(1000000));
+    benchmark::RegisterBenchmark("velocity_ramp/repeated", velocity_ramp, changes());
+    benchmark::RegisterBenchmark("velocity_ramp/at", evaluate_ramps);
+    benchmark::RegisterBenchmark("velocity_ramp/at_one_after_the_other", evaluate_ramp);
+    benchmark::RegisterBenchmark("plan/at", evaluate_plans);
+    benchmark::RegisterBenchmark("plan/at_one_after_the_other", evaluate_plan);
     benchmark::RegisterBenchmark("plan/a_million_of_all_kinds", plan_all, problems(1000000));
     for (int i = 0; i < move_kinds; ++i) {
         const auto kind = static_cast<MoveKind>(i);
@@ -259,7 +307,8 @@ int main(int argc, char** argv) {
         benchmark::RegisterBenchmark(title.c_str(), plan_all, problems_of(kind));
     }
     const std::vector<Reach> any = reaches(From::any_state);
-    benchmark::RegisterBenchmark("reach/at", evaluate_reach);
+    benchmark::RegisterBenchmark("reach/at", evaluate_reaches, any);
+    benchmark::RegisterBenchmark("reach/at_one_after_the_other", evaluate_reach);
     benchmark::RegisterBenchmark("reach/any_state", plan_reaches, any, false);
     benchmark::RegisterBenchmark("reach/rest_to_rest", plan_reaches, reaches(From::rest), false);
     benchmark::RegisterBenchmark("reach/last_ramp", plan_reaches, reaches(From::last_ramp), false);

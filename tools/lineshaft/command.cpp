@@ -12,6 +12,8 @@ namespace lineshaft {
 
 namespace {
 
+const auto begun = std::chrono::steady_clock::now();
+
 std::int64_t now_ms() {
     const auto now = std::chrono::steady_clock::now().time_since_epoch();
     return std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
@@ -34,6 +36,10 @@ bool is_same_file(const std::string& a, const std::string& b) {
 }
 
 }  // namespace
+
+double wall_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+}
 
 void CommonOptions::add_to(CLI::App& command) {
     command.add_option("--set", settings, "Set a parameter of the program: name=value")

@@ -23,6 +23,9 @@ enum class Exit : int {
     interrupted = 130,
 };
 
+/// Since the command began, what it read included [s].
+double wall_seconds();
+
 /// What most commands share.
 struct CommonOptions {
     std::vector<std::string> settings;  ///< `name=value`

@@ -45,7 +45,7 @@ void print_json(const Loaded& loaded, const RunReport& report) {
     }
     nlohmann::ordered_json object{{"program", loaded.program.file->path},
                                   {"machine_time_s", seconds(report.result.time)},
-                                  {"wall_time_s", report.wall_seconds},
+                                  {"wall_time_s", wall_seconds()},
                                   {"scans", scans},
                                   {"time_errors", report.result.time_errors},
                                   {"warnings", report.warnings},
@@ -77,11 +77,10 @@ void print_text(const RunCommand& command, const Loaded& loaded, const RunReport
         if (!verdict.ok) fmt::print(out, "        {}\n", verdict.deviation);
     }
     if (command.common.quiet) return;
-    const double machine_seconds = seconds(report.result.time);
+    const double machine_seconds = seconds(report.result.time), wall = wall_seconds();
     fmt::print(
         out, "{}: machine time {:.3f} s, wall time {:.3f} s, {:.0f} times faster than the clock\n",
-        loaded.program.title, machine_seconds, report.wall_seconds,
-        machine_seconds / report.wall_seconds);
+        loaded.program.title, machine_seconds, wall, machine_seconds / wall);
     if (report.result.time_errors > 0)
         fmt::print(out, "time errors: {}\n", report.result.time_errors);
     if (!report.output_error.empty()) return;

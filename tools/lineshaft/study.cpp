@@ -1,4 +1,3 @@
-#include <chrono>
 #include <thread>
 
 #include <fmt/core.h>
@@ -62,7 +61,6 @@ class StudyRun {
     StudyCsv csv_;
     std::optional<ResultFile> file_;
     std::int64_t taken_ = 0;  ///< from what was there already
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 bool StudyRun::take(const CaseResult& result) {
@@ -129,8 +127,7 @@ Exit StudyRun::merge() {
 Exit StudyRun::finish(bool interrupted) {
     if (file_ && !interrupted && !file_->commit()) return tell_stopped(Exit::fault);
     StudyReport result = builder_.finish(interrupted, !command_.chunk.empty());
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start_;
-    result.wall_seconds = wall.count();
+    result.wall_seconds = wall_seconds();
     print(result);
     if (interrupted) return tell_stopped(Exit::interrupted);
     return result.ok() ? Exit::fine : Exit::failed;

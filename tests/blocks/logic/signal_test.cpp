@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include <catch2/catch.hpp>
+#include <sleef.h>
 
 #include "tests/blocks/logic/scan_table.hpp"
 #include "tests/blocks/scanning.hpp"
@@ -58,6 +60,27 @@ TEST_CASE("a filter's step response is the exponential, whatever the scans") {
             INFO("interval " << interval << " ns, scan " << i);
             REQUIRE(std::abs(filter.out - (1 - std::exp(-seconds(time) / 0.02))) < 50 * epsilon);
         }
+    }
+}
+
+TEST_CASE("filters that come upon each other's intervals go by their own to the last bit") {
+    std::mt19937_64 draw(24);
+    const std::int64_t steps[] = {0, 1, millisecond, millisecond + 1};
+    const double constants[] = {0, 1e-9, 0.02, std::nextafter(0.02, 1)};
+    FilterPt1 filters[3];
+    std::int64_t times[3] = {};
+    for (int i = 0; i < 10'000; ++i) {
+        const std::size_t which = draw() % 3;
+        FilterPt1& filter = filters[which];
+        const std::int64_t step =
+            draw() % 2 ? steps[draw() % 4] : static_cast<std::int64_t>(draw() % 4000);
+        const double from = filter.started ? filter.out : 1, T = constants[draw() % 4];
+        const double share = T == 0 ? 1 : -Sleef_cinz_expm1d1_u10purec(-seconds(step) / T);
+        filter.in = filter.started ? static_cast<double>(draw() % 9) : 1;
+        filter.time_constant = T;
+        filter.scan({.time = times[which] += step, .interval = millisecond, .index = i});
+        INFO("filter " << which << ", call " << i << ", " << step << " ns, T " << T << " s");
+        REQUIRE(filter.out == from + (filter.in - from) * share);
     }
 }
 

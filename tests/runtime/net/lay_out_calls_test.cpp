@@ -129,20 +129,31 @@ std::string chains(int count) {
 }  // namespace
 
 TEST_CASE("link: a chain does the same alone and beside others, with which its wires are rows") {
-    Linked few = linked(chains(3), standard_blocks()), many = linked(chains(11), standard_blocks());
-    std::vector<Transfer> transfers;
+    Linked many = linked(chains(11), standard_blocks());
+    std::vector<std::pair<Transfer, bool>> transfers;
     for (const Row& row : many.machine.tasks.front().wires.rows) {
         CHECK(row.count == 11);
-        transfers.push_back(row.transfer);
+        transfers.emplace_back(row.transfer, row.first.negates);
     }
-    CHECK(transfers == std::vector{Transfer::negated, Transfer::boolean, Transfer::word,
-                                   Transfer::boolean, Transfer::widened});
-    CHECK(few.machine.tasks.front().wires.rows.empty());
-    Executive(few.machine).run({});
+    CHECK(transfers == std::vector<std::pair<Transfer, bool>>{{Transfer::boolean, true},
+                                                              {Transfer::boolean, false},
+                                                              {Transfer::boolean, false},
+                                                              {Transfer::word, false},
+                                                              {Transfer::widened, false}});
     Executive(many.machine).run({});
-    for (const Signal& signal : few.machine.signals) {
-        INFO(signal.name);
-        CHECK(signal.value() == many.machine.find(signal.name)->value());
+    for (const auto& [count, timers, filters] :
+         {std::tuple{1, Feed::boolean, Feed::widened},
+          std::tuple{2, Feed::two_booleans, Feed::many}, std::tuple{3, Feed::many, Feed::many}}) {
+        Linked few = linked(chains(count), standard_blocks());
+        const Task& task = few.machine.tasks.front();
+        CHECK(task.wires.rows.empty());
+        CHECK(task.calls.front().feed == timers);
+        CHECK(task.calls.back().feed == filters);
+        Executive(few.machine).run({});
+        for (const Signal& signal : few.machine.signals) {
+            INFO(count << " chains, " << signal.name);
+            CHECK(signal.value() == many.machine.find(signal.name)->value());
+        }
     }
 }
 

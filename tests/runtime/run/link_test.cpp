@@ -122,8 +122,8 @@ TEST_CASE("link: tasks run by priority, blocks in the order of the file") {
     REQUIRE(tasks.size() == 2);
     CHECK(tasks[0].name == "high");
     REQUIRE(tasks[1].calls.size() == 2);
-    CHECK(tasks[1].calls[0].words == 0);
-    CHECK(tasks[1].calls[1].widened == 1);
+    CHECK(tasks[1].calls[0].feed == Feed::no_wire);
+    CHECK(tasks[1].calls[1].feed == Feed::widened);
 }
 
 TEST_CASE("link: constants and the interval of a task") {

@@ -103,6 +103,7 @@ class Bench {
         target.wires.copies.push_back(
             {.source = reinterpret_cast<const std::byte*>(&published(from).output),
              .target = reinterpret_cast<std::byte*>(&live(to).input)});
+        target.calls.front().feed = Feed::many;
         ++target.calls.front().words;
     }
     /// The task is released by the rising edges of another one's published flag.

@@ -347,16 +347,17 @@ TEST_CASE("inputs are converted as their wires say") {
     Bench bench({{.name = "a"}});
     const auto at = [](auto& member) { return reinterpret_cast<std::byte*>(&member); };
     Task& task = bench.task("a");
-    task.wires = {.copies = {{at(ports.three), at(bench.live("a").input)},
-                             {at(ports.yes), at(bench.live("a").wanted)},
-                             {at(ports.yes), at(ports.inverted)},
+    task.wires = {.copies = {{at(ports.yes), at(bench.live("a").wanted)},
+                             {at(ports.yes), at(ports.inverted), true},
+                             {at(ports.three), at(bench.live("a").input)},
                              {at(ports.three), at(ports.real)}},
                   .rows = {},
                   .scaled = {{at(ports.three), at(ports.tenths), 1, 10, true},
                              {at(ports.millimetres), at(ports.centimetres), 1, 10, false}}};
     Call& call = task.calls.front();
-    call.words = call.booleans = call.negated = call.widened = 1;
-    call.scaled = 2;
+    call.feed = Feed::many;
+    call.words = call.widened = 1;
+    call.booleans = call.scaled = 2;
     bench.machine.duration = 0;
     bench.run();
     CHECK(bench.live("a").wanted);
