@@ -207,6 +207,10 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
     if (call.standard < 0) {
         if (const Type* type = check_conversion(call, name.text)) return type;
         if (call.type || call.standard == -2) return nullptr;
+        if (routines_.contains(name.text))
+            return fail("L0907", name.place,
+                        fmt::format("'{}' is a kind of block, not an instance", name.text),
+                        "declare one in VAR, and call that");
         std::vector<std::string> names = visible_names();
         for (const StandardFunction& f : standard_functions()) names.emplace_back(f.name);
         for (Argument& argument : call.arguments) check(*argument.value);

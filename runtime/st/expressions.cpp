@@ -469,6 +469,7 @@ const Type* Checker::check_arithmetic(Expression& e) {
                                integer_type(type.bits, false).name);
         if (type.kind == Kind::boolean) help = "convert it: BOOL_TO_INT(...)";
         if (type.kind == Kind::enumeration) help = "convert it: TO_INT(...)";
+        if (type.kind == Kind::text) help = "join texts with CONCAT(...)";
         return fail("L0905", operand->place,
                     fmt::format("'{}' does not go with {}", shown(e.op), describe(type)), help);
     }

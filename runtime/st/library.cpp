@@ -309,7 +309,7 @@ BlockType block_type(const KindContext& kind, const std::shared_ptr<const Librar
     type.doc = kind.doc;
     type.fields = kind.fields;
     type.size = kind.size;
-    type.alignment = alignof(std::max_align_t);
+    type.alignment = alignof(std::uint64_t);
     type.make = make;
     type.scan_blocks = scan_blocks;
     type.why = why;

@@ -1,0 +1,115 @@
+#include "runtime/st/library.hpp"
+
+#include <cstring>
+
+#include <catch2/catch.hpp>
+
+#include "blocks/catalog.hpp"
+#include "tests/allocations.hpp"
+#include "tests/runtime/st/instance.hpp"
+
+using namespace lineshaft;
+
+namespace {
+
+st::Library compiled(const std::string& text, const st::Options& options = {}) {
+    Diagnostics out;
+    auto library = st::compile({st::source(text)}, standard_blocks(), out, options);
+    INFO(out.render());
+    REQUIRE(library);
+    return std::move(*library);
+}
+
+const Field& field(const BlockType& kind, std::string_view name) {
+    for (const Field& f : kind.fields)
+        if (f.name == name) return f;
+    FAIL("no field " << name);
+    return kind.fields.front();
+}
+
+}  // namespace
+
+TEST_CASE("Structured Text: variables are fields of the kind", "[st]") {
+    const st::Library library = compiled(
+        "TYPE Mode : (idle, busy); END_TYPE\n"
+        "FUNCTION_BLOCK Job\n"
+        "VAR_INPUT CONSTANT gain : LREAL := 2.0; END_VAR\n"
+        "VAR_INPUT speed : LREAL; {unit := 'mm/s'} n : INT; END_VAR\n"
+        "VAR_OUTPUT mode : Mode; END_VAR\n"
+        "VAR RETAIN table : ARRAY[1..2] OF DINT; delay : TON; END_VAR\n"
+        "delay(IN := n > 0, PT := T#1ms); table[1] := n;\n"
+        "END_FUNCTION_BLOCK\n");
+    const BlockType& kind = library.kinds()[0];
+    CHECK(kind.name == "Job");
+    CHECK(field(kind, "gain").direction == Direction::parameter);
+    CHECK(field(kind, "speed").direction == Direction::input);
+    CHECK(field(kind, "speed").unit == "mm/s");
+    CHECK(field(kind, "n").maximum == 32767);
+    CHECK(field(kind, "mode").type == Type::enumeration);
+    CHECK(field(kind, "mode").names[1] == "busy");
+    CHECK(field(kind, "table[2]").direction == Direction::local);
+    CHECK(field(kind, "delay.et").unit == "ns");
+    CHECK(field(kind, "error").direction == Direction::output);
+    std::vector<std::string> retained;
+    for (const std::string_view name : library.retained(kind)) retained.emplace_back(name);
+    CHECK(retained == std::vector<std::string>{"table[1]", "table[2]", "delay.in", "delay.pt",
+                                               "delay.q", "delay.et"});
+}
+
+TEST_CASE("Structured Text: a wire's value beyond an input's type is a fault", "[st]") {
+    const st::Library library = compiled(
+        "FUNCTION_BLOCK Job VAR_INPUT n : SINT; r : REAL; END_VAR VAR_OUTPUT x : DINT; END_VAR\n"
+        "x := n; END_FUNCTION_BLOCK\n");
+    st::Instances instances(library);
+    std::byte* n = instances.memory(0) + field(library.kinds()[0], "n").offset;
+    std::byte* r = instances.memory(0) + field(library.kinds()[0], "r").offset;
+    for (const std::int64_t value : {-129, -128, 0, 127, 128, 256}) {
+        INFO(value);
+        store(Type::integer, n, value);
+        store(Type::real, r, 0.1);
+        instances.scan(0, 1);
+        const bool fits = value >= -128 && value <= 127;
+        CHECK(instances.text("error") == (fits ? "false" : "true"));
+        if (!fits) continue;
+        CHECK(instances.text("x") == std::to_string(value));
+        CHECK(instances.text("r") == "0.10000000149011612");
+    }
+}
+
+TEST_CASE("Structured Text: a fault has its place and the calls that led there", "[st]") {
+    const st::Library library = compiled(
+        "FUNCTION Ratio : INT\nVAR_INPUT a, b : INT; END_VAR\nRatio := a / b;\nEND_FUNCTION\n"
+        "FUNCTION_BLOCK Part\nVAR x : INT; END_VAR\nx := Ratio(1, 0);\nEND_FUNCTION_BLOCK\n"
+        "PROGRAM Main\nVAR p : Part; END_VAR\np();\nEND_PROGRAM\n");
+    st::Instances instances(library);
+    instances.scan(0, 1);
+    const st::FaultPlace fault = library.fault(library.kinds()[1], instances.memory(1));
+    CHECK(fault.fault == st::Fault::division_by_zero);
+    CHECK(fault.mark.line == 3);
+    CHECK(fault.calls ==
+          std::vector<std::string>{"Ratio (line 3)", "Part (line 7)", "Main (line 11)"});
+}
+
+TEST_CASE("Structured Text: executed instructions are counted by class", "[st]") {
+    const st::Library library = compiled(
+        "PROGRAM Main\nVAR i, n : DINT; x : LREAL; t : TON; END_VAR\n"
+        "FOR i := 1 TO 10 DO n := n + i; x := x + 0.5; END_FOR;\nt(IN := TRUE, PT := T#1s);\n"
+        "END_PROGRAM\n",
+        {.counts = true});
+    st::Instances instances(library);
+    for (int i = 0; i < 2; ++i) instances.scan(i, 1);
+    const auto counts = library.counts(instances.memory(0));
+    CHECK(counts[static_cast<std::size_t>(st::OpClass::real)] == 10);
+    CHECK(counts[static_cast<std::size_t>(st::OpClass::call)] == 1);
+    CHECK(counts[static_cast<std::size_t>(st::OpClass::integer)] >= 10);
+}
+
+TEST_CASE("Structured Text: a scan allocates nothing", "[st]") {
+    const st::Library library = compiled(st::read(LINESHAFT_SOURCE_DIR "/tests/st/texts.st")->text);
+    st::Instances instances(library);
+    std::vector<std::byte*> places{instances.memory(0)};
+    const BlockType& kind = library.kinds()[0];
+    const auto before = test::allocations();
+    for (int i = 0; i < 100; ++i) kind.scan_blocks(places[0], 1, {}, {kind.context, places.data()});
+    CHECK(test::allocations() == before);
+}
