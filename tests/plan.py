@@ -19,7 +19,7 @@ NAMES = "Vs, Ve, Vm, A, J, L"
 MOTION_NAMES = "p0, v0, a0, pf, vf, V, A, D, J[, Vmin][, T]"
 ALL_NAMES = f"{NAMES} or {MOTION_NAMES}"
 MOTION = "p0,v0,a0,pf,vf,V,A,D,J\n"
-MOTION_OUTPUT_HEADER = "row,ok,error,T," + ",".join(f"j{i},t{i}" for i in range(1, 17))
+MOTION_OUTPUT_HEADER = "row,ok,error,T," + ",".join(f"j{i},t{i}" for i in range(1, 25))
 SIGNS = (1, 0, -1, 0, -1, 0, 1)
 
 # What it is, the input, the rows of output after the header, what stands on stderr after `stdin:`.

@@ -46,7 +46,7 @@ struct Twice {
 struct Steps {
     struct Step {
         double duration, jerk, acceleration;
-        MotionState start;  ///< counted from the first one's position
+        double x, v;  ///< at its start, the position counted from the first one's
     };
     std::array<Step, MotionPlan::most_phases + 1> list;
     std::size_t count = 0;
@@ -424,7 +424,7 @@ struct Return {
           a{from.acceleration},
           s{0, from.velocity, from.acceleration, 0} {}
 
-    void run(double time, double jerk) {
+    [[gnu::noinline]] void run(double time, double jerk) {
         if (!(time > 0)) return;
         const Twice t{time}, j{jerk};
         x = x + t * (v + t * (a + t * j / 3) * Twice{0.5});
@@ -540,23 +540,23 @@ PlanResult check(const MotionLimits& limits, const MotionState& from, const Goal
 PlanResult write(Steps& steps, const MotionState& from, const Goal& to, double duration,
                  MotionPlan& out) {
     constexpr double most = 1e-6;
-    double x = 0, v = from.velocity, path = 0,
-           fastest = std::max(std::abs(v), std::abs(to.velocity));
+    double x = 0, v = from.velocity, a = from.acceleration, path = 0;
+    double fastest = std::max(std::abs(v), std::abs(to.velocity));
     MotionState back{0, to.velocity, 0, 0};
     for (std::size_t i = 0; i < steps.count; ++i) {
         Steps::Step& step = steps.list[i];
-        const double a = i == 0 ? from.acceleration : steps.list[i - 1].acceleration;
-        step.start = {x, v, a, step.jerk};
+        step.x = x;
+        step.v = v;
         if (i + 1 == steps.count) {
-            back.jerk = step.jerk;
-            back = back.after(-step.duration);
+            back = MotionState{0, to.velocity, 0, step.jerk}.after(-step.duration);
             break;
         }
-        const MotionState end = step.start.after(step.duration);
+        const MotionState end = MotionState{x, v, a, step.jerk}.after(step.duration);
         path += std::abs(end.position - x);
         fastest = std::max(fastest, std::abs(end.velocity));
         x = end.position;
         v = end.velocity;
+        a = step.acceleration;
     }
     const double missed = ((to.position - from.position) + back.position) - x;
     const double size =
@@ -567,11 +567,12 @@ PlanResult write(Steps& steps, const MotionState& from, const Goal& to, double d
         return PlanResult::not_finite;
     out.phases[0] = {0, 0, from};
     double begin = 0;
+    a = from.acceleration;
     for (std::size_t i = 0; i < steps.count; ++i) {
         const Steps::Step& step = steps.list[i];
-        out.phases[i] = {begin, step.duration, step.start};
-        out.phases[i].start.position += from.position;
+        out.phases[i] = {begin, step.duration, {from.position + step.x, step.v, a, step.jerk}};
         begin += step.duration;
+        a = step.acceleration;
     }
     if (steps.count > 1) {
         MotionState& last = out.phases[steps.count - 1].start;
@@ -602,18 +603,24 @@ struct Start {
                    double slack) const {
         const double a = state.acceleration, tau = std::abs(a) * limits.per_J;
         const double e = (vf - state.velocity) - 0.5 * a * tau;
+        if (a == 0 && e == 0) return 0;
         const double v = std::max(std::abs(state.velocity), std::abs(vf));
         if (std::abs(e) > slack * std::max(v, std::abs(a) * tau)) return e;
         const double x = tau * (state.velocity + a * tau * (1.0 / 3));
         const double size = std::max({std::abs(from.position), std::abs(to.position), v * tau});
         if (std::abs(way - x) <= slack * size) return 0;
-        return (Twice{vf} - Twice{state.velocity} - Twice{a} * Twice{0.5 * std::abs(a)} / limits.J)
+        return exact_missing(limits.J);
+    }
+
+    [[gnu::cold]] double exact_missing(double J) const {
+        const double a = state.acceleration;
+        return (Twice{vf} - Twice{state.velocity} - Twice{a} * Twice{0.5 * std::abs(a)} / J)
             .value();
     }
 
     /// From the end of the direct ramp to the goal with twice the digits: near the optimum's jump
     /// the duration changes with its cube root.
-    double exact_miss(const MotionState& from, const Goal& to) const {
+    [[gnu::cold]] double exact_miss(const MotionState& from, const Goal& to) const {
         const bool up = ramp.r == 0;
         const double sign = up ? 1 : -1, limit = up ? ahead.side->A : ahead.side->D;
         const Twice a{ahead.a}, v{ahead.v}, goal{vf}, tau = a * Twice{sign} / ahead.J;

@@ -25,13 +25,19 @@ namespace lineshaft {
 /// Dv = vb - vf, S = vb + vf; the peak velocity is vp = vb + J q^2 = vf + J r^2 where no ramp
 /// holds. q < 0 is a dip: F is left before the acceleration has come to zero.
 ///
+/// The direct ramp has a q or an r of its own (the other is tau, or 0) and ends at d0. What is
+/// added to it, or to the border of two shapes that lies last before the goal, is the unknown, and
+/// miss the way from there to the goal: no digits are lost beside great q, r and L. With the peak
+/// velocity v of what it is added to, and m = q + r:
+///
 ///     ramps up / down              equation
-///     triangular / triangular      J/4 m^4 + S m^2 - L m - Dv^2/(4J) = 0,  m = q + r,
-///                                  r - q = Dv/(J m)
-///     triangular / trapezoidal     J/(2 delta) q^4 + J q^3 + (vb + D^2/(2J))/delta q^2 + 2 vb q
-///                                  + S (delta + Dv/D)/2 - L = 0
-///     trapezoidal / triangular     the same in r, vb and vf, A and D exchanged
-///     trapezoidal / trapezoidal    quadratic in vp
+///     triangular / triangular      J/4 y^4 + J m y^3 + (2v + J (q^2 + 6qr + r^2)/2) y^2
+///                                  + m (2v + Jqr) y = miss (m + y),  for m + y
+///     triangular / trapezoidal     J/(2 delta) x^4 + J (1 + 2q/delta) x^3
+///                                  + (v/delta + J (2q^2/delta + 3q + delta/2)) x^2
+///                                  + (1 + q/delta) (2v + Dq) x = miss,  for q + x
+///     trapezoidal / triangular     the same in r, with A for D
+///     trapezoidal / trapezoidal    quadratic in what is added to v
 ///     cruise at V                  (L - way of both ramps) / V
 ///
 /// vp passes the borders vb + A^2/J (A is held), vf + D^2/J (D is held) and V; the way at them
@@ -39,9 +45,8 @@ namespace lineshaft {
 /// one. For vf < 0 it has a greatest value in the dip at most,
 ///     triangular     J m^2 = (-2 S - sqrt(4 S^2 - 3 Dv^2))/3
 ///     trapezoidal    J q^2 + D q/2 + vb = 0, the smaller root
-/// before which the goal is hit or after which there is one crossing. Unknowns are m, q and r,
-/// never vp, which loses its digits beside vb. The quartics go by bracketed steps of the fourth
-/// order (peak_equations.hpp).
+/// before which the goal is hit or after which there is one crossing. The quartics go by bracketed
+/// steps of the fourth order (peak_equations.hpp).
 ///
 /// The optimum jumps at pf = d0, so a tolerance is part of the definition: the direct ramp is taken
 /// if |pf - d0| is within `tolerance` ulp of max(|p0|, |pf|, path), and a velocity or acceleration
@@ -50,10 +55,11 @@ namespace lineshaft {
 /// thousandth of the duration, so that every later state leads to the goal: over all of it, what
 /// each of ten thousand plans adds would come to more than the tolerance.
 ///
-/// For a given duration the motions of F+ and F- are closed forms: m = u/2 with u = T + tau, a
-/// quadratic in q or r, or linear in vp. All limits are convex, so a mean of both keeps them, and
-/// its weight is linear in pf. Where pf lies outside of both the duration is blocked; the next
-/// feasible one is the next crossing of the side that is short.
+/// For a given duration the motions of F+ and F- are closed forms: what is added to the ramps is
+/// y = u/2 if u is what is added to the duration, a quadratic in x, or linear in v. All limits are
+/// convex, so a mean of both keeps them, and its weight is linear in pf. Where pf lies outside of
+/// both the duration is blocked; the next feasible one is the next crossing of the side that is
+/// short.
 
 /// How a state outside its limits comes back: `gentle` joins the velocity limit tangentially and
 /// does not fall below it on the way to a far goal; `soonest` brakes until the limit is kept, from
@@ -79,7 +85,8 @@ struct MotionPlan {
     };
 
     static constexpr std::size_t most_phases = 24;
-    static constexpr double spread = 1024;
+    static constexpr double spread =
+        1024;  ///< in this part of the duration `missed` is made up for
 
     std::array<Phase, most_phases> phases{};
     std::size_t count = 0;
@@ -98,9 +105,9 @@ struct MotionPlan {
     double greatest_acceleration() const;  ///< in either direction [u/s^2]
 };
 
-/// From any state to the goal in the least time. not_finite: a number is NaN or infinite, or what
-/// is planned is beyond a double; velocity_above_limit: vf is outside of Vmin..V. On failure `out`
-/// is unchanged.
+/// From any state to the goal in the least time. not_finite: a number is NaN or infinite, what is
+/// planned is beyond a double, or the numbers are so many decades apart that it would miss the
+/// goal; velocity_above_limit: vf is outside of Vmin..V. On failure `out` is unchanged.
 PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal& to,
                 MotionPlan& out, const PlanOptions& options = {});
 

@@ -80,8 +80,9 @@ Run run(const Problem& p, const MotionPlan& out, bool outside, bool timed = fals
         look(v, a);
     }
     const double top = std::max({p.V, -p.Vmin, std::abs(p.v0), std::abs(turned(p))});
-    // A given duration takes the mean of two motions that go as far as they can.
-    const double far = timed ? top * out.duration : path;
+    // A given duration takes the mean of two motions that go as far as they can; a state outside
+    // its limits leaves a rounding of its velocity, which counts over the whole duration.
+    const double far = outside || timed ? top * out.duration : path;
     const double size = std::max({std::abs(p.p0), std::abs(p.pf), far});
     result.position = std::abs(static_cast<double>(x - p.pf)) / oracle::ulp(size);
     result.velocity = std::abs(static_cast<double>(v - p.vf)) / oracle::ulp(top);
