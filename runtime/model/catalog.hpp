@@ -46,8 +46,8 @@ struct BlockType {
     ScanBlocks scan_blocks = nullptr;
     DeviceCalls device = {};
     std::optional<Misfit> (*misfit)(const std::byte* block,
-                                    const IsConstant& is_constant) = nullptr;  ///< or null
-    void (*shift)(std::byte* block, std::int64_t by) = nullptr;                ///< or null
+                                    const IsConstant& is_constant) = nullptr;         ///< or null
+    void (*shift)(std::byte* block, std::int64_t by, const void* context) = nullptr;  ///< or null
     std::string (*why)(const std::byte* block,
                        const void* context) = nullptr;  ///< where its last error came from; or null
     bool single = false;                     ///< one a program, without an entry: a data block
@@ -136,7 +136,7 @@ class Catalog {
     template <class Block>
     static constexpr auto shift() -> decltype(BlockType::shift) {
         if constexpr (requires(Block & block) { block.shift(std::int64_t{}); })
-            return [](std::byte* block, std::int64_t by) {
+            return [](std::byte* block, std::int64_t by, const void*) {
                 std::launder(reinterpret_cast<Block*>(block))->shift(by);
             };
         return nullptr;

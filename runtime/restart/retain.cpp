@@ -52,7 +52,7 @@ Bytes bytes_of(const Json& block, std::size_t size) {
 
 Json json_of(const RetainedBlock& kept, const BlockPlace& block, std::int64_t now) {
     Bytes bytes(block.live, block.live + block.type->size);
-    if (block.type->shift) block.type->shift(bytes.data(), -now);
+    if (block.type->shift) block.type->shift(bytes.data(), -now, block.type->context);
     return {{"settings", kept.settings}, {"state", hexadecimal(bytes)}};
 }
 

@@ -29,6 +29,11 @@ struct KindContext {
         std::uint32_t slot;
         const Type* type;
     };
+    struct Part {
+        std::size_t offset;
+        const BlockType* kind;
+    };
+    std::vector<Part> with_moments;         ///< instances of the catalogue that remember when
     std::vector<Check> checks;              ///< inputs narrower than what a wire brings
     std::vector<std::uint32_t> references;  ///< slots of VAR_IN_OUT, which a call fills
 };
@@ -107,6 +112,11 @@ std::string why(const std::byte* block, const void* context) {
     for (std::size_t i = 0; i < found.calls.size(); ++i)
         text += (i == 0 ? " in " : ", called by ") + found.calls[i];
     return text;
+}
+
+void shift(std::byte* block, std::int64_t by, const void* context) {
+    for (const auto& part : static_cast<const KindContext*>(context)->with_moments)
+        part.kind->shift(block + part.offset, by, part.kind->context);
 }
 
 void make(std::byte* place, const void* context) {
@@ -262,6 +272,34 @@ class FieldWriter {
     KindContext& kind_;
 };
 
+/// The instances of the catalogue in a value at `slot`.
+void find_moments(const Type& type, std::size_t slot, KindContext& kind) {
+    switch (type.kind) {
+        case Kind::standard:
+            if (type.standard->shift) kind.with_moments.push_back({8 * slot, type.standard});
+            return;
+        case Kind::array: {
+            const Type& element = *type.element;
+            const bool is_block = element.kind == Kind::block;
+            const std::size_t step = is_block ? element.routine->frame : element.slots;
+            for (std::int64_t i = type.lower; i <= type.upper && !element.is_scalar(); ++i)
+                find_moments(element, slot + step * static_cast<std::size_t>(i - type.lower), kind);
+            return;
+        }
+        case Kind::structure:
+            for (const Variable* member : type.members)
+                find_moments(*member->type, slot + member->slot, kind);
+            return;
+        case Kind::block:
+            for (const Variable& member : type.routine->variables)
+                if (member.space == Space::frame && member.section != Section::temp)
+                    find_moments(*member.type, slot + member.slot, kind);
+            return;
+        default:
+            return;
+    }
+}
+
 KindContext& add_kind(Library::Made& made, std::string name, const Type& type,
                       const Options& options) {
     KindContext& kind = made.kinds.emplace_back();
@@ -271,6 +309,7 @@ KindContext& add_kind(Library::Made& made, std::string name, const Type& type,
     const auto& image = made.generated.images.at(&type);
     kind.image = image.data();
     kind.size = 8 * image.size();
+    find_moments(type, 0, kind);
     return kind;
 }
 
@@ -312,6 +351,7 @@ BlockType block_type(const KindContext& kind, const std::shared_ptr<const Librar
     type.alignment = alignof(std::uint64_t);
     type.make = make;
     type.scan_blocks = scan_blocks;
+    type.shift = shift;
     type.why = why;
     type.single = !kind.routine;
     type.context = &kind;

@@ -43,7 +43,7 @@ class Instance {
         return error && std::get<bool>(get(*error));
     }
     void shift(std::int64_t by) {
-        if (type_.shift) type_.shift(memory_.data(), by);
+        if (type_.shift) type_.shift(memory_.data(), by, type_.context);
     }
     bool same_bytes(const Instance& other) const {
         return std::memcmp(memory_.data(), other.memory_.data(), memory_.size()) == 0;

@@ -120,3 +120,8 @@ TEST_CASE("a foreign or cut checkpoint is refused", "[resume]") {
     CHECK_THAT(message("03_ratio_change.yaml"),
                Catch::EndsWith("it is not the file of the checkpoint"));
 }
+
+TEST_CASE("a resumed run leaves the same bytes: Structured Text", "[resume]") {
+    check_resumed("08_state_machine.yaml", false, 10);
+    check_resumed("paper/wei2025_circle_scl.yaml", false, 5);
+}

@@ -13,6 +13,22 @@ using namespace lineshaft::test;
 
 namespace {
 
+constexpr const char* own = R"(
+FUNCTION_BLOCK Inner
+VAR_INPUT go : BOOL; preset : TIME; END_VAR
+VAR_OUTPUT done : BOOL; END_VAR
+VAR delays : ARRAY[0..1, 1..2] OF TON; edge : R_TRIG; count : INT; END_VAR
+edge(CLK := go);
+IF edge.Q THEN count := count + 1; END_IF;
+delays[1, 2](IN := go, PT := preset, Q => done);
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Job
+VAR_INPUT go : BOOL; preset : TIME; END_VAR
+VAR inner : Inner; END_VAR
+inner(go := go, preset := preset);
+END_FUNCTION_BLOCK
+)";
+
 constexpr const char* barrier = R"(
 lineshaft: 1
 parameters: {counted: parts, preset: 5 s}
@@ -20,9 +36,11 @@ tasks: {main: {every: 10 ms}}
 blocks:
   parts: {type: ctu, task: main, cu: inputs.barrier, pv: 100}
   delay: {type: ton, task: main, in: inputs.barrier, pt: $preset}
+  job: {type: Job, task: main, go: inputs.barrier, preset: $preset}
   mean: {type: filter_pt1, task: main, in: inputs.level, time_constant: 0.5 s}
 inputs: {barrier: true, level: 1}
-retain: [$counted, delay, mean]
+retain: [$counted, delay, mean, job]
+sources: job.st
 run: {for: 1 s}
 )";
 
@@ -33,6 +51,7 @@ void write(const std::string& path, std::string_view text) {
 Loaded load(const Folder& folder, std::vector<Setting> settings = {}) {
     Diagnostics out;
     write(folder / "line.yaml", barrier);
+    write(folder / "job.st", own);
     LoadOptions options;
     options.settings = std::move(settings);
     auto loaded = load_program(folder / "line.yaml", options, standard_blocks(), out);
@@ -84,6 +103,9 @@ TEST_CASE("a retained timer goes on where it stood when the power went", "[retai
         const std::int64_t elapsed = std::min<std::int64_t>(restart * 1000, 5000);
         CHECK(value_of(loaded, "delay.et") == Value(elapsed * 1'000'000));
         CHECK(value_of(loaded, "delay.q") == Value(restart >= 5));
+        CHECK(value_of(loaded, "job.inner.count") == Value(std::int64_t{1}));
+        CHECK(value_of(loaded, "job.inner.delays[1,2].et") == Value(elapsed * 1'000'000));
+        CHECK(value_of(loaded, "job.inner.done") == Value(restart >= 5));
     }
 }
 
