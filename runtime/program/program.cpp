@@ -225,20 +225,29 @@ void ProgramReader::find_file(ReplayPlan& replay) const {
 
 /// A file, or a folder with all that lie below it.
 void ProgramReader::find_source(const Node& named) {
-    if (named.is_unknown_parameter()) return;
-    const auto path = resolve_path(named.text, program_.file->path, options_.include_dirs,
-                                   named.mark, read_.diagnostics());
+    const auto path = named.is_unknown_parameter()
+                          ? std::nullopt
+                          : resolve_path(named.text, program_.file->path, options_.include_dirs,
+                                         named.mark, read_.diagnostics());
+    program_.sources_known = program_.sources_known && path;
     if (!path) return;
     std::error_code unknown;
     if (!fs::is_directory(*path, unknown)) return read_source_file(*path, named.mark);
     std::vector<std::string> files;
-    for (const auto& entry : fs::recursive_directory_iterator(*path, unknown))
-        if (is_structured_text(entry.path()) && entry.is_regular_file(unknown))
-            files.push_back(entry.path().string());
-    if (files.empty())
+    std::error_code error;
+    constexpr auto options = fs::directory_options::skip_permission_denied;
+    for (fs::recursive_directory_iterator entry(*path, options, error), end; !error && entry != end;
+         entry.increment(error))
+        if (is_structured_text(entry->path()) && entry->is_regular_file(unknown))
+            files.push_back(entry->path().string());
+    if (error)
+        read_.fail("L0001", named,
+                   fmt::format("cannot read the folder '{}': {}", named.text, error.message()));
+    else if (files.empty())
         read_.fail("L0001", named,
                    fmt::format("the folder '{}' has no file of Structured Text", named.text),
                    "their names end with .st, .scl or .s7dcl");
+    program_.sources_known = program_.sources_known && !error && !files.empty();
     std::ranges::sort(files);
     for (const std::string& file : files) read_source_file(file, named.mark);
 }
