@@ -58,13 +58,10 @@ MotionState VelocityRamp::at(double t) const {
         const double beyond = t > duration ? t - duration : 0;
         return {end.position + end.velocity * beyond, end.velocity, 0, 0};
     }
-    const double first = t > 0 ? t : 0;
-    const double second = first - phases[0].duration, third = second - phases[1].duration;
-    const bool is_past_first = (count > 1) & (second >= 0);
-    const bool is_past_second = is_past_first & (count > 2) & (third >= 0);
-    const double since[] = {first, second, third};
-    const auto i = std::size_t{is_past_first} + std::size_t{is_past_second};
-    return phases[i].start.after(since[i]);
+    double dt = t > 0 ? t : 0;
+    std::size_t i = 0;
+    while (static_cast<int>(i) + 1 < count && dt >= phases[i].duration) dt -= phases[i++].duration;
+    return phases[i].start.after(dt);
 }
 
 double ramp_duration(double dv, double acceleration, double jerk) {

@@ -48,14 +48,14 @@ struct RampShape {
 };
 
 /// What is missing to v1 once a0 has been brought to zero at once, a0 |a0| half_per_jerk = a0 |a0|
-/// / (2J) further; 0 if that is mere rounding. Selects instead of branching, as ramp_shape() does.
+/// / (2J) further; 0 if that is mere rounding.
 inline double missing_velocity(double v0, double a0, double v1, double half_per_jerk) {
-    const double gained = a0 == 0 ? 0 : a0 * std::abs(a0) * half_per_jerk;
+    if (a0 == 0) return v1 - v0;
+    const double gained = a0 * std::abs(a0) * half_per_jerk;
     const double e = (v1 - v0) - gained;
     const double rounding = 2 * std::numeric_limits<double>::epsilon() *
                             std::max({std::abs(v0), std::abs(v1), std::abs(gained)});
-    const bool is_rounding = (a0 != 0) & (std::abs(e) <= rounding);
-    return is_rounding ? 0 : e;
+    return std::abs(e) <= rounding ? 0 : e;
 }
 
 /// From acceleration a over the limit A or what the missing velocity e >= 0 needs, to zero.
