@@ -76,7 +76,7 @@ struct ErrorFlag {
     std::span<const std::string_view> names;  ///< of error_id
     std::string block;                        ///< `'slave' (gear_axis)`
     const BlockType* type = nullptr;          ///< may be null
-    const std::byte* memory = nullptr;  ///< of the block
+    const std::byte* memory = nullptr;        ///< of the block
 };
 
 /// What a device puts up with and goes on from: its outputs `warnings`, a count, and `warning_id`,

@@ -20,8 +20,8 @@ bool resembles_wire(const Node& node) {
            node.text.find_first_of(".(") != std::string::npos;
 }
 
-/// `every(servo)`: the interval of a task, for blocks that reckon with a clock; `every()` that of the
-/// block's own. Times that are integers are in ns.
+/// `every(servo)`: the interval of a task, for blocks that reckon with a clock; `every()` that of
+/// the block's own. Times that are integers are in ns.
 std::optional<Value> interval_of(const Resolving& to, const Assignment& assignment,
                                  const Unit& unit) {
     const Field& field = *assignment.field;

@@ -209,9 +209,8 @@ Json scalars() {
     out["signal"] = described("block.port, inputs.name or outputs.name", text(signal_pattern));
     out["quantity"] = described("a number with its unit, such as 20 mm, 5e4 mm/s^3 or 20 %",
                                 text("[-+]?[.0-9].*"));
-    out["interval"] =
-        described("every(task): the interval of a task; every() of the block's own",
-                  text("every\\((" + name_pattern + ")?\\)"));
+    out["interval"] = described("every(task): the interval of a task; every() of the block's own",
+                                text("every\\((" + name_pattern + ")?\\)"));
     out["time"] = described("a time, such as 2 ms",
                             text(fmt::format("\\+?{} *({})", number_pattern, time_units())));
     out["share"] = described("a percentage", text("[0-9.]+ *%"));

@@ -111,7 +111,8 @@ void Executive::report_errors(int index) {
         const Scan& scan = state(index).scan;
         text = fmt::format("block {} reports error{} in scan {} of task '{}' at {}", flag.block,
                            text, scan.index, task(index).name, format_time(scan.time));
-        if (flag.type && flag.type->why) text += ": " + flag.type->why(flag.memory, flag.type->context);
+        if (flag.type && flag.type->why)
+            text += ": " + flag.type->why(flag.memory, flag.type->context);
         tell(EventKind::block_error, index, text);
         if (!machine_.continue_on_error) return stop(Outcome::block_error, text, index);
     }
