@@ -223,8 +223,8 @@ void FitReader::samples(const FitCasePlan& plan, const CsvTable& table, const Cs
     const Unit seconds = unit_of(time, "s", plan.trace.place);
     if (!out.empty()) return;
     for (std::size_t row = 0; row < table.rows; ++row) {
-        const auto missing = [row](const CsvColumn* c) { return c->is_missing(row); };
-        if (time.is_missing(row) || std::ranges::any_of(columns, missing)) continue;
+        const auto is_missing = [row](const CsvColumn* c) { return c->is_missing(row); };
+        if (time.is_missing(row) || std::ranges::any_of(columns, is_missing)) continue;
         const auto at = time_of(time, row, seconds, plan.trace.offset, read_, plan.trace.file);
         if (!at) return;
         cell.times.push_back(*at);

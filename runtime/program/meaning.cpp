@@ -95,7 +95,7 @@ class Canonical {
     Parameters parameters_;
 };
 
-std::string form_of(const Program& program) {
+std::string hash_of_form(const Program& program) {
     std::string text = Canonical(Canonical::Parameters::named)
                            .root(program.root, {"title", "parameters", "controller", "force"});
     std::vector<std::string> names;
@@ -108,7 +108,7 @@ std::string form_of(const Program& program) {
 
 Meaning meaning_of(const Program& program) {
     const Canonical canonical(Canonical::Parameters::in_force);
-    Meaning meaning{.in_force = {}, .form = form_of(program), .controller = {}};
+    Meaning meaning{.in_force = {}, .form = hash_of_form(program), .controller = {}};
     if (program.controller)
         meaning.controller = text_hash(canonical.root(*program.controller, {"title"}));
     std::string text = canonical.root(program.root, {"title", "parameters", "controller", "force"});

@@ -7,7 +7,7 @@ namespace lineshaft {
 
 namespace {
 
-constexpr CodeText table[] = {
+constexpr CodeText code_texts[] = {
     {"L0001", "a file cannot be read",
      R"(The file does not exist, is a folder, or may not be read. The name is taken from the
 command line, or from the file that names it (a program's 'controller:', a study's
@@ -517,14 +517,14 @@ before it into an IF.)"},
 }  // namespace
 
 std::span<const CodeText> diagnostic_codes() {
-    return table;
+    return code_texts;
 }
 
 const CodeText* find_code(std::string_view code) {
     std::string wanted(code);
     if (wanted.starts_with('l')) wanted.front() = 'L';
-    const auto it = std::ranges::find(table, wanted, &CodeText::code);
-    return it == std::end(table) ? nullptr : it;
+    const auto it = std::ranges::find(code_texts, wanted, &CodeText::code);
+    return it == std::end(code_texts) ? nullptr : it;
 }
 
 }  // namespace lineshaft

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
 
 namespace lineshaft {
@@ -123,14 +124,6 @@ std::string_view path_of(const Diagnostic& diagnostic) {
 auto order(const Diagnostic& d) {
     return std::make_tuple(path_of(d), d.mark.line, d.mark.column, std::string_view(d.code),
                            std::string_view(d.message));
-}
-
-std::string lower(std::string_view text) {
-    std::string out(text);
-    for (char& c : out) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
-    return out;
 }
 
 /// Optimal string alignment: insert, remove, replace, exchange of two neighbours cost 1 each.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "runtime/source/diagnostic.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/source/reader.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/source/utf8.hpp"
@@ -53,17 +54,6 @@ constexpr Operator signs[] = {{" * ", "mul"}, {"*", "mul"},   {" / ", "div"},
 std::string_view trimmed(std::string_view text) {
     text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
     return text.substr(0, text.find_last_not_of(' ') + 1);
-}
-
-bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
-
-std::string upper(std::string_view text) {
-    std::string out(text);
-    for (char& c : out)
-        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-    return out;
 }
 
 /// A number, a parameter or a signal, and not part of a unit.

@@ -7,18 +7,12 @@
 #include <fmt/format.h>
 
 #include "runtime/source/habits.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
 
 namespace lineshaft {
 
 namespace {
-
-bool is_letter(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
 
 std::string_view name_of(Node::Kind kind) {
     constexpr std::string_view names[] = {"a single value", "a map", "a list"};

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/source/number_text.hpp"
 
 namespace lineshaft {
@@ -44,10 +45,6 @@ constexpr std::array named_units{
     NamedUnit{"pulse", Unit::pulses, 1, 1, 1},   NamedUnit{"pulses", Unit::pulses, 1, 1, 1},
     NamedUnit{"%", Unit::dimensions, 0, 1, 100},
 };
-
-bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
 
 /// Multiplies `unit` by `factor` (`mm`, `s^3`), or divides; false when it is none.
 bool apply(Unit& unit, std::string_view factor, bool divide) {

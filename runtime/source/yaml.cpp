@@ -14,6 +14,7 @@
 
 #include "runtime/source/habits.hpp"
 #include "runtime/source/input_file.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
 
 namespace lineshaft {
@@ -165,10 +166,6 @@ std::size_t quoted_end(std::string_view text, std::size_t begin) {
         i = text.find_first_of(stops, i + 2);
     }
     return i;
-}
-
-bool is_digit(char c) {
-    return c >= '0' && c <= '9';
 }
 
 bool is_quote(char c) {

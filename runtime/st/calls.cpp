@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/checker_class.hpp"
 #include "runtime/st/standard.hpp"
 
@@ -388,8 +389,7 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
 
 /// `INT_TO_REAL(x)`, `TO_REAL(x)`, `REAL_TRUNC_INT(x)`: the call becomes a conversion.
 const Type* Checker::check_conversion(Expression& call, std::string_view name) {
-    std::string upper(name);
-    for (char& c : upper) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    const std::string upper = lineshaft::upper(name);
     const std::size_t to = upper.starts_with("TO_") ? 0 : upper.find("_TO_");
     const std::size_t trunc = upper.starts_with("TRUNC_") ? 0 : upper.find("_TRUNC_");
     const bool truncates = to == std::string::npos && trunc != std::string::npos;

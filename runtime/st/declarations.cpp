@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/st/checker_class.hpp"
 
@@ -567,8 +568,7 @@ const Type* Checker::standard_type(std::string_view name) {
     const auto kind = std::ranges::find_if(
         standard_.types(), [&](const BlockType& type) { return same_name(type.name, wanted); });
     if (kind == standard_.types().end() || kind->is_device()) return nullptr;
-    Type& type = make_type(Kind::standard, std::string(name));
-    for (char& c : type.name) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    Type& type = make_type(Kind::standard, upper(name));
     type.standard = &*kind;
     type.slots = static_cast<std::uint32_t>((kind->size + 7) / 8);
     for (const Field& field : kind->fields) {

@@ -5,23 +5,12 @@
 #include <fmt/format.h>
 
 #include "runtime/source/habits.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
 
 namespace lineshaft::st {
 
 namespace {
-
-constexpr char lower(char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
-constexpr bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
-
-constexpr bool is_letter(char c) {
-    return (lower(c) >= 'a' && lower(c) <= 'z') || c == '_';
-}
 
 constexpr std::string_view word_names[] = {
 #define WORD(name) #name,
@@ -389,7 +378,7 @@ Mark Place::mark() const {
 }
 
 bool SameName::operator()(std::string_view a, std::string_view b) const {
-    return std::ranges::equal(a, b, {}, lower, lower);
+    return std::ranges::equal(a, b, [](char x, char y) { return lower(x) == lower(y); });
 }
 
 std::size_t NameHash::operator()(std::string_view name) const {
@@ -401,10 +390,7 @@ std::size_t NameHash::operator()(std::string_view name) const {
 std::string_view shown(Word word) {
     static const auto capitals = [] {
         std::vector<std::string> made;
-        for (const std::string_view name : word_names) {
-            std::string& text = made.emplace_back(name);
-            for (char& c : text) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-        }
+        for (const std::string_view name : word_names) made.push_back(upper(name));
         return made;
     }();
     const auto i = static_cast<std::size_t>(word);

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "runtime/source/letters.hpp"
+
 namespace lineshaft::st {
 
 namespace {
@@ -52,7 +54,7 @@ constexpr TimeUnit time_units[] = {{"d", 86'400'000'000'000},
 std::string without_underscores(std::string_view text, bool small) {
     std::string out;
     for (const char c : text)
-        if (c != '_') out += small && c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        if (c != '_') out += small ? lower(c) : c;
     return out;
 }
 

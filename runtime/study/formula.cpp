@@ -8,16 +8,11 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/letters.hpp"
+
 namespace lineshaft {
 
 namespace {
-
-bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
-bool is_name_start(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
 
 /// Recursive descent. After the first error everything returns at once.
 class Evaluator {
@@ -75,7 +70,7 @@ class Evaluator {
         }
         skip_blanks();
         if (at_ < text_.size() && (is_digit(text_[at_]) || text_[at_] == '.')) return number();
-        if (at_ < text_.size() && is_name_start(text_[at_])) return name();
+        if (at_ < text_.size() && is_letter(text_[at_])) return name();
         fail("a number, a name or '(' is expected here");
         return 0;
     }
@@ -92,7 +87,7 @@ class Evaluator {
     double name() {
         const std::size_t start = at_;
         while (at_ < text_.size() &&
-               (is_name_start(text_[at_]) || is_digit(text_[at_]) || text_[at_] == '.'))
+               (is_letter(text_[at_]) || is_digit(text_[at_]) || text_[at_] == '.'))
             ++at_;
         const std::string_view word = text_.substr(start, at_ - start);
         if (take('(')) return call(word, start);
