@@ -5,7 +5,6 @@
 #include "blocks/axis/servo_drive.hpp"
 #include "blocks/axis/virtual_axis.hpp"
 #include "blocks/circle/circle_fit.hpp"
-#include "blocks/circle/circle_ratio.hpp"
 #include "blocks/circle/path_circle.hpp"
 #include "blocks/contour/contour_comparison.hpp"
 #include "blocks/contour/contour_error.hpp"
@@ -33,7 +32,6 @@ Catalog make_catalog() {
     blocks.add<GearAxis>();
     blocks.add<Move>();
     blocks.add<ServoDrive>();
-    blocks.add<CircleRatio>();
     blocks.add<CircleFit>();
     blocks.add<PathCircle>();
     blocks.add<PathRectangle>();

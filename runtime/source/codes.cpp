@@ -192,7 +192,7 @@ and lower case matter: mm, not MM. 'lineshaft units' lists them. A claim of a st
 scan, a jitter not below the task's interval, a share above 100 %. 'lineshaft blocks
 TYPE' shows the limits.)"},
     {"L0306", "not one of the allowed names",
-     R"(The port takes one name out of a fixed list, such as the method of circle_ratio. Names
+     R"(The port takes one name out of a fixed list, such as the motion of virtual_axis. Names
 are written exactly as listed, without quotes and in lower case. 'lineshaft blocks
 TYPE' shows each list.)"},
     {"L0307", "not a boolean",

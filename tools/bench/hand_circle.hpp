@@ -7,8 +7,8 @@
 #include "blocks/axis/servo_drive.hpp"
 #include "blocks/axis/virtual_axis.hpp"
 #include "blocks/circle/circle_fit.hpp"
-#include "blocks/circle/circle_ratio.hpp"
 #include "runtime/model/random.hpp"
+#include "tools/bench/hand_circle_job.hpp"
 
 namespace lineshaft {
 
@@ -22,7 +22,7 @@ struct HandCircle {
     void run(After after);
 
     ServoDrive g_drive, x_drive, y_drive;
-    CircleRatio circle;
+    HandCircleJob circle;
     VirtualAxis g;
     GearAxis x, y;
     CircleFit fit;
@@ -39,7 +39,7 @@ struct HandCircle {
 
 inline HandCircle::HandCircle() : jitter_(1, "main.jitter") {
     g_drive.unit = g.unit = x.master_unit = y.master_unit = AxisUnit::rad;
-    circle.transition_time = CircleRatio::TransitionTime::paper_whole_clocks;
+    circle.transition_time = HandCircleJob::TransitionTime::paper_whole_clocks;
     circle.motion_clock = 0.00125;
     circle.lead = 2;
     g.motion = VirtualAxis::Motion::absolute;

@@ -1,40 +1,104 @@
-#include "blocks/circle/circle_ratio.hpp"
-
 #include <cmath>
+#include <cstring>
 
 #include <catch2/catch.hpp>
 
 #include "blocks/axis/gear_axis.hpp"
 #include "blocks/axis/virtual_axis.hpp"
+#include "blocks/catalog.hpp"
 #include "blocks/circle/circle_fit.hpp"
 #include "tests/blocks/scanning.hpp"
+#include "tests/runtime/st/instance.hpp"
+#include "tools/bench/hand_circle_job.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::test;
 
 namespace {
 
-using State = CircleRatio::State;
-using Method = CircleRatio::Method;
+const st::Library& library() {
+    static const st::Library compiled = [] {
+        Diagnostics out;
+        auto made = st::compile({st::read(LINESHAFT_SOURCE_DIR "/programs/paper/circle_job.scl")},
+                                standard_blocks(), out);
+        INFO(out.render());
+        REQUIRE(made);
+        return std::move(*made);
+    }();
+    return compiled;
+}
+
+const Field& field(const BlockType& kind, std::string_view name) {
+    const auto it = std::ranges::find_if(
+        kind.fields, [&](const Field& f) { return st::same_name(f.name, name); });
+    INFO(name);
+    REQUIRE(it != kind.fields.end());
+    return *it;
+}
+
+/// programs/paper/circle_job.scl, with its twin in C++ beside it: every scan gives the same bits.
+struct CircleJob : HandCircleJob {
+    CircleJob() : memory(kind().size / 8) { kind().construct(place()); }
+
+    void scan(const Scan& now) {
+        copy(Direction::parameter);
+        copy(Direction::input);
+        set("cycle", seconds(now.interval));
+        kind().scan_blocks(place(), 1, now, {kind().context, nullptr});
+        HandCircleJob::scan(now);
+        compare();
+    }
+
+  private:
+    static const BlockType& kind() { return library().kinds().front(); }
+    std::byte* place() { return reinterpret_cast<std::byte*>(memory.data()); }
+    std::byte* self() { return reinterpret_cast<std::byte*>(static_cast<HandCircleJob*>(this)); }
+
+    void set(std::string_view name, const Value& value) {
+        const Field& to = field(kind(), name);
+        store(to.type, place() + to.offset, value);
+    }
+
+    void copy(Direction direction) {
+        for (const Field& from : fields())
+            if (from.direction == direction) set(from.name, load(from.type, self() + from.offset));
+    }
+
+    void compare() {
+        for (const Field& mine : fields()) {
+            if (mine.direction != Direction::output) continue;
+            const Field& its = field(kind(), mine.name);
+            const Value a = load(mine.type, self() + mine.offset);
+            const Value b = load(its.type, place() + its.offset);
+            INFO(mine.name << ": " << format(b) << " in SCL, " << format(a) << " in C++");
+            REQUIRE(format(a) == format(b));
+        }
+    }
+
+    std::vector<std::uint64_t> memory;
+};
+
+using State = CircleJob::State;
+using Method = CircleJob::Method;
 
 constexpr double pi = 3.14159265358979323846;
 constexpr Method all_methods[] = {Method::immediate, Method::early, Method::centred,
                                   Method::balanced, Method::ramp};
 
-CircleRatio circle(Method method, double start = 0, double end = 2 * pi) {
-    CircleRatio c;
+CircleJob circle(Method method, double start = 0, double end = 2 * pi) {
+    CircleJob c;
     c.method = method;
     c.start_angle = start;
     c.end_angle = end;
     return c;
 }
 
-void scan(CircleRatio& c, Clock& clock, int times) {
+void scan(CircleJob& c, Clock& clock, int times) {
     for (int i = 0; i < times; ++i) clock.scan(c);
 }
 
 /// Drives by hand to the state run, as axes that are in position at once would.
-void engage(CircleRatio& c, Clock& clock) {
+void engage(CircleJob& c, Clock& clock) {
     c.start = true;
     clock.scan(c);
     c.x_position = c.start_x;
@@ -43,20 +107,20 @@ void engage(CircleRatio& c, Clock& clock) {
     REQUIRE(c.state == State::run);
 }
 
-void poll_at(CircleRatio& c, Clock& clock, double master_position) {
+void poll_at(CircleJob& c, Clock& clock, double master_position) {
     c.master_position = master_position;
     clock.scan(c);
 }
 
 /// The whole method in a loop: MC_Servo, then the user program, then MC_Interpolator.
 struct Loop {
-    CircleRatio circle;
+    CircleJob circle;
     VirtualAxis g;
     GearAxis x, y;
     CircleFit fit;
     Clock clock;
 
-    explicit Loop(const CircleRatio& c) : circle(c) {
+    explicit Loop(const CircleJob& c) : circle(c) {
         g.motion = VirtualAxis::Motion::absolute;
         g.immediate = true;
         fit.radius = c.radius;
@@ -111,7 +175,7 @@ struct Loop {
 }  // namespace
 
 TEST_CASE("the circle goes from idle over approach, home and engage to run and done") {
-    CircleRatio c = circle(Method::immediate, 0.7, 0.7 + pi / 2);
+    CircleJob c = circle(Method::immediate, 0.7, 0.7 + pi / 2);
     Clock clock;
     scan(c, clock, 5);
     CHECK(c.state == State::idle);
@@ -156,7 +220,7 @@ TEST_CASE("the circle goes from idle over approach, home and engage to run and d
 }
 
 TEST_CASE("the slaves stand on the start point for the settling time before they are homed") {
-    CircleRatio c = circle(Method::early);
+    CircleJob c = circle(Method::early);
     Clock clock;
     c.settling_time = 0.5;
     c.start = true;
@@ -177,7 +241,7 @@ TEST_CASE("the slaves stand on the start point for the settling time before they
 }
 
 TEST_CASE("start held true does one arc, a new rising edge does another") {
-    CircleRatio c = circle(Method::immediate);
+    CircleJob c = circle(Method::immediate);
     Clock clock;
     engage(c, clock);
     poll_at(c, clock, c.master_target);
@@ -198,7 +262,7 @@ TEST_CASE("start held true does one arc, a new rising edge does another") {
 namespace {
 
 /// Checks that X changes from step i when the master reaches `angle`, and not before.
-void check_switch(CircleRatio& c, Clock& clock, std::int64_t i, double angle) {
+void check_switch(CircleJob& c, Clock& clock, std::int64_t i, double angle) {
     INFO("from step " << i << " at " << angle);
     REQUIRE(c.step_x == i);
     poll_at(c, clock, angle - 1e-12);
@@ -209,14 +273,14 @@ void check_switch(CircleRatio& c, Clock& clock, std::int64_t i, double angle) {
 }
 
 /// |k_{i+1} - k_i| v_G of X.
-double velocity_change(const CircleRatio& c, std::int64_t i) {
+double velocity_change(const CircleJob& c, std::int64_t i) {
     return std::abs(c.arc.chord_ratio(i + 1).x - c.arc.chord_ratio(i).x) * c.speed / c.radius;
 }
 
 }  // namespace
 
 TEST_CASE("immediate changes the ratio when the master reaches theta_i") {
-    CircleRatio c = circle(Method::immediate);
+    CircleJob c = circle(Method::immediate);
     Clock clock;
     engage(c, clock);
     for (std::int64_t i = 1; i < c.steps; ++i) check_switch(c, clock, i, c.arc.theta(i));
@@ -224,7 +288,7 @@ TEST_CASE("immediate changes the ratio when the master reaches theta_i") {
 }
 
 TEST_CASE("early changes the ratio v_G T before theta_i, T by equation (18)") {
-    CircleRatio c = circle(Method::early);
+    CircleJob c = circle(Method::early);
     Clock clock;
     engage(c, clock);
     for (std::int64_t i = 1; i < c.steps; ++i) {
@@ -235,8 +299,8 @@ TEST_CASE("early changes the ratio v_G T before theta_i, T by equation (18)") {
 
 TEST_CASE("early can round T up to whole motion clocks, or take it exactly") {
     for (const auto kind :
-         {CircleRatio::TransitionTime::paper_whole_clocks, CircleRatio::TransitionTime::exact}) {
-        CircleRatio c = circle(Method::early);
+         {CircleJob::TransitionTime::paper_whole_clocks, CircleJob::TransitionTime::exact}) {
+        CircleJob c = circle(Method::early);
         c.transition_time = kind;
         c.motion_clock = 0.002;
         Clock clock;
@@ -245,14 +309,14 @@ TEST_CASE("early can round T up to whole motion clocks, or take it exactly") {
             const double dv = velocity_change(c, i);
             const double whole = std::ceil((100 / 5e4 + dv / 100) / 0.002) * 0.002;
             const double exact = dv >= 0.2 ? 100 / 5e4 + dv / 100 : 2 * std::sqrt(dv / 5e4);
-            const bool rounds = kind == CircleRatio::TransitionTime::paper_whole_clocks;
+            const bool rounds = kind == CircleJob::TransitionTime::paper_whole_clocks;
             check_switch(c, clock, i, c.arc.theta(i) - 0.5 * (rounds ? whole : exact));
         }
     }
 }
 
 TEST_CASE("centred calls so that the job starts half a transition before theta_i") {
-    CircleRatio c = circle(Method::centred);
+    CircleJob c = circle(Method::centred);
     c.lead = 3;
     Clock clock;
     engage(c, clock);
@@ -265,7 +329,7 @@ TEST_CASE("centred calls so that the job starts half a transition before theta_i
 }
 
 TEST_CASE("early has its own switching angle for each axis") {
-    CircleRatio c = circle(Method::early);
+    CircleJob c = circle(Method::early);
     Clock clock;
     engage(c, clock);
     // Near the start X's velocity hardly changes, Y's changes most: Y's T is longer.
@@ -278,7 +342,7 @@ TEST_CASE("early has its own switching angle for each axis") {
 
 TEST_CASE("a counter-clockwise arc leaves the start point to the other side") {
     for (const Method method : all_methods) {
-        CircleRatio there = circle(method, 0, pi / 2), back = circle(method, 0, -pi / 2);
+        CircleJob there = circle(method, 0, pi / 2), back = circle(method, 0, -pi / 2);
         Clock a, b;
         engage(there, a);
         engage(back, b);
@@ -292,7 +356,7 @@ TEST_CASE("a counter-clockwise arc leaves the start point to the other side") {
 TEST_CASE("an arc of one step is driven with one ratio") {
     for (const Method method : all_methods) {
         INFO("method " << static_cast<int>(method));
-        CircleRatio c = circle(method, 0.5, 0.53);
+        CircleJob c = circle(method, 0.5, 0.53);
         Loop loop(c);
         loop.run();
         CHECK(loop.circle.steps == 1);
@@ -306,22 +370,22 @@ TEST_CASE("an arc of one step is driven with one ratio") {
 }
 
 TEST_CASE("an arc of no length and inputs that are no numbers are errors") {
-    CircleRatio c = circle(Method::early, 1, 1);
+    CircleJob c = circle(Method::early, 1, 1);
     Clock clock;
     clock.scan(c);
     CHECK(c.error);
-    CHECK(c.error_id == CircleRatio::Error::arc_is_empty);
+    CHECK(c.error_id == CircleJob::Error::arc_is_empty);
     CHECK(c.state == State::idle);
-    for (double CircleRatio::*input :
-         {&CircleRatio::master_position, &CircleRatio::x_position, &CircleRatio::x_velocity,
-          &CircleRatio::y_position, &CircleRatio::y_velocity}) {
-        CircleRatio good = circle(Method::early);
+    for (double HandCircleJob::*input :
+         {&HandCircleJob::master_position, &HandCircleJob::x_position, &HandCircleJob::x_velocity,
+          &HandCircleJob::y_position, &HandCircleJob::y_velocity}) {
+        CircleJob good = circle(Method::early);
         engage(good, clock);
-        CircleRatio bad = good;
+        CircleJob bad = good;
         bad.*input = not_a_number;
         clock.scan(bad);
         CHECK(bad.error);
-        CHECK(bad.error_id == CircleRatio::Error::not_finite);
+        CHECK(bad.error_id == CircleJob::Error::not_finite);
         CHECK(bad.ratio_x == good.ratio_x);
         CHECK(bad.state == State::run);
         bad.*input = good.*input;
@@ -332,12 +396,12 @@ TEST_CASE("an arc of no length and inputs that are no numbers are errors") {
 
 TEST_CASE("a speed that no double can turn into an angular velocity is an error") {
     for (const double radius : {1e300, 1e-300}) {
-        CircleRatio c = circle(Method::balanced);
+        CircleJob c = circle(Method::balanced);
         c.radius = radius;
         c.speed = radius > 1 ? 1e-10 : 1e10;
         Clock clock;
         clock.scan(c);
-        CHECK(c.error_id == CircleRatio::Error::not_finite);
+        CHECK(c.error_id == CircleJob::Error::not_finite);
     }
 }
 
@@ -378,14 +442,14 @@ TEST_CASE("a second circle is as good as the first") {
 TEST_CASE("steps that take less than a scan of the user program are an error") {
     for (const Method method : all_methods) {
         INFO("method " << static_cast<int>(method));
-        CircleRatio c = circle(method);
+        CircleJob c = circle(method);
         c.step = 0.1;
         c.start = true;
         const std::int64_t step_time = 10 * millisecond;
         Clock slow{.interval = step_time + millisecond};
         slow.scan(c);
         CHECK(c.error);
-        CHECK(c.error_id == CircleRatio::Error::steps_too_fast);
+        CHECK(c.error_id == CircleJob::Error::steps_too_fast);
         CHECK(c.state == State::idle);
         Clock fast{.interval = millisecond};
         fast.scan(c);
@@ -397,7 +461,7 @@ TEST_CASE("steps that take less than a scan of the user program are an error") {
 TEST_CASE("methods that steer by position need steps that outlast a change of ratio") {
     for (const Method method : all_methods) {
         INFO("method " << static_cast<int>(method));
-        CircleRatio c = circle(method);
+        CircleJob c = circle(method);
         const bool steers = method == Method::balanced || method == Method::ramp;
         c.step = 0.01;  // 1 ms
         Clock clock{.interval = 500 * microsecond};
@@ -412,7 +476,7 @@ TEST_CASE("methods that steer by position need steps that outlast a change of ra
 TEST_CASE("a slave far away from the arc gets no ratio that is no number") {
     for (const Method method : {Method::balanced, Method::ramp}) {
         for (const double place : {1e300, -largest}) {
-            CircleRatio c = circle(method);
+            CircleJob c = circle(method);
             Clock clock;
             engage(c, clock);
             c.x_position = place;
@@ -424,5 +488,98 @@ TEST_CASE("a slave far away from the arc gets no ratio that is no number") {
                 REQUIRE(std::isfinite(c.acceleration_x));
             }
         }
+    }
+}
+
+namespace {
+
+/// Two ulps a function call, at most three calls a value.
+double rounding(double size) {
+    return 8 * epsilon * size;
+}
+
+}  // namespace
+
+TEST_CASE("a full circle starts and ends at (0, R) and runs clockwise") {
+    const SteppedArc arc = SteppedArc::between(20, 0, 2 * pi, 1);
+    CHECK(arc.steps == 126);  // round(2 pi 20 / 1)
+    CHECK(arc.direction == 1);
+    CHECK(arc.at(0).x == 0);
+    CHECK(arc.at(0).y == 20);
+    CHECK(arc.at(pi / 2).x == Approx(20));
+    CHECK(std::abs(arc.at(arc.sweep).x) <= rounding(20));
+    CHECK(arc.at(arc.sweep).y == 20);
+}
+
+TEST_CASE("an end below the start runs counter-clockwise") {
+    const SteppedArc arc = SteppedArc::between(10, pi / 2, 0, 1);
+    CHECK(arc.direction == -1);
+    CHECK(arc.sweep == pi / 2);
+    CHECK(arc.steps == 16);
+    CHECK(arc.at(0).x == 10);
+    CHECK(arc.at(0.1).y > 0);
+    CHECK(arc.at(arc.sweep).y == 10);
+}
+
+TEST_CASE("the steps of an arc end exactly at its end") {
+    for (const double end : {2 * pi, -2 * pi, 1.0, 0.1, 5.5}) {
+        for (const double step : {1.0, 0.5, 0.37, 1e-3}) {
+            const SteppedArc arc = SteppedArc::between(20, 0, end, step);
+            CHECK(arc.theta(0) == 0);
+            CHECK(arc.theta(arc.steps) == arc.sweep);
+            CHECK(arc.sweep == std::abs(end));
+        }
+    }
+}
+
+TEST_CASE("chord ratios times the step angle lead from point to point") {
+    for (const double end : {2 * pi, -2 * pi, 1.3}) {
+        const SteppedArc arc = SteppedArc::between(20, 0.4, end, 1);
+        Point p = arc.at(0);
+        for (std::int64_t i = 1; i <= arc.steps; ++i) {
+            const Point k = arc.chord_ratio(i);
+            p.x += k.x * arc.step_angle();
+            p.y += k.y * arc.step_angle();
+            const Point on_arc = arc.at(arc.theta(i));
+            INFO("step " << i);
+            const double tolerance = rounding(20) * static_cast<double>(i + 1);
+            REQUIRE(std::abs(p.x - on_arc.x) <= tolerance);
+            REQUIRE(std::abs(p.y - on_arc.y) <= tolerance);
+            REQUIRE(std::abs(std::hypot(on_arc.x, on_arc.y) - 20) <= rounding(20));
+        }
+    }
+}
+
+TEST_CASE("chord ratios are those of equation (7)") {
+    const SteppedArc arc = SteppedArc::between(50, 0, 2 * pi, 1);
+    const double d = 2 * pi / 314;
+    for (const std::int64_t i : {1, 2, 79, 157, 314}) {
+        const double n = static_cast<double>(i);
+        const double x = 50 * (std::sin(n * d) - std::sin((n - 1) * d)) / d;
+        const double y = 50 * (std::cos(n * d) - std::cos((n - 1) * d)) / d;
+        CHECK(std::abs(arc.chord_ratio(i).x - x) <= rounding(50) / d);
+        CHECK(std::abs(arc.chord_ratio(i).y - y) <= rounding(50) / d);
+    }
+}
+
+TEST_CASE("the sagitta is the height of the arc over the chord") {
+    for (const double radius : {20.0, 50.0, 100.0}) {
+        const SteppedArc arc = SteppedArc::between(radius, 0, 2 * pi, 1);
+        const Point a = arc.at(arc.theta(4)), b = arc.at(arc.theta(5));
+        const double middle = std::hypot((a.x + b.x) / 2, (a.y + b.y) / 2);
+        CHECK(std::abs(arc.sagitta() - (radius - middle)) <= rounding(radius));
+        CHECK(arc.sagitta() == Approx(1.0 / (8 * radius)).epsilon(0.01));
+    }
+}
+
+TEST_CASE("an arc has at least one step, and no more than can be counted") {
+    CHECK(SteppedArc::between(20, 0, 1e-9, 1).steps == 1);
+    CHECK(SteppedArc::between(20, 0, 0.01, 1).steps == 1);
+    CHECK(SteppedArc::between(20, 0, denormal, 1).steps == 1);
+    for (const double step : {denormal, 1e-300, 1e-15}) {
+        const SteppedArc arc = SteppedArc::between(20, 0, 2 * pi, step);
+        CHECK(arc.steps > 1'000'000);
+        CHECK(arc.theta(arc.steps) == arc.sweep);
+        CHECK(arc.theta(arc.steps - 1) < arc.sweep);
     }
 }

@@ -1,4 +1,4 @@
-#include "blocks/circle/circle_ratio.hpp"
+#include "tools/bench/hand_circle_job.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,11 +19,37 @@ constexpr std::string_view error_names[] = {"none", "not_finite", "arc_is_empty"
 constexpr double in_position = 1e-9;  // [mm]
 constexpr int clocks_to_settle = 3;   // until a job has been seen and its effect published
 constexpr int fixed_point_steps = 8;
+constexpr double most_steps = 1e9;
 
 }  // namespace
 
-std::span<const Field> CircleRatio::fields() {
-    using C = CircleRatio;
+SteppedArc SteppedArc::between(double radius, double start, double end, double step) {
+    SteppedArc arc;
+    arc.radius = radius;
+    arc.start = start;
+    arc.direction = end < start ? -1 : 1;
+    arc.sweep = std::abs(end - start);
+    const double wanted = std::round(arc.sweep * radius / step);
+    arc.steps = static_cast<std::int64_t>(std::clamp(wanted, 1.0, most_steps));
+    return arc;
+}
+
+double SteppedArc::theta(std::int64_t i) const {
+    return sweep * static_cast<double>(i) / static_cast<double>(steps);
+}
+
+Point SteppedArc::chord_ratio(std::int64_t i) const {
+    const Point from = at(theta(i - 1)), to = at(theta(i));
+    return {(to.x - from.x) / step_angle(), (to.y - from.y) / step_angle()};
+}
+
+double SteppedArc::sagitta() const {
+    const double s = Sleef_cinz_sind1_u10purec(step_angle() / 4);
+    return 2 * radius * s * s;
+}
+
+std::span<const Field> HandCircleJob::fields() {
+    using C = HandCircleJob;
     static const Field table[] = {
         parameter("method", &C::method, "", "when and how the ratios change").one_of(method_names),
         parameter("transition_time", &C::transition_time, "",
@@ -75,7 +101,7 @@ std::span<const Field> CircleRatio::fields() {
     return table;
 }
 
-void CircleRatio::scan(const Scan& now) {
+void HandCircleJob::scan(const Scan& now) {
     if (state == State::idle || state == State::done) arc_error = check_arc(now);
     error_id = inputs_finite() ? arc_error : Error::not_finite;
     error = error_id != Error::none;
@@ -115,17 +141,17 @@ void CircleRatio::scan(const Scan& now) {
     publish();
 }
 
-bool CircleRatio::inputs_finite() const {
+bool HandCircleJob::inputs_finite() const {
     return std::isfinite(master_position) && std::isfinite(x_position) &&
            std::isfinite(x_velocity) && std::isfinite(y_position) && std::isfinite(y_velocity);
 }
 
 /// Of the parameters: looked at before an arc, not on the way.
-CircleRatio::Error CircleRatio::check_arc(const Scan& now) const {
+HandCircleJob::Error HandCircleJob::check_arc(const Scan& now) const {
     if (!std::isnormal(master_speed()) || !std::isfinite(end_angle - start_angle))
         return Error::not_finite;
     if (start_angle == end_angle) return Error::arc_is_empty;
-    const Arc wanted = Arc::between(radius, start_angle, end_angle, step);
+    const SteppedArc wanted = SteppedArc::between(radius, start_angle, end_angle, step);
     const double step_time = wanted.step_angle() / master_speed();
     return wanted.steps == 1 || step_time >= least_step_time(wanted, now) ? Error::none
                                                                           : Error::steps_too_fast;
@@ -133,30 +159,30 @@ CircleRatio::Error CircleRatio::check_arc(const Scan& now) const {
 
 /// A scan changes each ratio once; a change that steers by position must have ended before the
 /// next.
-double CircleRatio::least_step_time(const Arc& wanted, const Scan& now) const {
+double HandCircleJob::least_step_time(const SteppedArc& wanted, const Scan& now) const {
     const double scan = seconds(now.interval);
     if (method != Method::balanced && method != Method::ramp) return scan;
     return scan + static_cast<double>(lead + 1) * motion_clock +
            exact_time(speed * wanted.step_angle());
 }
 
-bool CircleRatio::at_start() const {
+bool HandCircleJob::at_start() const {
     return std::abs(x_position - start_x) <= in_position &&
            std::abs(y_position - start_y) <= in_position;
 }
 
-bool CircleRatio::waited(const Scan& now) const {
+bool HandCircleJob::waited(const Scan& now) const {
     return seconds(now.time - state_since) >= clocks_to_settle * motion_clock;
 }
 
-void CircleRatio::enter(State next, const Scan& now) {
+void HandCircleJob::enter(State next, const Scan& now) {
     state = next;
     state_since = standing_since = now.time;
 }
 
 /// Steps 1 and 2: the arc, its start point, the master's way; the slaves are sent to the start.
-void CircleRatio::begin() {
-    arc = Arc::between(radius, start_angle, end_angle, step);
+void HandCircleJob::begin() {
+    arc = SteppedArc::between(radius, start_angle, end_angle, step);
     steps = arc.steps;
     sagitta = arc.sagitta();
     const Point from = arc.at(0);
@@ -171,7 +197,7 @@ void CircleRatio::begin() {
 }
 
 /// Step 3, and 4 to 6 for the first step: the ratios that hold from standstill.
-void CircleRatio::engage() {
+void HandCircleJob::engage() {
     approach = false;
     knot = 0;
     next_clock = 0;
@@ -183,7 +209,7 @@ void CircleRatio::engage() {
     }
 }
 
-double CircleRatio::first_ratio(Coordinate f) const {
+double HandCircleJob::first_ratio(Coordinate f) const {
     const double half = arc.step_angle() / 2;
     if (method == Method::ramp)
         return Sleef_cinz_tand1_u10purec(half) / half * arc.slope(0).along(f);
@@ -193,7 +219,7 @@ double CircleRatio::first_ratio(Coordinate f) const {
 }
 
 /// Steps 8 to 10.
-void CircleRatio::run(const Scan& now) {
+void HandCircleJob::run(const Scan& now) {
     if (master_position >= master_target) {
         done = true;
         execute = false;
@@ -209,7 +235,7 @@ void CircleRatio::run(const Scan& now) {
     poll(y, angle);
 }
 
-void CircleRatio::poll(Axis& axis, double angle) {
+void HandCircleJob::poll(Axis& axis, double angle) {
     if (axis.step >= arc.steps || angle < axis.switch_angle) return;
     ++axis.step;
     axis.ratio = arc.chord_ratio(axis.step).along(axis.coordinate);
@@ -217,7 +243,7 @@ void CircleRatio::poll(Axis& axis, double angle) {
 }
 
 /// Steps 4 and 5: the master's angle at which the ratio of step i + 1 is commanded.
-void CircleRatio::plan_change(Axis& axis) const {
+void HandCircleJob::plan_change(Axis& axis) const {
     if (axis.step >= arc.steps) return;
     const double v_G = master_speed();
     const double dv =
@@ -227,31 +253,31 @@ void CircleRatio::plan_change(Axis& axis) const {
     if (method == Method::centred) axis.switch_angle -= v_G * exact_time(dv) / 2;
 }
 
-double CircleRatio::time_for(double dv) const {
+double HandCircleJob::time_for(double dv) const {
     if (transition_time == TransitionTime::exact) return exact_time(dv);
     const double T = acceleration / jerk + dv / acceleration;  // eq. (18)
     if (transition_time == TransitionTime::paper) return T;
     return std::ceil(T / motion_clock) * motion_clock;
 }
 
-double CircleRatio::exact_time(double dv) const {
+double HandCircleJob::exact_time(double dv) const {
     return ramp_duration(dv, acceleration, jerk);
 }
 
 /// Motion clocks since the master's start at which a job commanded now would start; -1: not known
 /// yet.
-std::int64_t CircleRatio::job_clock() const {
+std::int64_t HandCircleJob::job_clock() const {
     if (master_position <= 0) return -1;
     return std::llround(master_position / (master_speed() * motion_clock)) + lead;
 }
 
 /// The clock at which the change between steps j and j + 1 starts, for both axes.
-std::int64_t CircleRatio::switch_clock(std::int64_t j) const {
+std::int64_t HandCircleJob::switch_clock(std::int64_t j) const {
     const double T = exact_time(speed * arc.step_angle());
     return std::llround((arc.theta(j) / master_speed() - T / 2) / motion_clock);
 }
 
-void CircleRatio::balance(std::int64_t clock) {
+void HandCircleJob::balance(std::int64_t clock) {
     if (clock < next_clock || knot + 1 >= arc.steps) return;
     ++knot;
     const bool last = knot + 1 == arc.steps;
@@ -265,7 +291,7 @@ void CircleRatio::balance(std::int64_t clock) {
 }
 
 /// An axis that cannot come back to the arc within the step keeps its ratio.
-void CircleRatio::balance_axis(Axis& axis, double from, double t, double next, double rho) {
+void HandCircleJob::balance_axis(Axis& axis, double from, double t, double next, double rho) {
     const double v_G = master_speed();
     const double v_old = axis.ratio * v_G;
     const double vertex = arc.at(v_G * next, rho).along(axis.coordinate);
@@ -281,11 +307,11 @@ void CircleRatio::balance_axis(Axis& axis, double from, double t, double next, d
 }
 
 /// The clock of knot k, where step k + 1 begins.
-std::int64_t CircleRatio::knot_clock(std::int64_t k) const {
+std::int64_t HandCircleJob::knot_clock(std::int64_t k) const {
     return std::llround(arc.theta(k) / (master_speed() * motion_clock));
 }
 
-void CircleRatio::ramp_step(std::int64_t clock) {
+void HandCircleJob::ramp_step(std::int64_t clock) {
     if (clock < next_clock || knot >= arc.steps) return;
     ++knot;
     const bool last = knot == arc.steps;
@@ -297,7 +323,7 @@ void CircleRatio::ramp_step(std::int64_t clock) {
     ramp_axis(y, y_position + (y_velocity + y.ratio * master_speed()) * ahead, t, next);
 }
 
-void CircleRatio::ramp_axis(Axis& axis, double from, double t, double next) {
+void HandCircleJob::ramp_axis(Axis& axis, double from, double t, double next) {
     const double v_G = master_speed();
     const double dt = next - t;
     axis.step = knot;
@@ -315,7 +341,7 @@ void CircleRatio::ramp_axis(Axis& axis, double from, double t, double next) {
     axis.ratio = v_new / v_G;
 }
 
-void CircleRatio::publish() {
+void HandCircleJob::publish() {
     ratio_x = x.ratio;
     ratio_y = y.ratio;
     acceleration_x = x.acceleration;

@@ -10,9 +10,27 @@
 
 namespace lineshaft {
 
-/// The user program of the synchronised circle (Wei et al. 2025, steps 1 to 10): positions the axes
-/// on the start point, lets them settle there for `settling_time`, homes them, couples them at
-/// standstill, starts the master, and changes the ratios on the way.
+/// An arc cut into n equal steps of the master's angle theta = 0 .. sweep.
+struct SteppedArc : Arc {
+    double sweep = 0;        ///< theta_n [rad], > 0
+    std::int64_t steps = 1;  ///< n = round(sweep R / step), 1 .. 10^9
+
+    /// From `start` to `end` [rad]; clockwise when end > start. step: wanted length of a step [mm].
+    static SteppedArc between(double radius, double start, double end, double step);
+
+    double step_angle() const { return sweep / static_cast<double>(steps); }
+    /// theta_i, exact at both ends.
+    double theta(std::int64_t i) const;
+    /// Chord slope of step i = 1..n: the ratios k_i of eq. (7) [mm/rad].
+    Point chord_ratio(std::int64_t i) const;
+    /// Height of a step's arc over its chord [mm]: R (1 - cos(dtheta / 2)).
+    double sagitta() const;
+};
+
+/// programs/paper/circle_job.scl written by hand in C++: what the language costs, and the same
+/// bits. The user program of the synchronised circle (Wei et al. 2025, steps 1 to 10): positions
+/// the axes on the start point, lets them settle there for `settling_time`, homes them, couples
+/// them at standstill, starts the master, and changes the ratios on the way.
 ///
 /// `immediate` (ref. [16]) and `early` (13), (14), (18) change from k_i to k_{i+1} when the read
 /// master position has passed theta_i, or theta_i - v_G T. `centred` calls when the job would start
@@ -31,7 +49,7 @@ namespace lineshaft {
 /// so the velocity runs piecewise linearly through the knots' velocities, scaled so that each step
 /// covers its chord: v_k = v cos(theta_k) tan(dtheta/2) / (dtheta/2). Half of the position error at
 /// each knot is fed back.
-struct CircleRatio {
+struct HandCircleJob {
     enum class Method : std::int64_t { immediate, early, centred, balanced, ramp };
     enum class TransitionTime : std::int64_t { paper, paper_whole_clocks, exact };
     enum class State : std::int64_t { idle, approach, home, engage, run, done };
@@ -75,7 +93,7 @@ struct CircleRatio {
         double switch_angle = 0;    ///< of the next change [rad]
     };
 
-    Arc arc;
+    SteppedArc arc;
     Axis x, y;
     bool last_start = false;
     Error arc_error = Error::none;
@@ -83,20 +101,13 @@ struct CircleRatio {
     std::int64_t knot = 0;        ///< balanced, ramp: steps begun
     std::int64_t next_clock = 0;  ///< balanced, ramp: motion clock of the next change
 
-    static constexpr std::string_view type = "circle_ratio";
-    static constexpr std::string_view doc =
-        "user program of a circular arc by variable synchronisation ratio";
     static std::span<const Field> fields();
     void scan(const Scan& now);
-    void shift(std::int64_t by) {
-        state_since += by;
-        standing_since += by;
-    }
 
   private:
     bool inputs_finite() const;
     Error check_arc(const Scan& now) const;
-    double least_step_time(const Arc& wanted, const Scan& now) const;
+    double least_step_time(const SteppedArc& wanted, const Scan& now) const;
     bool at_start() const;
     bool waited(const Scan& now) const;
     void enter(State next, const Scan& now);
