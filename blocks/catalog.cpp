@@ -19,7 +19,6 @@
 #include "blocks/logic/select.hpp"
 #include "blocks/logic/signal.hpp"
 #include "blocks/logic/timer.hpp"
-#include "blocks/pulse/constant_jerk_line.hpp"
 #include "blocks/pulse/pto.hpp"
 
 namespace lineshaft {
@@ -39,7 +38,6 @@ Catalog make_catalog() {
     blocks.add<ContourComparison>();
     blocks.add<CrossCoupling>();
     blocks.add<Pto>();
-    blocks.add<ConstantJerkLine>();
     blocks.add<Ton>();
     blocks.add<Tof>();
     blocks.add<Tp>();

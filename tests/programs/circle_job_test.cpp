@@ -1,14 +1,12 @@
 #include <cmath>
-#include <cstring>
 
 #include <catch2/catch.hpp>
 
 #include "blocks/axis/gear_axis.hpp"
 #include "blocks/axis/virtual_axis.hpp"
-#include "blocks/catalog.hpp"
 #include "blocks/circle/circle_fit.hpp"
 #include "tests/blocks/scanning.hpp"
-#include "tests/runtime/st/instance.hpp"
+#include "tests/programs/twin.hpp"
 #include "tools/bench/hand_circle_job.hpp"
 
 using namespace lineshaft;
@@ -16,66 +14,12 @@ using namespace lineshaft::test;
 
 namespace {
 
-const st::Library& library() {
-    static const st::Library compiled = [] {
-        Diagnostics out;
-        auto made = st::compile({st::read(LINESHAFT_SOURCE_DIR "/programs/paper/circle_job.scl")},
-                                standard_blocks(), out);
-        INFO(out.render());
-        REQUIRE(made);
-        return std::move(*made);
-    }();
-    return compiled;
-}
-
-const Field& field(const BlockType& kind, std::string_view name) {
-    const auto it = std::ranges::find_if(
-        kind.fields, [&](const Field& f) { return st::same_name(f.name, name); });
-    INFO(name);
-    REQUIRE(it != kind.fields.end());
-    return *it;
-}
-
-/// programs/paper/circle_job.scl, with its twin in C++ beside it: every scan gives the same bits.
-struct CircleJob : HandCircleJob {
-    CircleJob() : memory(kind().size / 8) { kind().construct(place()); }
-
+/// programs/paper/circle_job.scl and its twin.
+struct CircleJob : Twin<HandCircleJob> {
     void scan(const Scan& now) {
-        copy(Direction::parameter);
-        copy(Direction::input);
-        set("cycle", seconds(now.interval));
-        kind().scan_blocks(place(), 1, now, {kind().context, nullptr});
-        HandCircleJob::scan(now);
-        compare();
+        static const st::Library library = compiled({"circle_job.scl"});
+        scan_both(library, "CircleJob", now);
     }
-
-  private:
-    static const BlockType& kind() { return library().kinds().front(); }
-    std::byte* place() { return reinterpret_cast<std::byte*>(memory.data()); }
-    std::byte* self() { return reinterpret_cast<std::byte*>(static_cast<HandCircleJob*>(this)); }
-
-    void set(std::string_view name, const Value& value) {
-        const Field& to = field(kind(), name);
-        store(to.type, place() + to.offset, value);
-    }
-
-    void copy(Direction direction) {
-        for (const Field& from : fields())
-            if (from.direction == direction) set(from.name, load(from.type, self() + from.offset));
-    }
-
-    void compare() {
-        for (const Field& mine : fields()) {
-            if (mine.direction != Direction::output) continue;
-            const Field& its = field(kind(), mine.name);
-            const Value a = load(mine.type, self() + mine.offset);
-            const Value b = load(its.type, place() + its.offset);
-            INFO(mine.name << ": " << format(b) << " in SCL, " << format(a) << " in C++");
-            REQUIRE(format(a) == format(b));
-        }
-    }
-
-    std::vector<std::uint64_t> memory;
 };
 
 using State = CircleJob::State;

@@ -1,4 +1,4 @@
-#include "blocks/profile/constant_jerk.hpp"
+#include "tests/programs/constant_jerk.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,3 @@
-#include "blocks/pulse/constant_jerk_line.hpp"
-
 #include <algorithm>
 
 #include <catch2/catch.hpp>
@@ -7,14 +5,25 @@
 #include "blocks/pulse/pulse_train.hpp"
 #include "runtime/model/random.hpp"
 #include "tests/blocks/scanning.hpp"
+#include "tests/programs/constant_jerk_line.hpp"
+#include "tests/programs/twin.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::test;
 
 namespace {
 
-ConstantJerkLine line(double x, double y) {
-    ConstantJerkLine l;
+/// programs/paper/jerk_line.st and its twin, in both widths.
+struct JerkLine : Twin<ConstantJerkLine> {
+    void scan(const Scan& now) {
+        static const st::Library in_lreal = compiled({"jerk_line.st", "jerk_line_lreal.st"});
+        static const st::Library in_real = compiled({"jerk_line.st", "jerk_line_real.st"});
+        scan_both(real == Width::real_32 ? in_real : in_lreal, "JerkLine", now);
+    }
+};
+
+JerkLine line(double x, double y) {
+    JerkLine l;
     l.velocity = 1.5;
     l.pulses_per_length = 60'000;
     l.x.displacement = x;
@@ -28,7 +37,7 @@ struct Sum {
 };
 
 /// Channels that are never busy: the pulses that the line sends in all.
-Sum sent(ConstantJerkLine& l) {
+Sum sent(JerkLine& l) {
     Sum sum;
     Clock clock;
     for (int i = 0; i < 10'000; ++i) {
@@ -47,27 +56,27 @@ Sum sent(ConstantJerkLine& l) {
 }  // namespace
 
 TEST_CASE("truncated pulses are lost, carried ones are not") {
-    ConstantJerkLine l = line(1.5, 1);
+    JerkLine l = line(1.5, 1);
     const Sum cut = sent(l);
     CHECK(cut.x == 89'960);
     CHECK(cut.y == 59'960);
     CHECK(cut.segments_x == 80);
     CHECK(cut.segments_y == 78);
     CHECK(l.done);
-    ConstantJerkLine carrying = line(1.5, 1);
-    carrying.rounding = ConstantJerkLine::Rounding::carry;
+    JerkLine carrying = line(1.5, 1);
+    carrying.rounding = JerkLine::Rounding::carry;
     const Sum carried = sent(carrying);
     CHECK(carried.x == 90'000);
     CHECK(carried.y == 60'000);
 }
 
 TEST_CASE("pulses are carried to the nearest at every sample's end") {
-    for (const auto width : {ConstantJerkLine::Width::real_32, ConstantJerkLine::Width::real_64}) {
-        ConstantJerkLine l = line(3, 2.5);
+    for (const auto width : {JerkLine::Width::real_32, JerkLine::Width::real_64}) {
+        JerkLine l = line(3, 2.5);
         l.real = width;
-        l.rounding = ConstantJerkLine::Rounding::carry;
+        l.rounding = JerkLine::Rounding::carry;
         l.phases = ConstantJerkPhases::whole;
-        l.chain = ConstantJerkLine::Chain::clock;
+        l.chain = JerkLine::Chain::clock;
         Clock clock;
         std::int64_t x = 0, y = 0;
         do {
@@ -88,13 +97,13 @@ TEST_CASE("rates that fit put out the count within the period, and idle for less
         return high * static_cast<double>(random.next() % 10'000) / 10'000;
     };
     for (int i = 0; i < 300; ++i) {
-        ConstantJerkLine l = line(0.002 + pick(8), pick(8));
+        JerkLine l = line(0.002 + pick(8), pick(8));
         l.acceleration = 0.2 + pick(2);
         l.jerk = 0.2 + pick(5);
-        l.rounding = ConstantJerkLine::Rounding::carry;
-        l.rates = ConstantJerkLine::Rates::fit;
+        l.rounding = JerkLine::Rounding::carry;
+        l.rates = JerkLine::Rates::fit;
         l.phases = ConstantJerkPhases::whole;
-        l.chain = ConstantJerkLine::Chain::clock;
+        l.chain = JerkLine::Chain::clock;
         Clock clock;
         do {
             const std::int64_t job = l.x.job;
@@ -115,7 +124,7 @@ TEST_CASE("rates that fit put out the count within the period, and idle for less
 }
 
 TEST_CASE("the larger displacement leads, whichever axis and direction it has") {
-    ConstantJerkLine a = line(2.5, -3), b = line(3, 2.5);
+    JerkLine a = line(2.5, -3), b = line(3, 2.5);
     const Sum swapped = sent(a), straight = sent(b);
     CHECK(swapped.x == straight.y);
     CHECK(swapped.y == straight.x);
@@ -125,12 +134,12 @@ TEST_CASE("the larger displacement leads, whichever axis and direction it has") 
 }
 
 TEST_CASE("an axis below its threshold stands") {
-    ConstantJerkLine l = line(1.5, 0.0009);
+    JerkLine l = line(1.5, 0.0009);
     CHECK(sent(l).segments_y == 0);
-    ConstantJerkLine by_pulses = line(1.5, 0.01);
+    JerkLine by_pulses = line(1.5, 0.01);
     by_pulses.threshold_pulses = 1000;
     CHECK(sent(by_pulses).segments_y == 0);
-    ConstantJerkLine none = line(0, 0);
+    JerkLine none = line(0, 0);
     CHECK(sent(none).segments_x == 0);
     CHECK_FALSE(none.done);
 }
@@ -140,7 +149,7 @@ TEST_CASE("limits that are not above 0 are unreasonable and nothing moves") {
          {&ConstantJerkLine::acceleration, &ConstantJerkLine::jerk, &ConstantJerkLine::velocity,
           &ConstantJerkLine::period}) {
         for (const double bad : {0.0, -1.0}) {
-            ConstantJerkLine l = line(1, 1);
+            JerkLine l = line(1, 1);
             l.*limit = bad;
             CHECK(sent(l).segments_x == 0);
             CHECK(l.unreasonable);
@@ -149,20 +158,20 @@ TEST_CASE("limits that are not above 0 are unreasonable and nothing moves") {
 }
 
 TEST_CASE("an interpolation time of at most 4 t1 is a warning, and the line runs") {
-    ConstantJerkLine l = line(1.5, 1);
+    JerkLine l = line(1.5, 1);
     l.interpolation_time = 4;
     CHECK(sent(l).x == 89'960);
     CHECK(l.short_time);
-    ConstantJerkLine longer = line(1.5, 1);
+    JerkLine longer = line(1.5, 1);
     longer.interpolation_time = 4.001;
     sent(longer);
     CHECK_FALSE(longer.short_time);
 }
 
 TEST_CASE("the next sample waits for the leading channel, or for both, or for nothing") {
-    using Chain = ConstantJerkLine::Chain;
+    using Chain = JerkLine::Chain;
     const auto sends = [](Chain chain, bool x_busy, bool y_busy) {
-        ConstantJerkLine l = line(1.5, 1);
+        JerkLine l = line(1.5, 1);
         l.chain = chain;
         Clock clock;
         clock.scan(l);
@@ -180,7 +189,7 @@ TEST_CASE("the next sample waits for the leading channel, or for both, or for no
 }
 
 TEST_CASE("a line is done when both channels have ended") {
-    ConstantJerkLine l = line(1.5, 1);
+    JerkLine l = line(1.5, 1);
     Clock clock;
     clock.scan(l);
     CHECK_FALSE(l.y.interrupt);
@@ -192,5 +201,5 @@ TEST_CASE("a line is done when both channels have ended") {
     l.y.busy = false;
     clock.scan(l);
     CHECK(l.done);
-    CHECK(l.time == Approx(0.101));
+    CHECK(l.duration == Approx(0.101));
 }

@@ -1,4 +1,4 @@
-#include "blocks/pulse/constant_jerk_line.hpp"
+#include "tests/programs/constant_jerk_line.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -81,7 +81,7 @@ std::span<const Field> ConstantJerkLine::fields() {
         output("kind", &L::kind, "", "of the profile").one_of(kind_names),
         output("gamma", &L::gamma, "", "smaller displacement / larger"),
         output("samples", &L::samples, "", "sent"),
-        output("time", &L::time, "s", "since `start`, until both channels had ended"),
+        output("duration", &L::duration, "s", "since `start`, until both channels had ended"),
         output("error", &L::error, "", "an input is not a number; nothing is sent"),
         output("error_id", &L::error_id, "", "why").one_of(error_names),
     };
@@ -120,7 +120,7 @@ void ConstantJerkLine::begin(const Scan& now) {
     const double way = std::max(way_x, way_y);
     done = false;
     samples = 0;
-    time = 0;
+    duration = 0;
     if (unreasonable || way == 0) return;
     x_leads = way_x >= way_y;
     gamma = std::min(way_x, way_y) / way;
@@ -147,7 +147,7 @@ bool ConstantJerkLine::plan(ConstantJerk<Real>& profile, double way) {
 
 void ConstantJerkLine::run(const Scan& now) {
     if (sending && (now.time == started || may_send())) send();
-    time = seconds(now.time - started);
+    duration = seconds(now.time - started);
     if (sending || x.busy || y.busy) return attach();
     busy = false;
     done = true;
