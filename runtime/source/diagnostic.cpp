@@ -37,8 +37,9 @@ struct Printable {
 };
 
 Printable printable(std::string_view text, std::size_t most) {
-    Printable out;
-    out.text.reserve(std::min(text.size(), most));
+    const std::size_t plain = std::min(plain_length(text), most);
+    Printable out{.text = std::string(text.substr(0, plain)), .characters = plain};
+    text.remove_prefix(plain);
     for (; !text.empty() && out.characters < most; ++out.characters) {
         const Utf8Character character = first_character(text);
         if (text.front() == '\t')
@@ -55,7 +56,8 @@ Printable printable(std::string_view text, std::size_t most) {
 
 /// Removes `count` characters, or all there are, from the beginning; how many that were.
 std::size_t skip(std::string_view& text, std::size_t count) {
-    std::size_t skipped = 0;
+    std::size_t skipped = std::min(plain_length(text), count);
+    text.remove_prefix(skipped);
     for (; skipped < count && !text.empty(); ++skipped)
         text.remove_prefix(first_character(text).bytes);
     return skipped;

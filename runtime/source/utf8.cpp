@@ -33,11 +33,9 @@ Utf8Character first_beyond_ascii(std::string_view text) {
 }
 
 std::size_t count_characters(std::string_view text) {
-    std::size_t count = 0;
-    while (!text.empty()) {
+    std::size_t count = plain_length(text);
+    for (text.remove_prefix(count); !text.empty(); ++count)
         text.remove_prefix(first_character(text).bytes);
-        ++count;
-    }
     return count;
 }
 

@@ -17,6 +17,13 @@ constexpr bool is_ascii(char c) {
     return static_cast<unsigned char>(c) < 0x80;
 }
 
+/// Bytes before the first that is not a printable character of ASCII.
+inline std::size_t plain_length(std::string_view text) {
+    const char *at = text.data(), *const end = at + text.size();
+    while (at != end && *at >= ' ' && *at <= '~') ++at;
+    return static_cast<std::size_t>(at - text.data());
+}
+
 /// Of a text whose first byte is not ASCII.
 Utf8Character first_beyond_ascii(std::string_view text);
 

@@ -121,7 +121,9 @@ void check_characters(const Source& source, Diagnostics& out) {
     }
     std::size_t found = 0;
     std::string_view rest = source.text();
-    while (!rest.empty() && found < most_bad_characters) {
+    while (found < most_bad_characters) {
+        rest.remove_prefix(plain_length(rest));
+        if (rest.empty()) return;
         const Utf8Character character = first_character(rest);
         const std::string_view fault = fault_of(character, rest);
         if (!fault.empty()) {
