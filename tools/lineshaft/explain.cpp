@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
-#include "runtime/source/codes.hpp"
+#include "tools/lineshaft/codes.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {

@@ -7,9 +7,9 @@
 #include <spdlog/spdlog.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/fit/fit_table.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
+#include "tools/lineshaft/fit_table.hpp"
 
 namespace lineshaft {
 

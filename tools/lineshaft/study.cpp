@@ -6,8 +6,8 @@
 #include "blocks/catalog.hpp"
 #include "runtime/study/merge.hpp"
 #include "runtime/study/study_reader.hpp"
-#include "runtime/study/table.hpp"
 #include "tools/lineshaft/command.hpp"
+#include "tools/lineshaft/study_table.hpp"
 
 namespace lineshaft {
 

@@ -10,9 +10,9 @@
 #include "runtime/study/junit.hpp"
 #include "runtime/study/report.hpp"
 #include "runtime/study/study_reader.hpp"
-#include "runtime/study/table.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
+#include "tools/lineshaft/study_table.hpp"
 
 namespace lineshaft {
 

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/fit/fit_table.hpp"
 #include "runtime/model/random.hpp"
 #include "tests/folder.hpp"
+#include "tools/lineshaft/fit_table.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::test;

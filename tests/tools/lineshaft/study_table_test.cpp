@@ -1,4 +1,4 @@
-#include "runtime/study/table.hpp"
+#include "tools/lineshaft/study_table.hpp"
 
 #include <limits>
 

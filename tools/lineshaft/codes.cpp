@@ -1,4 +1,4 @@
-#include "runtime/source/codes.hpp"
+#include "tools/lineshaft/codes.hpp"
 
 #include <algorithm>
 #include <string>

@@ -1,4 +1,4 @@
-#include "runtime/fit/fit_table.hpp"
+#include "tools/lineshaft/fit_table.hpp"
 
 #include <algorithm>
 #include <cmath>
