@@ -50,7 +50,7 @@ void CommonOptions::add_to(CLI::App& command) {
     command.add_option("--include-dir", include_dirs, "Allow files below this folder, too")
         ->type_name("DIR");
     command.add_flag("--json", json, "Print one JSON object for machines");
-    command.add_flag("--quiet", quiet, "Print results only");
+    command.add_flag("--quiet", quiet, "Print results only, and nothing where a file takes them");
 }
 
 LoadOptions CommonOptions::load_options(Diagnostics& out) const {

@@ -144,6 +144,7 @@ Exit StudyRun::tell_stopped(Exit exit) const {
 
 void StudyRun::print(const StudyReport& result) const {
     if (command_.common.json) return fmt::print("{}\n", study_json(study_, result).dump(2));
+    if (command_.common.quiet && !command_.output.empty()) return;
     fmt::print("{}", study_table(study_, result));
     if (command_.common.quiet) return;
     fmt::print("\n{} cases", result.cases);
