@@ -248,7 +248,11 @@ Location Generator::locate(const Expression& e) {
     if (e.kind == E::member) return part(locate(*e.operands[0]), *e.variable);
     if (e.kind == E::index) return locate_element(e);
     const Variable& variable = *e.variable;
-    if (variable.space == Space::reference) return {Mode::address, 0, variable.slot, 0};
+    if (variable.space == Space::reference) {
+        const bool of_block = routine_->owner && variable.of != routine_->pou;
+        if (of_block) put(Op::bound, 0, variable.slot);
+        return {Mode::address, 0, variable.slot, 0};
+    }
     if (variable.space == Space::global) {
         const Slot address = new_temporary();
         put(Op::set_global, address, static_cast<Slot>(variable.global));
@@ -263,7 +267,11 @@ Location Generator::part(Location of, const Variable& member) {
         of.byte = member.byte;
         return of;
     }
-    if (member.space == Space::reference) return {Mode::address, 0, load(part(of, member.slot)), 0};
+    if (member.space == Space::reference) {
+        const Slot address = load(part(of, member.slot));
+        put(Op::bound, 0, address);
+        return {Mode::address, 0, address, 0};
+    }
     return part(of, member.slot);
 }
 
