@@ -91,7 +91,9 @@ Slot Generator::text_function(const Expression& e) {
 
 Slot Generator::text_conversion(const Expression& e) {
     const Expression& from = *e.operands[0];
-    const Slot number = value(from);
+    Slot number = value(from);
+    if (from.type->kind == Type::Kind::enumeration)
+        number = convert(number, *from.type, lint_type, false, none);
     Slot made = none;
     new_text(made);
     const Op op = from.type->is_real()          ? Op::text_of_real

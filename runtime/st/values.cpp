@@ -217,8 +217,7 @@ Slot Generator::convert_real(Slot slot, const Type& from, const Type& to, bool t
     if (to.kind == Kind::bits && from.bits == to.bits)
         return to.bits == 32 ? emit(Op::real_bits, wanted, slot) : slot;
     if (truncates) slot = emit(Op::truncate, none, slot);
-    const Type& whole = to.kind == Kind::enumeration ? lint_type : to;
-    return emit(of_type(Op::round_sint, whole), wanted, slot);
+    return emit(of_type(Op::round_sint, to), wanted, slot);
 }
 
 /// A time is in s as a real number, in ms as an integer of up to 32 bits, in ns as one of 64.
