@@ -182,20 +182,21 @@ Slot Generator::convert(Slot slot, const Type& given_from, const Type& given_to,
                    1}));
         return whole;
     }
+    if (from.kind == Kind::enumeration && !from.counted) {
+        const auto first = static_cast<std::int64_t>(code_.numbers.size());
+        code_.numbers.insert(code_.numbers.end(), from.numbers.begin(), from.numbers.end());
+        slot = emit(Op::look_up, none, slot, table({first, from.numbers.size(), 1}));
+        return convert(slot, *from.base, to, truncates, wanted);
+    }
+    if (to.kind == Kind::enumeration) {
+        if (from.is_real()) slot = convert_real(slot, from, lint_type, truncates, none);
+        put(Op::within, 0, slot, table({0, to.values.size(), 1}));
+        return slot;
+    }
     if (from.kind == Kind::time || to.kind == Kind::time)
         return convert_time(slot, from, to, wanted);
     if (from.is_real() || to.is_real()) return convert_real(slot, from, to, truncates, wanted);
     if (to.kind == Kind::boolean) return emit(Op::ne_word, wanted, slot, constant_slot(0));
-    if (from.kind == Kind::enumeration && !from.counted) {
-        const auto first = static_cast<std::int64_t>(code_.numbers.size());
-        code_.numbers.insert(code_.numbers.end(), from.numbers.begin(), from.numbers.end());
-        slot = emit(Op::look_up, wanted, slot, table({first, from.numbers.size(), 1}));
-        return widens(*from.base, to) ? slot : emit(of_type(Op::wrap_sint, to), wanted, slot);
-    }
-    if (to.kind == Kind::enumeration) {
-        put(Op::within, 0, slot, table({0, to.values.size(), 1}));
-        return slot;
-    }
     if (widens(from, to) || from.kind == Kind::boolean || from.kind == Kind::enumeration)
         return slot;
     return emit(of_type(Op::wrap_sint, to), wanted, slot);
@@ -362,7 +363,8 @@ void Generator::copy_value(const Location& to, const Type& type, const Expressio
         return put(Op::text_copy, address_of(to), text, type.length);
     }
     if (from.kind == E::call) {
-        const Location made{Mode::slot, call(from, none)};
+        const Location made = from.routine ? Location{Mode::slot, call(from, none)}
+                                           : Location{Mode::address, 0, standard(from, none)};
         return copy(to, made, slots_of(type));
     }
     copy(to, locate(from), slots_of(type));
