@@ -623,12 +623,10 @@ class SourceMaker {
 
     Text selection(const Type& type, int depth) {
         const std::string first = sub(type, depth), second = sub(type, depth);
-        const bool bool_or_enum = type.kind == Kind::boolean || type.kind == Kind::enumeration;
-        const std::string_view names = "SEL";
-        switch (bool_or_enum ? below(2) : below(2 + (type.kind == Kind::bits ? 2 : 4))) {
+        const bool plain = type.kind == Kind::boolean || type.kind >= Kind::text;
+        switch (plain ? below(3) : below(3 + (type.kind == Kind::bits ? 2 : 3))) {
             default:
-                return {
-                    fmt::format("{}({}, {}, {})", names, sub(named("BOOL"), depth), first, second)};
+                return {fmt::format("SEL({}, {}, {})", sub(named("BOOL"), depth), first, second)};
             case 1: {
                 const Type& k = named(below(2) == 0 ? "INT" : "USINT");
                 const std::string place = below(8) == 7
@@ -637,13 +635,13 @@ class SourceMaker {
                 return {fmt::format("MUX({}, {}, {})", place, first, second)};
             }
             case 2:
-                return {fmt::format("MIN({}, {})", first, second)};
-            case 3:
-                return {fmt::format("MAX({}, {}, {})", first, second, sub(type, depth))};
-            case 4:
-                return {fmt::format("LIMIT({}, {}, {})", first, sub(type, depth), second)};
-            case 5:
                 return {fmt::format("MOVE({})", first)};
+            case 3:
+                return {fmt::format("MIN({}, {})", first, second)};
+            case 4:
+                return {fmt::format("MAX({}, {}, {})", first, second, sub(type, depth))};
+            case 5:
+                return {fmt::format("LIMIT({}, {}, {})", first, sub(type, depth), second)};
         }
     }
 
@@ -744,8 +742,7 @@ class SourceMaker {
         const bool whole = is_whole(type) || type.kind == Kind::time;
         if (from.base || &from == &type || from.kind == Kind::time)
             return time_conversion(type, depth);
-        if (from.kind == Kind::enumeration && (type.kind == Kind::real || type.kind == Kind::time))
-            return leaf(type);
+        if (from.kind == Kind::enumeration && type.kind == Kind::time) return leaf(type);
         std::string value = sub(from, depth);
         const bool same_bits = type.kind == Kind::bits && from.bits == type.bits;
         if (from.kind == Kind::real && same_bits) {
@@ -866,9 +863,11 @@ class SourceMaker {
 
     Text text(const Type&, int depth) {
         const Type& any = *choices_.one_of(texts_);
-        switch (below(9)) {
+        switch (below(10)) {
             default:
                 return leaf(any);
+            case 9:
+                return selection(any, depth);
             case 1:
                 return {fmt::format("CONCAT({}, {})", sub(any, depth), sub(any, depth))};
             case 2:
@@ -907,7 +906,8 @@ class SourceMaker {
                                     varying(named("INT"), depth), type.values.size() - 1)};
             case 4:
                 if (!type.counted) return leaf(type);
-                return {fmt::format("TO_{}({})", type.name, sub(named("USINT"), depth))};
+                return {fmt::format("TO_{}({})", type.name,
+                                    sub(named(below(2) == 0 ? "USINT" : "REAL"), depth))};
         }
     }
 
@@ -915,6 +915,7 @@ class SourceMaker {
     Text aggregate(const Type& type, int depth) {
         if (depth > 0 && below(3) == 2)
             if (auto made = pure_call(type, 1)) return *made;
+        if (depth > 1 && below(4) == 3) return selection(type, depth - 1);
         return {*place(type, false)};
     }
 
@@ -1283,12 +1284,14 @@ class SourceMaker {
         auto locals = variables("s", 1 + below(4), true);
         const auto temps = variables("t", below(3), true);
         instances(locals);
-        // A method may run before any call has given the references.
+        // A method may run before any call has given the references, which is a fault.
         enter(given.inputs, given.outputs, locals);
+        const bool risky = below(4) == 3;
+        if (risky) enter(given.in_outs);
         std::string methods;
         std::vector<Callable> made;
         for (std::size_t i = below(3); i > 0; --i) made.push_back(write_method(type, methods));
-        enter(given.in_outs);
+        if (!risky) enter(given.in_outs);
         enter(temps);
         const std::string body = written_body(2 + below(5));
         line("FUNCTION_BLOCK " + type.name);

@@ -139,7 +139,7 @@ class CWriter {
     /// How a value begins.
     void write_begin(const Type& type) {
         if (type.kind == Kind::text) return;
-        put("static void {}begin{}({}* p) {{", prefix_, number_of(&type), c_type(type));
+        put("static COLD void {}begin{}({}* p) {{", prefix_, number_of(&type), c_type(type));
         const auto member = [&](const Variable& variable) {
             if (variable.space != Space::frame && variable.space != Space::global) return;
             begin(variable, "p->" + name_of(variable));
@@ -216,7 +216,7 @@ class CWriter {
 
     void write_dump(const Type& type) {
         if (type.kind == Kind::text) return;
-        put("static u64* {}dump{}(const {}* p, u64* to) {{", prefix_, number_of(&type),
+        put("static COLD u64* {}dump{}(const {}* p, u64* to) {{", prefix_, number_of(&type),
             c_type(type));
         if (type.kind == Kind::array) {
             put("for (int k = 0; k < {}; ++k) {{", type.upper - type.lower + 1);
@@ -374,7 +374,7 @@ class CWriter {
 
     static std::pair<int, std::string> bits_of(const Expression& e) {
         const int number = static_cast<int>(e.constant.integer), count = number >> 6;
-        return {number & 63, fmt::format("{:#x}u", count >= 64 ? ~0ULL : (1ULL << count) - 1)};
+        return {number & 63, fmt::format("{:#x}ull", count >= 64 ? ~0ULL : (1ULL << count) - 1)};
     }
 
     void assign(const std::string& to, const Type& type, const Expression& from) {
@@ -499,7 +499,7 @@ class CWriter {
         if (e.kind == E::member) {
             const std::string of = place(*e.operands[0]);
             const std::string name = of + "." + name_of(v);
-            return v.space == Space::reference ? "(*" + name + ")" : name;
+            return v.space == Space::reference ? reference(name) : name;
         }
         if (v.space == Space::global) {
             if (const auto it = global_parts_.find(&v); it != global_parts_.end())
@@ -509,7 +509,14 @@ class CWriter {
         if (!routine_) return fmt::format("{}g{}.{}", prefix_, global_parts_.at(&v), name_of(v));
         const bool own = routine_->has_instances() || v.of != routine_->pou;
         const std::string name = (own ? "self->" : "") + name_of(v);
-        return v.space == Space::reference ? "(*" + name + ")" : name;
+        if (v.space != Space::reference) return name;
+        return routine_->owner && own ? reference(name) : "(*" + name + ")";
+    }
+
+    /// What a VAR_IN_OUT means that no call may have given yet.
+    std::string reference(const std::string& name) {
+        put("if (!{}) {};", name, fault("no_reference"));
+        return "(*" + name + ")";
     }
 
     std::string element(const Expression& e) {
@@ -528,7 +535,13 @@ class CWriter {
 
     std::string aggregate(const Expression& e) {
         if (e.kind != E::call) return place(e);
-        return e.routine ? call(e) : aggregate(*e.arguments[0].value);
+        return e.routine ? call(e) : "(*" + standard(e) + ")";
+    }
+
+    /// What a function takes: of an array or a structure its address.
+    std::string argument(const Expression& e) {
+        if (e.type->kind == Kind::text) return text(e);
+        return e.type->is_scalar() ? value(e) : "&" + aggregate(e);
     }
 
     std::string unary(const Expression& e) {
@@ -650,17 +663,17 @@ class CWriter {
             check_range(whole, to.lower, to.upper);
             return whole;
         }
-        if (to.kind == Kind::enumeration && from.kind != Kind::enumeration) {
-            const std::string whole = from.is_real() ? rounded(lint_type, x) : x;
-            check_range(whole, 0, static_cast<std::int64_t>(to.values.size()) - 1);
-            return made(to, whole);
-        }
-        if (from.kind == Kind::enumeration && !from.counted && to.kind != Kind::enumeration) {
+        if (from.kind == Kind::enumeration && !from.counted) {
             std::string numbers;
             for (const std::int64_t number : from.numbers) numbers += fmt::format("{}, ", number);
             const std::string table = new_name();
             put("static const i64 {}[] = {{{}}};", table, numbers);
             return convert(made("i64", fmt::format("{}[{}]", table, x)), lint_type, to);
+        }
+        if (to.kind == Kind::enumeration) {
+            const std::string whole = from.is_real() ? rounded(lint_type, x) : x;
+            check_range(whole, 0, static_cast<std::int64_t>(to.values.size()) - 1);
+            return made(to, whole);
         }
         if (from.kind == Kind::time || to.kind == Kind::time) return convert_time(x, from, to);
         if (to.kind == Kind::boolean) return made(to, x + " != 0");
@@ -704,7 +717,9 @@ class CWriter {
         if (e.kind == E::call) return e.routine ? "&" + call(e) : text_function(e);
         if (e.kind != E::converted) return "&" + place(e);
         const Type& from = *e.operands[0]->type;
-        const std::string number = value(*e.operands[0]), name = new_text();
+        std::string number = value(*e.operands[0]);
+        if (from.kind == Kind::enumeration) number = convert(number, from, lint_type);
+        const std::string name = new_text();
         const bool is_unsigned = from.is_unsigned_64();
         put("twin_{}(&{}, {});",
             from.is_real() ? "real"
@@ -717,8 +732,7 @@ class CWriter {
     std::string text_function(const Expression& e) {
         const StandardFunction& f = standard_functions()[static_cast<std::size_t>(e.standard)];
         std::vector<std::string> a;
-        for (const Argument& argument : e.arguments)
-            a.push_back(is_text(*argument.value) ? text(*argument.value) : value(*argument.value));
+        for (const Argument& argument : e.arguments) a.push_back(this->argument(*argument.value));
         std::string made = new_text();
         if (f.name == "CONCAT") {
             put("twin_set(&{}, 254, {});", made, a[0]);
@@ -854,8 +868,7 @@ class CWriter {
         const Type& type = *e.type;
         if (f.rule == Rule::text) return text_function(e);
         std::vector<std::string> a;
-        for (const Argument& argument : e.arguments)
-            a.push_back(is_text(*argument.value) ? text(*argument.value) : value(*argument.value));
+        for (const Argument& argument : e.arguments) a.push_back(this->argument(*argument.value));
         switch (f.rule) {
             case Rule::real:
             case Rule::real_two:
@@ -906,9 +919,11 @@ class CWriter {
     std::string chosen(const Expression& e, const StandardFunction& f,
                        const std::vector<std::string>& a) {
         const Type& type = *e.type;
-        const std::string c = is_text(e) ? "const void*" : c_type(type);
+        const std::string c = c_type(type) + (type.is_scalar() ? "" : "*");
         if (f.rule == Rule::move) return a[0];
-        if (f.rule == Rule::select) return made(c, fmt::format("{} ? {} : {}", a[0], a[2], a[1]));
+        if (f.rule == Rule::select)
+            return made(c,
+                        fmt::format("{} ? ({c}){} : ({c}){}", a[0], a[2], a[1], fmt::arg("c", c)));
         if (f.rule == Rule::extremum) {
             std::string so_far = a[0];
             for (std::size_t i = 1; i < a.size(); ++i)
@@ -919,8 +934,8 @@ class CWriter {
             fault("array_bounds"));
         std::string list;
         for (std::size_t i = 1; i + 1 < a.size(); ++i)
-            list += fmt::format("{} == {} ? {} : ", a[0], i - 1, a[i]);
-        return made(c, list + a.back());
+            list += fmt::format("{} == {} ? ({}){} : ", a[0], i - 1, c, a[i]);
+        return made(c, list + "(" + c + ")" + a.back());
     }
 
     std::string mathematical(std::string_view name, const std::vector<std::string>& a) {

@@ -16,6 +16,9 @@ typedef float f32;
 typedef double f64;
 typedef __int128 i128;
 
+/* Of what need not be fast, so that compiling it is. */
+#define COLD __attribute__((cold, noinline))
+
 enum { array_bounds = 1, division_by_zero, out_of_range, no_reference };
 
 extern jmp_buf twin_end;
