@@ -125,6 +125,12 @@ class SourceMaker {
         return out_;
     }
 
+    std::string make_constant(std::string_view type) {
+        for (const Type& t : elementaries()) scalars_.push_back(&t);
+        texts_.push_back(&types_.emplace_back(elementary(Kind::text, "STRING", 64)));
+        return expression(named(type), 4).text;
+    }
+
   private:
     std::size_t below(std::size_t count) { return choices_.below(count); }
     bool once_in(std::size_t times) { return choices_.once_in(times); }
@@ -290,12 +296,18 @@ class SourceMaker {
         return fmt::format("ARRAY[{}] OF {}", text, written_type(*type.element));
     }
 
+    /// Of rows in several dimensions it could be read in two ways.
+    static bool can_begin(const Type& type) {
+        if (type.kind == Kind::block) return false;
+        if (type.kind == Kind::array)
+            return (type.ranges.size() == 1 || type.element->kind != Kind::array) &&
+                   can_begin(*type.element);
+        return std::ranges::all_of(type.parts,
+                                   [](const Type::Part& part) { return can_begin(*part.type); });
+    }
+
     std::string initial(const Type& type) {
-        const bool block = type.kind == Kind::block ||
-                           (type.kind == Kind::array && type.element->kind == Kind::block);
-        const bool rows =
-            type.kind == Kind::array && type.ranges.size() > 1 && type.element->kind == Kind::array;
-        return block || rows || below(3) != 2 ? "" : " := " + initial_value(type);
+        return !can_begin(type) || below(3) != 2 ? "" : " := " + initial_value(type);
     }
 
     std::string initial_value(const Type& type) {
@@ -1370,6 +1382,10 @@ class SourceMaker {
 
 std::string random_source(Choices& choices) {
     return SourceMaker(choices).make();
+}
+
+std::string random_constant(Choices& choices, std::string_view type) {
+    return SourceMaker(choices).make_constant(type);
 }
 
 }  // namespace lineshaft::test
