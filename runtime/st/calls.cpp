@@ -314,7 +314,8 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         case Rule::scale: {
             const Type* type = common_from(0);
             if (!type) return nullptr;
-            return coerce_from(0, type->is_real() ? *type : lreal_type) ? type : nullptr;
+            const Type& real = type->is_real() ? *type : lreal_type;
+            return coerce_from(0, real) ? &real : nullptr;
         }
         case Rule::whole: {
             if (!coerce_from(0, real_for(first))) return nullptr;

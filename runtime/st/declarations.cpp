@@ -336,9 +336,7 @@ void Checker::check_initial(Expression*& value, const Type& type) {
 
 /// Of several dimensions either a list of lists, or all elements in one, the last index first.
 void Checker::check_elements(Expression& list, const Type& array) {
-    const bool nested = std::ranges::any_of(list.arguments, [](const Argument& argument) {
-        return argument.value->kind == Expression::Kind::list;
-    });
+    const bool nested = list.is_nested();
     const Type& element = nested ? *array.element : array.innermost();
     Wide room = Wide{array.upper} - array.lower + 1;
     for (const Type* inner = &array; !nested && inner->has_inner; inner = inner->element)

@@ -108,7 +108,8 @@ void Generator::finish(Routine& routine) {
         if (is_slot(1)) place(in.b);
         if (is_slot(2)) place(in.c);
     }
-    const std::uint32_t end = windows + windows_;
+    std::uint32_t end = windows + windows_;
+    if (is_function) end = std::max(end, code_.instructions[code.entry].a + 1);
     if (!is_function) image_->resize(end, 0);
     code.frame = end;
     frame_of.frame = std::max(frame_of.frame, end);

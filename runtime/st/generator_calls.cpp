@@ -217,13 +217,12 @@ Slot Generator::standard(const Expression& e, Slot wanted) {
             return emit(least, wanted, emit(greatest, none, in, mn), mx);
         }
         case Rule::select: {
-            const Slot first = several(e, 1);
-            return emit(Op::select, wanted, argument(0), first);
+            const Slot second = argument(0), first = several(e, 1);
+            return emit(Op::select, wanted, second, first);
         }
         case Rule::multiplex: {
-            const Slot first = several(e, 1);
-            const Slot index =
-                emit(Op::index, none, argument(0), table({0, e.arguments.size() - 1, 1}));
+            const Slot k = argument(0), first = several(e, 1);
+            const Slot index = emit(Op::index, none, k, table({0, e.arguments.size() - 1, 1}));
             return emit(Op::load_at, wanted, first, index);
         }
         case Rule::shift: {
@@ -260,7 +259,7 @@ Slot Generator::standard(const Expression& e, Slot wanted) {
             return emit(Op::is_finite, wanted, argument(0));
         case Rule::move:
         case Rule::operation:
-            return argument(0);
+            return value_or_address(*e.arguments[0].value, none);
     }
     return none;
 }
@@ -278,12 +277,23 @@ Slot Generator::extremum(const Expression& e, bool greatest, Slot wanted) {
     return so_far;
 }
 
-/// The values of the arguments from `first` on, one behind the other.
+/// The values of the arguments from `first` on, one behind the other; of texts, arrays and
+/// structures their addresses.
 Slot Generator::several(const Expression& e, std::size_t first) {
     const auto count = static_cast<std::uint32_t>(e.arguments.size() - first);
     const Slot slots = new_temporary(count);
-    for (std::uint32_t i = 0; i < count; ++i) value_to(*e.arguments[first + i].value, slots + i);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Slot from = value_or_address(*e.arguments[first + i].value, slots + i);
+        if (from != slots + i) put(Op::move, slots + i, from);
+    }
     return slots;
+}
+
+Slot Generator::value_or_address(const Expression& e, Slot wanted) {
+    if (e.type->is_scalar()) return value(e, wanted);
+    if (e.type->kind == Kind::text) return text_address(e);
+    if (e.kind != E::call) return address_of(locate(e));
+    return e.routine ? emit(Op::set_address, none, call(e, none)) : standard(e, none);
 }
 
 }  // namespace lineshaft::st

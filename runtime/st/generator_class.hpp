@@ -115,6 +115,7 @@ class Generator {
     Slot standard(const Expression& e, Slot wanted);
     Slot extremum(const Expression& e, bool greatest, Slot wanted);
     Slot several(const Expression& e, std::size_t first);
+    Slot value_or_address(const Expression& e, Slot wanted);
 
     Checked& checked_;
     Diagnostics& out_;

@@ -32,7 +32,10 @@ Slot Generator::text_address(const Expression& e) {
         return emit(Op::set_address, none, Region::constant + first);
     }
     if (e.kind == E::call && e.routine) return emit(Op::set_address, none, call(e, none));
-    if (e.kind == E::call) return text_function(e);
+    if (e.kind == E::call) {
+        const Rule rule = standard_functions()[static_cast<std::size_t>(e.standard)].rule;
+        return rule == Rule::text ? text_function(e) : standard(e, none);
+    }
     if (e.kind == E::converted) return text_conversion(e);
     return address_of(locate(e));
 }
@@ -91,7 +94,9 @@ Slot Generator::text_function(const Expression& e) {
 
 Slot Generator::text_conversion(const Expression& e) {
     const Expression& from = *e.operands[0];
-    const Slot number = value(from);
+    Slot number = value(from);
+    if (from.type->kind == Type::Kind::enumeration)
+        number = convert(number, *from.type, lint_type, false, none);
     Slot made = none;
     new_text(made);
     const Op op = from.type->is_real()          ? Op::text_of_real

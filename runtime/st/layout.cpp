@@ -104,7 +104,7 @@ void Generator::lay_out_method(Routine& method) {
 }
 
 void Generator::fill(Image& image, std::uint32_t at, const Variable& variable) {
-    if (variable.space != Space::frame) return;
+    if (variable.space == Space::reference || variable.space == Space::none) return;
     fill_default(image, at, *variable.type);
     if (variable.initial) fill(image, at, *variable.type, *variable.initial);
 }
@@ -158,9 +158,7 @@ void Generator::fill(Image& image, std::uint32_t at, const Type& type, const Exp
 
 void Generator::fill_elements(Image& image, std::uint32_t at, const Type& type,
                               const Expression& list) {
-    const bool nested = std::ranges::any_of(list.arguments, [](const Argument& argument) {
-        return argument.value->kind == Expression::Kind::list;
-    });
+    const bool nested = list.is_nested();
     const Type& element = nested ? *type.element : type.innermost();
     const std::uint32_t slots = slots_of(element), end = at + slots_of(type);
     const auto put_one = [&](const Expression& value) {

@@ -13,7 +13,7 @@ enum class Fault : std::int64_t {
     array_bounds,
     division_by_zero,
     out_of_range,  ///< a value beyond its type: of a conversion, a subrange, an enumeration
-    no_reference,  ///< a block with VAR_IN_OUT that no other block calls
+    no_reference,  ///< a block with VAR_IN_OUT that no other block calls, or has called yet
     no_end,        ///< more loops and calls than one scan may have
 };
 

@@ -35,6 +35,7 @@
     OP(index, integer, "wrx", if (!index(a, b, c)) FAIL(array_bounds))                               \
     OP(index_more, integer, "wrx", if (!index_more(a, b, c)) FAIL(array_bounds))                     \
     OP(within, integer, "-rx", if (!within(b, c)) FAIL(out_of_range))                                \
+    OP(bound, integer, "-r-", if (U(b) == 0) FAIL(no_reference))                                     \
     OP(jump, jump, "--j", GO(c))                                                                     \
     OP(jump_if, jump, "-rj", if (U(b) != 0) GO(c))                                                   \
     OP(jump_unless, jump, "-rj", if (U(b) == 0) GO(c))                                               \

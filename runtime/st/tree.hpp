@@ -53,6 +53,17 @@ struct Expression {
     Variable* variable = nullptr;  ///< that a name or a member means
     Routine* routine = nullptr;    ///< that a name means, or a call calls
     int standard = -1;             ///< the standard function that a call calls
+
+    /// Of a list: it has lists of elements again, `[[1, 2], [3, 4]]`, not structures, `[(x := 1)]`.
+    bool is_nested() const {
+        for (const Argument& argument : arguments) {
+            const Expression& e = *argument.value;
+            const bool named =
+                !e.arguments.empty() && e.arguments.front().name.word != Word::end_of_file;
+            if (e.kind == Kind::list && !named) return true;
+        }
+        return false;
+    }
 };
 
 struct Statement;

@@ -182,20 +182,21 @@ Slot Generator::convert(Slot slot, const Type& given_from, const Type& given_to,
                    1}));
         return whole;
     }
+    if (from.kind == Kind::enumeration && !from.counted) {
+        const auto first = static_cast<std::int64_t>(code_.numbers.size());
+        code_.numbers.insert(code_.numbers.end(), from.numbers.begin(), from.numbers.end());
+        slot = emit(Op::look_up, none, slot, table({first, from.numbers.size(), 1}));
+        return convert(slot, *from.base, to, truncates, wanted);
+    }
+    if (to.kind == Kind::enumeration) {
+        if (from.is_real()) slot = convert_real(slot, from, lint_type, truncates, none);
+        put(Op::within, 0, slot, table({0, to.values.size(), 1}));
+        return slot;
+    }
     if (from.kind == Kind::time || to.kind == Kind::time)
         return convert_time(slot, from, to, wanted);
     if (from.is_real() || to.is_real()) return convert_real(slot, from, to, truncates, wanted);
     if (to.kind == Kind::boolean) return emit(Op::ne_word, wanted, slot, constant_slot(0));
-    if (from.kind == Kind::enumeration && !from.counted) {
-        const auto first = static_cast<std::int64_t>(code_.numbers.size());
-        code_.numbers.insert(code_.numbers.end(), from.numbers.begin(), from.numbers.end());
-        slot = emit(Op::look_up, wanted, slot, table({first, from.numbers.size(), 1}));
-        return widens(*from.base, to) ? slot : emit(of_type(Op::wrap_sint, to), wanted, slot);
-    }
-    if (to.kind == Kind::enumeration) {
-        put(Op::within, 0, slot, table({0, to.values.size(), 1}));
-        return slot;
-    }
     if (widens(from, to) || from.kind == Kind::boolean || from.kind == Kind::enumeration)
         return slot;
     return emit(of_type(Op::wrap_sint, to), wanted, slot);
@@ -217,8 +218,7 @@ Slot Generator::convert_real(Slot slot, const Type& from, const Type& to, bool t
     if (to.kind == Kind::bits && from.bits == to.bits)
         return to.bits == 32 ? emit(Op::real_bits, wanted, slot) : slot;
     if (truncates) slot = emit(Op::truncate, none, slot);
-    const Type& whole = to.kind == Kind::enumeration ? lint_type : to;
-    return emit(of_type(Op::round_sint, whole), wanted, slot);
+    return emit(of_type(Op::round_sint, to), wanted, slot);
 }
 
 /// A time is in s as a real number, in ms as an integer of up to 32 bits, in ns as one of 64.
@@ -248,7 +248,11 @@ Location Generator::locate(const Expression& e) {
     if (e.kind == E::member) return part(locate(*e.operands[0]), *e.variable);
     if (e.kind == E::index) return locate_element(e);
     const Variable& variable = *e.variable;
-    if (variable.space == Space::reference) return {Mode::address, 0, variable.slot, 0};
+    if (variable.space == Space::reference) {
+        const bool of_block = routine_->owner && variable.of != routine_->pou;
+        if (of_block) put(Op::bound, 0, variable.slot);
+        return {Mode::address, 0, variable.slot, 0};
+    }
     if (variable.space == Space::global) {
         const Slot address = new_temporary();
         put(Op::set_global, address, static_cast<Slot>(variable.global));
@@ -263,7 +267,11 @@ Location Generator::part(Location of, const Variable& member) {
         of.byte = member.byte;
         return of;
     }
-    if (member.space == Space::reference) return {Mode::address, 0, load(part(of, member.slot)), 0};
+    if (member.space == Space::reference) {
+        const Slot address = load(part(of, member.slot));
+        put(Op::bound, 0, address);
+        return {Mode::address, 0, address, 0};
+    }
     return part(of, member.slot);
 }
 
@@ -355,7 +363,8 @@ void Generator::copy_value(const Location& to, const Type& type, const Expressio
         return put(Op::text_copy, address_of(to), text, type.length);
     }
     if (from.kind == E::call) {
-        const Location made{Mode::slot, call(from, none)};
+        const Location made = from.routine ? Location{Mode::slot, call(from, none)}
+                                           : Location{Mode::address, 0, standard(from, none)};
         return copy(to, made, slots_of(type));
     }
     copy(to, locate(from), slots_of(type));

@@ -123,4 +123,5 @@ TEST_CASE("a foreign or cut checkpoint is refused", "[resume]") {
 
 TEST_CASE("a resumed run leaves the same bytes: Structured Text", "[resume]") {
     check_resumed("08_state_machine.yaml", false, 10);
+    check_resumed("../tests/cases/structured_text_in_a_program/program.yaml", false);
 }

@@ -1,0 +1,107 @@
+#include "tests/fuzz/st_invariants.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "runtime/model/random.hpp"
+#include "runtime/st/library.hpp"
+
+namespace lineshaft::test {
+
+namespace {
+
+/// An instance of each kind of a library.
+class Blocks {
+  public:
+    explicit Blocks(const st::Library& library) : library_(library) {
+        for (const BlockType& kind : library.kinds()) {
+            starts_.push_back(memory_.size());
+            memory_.resize(memory_.size() + kind.size / 8);
+        }
+        for (std::size_t i = 0; i < starts_.size(); ++i) library.kinds()[i].construct(place(i));
+        for (std::size_t i = 0; i < starts_.size(); ++i) bind(i);
+    }
+
+    /// All programs; their inputs have other values now and then.
+    void scan(int number, Random& random) {
+        const Scan now{number * std::int64_t{7'000'000}, 7'000'000, number};
+        std::vector<std::byte*> places;
+        for (std::size_t i = 0; i < starts_.size(); ++i) places.push_back(place(i));
+        for (std::size_t i = 0; i < starts_.size(); ++i) {
+            const BlockType& kind = library_.kinds()[i];
+            if (!kind.doc.starts_with("PROGRAM")) continue;
+            if (random.below(4) == 0) set_inputs(kind, places[i], random);
+            const bool error = kind.scan_blocks(places[i], 1, now, {kind.context, places.data()});
+            const bool told = library_.fault(kind, places[i]).fault != st::Fault::none;
+            disagrees |= error != told;
+        }
+    }
+
+    /// The same memory elsewhere: nothing in it may be an address.
+    void move() { memory_ = std::vector<std::uint64_t>(memory_); }
+
+    const std::vector<std::uint64_t>& memory() const { return memory_; }
+    bool disagrees = false;
+
+  private:
+    std::byte* place(std::size_t i) {
+        return reinterpret_cast<std::byte*>(memory_.data() + starts_[i]);
+    }
+
+    void bind(std::size_t i) {
+        for (const Field& field : library_.kinds()[i].fields) {
+            if (field.direction != Direction::in_out) continue;
+            std::int64_t number = 0;
+            for (const BlockType& kind : library_.kinds()) {
+                if (kind.name == field.refers)
+                    store(Type::integer, place(i) + field.offset, number);
+                ++number;
+            }
+        }
+    }
+
+    static void set_inputs(const BlockType& kind, std::byte* block, Random& random) {
+        for (const Field& field : kind.fields) {
+            if (field.direction != Direction::input) continue;
+            const std::int64_t whole = random.around_zero(100);
+            if (field.type == Type::boolean)
+                store(field.type, block + field.offset, whole > 0);
+            else if (field.type == Type::real)
+                store(field.type, block + field.offset, static_cast<double>(whole) / 8);
+            else if (field.type == Type::integer)
+                store(field.type, block + field.offset,
+                      whole < 0 && field.minimum >= 0 ? -whole : whole);
+        }
+    }
+
+    const st::Library& library_;
+    std::vector<std::uint64_t> memory_;
+    std::vector<std::size_t> starts_;
+};
+
+}  // namespace
+
+std::string broken_invariant(const std::string& text, int scans, std::uint64_t seed,
+                             const Catalog& catalog) {
+    Diagnostics out;
+    const auto file = std::make_shared<const SourceFile>(SourceFile{"random.st", text});
+    const auto library = st::compile({file}, catalog, out);
+    if (!library) return out.render();
+    Random first(seed, "inputs"), second = first;
+    Blocks whole(*library), parted(*library);
+    const int resumed =
+        static_cast<int>(Random(seed, "resume").below(static_cast<std::uint64_t>(scans)));
+    for (int i = 0; i < scans; ++i) whole.scan(i, first);
+    for (int i = 0; i < scans; ++i) {
+        if (i == resumed) parted.move();
+        parted.scan(i, second);
+    }
+    if (whole.disagrees) return "the outcome of a scan is not what its header says";
+    if (whole.memory() != parted.memory())
+        return fmt::format("other bytes after going on from scan {}", resumed);
+    return {};
+}
+
+}  // namespace lineshaft::test

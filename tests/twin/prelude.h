@@ -1,0 +1,90 @@
+/* What the C of twin.cpp's programs is written with: types, faults, texts, the standard's function blocks. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <string.h>
+
+typedef int8_t i8;
+typedef int16_t i16;
+typedef int32_t i32;
+typedef int64_t i64;
+typedef uint8_t u8;
+typedef uint16_t u16;
+typedef uint32_t u32;
+typedef uint64_t u64;
+typedef float f32;
+typedef double f64;
+typedef __int128 i128;
+
+/* Of what need not be fast, so that compiling it is. */
+#define COLD __attribute__((cold, noinline))
+
+enum { array_bounds = 1, division_by_zero, out_of_range, no_reference };
+
+extern jmp_buf twin_end;
+extern i64 twin_now;
+void twin_fault(int fault, int line) __attribute__((noreturn));
+
+/* Texts: any struct that begins so. `room` is how many characters it holds; results hold 254. */
+typedef struct { i64 length; char c[]; } text;
+typedef struct { i64 length; char c[256]; } result;
+void twin_set(void* to, i64 room, const void* from);
+void twin_literal(void* to, i64 room, const char* c, i64 length);
+void twin_concat(result* to, const void* a, const void* b);
+void twin_mid(result* to, const void* in, i64 first, i64 count);
+void twin_replace(result* to, const void* in, const void* with, i64 first, i64 count);
+i64 twin_find(const void* in, const void* what);
+i64 twin_compare(const void* a, const void* b);
+void twin_signed(result* to, i64 value);
+void twin_unsigned(result* to, u64 value);
+void twin_real(result* to, f64 value);
+i64 twin_read_integer(const void* from, int line);
+f64 twin_read_real(const void* from, int line);
+
+u64* twin_put_text(u64* to, const void* from);
+static inline u64* twin_put(u64* to, i64 value) { *to = (u64)value; return to + 1; }
+static inline u64* twin_put_real(u64* to, f64 value) {
+    if (value != value) *to = 0x7ff8000000000000u;
+    else memcpy(to, &value, 8);
+    return to + 1;
+}
+
+/* IEC 61131-3:2013, 6.6.3.5. */
+struct ton { u8 in; i64 pt; u8 q; i64 et; u8 running; i64 start; };
+struct tof { u8 in; i64 pt; u8 q; i64 et; u8 running; i64 start; };
+struct tp { u8 in; i64 pt; u8 q; i64 et; u8 before; i64 start; };
+struct ctu { i64 data_type; u8 cu, r; i64 pv; u8 q; i64 cv; u8 cu_before; };
+struct ctd { i64 data_type; u8 cd, ld; i64 pv; u8 q; i64 cv; u8 cd_before; };
+struct ctud { i64 data_type; u8 cu, cd, r, ld; i64 pv; u8 qu, qd; i64 cv; u8 cu_before, cd_before; };
+struct r_trig { u8 clk, q, before; };
+struct f_trig { u8 clk, q, before; };
+struct sr { u8 s1, r, q1; };
+struct rs { u8 s, r1, q1; };
+void call_ton(struct ton*);
+void call_tof(struct tof*);
+void call_tp(struct tp*);
+void call_ctu(struct ctu*);
+void call_ctd(struct ctd*);
+void call_ctud(struct ctud*);
+void call_r_trig(struct r_trig*);
+void call_f_trig(struct f_trig*);
+void call_sr(struct sr*);
+void call_rs(struct rs*);
+
+f64 Sleef_cinz_logd1_u10purec(f64);
+f64 Sleef_cinz_log10d1_u10purec(f64);
+f64 Sleef_cinz_expd1_u10purec(f64);
+f64 Sleef_cinz_sind1_u10purec(f64);
+f64 Sleef_cinz_cosd1_u10purec(f64);
+f64 Sleef_cinz_tand1_u10purec(f64);
+f64 Sleef_cinz_asind1_u10purec(f64);
+f64 Sleef_cinz_acosd1_u10purec(f64);
+f64 Sleef_cinz_atand1_u10purec(f64);
+f64 Sleef_cinz_atan2d1_u10purec(f64, f64);
+f64 Sleef_cinz_powd1_u10purec(f64, f64);
+
+struct twin {
+    void (*begin)(void);
+    i64 (*scan)(const u64* inputs);
+    u64* (*dump)(u64* to);
+};
