@@ -14,6 +14,12 @@ bool is_variable(const Expression& e) {
     return e.kind == E::name || e.kind == E::member || e.kind == E::index;
 }
 
+/// A structure or an array that came as an input is passed on by reference.
+bool is_own_input(const Expression& e) {
+    return e.kind == Expression::Kind::name && e.variable &&
+           e.variable->section == Section::input && !e.type->is_scalar();
+}
+
 }  // namespace
 
 const Type* Checker::check_call(Expression& call, bool as_statement, const Type* expected) {
@@ -21,6 +27,10 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
     if (callee.kind == Expression::Kind::member) {
         const Type* of = check(*callee.operands[0]);
         if (!of) return nullptr;
+        if (of->kind == Kind::standard && same_name(of->standard->name, callee.token.text)) {
+            call.operands[0] = callee.operands[0];  // `#delay.TON(...)`, as Siemens has it
+            return check_instance_call(call, *of, as_statement);
+        }
         if (of->kind == Kind::block) {
             const auto it = of->routine->methods.find(callee.token.text);
             if (it != of->routine->methods.end()) {
@@ -42,8 +52,9 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
                 return check_routine_call(call, *it->second, as_statement);
         if (const auto it = routines_.find(name); it != routines_.end() && !it->second->type)
             return check_routine_call(call, *it->second, as_statement);
-        if (!callee.token.quoted && !find_variable(callee.token))
-            return check_standard_function(call, expected);
+        const bool is_function = !callee.token.quoted && !callee.token.local &&
+                                 (find_standard_function(name) >= 0 || !find_variable(callee.token));
+        if (is_function) return check_standard_function(call, expected);
     }
     const Type* type = check(callee);
     if (!type) return nullptr;
@@ -155,7 +166,8 @@ void Checker::check_argument(Expression&, Argument& argument, Variable& paramete
     }
     const Type* given = check(*value);
     if (!given || !type) return;
-    if (!is_variable(*value) || !check_target(*value, "given here")) {
+    const bool is_read = parameter.section == Section::in_out && is_own_input(*value);
+    if (!is_variable(*value) || (!is_read && !check_target(*value, "given here"))) {
         if (!is_variable(*value))
             fail("L0907", value->place,
                  fmt::format("'{}' takes a variable, not a value", parameter.text),
@@ -211,6 +223,10 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
             return fail("L0907", name.place,
                         fmt::format("'{}' is a kind of block, not an instance", name.text),
                         "declare one in VAR, and call that");
+        if (const std::string_view instead = instead_of_function(name.text); !instead.empty())
+            return fail("L0903", name.place,
+                        fmt::format("the function {} is not supported", name.text),
+                        std::string(instead));
         std::vector<std::string> names = visible_names();
         for (const StandardFunction& f : standard_functions()) names.emplace_back(f.name);
         for (Argument& argument : call.arguments) check(*argument.value);
@@ -307,14 +323,13 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         case Rule::normalise: {
             const Type* type = common_from(0);
             if (!type) return nullptr;
-            const Type& real = type->is_real() ? real_for(*type) : lreal_type;
+            const bool narrow = expected && expected->is_real() && widens(*type, *expected);
+            const Type& real = narrow || type->is_real() ? real_for(narrow ? *expected : *type)
+                                                         : lreal_type;
             return coerce_from(0, real) ? &real : nullptr;
         }
-        case Rule::scale: {
-            const Type* type = common_from(0);
-            if (!type) return nullptr;
-            return coerce_from(0, type->is_real() ? *type : lreal_type) ? type : nullptr;
-        }
+        case Rule::scale:
+            return check_scale(call, expected);
         case Rule::whole: {
             if (!coerce_from(0, real_for(first))) return nullptr;
             return expected && expected->kind == Kind::integer ? &expected->plain() : &dint_type;
@@ -384,6 +399,30 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         }
     }
     return nullptr;
+}
+
+/// SCALE_X of a REAL or LREAL; into an integer, which MIN and MAX are then, it rounds.
+const Type* Checker::check_scale(Expression& call, const Type* expected) {
+    auto& arguments = call.arguments;
+    const auto narrow = [](const Type& type) {
+        return type.is_any() || (type.kind == Kind::real ? type.bits == 32 : type.bits <= 16);
+    };
+    const bool is_narrow = std::ranges::all_of(
+        arguments, [&](const Argument& a) { return narrow(*a.value->type); });
+    const bool known = expected && (expected->kind == Kind::integer || expected->is_real());
+    const Type& real = is_narrow && (!known || narrow(*expected)) ? real_type : lreal_type;
+    const Type* limits = arguments[0].value->type;
+    const Type& result = known ? expected->plain() : limits->kind == Kind::integer ? *limits : real;
+    for (Argument& argument : arguments)
+        if (!coerce(argument.value, real)) return nullptr;
+    if (result.is_real()) return &real;
+    Expression* scaled = make(Expression::Kind::call, call);
+    *scaled = call;
+    scaled->type = &real;
+    Expression* whole = scaled;
+    convert(whole, result);
+    call = Expression(*whole);
+    return &result;
 }
 
 /// `INT_TO_REAL(x)`, `TO_REAL(x)`, `REAL_TRUNC_INT(x)`: the call becomes a conversion.

@@ -76,6 +76,8 @@ class Checker {
     const Type* check_name(Expression& expression, const Type* expected);
     const Type* use(Expression& expression, Variable& variable);
     const Type* unknown_name(Expression& expression);
+    const Type* enumeration_of(const Expression& member) const;
+    const Type* check_value(Expression& e, const Type& enumeration, const Token& name);
     const Type* check_member(Expression& expression);
     const Type* check_index(Expression& expression);
     const Type* check_bit(Expression& expression);
@@ -113,6 +115,7 @@ class Checker {
     Variable* find_parameter(Argument& argument, Routine& routine, std::size_t position);
     const Type* check_standard_function(Expression& call, const Type* expected);
     const Type* check_conversion(Expression& call, std::string_view name);
+    const Type* check_scale(Expression& call, const Type* expected);
     const Type* standard_result(Expression& call, const Type* expected);
 
     // statements.cpp
@@ -120,6 +123,7 @@ class Checker {
     void check(Block& block);
     void check(Statement& statement);
     void check_assignment(Statement& statement);
+    void declare_eno(const Expression& target);
     void check_case(Statement& statement);
     void check_for(Statement& statement);
     void check_condition(Expression*& condition, std::string_view of);
