@@ -14,10 +14,11 @@ bool is_variable(const Expression& e) {
     return e.kind == E::name || e.kind == E::member || e.kind == E::index;
 }
 
-/// A structure or an array that came as an input is passed on by reference.
+/// A structure or an array that came as an input, or in one, is passed on by reference.
 bool is_own_input(const Expression& e) {
-    return e.kind == Expression::Kind::name && e.variable &&
-           e.variable->section == Section::input && !e.type->is_scalar();
+    const Expression* root = &e;
+    while (root->kind != Expression::Kind::name && root->operands[0]) root = root->operands[0];
+    return root->variable && root->variable->section == Section::input && !e.type->is_scalar();
 }
 
 }  // namespace
@@ -52,8 +53,9 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
                 return check_routine_call(call, *it->second, as_statement);
         if (const auto it = routines_.find(name); it != routines_.end() && !it->second->type)
             return check_routine_call(call, *it->second, as_statement);
-        const bool is_function = !callee.token.quoted && !callee.token.local &&
-                                 (find_standard_function(name) >= 0 || !find_variable(callee.token));
+        const bool is_function =
+            !callee.token.quoted && !callee.token.local &&
+            (find_standard_function(name) >= 0 || !find_variable(callee.token));
         if (is_function) return check_standard_function(call, expected);
     }
     const Type* type = check(callee);
@@ -212,6 +214,10 @@ void Checker::check_standard_arguments(Expression& call, const Type& type) {
 const Type* Checker::check_standard_function(Expression& call, const Type* expected) {
     const Token& name = call.operands[0]->token;
     call.standard = find_standard_function(name.text);
+    const std::string_view instead = instead_of_function(name.text);
+    if (call.standard < 0 && !instead.empty())
+        return fail("L0903", name.place, fmt::format("the function {} is not supported", name.text),
+                    std::string(instead));
     for (Argument& argument : call.arguments)
         if (argument.is_output)
             return fail("L0907", argument.name.place,
@@ -223,10 +229,6 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
             return fail("L0907", name.place,
                         fmt::format("'{}' is a kind of block, not an instance", name.text),
                         "declare one in VAR, and call that");
-        if (const std::string_view instead = instead_of_function(name.text); !instead.empty())
-            return fail("L0903", name.place,
-                        fmt::format("the function {} is not supported", name.text),
-                        std::string(instead));
         std::vector<std::string> names = visible_names();
         for (const StandardFunction& f : standard_functions()) names.emplace_back(f.name);
         for (Argument& argument : call.arguments) check(*argument.value);
@@ -324,8 +326,8 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
             const Type* type = common_from(0);
             if (!type) return nullptr;
             const bool narrow = expected && expected->is_real() && widens(*type, *expected);
-            const Type& real = narrow || type->is_real() ? real_for(narrow ? *expected : *type)
-                                                         : lreal_type;
+            const Type& real =
+                narrow || type->is_real() ? real_for(narrow ? *expected : *type) : lreal_type;
             return coerce_from(0, real) ? &real : nullptr;
         }
         case Rule::scale:
@@ -407,8 +409,8 @@ const Type* Checker::check_scale(Expression& call, const Type* expected) {
     const auto narrow = [](const Type& type) {
         return type.is_any() || (type.kind == Kind::real ? type.bits == 32 : type.bits <= 16);
     };
-    const bool is_narrow = std::ranges::all_of(
-        arguments, [&](const Argument& a) { return narrow(*a.value->type); });
+    const bool is_narrow =
+        std::ranges::all_of(arguments, [&](const Argument& a) { return narrow(*a.value->type); });
     const bool known = expected && (expected->kind == Kind::integer || expected->is_real());
     const Type& real = is_narrow && (!known || narrow(*expected)) ? real_type : lreal_type;
     const Type* limits = arguments[0].value->type;
@@ -429,6 +431,7 @@ const Type* Checker::check_scale(Expression& call, const Type* expected) {
 const Type* Checker::check_conversion(Expression& call, std::string_view name) {
     std::string upper(name);
     for (char& c : upper) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    if (upper.starts_with("ANY_TO_")) upper.erase(0, 4), name.remove_prefix(4);
     const std::size_t to = upper.starts_with("TO_") ? 0 : upper.find("_TO_");
     const std::size_t trunc = upper.starts_with("TRUNC_") ? 0 : upper.find("_TRUNC_");
     const bool truncates = to == std::string::npos && trunc != std::string::npos;

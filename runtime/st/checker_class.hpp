@@ -87,7 +87,7 @@ class Checker {
     const Type* check_comparison(Expression& expression);
     const Type* check_arithmetic(Expression& expression);
     const Type* check_time_arithmetic(Expression& expression);
-    const Type* check_power(Expression& expression);
+    const Type* check_power(Expression& expression, const Type* expected);
     const Type* unite(Expression& expression);
     const Type* check_typed(Expression& expression);
     void fold(Expression& expression);
@@ -156,8 +156,5 @@ class Checker {
     Routine* routine_ = nullptr;  ///< that is being checked
     int loops_ = 0;               ///< around the statement
 };
-
-/// `INT`, `ARRAY[0..3] OF LREAL`: for messages.
-std::string describe(const Type& type);
 
 }  // namespace lineshaft::st

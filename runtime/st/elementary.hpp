@@ -7,6 +7,9 @@
 
 namespace lineshaft::st {
 
+/// `INT`, `ARRAY[0..3] OF LREAL`: for messages.
+std::string describe(const Type& type);
+
 /// BOOL, SINT, ..., LTIME; null for another name.
 const Type* find_elementary(std::string_view name);
 

@@ -398,7 +398,7 @@ const Type* Checker::check_binary(Expression& e, const Type* expected) {
     if (!left->type || !right->type) return nullptr;
     if (is_logic(e.op)) return check_logic(e);
     if (is_comparison(e.op)) return check_comparison(e);
-    if (e.op == Word::power) return check_power(e);
+    if (e.op == Word::power) return check_power(e, expected);
     return check_arithmetic(e);
 }
 
@@ -520,7 +520,7 @@ const Type* Checker::check_time_arithmetic(Expression& e) {
     return e.type;
 }
 
-const Type* Checker::check_power(Expression& e) {
+const Type* Checker::check_power(Expression& e, const Type* expected) {
     Expression *&left = e.operands[0], *&right = e.operands[1];
     for (Expression* operand : e.operands)
         if (!operand->type->is_number())
@@ -542,7 +542,9 @@ const Type* Checker::check_power(Expression& e) {
     }
     const auto is_narrow = [](const Type& t) { return t.is_any() || t.bits <= 32; };
     const auto is_real = [](const Type& t) { return t.kind == Kind::real && t.bits == 32; };
-    const bool narrow = (is_real(*left->type) && is_narrow(*right->type)) ||
+    const bool untyped = left->type->is_any() && right->type->is_any();
+    const bool narrow = (untyped && expected && is_real(*expected)) ||
+                        (is_real(*left->type) && is_narrow(*right->type)) ||
                         (is_real(*right->type) && is_narrow(*left->type));
     const Type& type = narrow ? real_type : lreal_type;
     const auto widen = [&](Expression*& operand) {

@@ -184,7 +184,7 @@ class Lexer {
         int depth = 0;
         for (; at_ < text_.size(); ++at_) {
             if (at(open)) {
-                if (++depth == deepest_comment + 1) too_deep(place(at_, at_ + 2));
+                if (++depth > deepest_comment) return too_deep(place(at_, at_ + 2));
                 ++at_;
             } else if (at(close)) {
                 ++at_;
@@ -200,6 +200,7 @@ class Lexer {
         out_.add("L0912", where.mark(),
                  fmt::format("comments are nested deeper than {} levels", deepest_comment),
                  "a comment in a comment needs an end of its own");
+        at_ = text_.size();
     }
 
     void skip_pragma() {

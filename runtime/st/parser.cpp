@@ -43,13 +43,14 @@ constexpr Unsupported unsupported[] = {
 };
 
 /// Words that are names wherever a name may stand.
-constexpr Word soft_words[] = {Word::version_,   Word::test_,     Word::setup_,     Word::teardown_,
-                               Word::action_,    Word::class_,    Word::final_,     Word::at_,
-                               Word::internal_,  Word::using_,    Word::property_,  Word::network_,
-                               Word::method_,    Word::override_, Word::interface_, Word::type_,
-                               Word::namespace_, Word::begin_,    Word::pointer_,   Word::private_,
-                               Word::public_,    Word::protected_, Word::configuration_,
-                               Word::super_,     Word::implements_};
+constexpr Word soft_words[] = {
+    Word::version_,   Word::test_,      Word::setup_,         Word::teardown_,
+    Word::action_,    Word::class_,     Word::final_,         Word::at_,
+    Word::internal_,  Word::using_,     Word::property_,      Word::network_,
+    Word::method_,    Word::override_,  Word::interface_,     Word::type_,
+    Word::namespace_, Word::begin_,     Word::pointer_,       Word::private_,
+    Word::public_,    Word::protected_, Word::configuration_, Word::super_,
+    Word::implements_};
 
 struct PouWords {
     Word begin, end;
@@ -215,6 +216,9 @@ class Parser {
         out_.add(code, place.mark(), std::move(message), std::move(help));
     }
 
+    /// A comment without an end took the rest of the file.
+    bool is_swallowed() const { return !mistakes_.empty() && mistakes_.back() >= last().place.end; }
+
     /// The end of a block. One that is missing is told once, for the innermost.
     bool close(Word end, const Token& opener) {
         if (accept(end)) return true;
@@ -226,6 +230,7 @@ class Parser {
             return false;
         }
         unclosed_at_ = at_;
+        if (is(Word::end_of_file) && is_swallowed()) return false;
         if (!else_ifs_.empty() && end == Word::end_if_) {
             tell("L0902", else_ifs_.back(), "'ELSE IF' begins a second IF without an END_IF",
                  "write ELSIF");
@@ -292,11 +297,12 @@ class Parser {
         if (Pou* pou = read_pou_of(words)) tree_.units.push_back(pou);
     }
 
-    /// Unless it is a name.
+    /// A word stands where the name of a variable does.
+    bool is_declared() const { return next().word == Word::colon || next().word == Word::comma; }
+
     bool accept_access() {
-        return next().word != Word::colon && next().word != Word::comma &&
-               (accept(Word::private_) || accept(Word::public_) || accept(Word::protected_) ||
-                accept(Word::internal_));
+        return !is_declared() && (accept(Word::private_) || accept(Word::public_) ||
+                                  accept(Word::protected_) || accept(Word::internal_));
     }
 
     Pou* read_pou_of(const PouWords& words) {
@@ -378,7 +384,7 @@ class Parser {
         const Token opener = take();
         DeclarationBlock block;
         block.section = section;
-        for (;;) {
+        while (!is_declared()) {
             if (accept(Word::constant_))
                 block.constant = true;
             else if (accept(Word::retain_))
@@ -641,7 +647,7 @@ class Parser {
     Expression* read_expression(int binding = 1) {
         Expression* left = read_unary();
         for (;;) {
-            const auto* it = std::ranges::find(binaries, here().word, &Binary::word);
+            const auto* it = std::ranges::find(binaries, operator_here(), &Binary::word);
             if (panic_ || it == std::end(binaries) || it->binding < binding) return left;
             Expression* made = make(Expression::Kind::binary, take());
             made->op = it->word == Word::ampersand ? Word::and_ : it->word;
@@ -649,6 +655,12 @@ class Parser {
             add_operand(*made, 1, read_expression(it->binding + 1));
             left = made;
         }
+    }
+
+    /// SCL's DIV is no word of the standard, where it is a function.
+    Word operator_here() const {
+        const bool divides = is(Word::name) && same_name(here().place.text(), "div");
+        return divides ? Word::divided : here().word;
     }
 
     Expression* read_unary() {
@@ -856,6 +868,14 @@ class Parser {
     }
 
     Statement* read_simple() {
+        if (same_name(here().text, "rung") && (is_name(next()) || next().word == Word::prefix)) {
+            fail("L0903", here().place, "networks in LAD and FBD are not supported",
+                 "convert the network to SCL");
+            while (!is(Word::end_network_) && !is_end(here().word) && !is(Word::end_of_file))
+                take();
+            panic_ = false;
+            return nullptr;
+        }
         if (!is_name()) {
             expected("a statement");
             return nullptr;

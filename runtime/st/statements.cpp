@@ -77,7 +77,8 @@ void Checker::check_condition(Expression*& condition, std::string_view of) {
 
 /// Siemens' ENO, a flag of each block: here no caller reads it, so it is a variable of the block.
 void Checker::declare_eno(const Expression& target) {
-    const bool is_eno = target.kind == Expression::Kind::name && same_name(target.token.text, "eno");
+    const bool is_eno =
+        target.kind == Expression::Kind::name && same_name(target.token.text, "eno");
     if (!is_eno || !routine_ || find_variable(target.token)) return;
     Variable& variable = routine_->variables.emplace_back();
     variable.name = target.token;
