@@ -309,6 +309,7 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         if (common->is_any()) common = common->is_real() ? &lreal_type : &dint_type;
         return coerce_from(first, common->plain()) ? &common->plain() : nullptr;
     };
+    if (f.rule == Rule::time) return &time_type;
     const Type& first = *arguments[0].value->type;
     switch (f.rule) {
         case Rule::real:
@@ -369,6 +370,10 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
                         fmt::format("{} takes a bit string, not {}", f.name, describe(first)),
                         "write its type, as in WORD#16#FF");
         }
+        case Rule::valid_bcd:
+            if (first.kind == Kind::bits) return &bool_type;
+            return fail("L0905", arguments[0].value->place,
+                        fmt::format("{} takes a bit string, not {}", f.name, describe(first)));
         case Rule::length:
         case Rule::find:
         case Rule::text: {
@@ -385,6 +390,10 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
             }
             return f.rule == Rule::text ? &string_type : &int_type;
         }
+        case Rule::time:
+        case Rule::from_bcd:
+        case Rule::to_bcd:
+            return nullptr;
         case Rule::operation: {
             Expression* left = arguments[0].value;
             for (std::size_t i = 1; i < arguments.size(); ++i) {
@@ -427,6 +436,27 @@ const Type* Checker::check_scale(Expression& call, const Type* expected) {
     return &result;
 }
 
+/// `WORD_BCD_TO_UINT(x)`, `UINT_TO_BCD_WORD(x)`: a decimal digit in each four bits.
+const Type* Checker::check_bcd(Expression& call, const Type* source, const Type& target,
+                               bool to_bcd) {
+    call.standard = -2;
+    const auto is_digits = [](const Type& type) { return type.kind == Kind::bits; };
+    const auto is_number = [](const Type& type) { return type.kind == Kind::integer; };
+    if (call.arguments.size() != 1)
+        return fail("L0907", call.operands[0]->place, "a conversion takes 1 argument");
+    Expression*& value = call.arguments[0].value;
+    if (!check(*value, source)) return nullptr;
+    if (source && !coerce(value, *source)) return nullptr;
+    const Type& from = *value->type;
+    const bool fits =
+        to_bcd ? is_number(from) && is_digits(target) : is_digits(from) && is_number(target);
+    if (!fits)
+        return fail("L0905", call.place, "BCD digits are those of a bit string, of an integer",
+                    "as in WORD_BCD_TO_UINT(x) and UINT_TO_BCD_WORD(x)");
+    call.standard = find_standard_function(to_bcd ? "to BCD" : "from BCD");
+    return &target;
+}
+
 /// `INT_TO_REAL(x)`, `TO_REAL(x)`, `REAL_TRUNC_INT(x)`: the call becomes a conversion.
 const Type* Checker::check_conversion(Expression& call, std::string_view name) {
     std::string upper(name);
@@ -443,8 +473,15 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
         const auto it = named_types_.find(text);
         return it == named_types_.end() ? nullptr : it->second.type;
     };
-    const Type* target = find(std::string_view(name).substr(at + skip));
-    const Type* source = at == 0 ? nullptr : find(std::string_view(name).substr(0, at));
+    std::string_view from_name = name.substr(0, at), to_name = name.substr(at + skip);
+    const bool to_bcd = std::string_view(upper).substr(at + skip).starts_with("BCD_");
+    const bool from_bcd = at >= 3 && upper.substr(at - 3, 3) == "BCD" && !to_bcd;
+    if (to_bcd) to_name.remove_prefix(4);
+    if (from_bcd) from_name.remove_suffix(at == 3 ? 3 : 4);
+    const Type* target = find(to_name);
+    const Type* source = from_name.empty() ? nullptr : find(from_name);
+    if (target && (to_bcd || from_bcd) && (from_name.empty() || source))
+        return check_bcd(call, source, *target, to_bcd);
     if (!target || (at != 0 && !source)) return nullptr;
     call.standard = -2;
     if (call.arguments.size() != 1)

@@ -31,9 +31,13 @@ enum class Rule : std::uint8_t {
     find,       ///< FIND(text, text)
     text,       ///< CONCAT, LEFT, ...: texts, then numbers; gives a text
     finite,     ///< IS_VALID, of a real
+    from_bcd,   ///< WORD_BCD_TO_UINT
+    to_bcd,     ///< UINT_TO_BCD_WORD
+    valid_bcd,  ///< IS_VALID_BCD
+    time,       ///< TIME(), of the scan
 };
 
-/// A function of IEC 61131-3:2013, tables 28 to 33, or of Siemens' SCL.
+/// A function of IEC 61131-3:2013, tables 25 to 38, or of Siemens' SCL.
 struct StandardFunction {
     std::string_view name;
     Rule rule = Rule::real;
