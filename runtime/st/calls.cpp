@@ -251,8 +251,9 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
                 fmt::format("it is called {}", argument_name(f, i)));
     }
     const bool first_differs = f.rule == Rule::select || f.rule == Rule::multiplex;
-    const bool passes =
-        f.rule == Rule::extremum || f.rule == Rule::limit || first_differs || f.rule == Rule::move;
+    const bool passes = f.rule == Rule::extremum || f.rule == Rule::limit || first_differs ||
+                        f.rule == Rule::move ||
+                        (f.rule == Rule::scale && expected && expected->is_real());
     for (int i = 0; i < count; ++i)
         check(*call.arguments[static_cast<std::size_t>(i)].value,
               passes && !(first_differs && i == 0) ? expected : nullptr);
@@ -326,10 +327,10 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         case Rule::normalise: {
             const Type* type = common_from(0);
             if (!type) return nullptr;
-            const bool narrow = expected && expected->is_real() && widens(*type, *expected);
-            const Type& real =
-                narrow || type->is_real() ? real_for(narrow ? *expected : *type) : lreal_type;
-            return coerce_from(0, real) ? &real : nullptr;
+            const bool known = expected && expected->is_real() && !type->is_real();
+            const Type& result = known ? real_for(*expected) : real_for(*type);
+            const Type& real = known && widens(*type, result) ? result : real_for(*type);
+            return coerce_from(0, real) ? convert_result(call, real, result) : nullptr;
         }
         case Rule::scale:
             return check_scale(call, expected);
@@ -426,14 +427,18 @@ const Type* Checker::check_scale(Expression& call, const Type* expected) {
     const Type& result = known ? expected->plain() : limits->kind == Kind::integer ? *limits : real;
     for (Argument& argument : arguments)
         if (!coerce(argument.value, real)) return nullptr;
-    if (result.is_real()) return &real;
-    Expression* scaled = make(Expression::Kind::call, call);
-    *scaled = call;
-    scaled->type = &real;
-    Expression* whole = scaled;
-    convert(whole, result);
-    call = Expression(*whole);
-    return &result;
+    return convert_result(call, real, result.is_real() ? real : result);
+}
+
+/// The call, of type `from`, becomes its conversion.
+const Type* Checker::convert_result(Expression& call, const Type& from, const Type& to) {
+    if (&from == &to) return &to;
+    Expression* inner = make(Expression::Kind::call, call);
+    *inner = call;
+    inner->type = &from;
+    convert(inner, to);
+    call = Expression(*inner);
+    return &to;
 }
 
 /// `WORD_BCD_TO_UINT(x)`, `UINT_TO_BCD_WORD(x)`: a decimal digit in each four bits.

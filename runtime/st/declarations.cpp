@@ -149,9 +149,11 @@ void Checker::declare_globals() {
         } else {
             Type& made = make_type(Kind::structure, std::string(pou->name.text));
             for (const DeclarationBlock& block : pou->blocks)
-                for (const Declaration* declared : block.declarations)
+                for (const Declaration* declared : block.declarations) {
                     made.members.push_back(
                         add(checked_.variables, *declared, resolve(*declared->type)));
+                    made.members.back()->retain = block.retain;
+                }
             type = &made;
         }
         Variable& variable = checked_.variables.emplace_back();

@@ -160,7 +160,7 @@ class Lexer {
         for (; at_ < text_.size(); ++at_) {
             if (text_[at_] == '\n')
                 new_line_ = true;
-            else if (at("(*") || at("/*"))
+            else if (at("(*") || at("/*") || is_translated_comment())
                 skip_comment();
             else if (at("//"))
                 skip_line();
@@ -177,17 +177,27 @@ class Lexer {
         --at_;
     }
 
+    /// TIA's comment in several languages: `(/* ... */)`. Behind a name that is a call.
+    bool is_translated_comment() const {
+        const auto& tokens = tokens_.tokens;
+        if (!at("(/*") || tokens.empty() || tokens.back().word == Word::name) return false;
+        const std::size_t end = text_.find("*/", at_);
+        return end != std::string_view::npos && text_.substr(end).starts_with("*/)");
+    }
+
     /// Stops at the comment's last character.
     void skip_comment() {
         const std::size_t begin = at_;
-        const std::string_view open = at("(*") ? "(*" : "/*", close = at("(*") ? "*)" : "*/";
+        const bool standard = at("(*"), translated = at("(/*");
+        const std::string_view open = standard ? "(*" : translated ? "(/*" : "/*";
+        const std::string_view close = standard ? "*)" : translated ? "*/)" : "*/";
         int depth = 0;
         for (; at_ < text_.size(); ++at_) {
             if (at(open)) {
                 if (++depth > deepest_comment) return too_deep(place(at_, at_ + 2));
-                ++at_;
+                at_ += open.size() - 1;
             } else if (at(close)) {
-                ++at_;
+                at_ += close.size() - 1;
                 if (--depth == 0) return;
             }
         }

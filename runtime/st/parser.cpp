@@ -1,6 +1,7 @@
 #include "runtime/st/parser.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -283,8 +284,28 @@ class Parser {
             return read_pou(*words);
         if (is(Word::type_)) return read_types();
         if (is(Word::var_global_)) return tree_.globals.push_back(read_section(Section::global));
+        if (refuse_whole()) return;
         expected("a FUNCTION_BLOCK, FUNCTION, PROGRAM, DATA_BLOCK or TYPE");
         take();
+    }
+
+    /// What is not supported, up to its END_... or the ';' behind it.
+    bool refuse_whole() {
+        static constexpr Word words[] = {Word::class_,         Word::interface_, Word::namespace_,
+                                         Word::configuration_, Word::property_,  Word::action_,
+                                         Word::using_};
+        if (std::ranges::find(words, here().word) == std::end(words)) return false;
+        const std::string end = fmt::format("end_{}", here().text);
+        const auto rest = std::span(tokens_).subspan(at_);
+        const auto last = std::ranges::find_if(rest, [&](const Token& token) {
+            return is(Word::using_) ? token.word == Word::semicolon : same_name(token.text, end);
+        });
+        refuse_unsupported();
+        panic_ = false;
+        if (last != rest.end()) at_ += static_cast<std::size_t>(last - rest.begin());
+        take();
+        accept(Word::semicolon);
+        return true;
     }
 
     Token read_name(std::string_view what) {
@@ -311,6 +332,11 @@ class Parser {
         pou.kind = words.kind;
         pou.is_private = is(Word::private_);
         accept_access();
+        while (is_name(next()) && (is(Word::override_) || is(Word::final_))) {
+            refuse_unsupported();
+            panic_ = false;
+            take();
+        }
         pou.name = read_name(fmt::format("the name of the {}", shown(opener.word)));
         pou.place = opener.place.to(pou.name.place);
         if (accept(Word::colon)) pou.result = read_type();
@@ -356,6 +382,7 @@ class Parser {
         skip_header();
         accept(Word::non_retain_) || accept(Word::retain_);
         if (pou.kind != PouKind::data_block) return;
+        pou.base = std::exchange(pou.result, nullptr);
         if (is(Word::struct_) || is(Word::array_)) {
             pou.base = read_type();
             accept(Word::semicolon);
@@ -389,6 +416,8 @@ class Parser {
                 block.constant = true;
             else if (accept(Word::retain_))
                 block.retain = true;
+            else if (is(Word::name) && same_name(here().text, "db_specific"))
+                take();
             else if (!accept(Word::non_retain_) && !accept_access())
                 break;
         }
@@ -420,6 +449,9 @@ class Parser {
         }
         expect(Word::colon, "after the name");
         TypeText* type = read_type();
+        if (same_name(here().text, "r_edge") || same_name(here().text, "f_edge"))
+            fail("L0903", here().place, fmt::format("{} is not supported", here().text),
+                 "declare an instance of R_TRIG or F_TRIG, and call it");
         Expression* initial = accept(Word::assign) ? read_initials() : nullptr;
         if (!panic_) end_of_statement();
         if (panic_) return skip_declaration();
@@ -810,9 +842,9 @@ class Parser {
                 take();
                 return nullptr;
             case Word::action_:
+            case Word::property_:
                 if (!is_name(next())) return read_simple();
-                refuse_unsupported();
-                while (!is(Word::end_of_file) && !accept_any(Word::end_action_)) take();
+                refuse_whole();
                 return nullptr;
             case Word::region_:
             case Word::network_:

@@ -89,6 +89,8 @@ struct Foreign {
 constexpr Foreign foreign[] = {
     {"RESET_TIMER", "call the timer with IN := FALSE"},
     {"PRESET_TIMER", "give the timer its PT"},
+    {"DECO", "write SHL(DWORD#1, n)"},
+    {"ENCO", "find the bit in a FOR: SHR(x, i)"},
     {"SWAP", "write ROL(x, 8) for a WORD"},
     {"PEEK", "read the variable by its name"},
     {"PEEK_BOOL", "read the variable by its name"},
