@@ -11,7 +11,7 @@ namespace lineshaft {
 
 namespace {
 
-constexpr std::string_view type_names[] = {"int", "dint", "lint"};
+constexpr std::string_view type_names[] = {"int", "dint", "lint", "udint", "ulint"};
 
 struct Range {
     std::int64_t least, most;
@@ -22,8 +22,11 @@ constexpr Range range_of() {
     return {std::numeric_limits<T>::min(), std::numeric_limits<T>::max()};
 }
 
-constexpr Range ranges[] = {range_of<std::int16_t>(), range_of<std::int32_t>(),
-                            range_of<std::int64_t>()};
+constexpr Range ranges[] = {range_of<std::int16_t>(),
+                            range_of<std::int32_t>(),
+                            range_of<std::int64_t>(),
+                            range_of<std::uint32_t>(),
+                            {0, std::numeric_limits<std::int64_t>::max()}};
 
 constexpr Range range(CounterType type) {
     return ranges[static_cast<std::size_t>(type)];

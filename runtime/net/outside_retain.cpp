@@ -4,6 +4,7 @@
 
 #include "runtime/net/outside.hpp"
 #include "runtime/source/text_hash.hpp"
+#include "runtime/st/library.hpp"
 #include "runtime/version.hpp"
 
 namespace lineshaft {
@@ -66,6 +67,26 @@ void retain_signal(Connecting& to, const Node& node) {
     to.machine.retained.push_back({std::move(kept->signal), kept->live, kept->published});
 }
 
+bool is_retained(const Machine& machine, std::size_t block, const std::byte* live) {
+    const auto& blocks = machine.retained_blocks;
+    const auto& values = machine.retained;
+    return std::ranges::find(blocks, block, &RetainedBlock::instance) != blocks.end() ||
+           std::ranges::find(values, live, &Retained::live) != values.end();
+}
+
+/// What stands in VAR RETAIN of Structured Text, unless the program says it too.
+void retain_variables(Connecting& to, std::size_t block) {
+    const Instance& instance = to.net.instances[block];
+    if (!instance.known()) return;
+    for (const std::string_view name : st::retained(*instance.type)) {
+        Node node;
+        node.text = fmt::format("{}.{}", instance.name, name);
+        auto kept = find_target(to, node);
+        if (kept && !is_retained(to.machine, block, kept->live))
+            to.machine.retained.push_back({std::move(kept->signal), kept->live, kept->published});
+    }
+}
+
 }  // namespace
 
 void connect_retained(Connecting& to) {
@@ -74,6 +95,7 @@ void connect_retained(Connecting& to) {
             retain_block(to, node);
         else
             retain_signal(to, node);
+    for (std::size_t i = 0; i < to.net.instances.size(); ++i) retain_variables(to, i);
 }
 
 }  // namespace lineshaft

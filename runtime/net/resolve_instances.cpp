@@ -92,6 +92,12 @@ std::optional<WireText> parse_wire(const Node& node) {
     return wire;
 }
 
+/// A reference that no program writes down.
+bool is_data_block(const Resolving& to, const Field& field) {
+    const BlockType* kind = to.net.kinds ? to.net.kinds->find(field.refers) : nullptr;
+    return kind && kind->single;
+}
+
 void refuse_port(Resolving& to, const Instance& block, const Node& key) {
     if (const Field* field = block.type->find_readable(key.text))
         return to.read.fail(
@@ -102,7 +108,8 @@ void refuse_port(Resolving& to, const Instance& block, const Node& key) {
             fmt::format("'lineshaft blocks {}' lists its inputs", block.type->name));
     std::vector<std::string> settable{"type", "task"};
     for (const Field& f : block.type->fields)
-        if (block.type->find_settable(f.name) == &f) settable.emplace_back(f.name);
+        if (block.type->find_settable(f.name) == &f && !is_data_block(to, f))
+            settable.emplace_back(f.name);
     for (const TableField& t : block.type->tables) settable.emplace_back(t.name);
     to.read.fail("L0203", key,
                  fmt::format("{} has no parameter or input '{}'", block.described(), key.text),
@@ -114,8 +121,8 @@ void check_required(const Resolving& to, const BlockPlan& plan, const Instance& 
         const auto is_field = [&](const auto& port) {
             return block.type->is_called(field.name, port.first.text);
         };
-        const BlockType* kind = to.net.kinds ? to.net.kinds->find(field.refers) : nullptr;
-        if (!field.required || (kind && kind->single) || std::ranges::any_of(plan.ports, is_field))
+        if (!field.required || is_data_block(to, field) ||
+            std::ranges::any_of(plan.ports, is_field))
             continue;
         to.read.fail("L0403", plan.name,
                      fmt::format("{} needs its {} '{}': {}", block.described(),

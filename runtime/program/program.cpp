@@ -94,9 +94,10 @@ bool are_known(const Node& tasks) {
 }
 
 bool is_structured_text(const fs::path& file) {
+    static constexpr std::string_view extensions[] = {".st", ".scl", ".s7dcl", ".udt", ".db"};
     const std::string extension = file.extension().string();
-    return same_letters(extension, ".st") || same_letters(extension, ".scl") ||
-           same_letters(extension, ".s7dcl");
+    return std::ranges::any_of(extensions,
+                               [&](std::string_view e) { return same_letters(extension, e); });
 }
 
 /// A text from the command line: it has no place.
@@ -246,7 +247,7 @@ void ProgramReader::find_source(const Node& named) {
     else if (files.empty())
         read_.fail("L0001", named,
                    fmt::format("the folder '{}' has no file of Structured Text", named.text),
-                   "their names end with .st, .scl or .s7dcl");
+                   "their names end with .st, .scl, .s7dcl, .udt or .db");
     program_.sources_known = program_.sources_known && !error && !files.empty();
     std::ranges::sort(files);
     for (const std::string& file : files) read_source_file(file, named.mark);

@@ -566,7 +566,8 @@ const Form& program_form() {
               key<&Program::sources>(
                   "sources",
                   one_or_list(a_value.as("a file of 'sources'"), "'sources' has no file"),
-                  "Structured Text (.st, .scl, .s7dcl), files or folders, relative to this file: "
+                  "Structured Text (.st, .scl, .s7dcl, .udt, .db), files or folders, relative to "
+                  "this file: "
                   "its programs and function blocks are types of blocks"),
               key<read_blocks>(
                   "blocks",

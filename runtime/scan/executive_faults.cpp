@@ -11,6 +11,12 @@ namespace {
 
 constexpr std::int64_t most_starts_at_once = 1000;
 
+/// A loop of own code was ended after as many passes as a scan may have.
+bool is_endless(const ErrorFlag& flag) {
+    const auto id = flag.error_id ? static_cast<std::size_t>(*flag.error_id) : flag.names.size();
+    return id < flag.names.size() && flag.names[id] == "no_end";
+}
+
 }  // namespace
 
 bool Executive::repeats_without_end(int index) {
@@ -101,7 +107,7 @@ void Executive::report_errors(int index) {
         const bool before = *level != 0;
         *level++ = *flag.error;
         state(index).may_err |= *flag.error;
-        if (!*flag.error || before) continue;
+        if (!*flag.error || (before && !is_endless(flag))) continue;
         std::string text;
         if (flag.error_id) {
             const auto id = static_cast<std::size_t>(*flag.error_id);
@@ -109,10 +115,18 @@ void Executive::report_errors(int index) {
             if (id < flag.names.size()) text += fmt::format(" ({})", flag.names[id]);
         }
         const Scan& scan = state(index).scan;
+        const std::string place = flag.type && flag.type->why
+                                      ? ": " + flag.type->why(flag.memory, flag.type->context)
+                                      : std::string();
+        if (is_endless(flag)) {
+            time_error(index, fmt::format("scan {}, begun at {}, does not end in block {}{}",
+                                          scan.index, format_time(scan.time), flag.block, place));
+            if (stopped_) return;
+            continue;
+        }
         text = fmt::format("block {} reports error{} in scan {} of task '{}' at {}", flag.block,
                            text, scan.index, task(index).name, format_time(scan.time));
-        if (flag.type && flag.type->why)
-            text += ": " + flag.type->why(flag.memory, flag.type->context);
+        text += place;
         tell(EventKind::block_error, index, text);
         if (!machine_.continue_on_error) return stop(Outcome::block_error, text, index);
     }

@@ -15,6 +15,13 @@ bool is_variable(const Expression& e) {
     return e.kind == E::name || e.kind == E::member || e.kind == E::index;
 }
 
+/// A structure or an array that came as an input, or in one, is passed on by reference.
+bool is_own_input(const Expression& e) {
+    const Expression* root = &e;
+    while (root->kind != Expression::Kind::name && root->operands[0]) root = root->operands[0];
+    return root->variable && root->variable->section == Section::input && !e.type->is_scalar();
+}
+
 }  // namespace
 
 const Type* Checker::check_call(Expression& call, bool as_statement, const Type* expected) {
@@ -22,6 +29,10 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
     if (callee.kind == Expression::Kind::member) {
         const Type* of = check(*callee.operands[0]);
         if (!of) return nullptr;
+        if (of->kind == Kind::standard && same_name(of->standard->name, callee.token.text)) {
+            call.operands[0] = callee.operands[0];  // `#delay.TON(...)`, as Siemens has it
+            return check_instance_call(call, *of, as_statement);
+        }
         if (of->kind == Kind::block) {
             const auto it = of->routine->methods.find(callee.token.text);
             if (it != of->routine->methods.end()) {
@@ -43,8 +54,10 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
                 return check_routine_call(call, *it->second, as_statement);
         if (const auto it = routines_.find(name); it != routines_.end() && !it->second->type)
             return check_routine_call(call, *it->second, as_statement);
-        if (!callee.token.quoted && !find_variable(callee.token))
-            return check_standard_function(call, expected);
+        const bool is_function =
+            !callee.token.quoted && !callee.token.local &&
+            (find_standard_function(name) >= 0 || !find_variable(callee.token));
+        if (is_function) return check_standard_function(call, expected);
     }
     const Type* type = check(callee);
     if (!type) return nullptr;
@@ -156,7 +169,8 @@ void Checker::check_argument(Expression&, Argument& argument, Variable& paramete
     }
     const Type* given = check(*value);
     if (!given || !type) return;
-    if (!is_variable(*value) || !check_target(*value, "given here")) {
+    const bool is_read = parameter.section == Section::in_out && is_own_input(*value);
+    if (!is_variable(*value) || (!is_read && !check_target(*value, "given here"))) {
         if (!is_variable(*value))
             fail("L0907", value->place,
                  fmt::format("'{}' takes a variable, not a value", parameter.text),
@@ -201,6 +215,10 @@ void Checker::check_standard_arguments(Expression& call, const Type& type) {
 const Type* Checker::check_standard_function(Expression& call, const Type* expected) {
     const Token& name = call.operands[0]->token;
     call.standard = find_standard_function(name.text);
+    const std::string_view instead = instead_of_function(name.text);
+    if (call.standard < 0 && !instead.empty())
+        return fail("L0903", name.place, fmt::format("the function {} is not supported", name.text),
+                    std::string(instead));
     for (Argument& argument : call.arguments)
         if (argument.is_output)
             return fail("L0907", argument.name.place,
@@ -234,8 +252,9 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
                 fmt::format("it is called {}", argument_name(f, i)));
     }
     const bool first_differs = f.rule == Rule::select || f.rule == Rule::multiplex;
-    const bool passes =
-        f.rule == Rule::extremum || f.rule == Rule::limit || first_differs || f.rule == Rule::move;
+    const bool passes = f.rule == Rule::extremum || f.rule == Rule::limit || first_differs ||
+                        f.rule == Rule::move ||
+                        (f.rule == Rule::scale && expected && expected->is_real());
     for (int i = 0; i < count; ++i)
         check(*call.arguments[static_cast<std::size_t>(i)].value,
               passes && !(first_differs && i == 0) ? expected : nullptr);
@@ -292,6 +311,7 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         if (common->is_any()) common = common->is_real() ? &lreal_type : &dint_type;
         return coerce_from(first, common->plain()) ? &common->plain() : nullptr;
     };
+    if (f.rule == Rule::time) return &time_type;
     const Type& first = *arguments[0].value->type;
     switch (f.rule) {
         case Rule::real:
@@ -308,15 +328,13 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         case Rule::normalise: {
             const Type* type = common_from(0);
             if (!type) return nullptr;
-            const Type& real = type->is_real() ? real_for(*type) : lreal_type;
-            return coerce_from(0, real) ? &real : nullptr;
+            const bool known = expected && expected->is_real() && !type->is_real();
+            const Type& result = known ? real_for(*expected) : real_for(*type);
+            const Type& real = known && widens(*type, result) ? result : real_for(*type);
+            return coerce_from(0, real) ? convert_result(call, real, result) : nullptr;
         }
-        case Rule::scale: {
-            const Type* type = common_from(0);
-            if (!type) return nullptr;
-            const Type& real = type->is_real() ? *type : lreal_type;
-            return coerce_from(0, real) ? &real : nullptr;
-        }
+        case Rule::scale:
+            return check_scale(call, expected);
         case Rule::whole: {
             if (!coerce_from(0, real_for(first))) return nullptr;
             return expected && expected->kind == Kind::integer ? &expected->plain() : &dint_type;
@@ -354,6 +372,10 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
                         fmt::format("{} takes a bit string, not {}", f.name, describe(first)),
                         "write its type, as in WORD#16#FF");
         }
+        case Rule::valid_bcd:
+            if (first.kind == Kind::bits) return &bool_type;
+            return fail("L0905", arguments[0].value->place,
+                        fmt::format("{} takes a bit string, not {}", f.name, describe(first)));
         case Rule::length:
         case Rule::find:
         case Rule::text: {
@@ -370,6 +392,10 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
             }
             return f.rule == Rule::text ? &string_type : &int_type;
         }
+        case Rule::time:
+        case Rule::from_bcd:
+        case Rule::to_bcd:
+            return nullptr;
         case Rule::operation: {
             Expression* left = arguments[0].value;
             for (std::size_t i = 1; i < arguments.size(); ++i) {
@@ -388,9 +414,60 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
     return nullptr;
 }
 
+/// SCALE_X of a REAL or LREAL; into an integer, which MIN and MAX are then, it rounds.
+const Type* Checker::check_scale(Expression& call, const Type* expected) {
+    auto& arguments = call.arguments;
+    const auto narrow = [](const Type& type) {
+        return type.is_any() || (type.kind == Kind::real ? type.bits == 32 : type.bits <= 16);
+    };
+    const bool is_narrow =
+        std::ranges::all_of(arguments, [&](const Argument& a) { return narrow(*a.value->type); });
+    const bool known = expected && (expected->kind == Kind::integer || expected->is_real());
+    const Type& real = is_narrow && (!known || narrow(*expected)) ? real_type : lreal_type;
+    const Type* limits = arguments[0].value->type;
+    const Type& result = known ? expected->plain() : limits->kind == Kind::integer ? *limits : real;
+    for (Argument& argument : arguments)
+        if (!coerce(argument.value, real)) return nullptr;
+    return convert_result(call, real, result.is_real() ? real : result);
+}
+
+/// The call, of type `from`, becomes its conversion.
+const Type* Checker::convert_result(Expression& call, const Type& from, const Type& to) {
+    if (&from == &to) return &to;
+    Expression* inner = make(Expression::Kind::call, call);
+    *inner = call;
+    inner->type = &from;
+    convert(inner, to);
+    call = Expression(*inner);
+    return &to;
+}
+
+/// `WORD_BCD_TO_UINT(x)`, `UINT_TO_BCD_WORD(x)`: a decimal digit in each four bits.
+const Type* Checker::check_bcd(Expression& call, const Type* source, const Type& target,
+                               bool to_bcd) {
+    call.standard = -2;
+    const auto is_digits = [](const Type& type) { return type.kind == Kind::bits; };
+    const auto is_number = [](const Type& type) { return type.kind == Kind::integer; };
+    if (call.arguments.size() != 1)
+        return fail("L0907", call.operands[0]->place, "a conversion takes 1 argument");
+    Expression*& value = call.arguments[0].value;
+    if (!check(*value, source)) return nullptr;
+    if (source && !coerce(value, *source)) return nullptr;
+    const Type& from = *value->type;
+    const bool fits =
+        to_bcd ? is_number(from) && is_digits(target) : is_digits(from) && is_number(target);
+    if (!fits)
+        return fail("L0905", call.place, "BCD digits are those of a bit string, of an integer",
+                    "as in WORD_BCD_TO_UINT(x) and UINT_TO_BCD_WORD(x)");
+    call.standard = find_standard_function(to_bcd ? "to BCD" : "from BCD");
+    return &target;
+}
+
 /// `INT_TO_REAL(x)`, `TO_REAL(x)`, `REAL_TRUNC_INT(x)`: the call becomes a conversion.
 const Type* Checker::check_conversion(Expression& call, std::string_view name) {
-    const std::string upper = lineshaft::upper(name);
+    std::string upper(name);
+    for (char& c : upper) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    if (upper.starts_with("ANY_TO_")) upper.erase(0, 4), name.remove_prefix(4);
     const std::size_t to = upper.starts_with("TO_") ? 0 : upper.find("_TO_");
     const std::size_t trunc = upper.starts_with("TRUNC_") ? 0 : upper.find("_TRUNC_");
     const bool truncates = to == std::string::npos && trunc != std::string::npos;
@@ -402,8 +479,15 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
         const auto it = named_types_.find(text);
         return it == named_types_.end() ? nullptr : it->second.type;
     };
-    const Type* target = find(std::string_view(name).substr(at + skip));
-    const Type* source = at == 0 ? nullptr : find(std::string_view(name).substr(0, at));
+    std::string_view from_name = name.substr(0, at), to_name = name.substr(at + skip);
+    const bool to_bcd = std::string_view(upper).substr(at + skip).starts_with("BCD_");
+    const bool from_bcd = at >= 3 && upper.substr(at - 3, 3) == "BCD" && !to_bcd;
+    if (to_bcd) to_name.remove_prefix(4);
+    if (from_bcd) from_name.remove_suffix(at == 3 ? 3 : 4);
+    const Type* target = find(to_name);
+    const Type* source = from_name.empty() ? nullptr : find(from_name);
+    if (target && (to_bcd || from_bcd) && (from_name.empty() || source))
+        return check_bcd(call, source, *target, to_bcd);
     if (!target || (at != 0 && !source)) return nullptr;
     call.standard = -2;
     if (call.arguments.size() != 1)

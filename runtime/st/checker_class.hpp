@@ -76,6 +76,8 @@ class Checker {
     const Type* check_name(Expression& expression, const Type* expected);
     const Type* use(Expression& expression, Variable& variable);
     const Type* unknown_name(Expression& expression);
+    const Type* enumeration_of(const Expression& member) const;
+    const Type* check_value(Expression& e, const Type& enumeration, const Token& name);
     const Type* check_member(Expression& expression);
     const Type* check_index(Expression& expression);
     const Type* check_bit(Expression& expression);
@@ -85,7 +87,7 @@ class Checker {
     const Type* check_comparison(Expression& expression);
     const Type* check_arithmetic(Expression& expression);
     const Type* check_time_arithmetic(Expression& expression);
-    const Type* check_power(Expression& expression);
+    const Type* check_power(Expression& expression, const Type* expected);
     const Type* unite(Expression& expression);
     const Type* check_typed(Expression& expression);
     void fold(Expression& expression);
@@ -113,6 +115,9 @@ class Checker {
     Variable* find_parameter(Argument& argument, Routine& routine, std::size_t position);
     const Type* check_standard_function(Expression& call, const Type* expected);
     const Type* check_conversion(Expression& call, std::string_view name);
+    const Type* check_bcd(Expression& call, const Type* source, const Type& target, bool to_bcd);
+    const Type* convert_result(Expression& call, const Type& from, const Type& to);
+    const Type* check_scale(Expression& call, const Type* expected);
     const Type* standard_result(Expression& call, const Type* expected);
 
     // statements.cpp
@@ -120,6 +125,7 @@ class Checker {
     void check(Block& block);
     void check(Statement& statement);
     void check_assignment(Statement& statement);
+    void declare_eno(const Expression& target);
     void check_case(Statement& statement);
     void check_for(Statement& statement);
     void check_condition(Expression*& condition, std::string_view of);
@@ -152,8 +158,5 @@ class Checker {
     Routine* routine_ = nullptr;  ///< that is being checked
     int loops_ = 0;               ///< around the statement
 };
-
-/// `INT`, `ARRAY[0..3] OF LREAL`: for messages.
-std::string describe(const Type& type);
 
 }  // namespace lineshaft::st

@@ -22,12 +22,16 @@ struct Preset {
     std::string_view type;
 };
 
-constexpr Preset counters[] = {{"ctu", "ctu", 0, "int"},         {"ctd", "ctd", 0, "int"},
-                               {"ctud", "ctud", 0, "int"},       {"ctu_int", "ctu", 0, "int"},
-                               {"ctd_int", "ctd", 0, "int"},     {"ctud_int", "ctud", 0, "int"},
-                               {"ctu_dint", "ctu", 1, "dint"},   {"ctd_dint", "ctd", 1, "dint"},
-                               {"ctud_dint", "ctud", 1, "dint"}, {"ctu_lint", "ctu", 2, "lint"},
-                               {"ctd_lint", "ctd", 2, "lint"},   {"ctud_lint", "ctud", 2, "lint"}};
+constexpr Preset counters[] = {
+    {"ctu", "ctu", 0, "int"},           {"ctd", "ctd", 0, "int"},
+    {"ctud", "ctud", 0, "int"},         {"ctu_int", "ctu", 0, "int"},
+    {"ctd_int", "ctd", 0, "int"},       {"ctud_int", "ctud", 0, "int"},
+    {"ctu_dint", "ctu", 1, "dint"},     {"ctd_dint", "ctd", 1, "dint"},
+    {"ctud_dint", "ctud", 1, "dint"},   {"ctu_lint", "ctu", 2, "lint"},
+    {"ctd_lint", "ctd", 2, "lint"},     {"ctud_lint", "ctud", 2, "lint"},
+    {"ctu_udint", "ctu", 3, "udint"},   {"ctd_udint", "ctd", 3, "udint"},
+    {"ctud_udint", "ctud", 3, "udint"}, {"ctu_ulint", "ctu", 4, "ulint"},
+    {"ctd_ulint", "ctd", 4, "ulint"},   {"ctud_ulint", "ctud", 4, "ulint"}};
 
 constexpr std::pair<std::string_view, std::string_view> aliases[] = {
     {"ton_time", "ton"},  {"tof_time", "tof"}, {"tp_time", "tp"},   {"ton_ltime", "ton"},
@@ -146,9 +150,11 @@ void Checker::declare_globals() {
         } else {
             Type& made = make_type(Kind::structure, std::string(pou->name.text));
             for (const DeclarationBlock& block : pou->blocks)
-                for (const Declaration* declared : block.declarations)
+                for (const Declaration* declared : block.declarations) {
                     made.members.push_back(
                         add(checked_.variables, *declared, resolve(*declared->type)));
+                    made.members.back()->retain = block.retain;
+                }
             type = &made;
         }
         Variable& variable = checked_.variables.emplace_back();
@@ -167,7 +173,10 @@ void Checker::declare_routines() {
     for (Routine& routine : checked_.routines) {
         routine_ = &routine;
         declare_result(routine);
-        for (const DeclarationBlock& block : routine.pou->blocks) declare(routine, block);
+        for (const bool constant : {true, false})  // bounds may name what stands further down
+            for (const DeclarationBlock& block : routine.pou->blocks)
+                if ((block.constant && block.section == Section::local) == constant)
+                    declare(routine, block);
     }
     routine_ = nullptr;
     for (Routine& method : checked_.routines)  // it works on what its block is made of

@@ -50,6 +50,8 @@ constexpr Foreign foreign[] = {
     {"char", "write STRING[1], or BYTE for its number"},
     {"date", "write TIME or LINT, counted from a moment of your own"},
     {"time_of_day", "write TIME, counted from midnight"},
+    {"d", "write TIME or LINT, counted from a moment of your own"},
+    {"ldate", "write TIME or LINT, counted from a moment of your own"},
     {"tod", "write TIME, counted from midnight"},
     {"ltod", "write TIME, counted from midnight"},
     {"date_and_time", "write TIME or LINT, counted from a moment of your own"},
@@ -69,6 +71,14 @@ const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &lint_type = table[4], &ulint_type = table[8], &real_type = table[13],
            &lreal_type = table[14], &time_type = table[15], &any_integer_type = any_integer,
            &any_real_type = any_real, &any_bits_type = any_bits, &string_type = table[17];
+
+const Type* find_prefix(std::string_view name) {
+    static constexpr std::pair<std::string_view, std::string_view> shorter[] = {
+        {"b", "byte"}, {"w", "word"}, {"dw", "dword"}, {"lw", "lword"}, {"l", "dint"}};
+    const auto* it =
+        std::ranges::find_if(shorter, [&](const auto& s) { return same_name(s.first, name); });
+    return find_elementary(it == std::end(shorter) ? name : it->second);
+}
 
 const Type* find_elementary(std::string_view name) {
     const auto* it =

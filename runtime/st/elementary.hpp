@@ -7,8 +7,14 @@
 
 namespace lineshaft::st {
 
+/// `INT`, `ARRAY[0..3] OF LREAL`: for messages.
+std::string describe(const Type& type);
+
 /// BOOL, SINT, ..., LTIME; null for another name.
 const Type* find_elementary(std::string_view name);
+
+/// What stands before '#': also Siemens' B, W, DW, LW and L.
+const Type* find_prefix(std::string_view name);
 
 extern const Type &bool_type, &int_type, &dint_type, &lint_type, &ulint_type, &real_type,
     &lreal_type, &time_type, &any_integer_type, &any_real_type, &any_bits_type, &string_type;

@@ -138,23 +138,14 @@ const Type* Checker::check_typed(Expression& e) {
     Expression& value = *e.operands[0];
     Token name = e.token;
     const auto it = named_types_.find(name.text);
-    const Type* type = find_elementary(name.text);
+    const Type* type = find_prefix(name.text);
     if (it != named_types_.end()) type = it->second.type;
     if (!type) {
         resolve_name(name);
         return nullptr;
     }
-    if (type->kind == Kind::enumeration && value.kind == Expression::Kind::name) {
-        const auto found = std::ranges::find_if(type->values, [&](const std::string& known) {
-            return same_name(known, value.token.text);
-        });
-        if (found == type->values.end())
-            return fail("L0904", value.place,
-                        fmt::format("{} has no value '{}'", type->name, value.token.text),
-                        suggest(value.token.text, type->values));
-        become(e, *type, {.integer = found - type->values.begin()});
-        return type;
-    }
+    if (type->kind == Kind::enumeration && value.kind == Expression::Kind::name)
+        return check_value(e, *type, value.token);
     if (!check(value, type)) return nullptr;
     Expression* literal = &value;
     if (!coerce(literal, *type)) return nullptr;
@@ -247,7 +238,30 @@ std::vector<std::string> Checker::visible_names() const {
     return names;
 }
 
+/// The enumeration of `Colour.red`; null if this is none.
+const Type* Checker::enumeration_of(const Expression& member) const {
+    const Expression& of = *member.operands[0];
+    if (of.kind != Expression::Kind::name || of.token.local || find_variable(of.token))
+        return nullptr;
+    const auto it = named_types_.find(of.token.text);
+    const Type* type = it == named_types_.end() ? nullptr : it->second.type;
+    return type && type->kind == Kind::enumeration ? type : nullptr;
+}
+
+/// The value of that name.
+const Type* Checker::check_value(Expression& e, const Type& enumeration, const Token& name) {
+    const auto found = std::ranges::find_if(
+        enumeration.values, [&](const std::string& known) { return same_name(known, name.text); });
+    if (found == enumeration.values.end())
+        return fail("L0904", name.place,
+                    fmt::format("{} has no value '{}'", enumeration.name, name.text),
+                    suggest(name.text, enumeration.values));
+    become(e, enumeration, {.integer = found - enumeration.values.begin()});
+    return &enumeration;
+}
+
 const Type* Checker::check_member(Expression& e) {
+    if (const Type* enumeration = enumeration_of(e)) return check_value(e, *enumeration, e.token);
     const Type* type = check(*e.operands[0]);
     if (!type) return nullptr;
     const std::string_view name = e.token.text;
@@ -319,7 +333,7 @@ const Type* Checker::check_bit(Expression& e) {
                : letter == 'W' || letter == 'w'              ? 16
                : letter == 'D' || letter == 'd'              ? 32
                                                              : 0;
-        text.remove_prefix(has_letter ? 2 : 1);
+        text.remove_prefix(std::min<std::size_t>(has_letter ? 2 : 1, text.size()));
     }
     const auto number = read_integer(text);
     if (!number || bits == 0)
@@ -384,7 +398,7 @@ const Type* Checker::check_binary(Expression& e, const Type* expected) {
     if (!left->type || !right->type) return nullptr;
     if (is_logic(e.op)) return check_logic(e);
     if (is_comparison(e.op)) return check_comparison(e);
-    if (e.op == Word::power) return check_power(e);
+    if (e.op == Word::power) return check_power(e, expected);
     return check_arithmetic(e);
 }
 
@@ -506,7 +520,7 @@ const Type* Checker::check_time_arithmetic(Expression& e) {
     return e.type;
 }
 
-const Type* Checker::check_power(Expression& e) {
+const Type* Checker::check_power(Expression& e, const Type* expected) {
     Expression *&left = e.operands[0], *&right = e.operands[1];
     for (Expression* operand : e.operands)
         if (!operand->type->is_number())
@@ -526,9 +540,13 @@ const Type* Checker::check_power(Expression& e) {
             return e.type;
         }
     }
-    const bool is_real = left->type->kind == Kind::real && left->type->bits == 32 &&
-                         (right->type->is_any() || right->type->bits <= 32);
-    const Type& type = is_real ? real_type : lreal_type;
+    const auto is_narrow = [](const Type& t) { return t.is_any() || t.bits <= 32; };
+    const auto is_real = [](const Type& t) { return t.kind == Kind::real && t.bits == 32; };
+    const bool untyped = left->type->is_any() && right->type->is_any();
+    const bool narrow = (untyped && expected && is_real(*expected)) ||
+                        (is_real(*left->type) && is_narrow(*right->type)) ||
+                        (is_real(*right->type) && is_narrow(*left->type));
+    const Type& type = narrow ? real_type : lreal_type;
     const auto widen = [&](Expression*& operand) {
         if (widens(*operand->type, type) || operand->type->is_any()) return coerce(operand, type);
         convert(operand, type);
@@ -648,6 +666,16 @@ bool Checker::coerce_constant(Expression& e, const Type& to) {
     return true;
 }
 
+/// Siemens' SCL takes a bit string for an integer of its width or a wider one, and the other way.
+bool is_same_pattern(const Expression& e, const Type& to) {
+    const Type& from = *e.type;
+    const bool mixes = (from.kind == Kind::bits && to.kind == Kind::integer) ||
+                       (from.kind == Kind::integer && to.kind == Kind::bits);
+    const std::string_view path = (*e.place.file)->path;
+    return mixes && from.bits <= to.bits && !to.is_subrange && !path.ends_with(".st") &&
+           !path.ends_with(".ST");
+}
+
 bool Checker::coerce(Expression*& e, const Type& to) {
     if (!e->type) return false;
     const Type& from = *e->type;
@@ -667,7 +695,8 @@ bool Checker::coerce(Expression*& e, const Type& to) {
     if (from.kind == Kind::enumeration && to.kind == Kind::enumeration && from.name == to.name &&
         from.values == to.values)
         return true;
-    if (!from.is_scalar() || !widens(from, to)) return refuse_conversion(*e, to);
+    const bool fits = from.is_scalar() && (widens(from, to) || is_same_pattern(*e, to));
+    if (!fits) return refuse_conversion(*e, to);
     convert(e, to);
     return true;
 }

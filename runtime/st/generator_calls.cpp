@@ -257,6 +257,15 @@ Slot Generator::standard(const Expression& e, Slot wanted) {
             return text_address(e);
         case Rule::finite:
             return emit(Op::is_finite, wanted, argument(0));
+        case Rule::valid_bcd:
+            return emit(Op::is_bcd, wanted, argument(0));
+        case Rule::from_bcd:
+            return emit(of_type(Op::wrap_sint, type), wanted,
+                        emit(Op::from_bcd, none, argument(0)));
+        case Rule::to_bcd:
+            return emit(Op::to_bcd, wanted, argument(0), static_cast<Slot>(type.bits / 4));
+        case Rule::time:
+            return emit(Op::time_now, wanted, 0);
         case Rule::move:
         case Rule::operation:
             return value_or_address(*e.arguments[0].value, none);

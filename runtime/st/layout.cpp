@@ -51,8 +51,8 @@ void Generator::place_variables(Routine& routine, std::uint32_t& at, auto condit
         if (variable.space == Space::none || !condition(variable)) continue;
         place_ = variable.name.place;
         variable.slot = at;
-        const std::uint64_t slots =
-            variable.space == Space::reference ? 1 : slots_of(*variable.type);
+        const std::uint64_t own = slots_of(*variable.type);  // also lays out what is referred to
+        const std::uint64_t slots = variable.space == Space::reference ? 1 : own;
         check_size(at + slots, variable.name.place, variable.text);
         if (at + slots > most_slots) return;
         at += static_cast<std::uint32_t>(slots);

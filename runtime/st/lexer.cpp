@@ -102,6 +102,8 @@ constexpr Sign signs[] = {{":=", Word::assign},
                           {";", Word::semicolon},
                           {":", Word::colon}};
 
+constexpr int deepest_comment = 200;
+
 constexpr std::string_view time_prefixes[] = {"t", "time", "lt", "ltime", "s5t", "s5time"};
 
 class Lexer {
@@ -147,7 +149,7 @@ class Lexer {
         for (; at_ < text_.size(); ++at_) {
             if (text_[at_] == '\n')
                 new_line_ = true;
-            else if (at("(*") || at("/*"))
+            else if (at("(*") || at("/*") || is_translated_comment())
                 skip_comment();
             else if (at("//"))
                 skip_line();
@@ -164,21 +166,40 @@ class Lexer {
         --at_;
     }
 
+    /// TIA's comment in several languages: `(/* ... */)`. Behind a name that is a call.
+    bool is_translated_comment() const {
+        const auto& tokens = tokens_.tokens;
+        if (!at("(/*") || tokens.empty() || tokens.back().word == Word::name) return false;
+        const std::size_t end = text_.find("*/", at_);
+        return end != std::string_view::npos && text_.substr(end).starts_with("*/)");
+    }
+
     /// Stops at the comment's last character.
     void skip_comment() {
         const std::size_t begin = at_;
-        const std::string_view open = at("(*") ? "(*" : "/*", close = at("(*") ? "*)" : "*/";
-        std::size_t depth = 0;
+        const bool standard = at("(*"), translated = at("(/*");
+        const std::string_view open = standard ? "(*" : translated ? "(/*" : "/*";
+        const std::string_view close = standard ? "*)" : translated ? "*/)" : "*/";
+        int depth = 0;
         for (; at_ < text_.size(); ++at_) {
             if (at(open)) {
-                ++depth, ++at_;
+                if (++depth > deepest_comment) return too_deep(place(at_, at_ + 2));
+                at_ += open.size() - 1;
             } else if (at(close)) {
-                ++at_;
+                at_ += close.size() - 1;
                 if (--depth == 0) return;
             }
         }
         fail(place(begin, begin + 2), "the comment does not end",
              fmt::format("it ends with '{}'; comments nest, so each '{}' needs one", close, open));
+    }
+
+    void too_deep(Place where) {
+        tokens_.mistakes.push_back(where.begin);
+        out_.add("L0912", where.mark(),
+                 fmt::format("comments are nested deeper than {} levels", deepest_comment),
+                 "a comment in a comment needs an end of its own");
+        at_ = text_.size();
     }
 
     void skip_pragma() {
@@ -227,12 +248,20 @@ class Lexer {
             return;
         }
         const auto it = words().find(text);
-        if (it == words().end() || after_dot) {
+        const bool is_variable = it != words().end() && it->second == Word::region_ &&
+                                 (!new_line_ || is_declared_or_assigned());
+        if (it == words().end() || after_dot || is_variable) {
             add(Word::name);
             return;
         }
         add(it->second);
         if (it->second == Word::region_ || it->second == Word::end_region_) skip_title();
+    }
+
+    /// A ':', ':=' or ',' follows.
+    bool is_declared_or_assigned() const {
+        const std::size_t next = text_.find_first_not_of(" \t", at_);
+        return next != std::string_view::npos && (text_[next] == ':' || text_[next] == ',');
     }
 
     /// `REGION any text`: up to the end of the line.

@@ -180,6 +180,23 @@ class FieldWriter {
         write(*variable.type, offset, path + std::string(variable.text), direction, variable);
     }
 
+    /// VAR_IN_OUT: so that a program that has the block itself is told.
+    void write_reference(const Variable& variable) {
+        if (!variable.type) return;
+        Field reference;
+        reference.name = variable.text;
+        reference.refers = made_.names.emplace_back("VAR_IN_OUT " + describe(*variable.type));
+        reference.doc = made_.names.emplace_back(fmt::format(
+            "a variable ({}) of the block that calls this one; declare an instance in a "
+            "PROGRAM, call it there, and use that as a block",
+            describe(*variable.type)));
+        reference.direction = Direction::in_out;
+        reference.type = lineshaft::Type::integer;
+        reference.offset = 8 * std::size_t{variable.slot};
+        reference.required = true;
+        kind_.fields.push_back(reference);
+    }
+
     /// Of a data block, whose variables are all its own.
     void write_member(const Variable& member) {
         write(*member.type, 8 * std::size_t{member.slot}, std::string(member.text),
@@ -313,6 +330,13 @@ KindContext& add_kind(Library::Made& made, std::string name, const Type& type,
     return kind;
 }
 
+/// The fields from `first` on are of a variable in VAR RETAIN, if it is one. Inputs come anew.
+void keep(KindContext& kind, std::size_t first, bool retain) {
+    for (; retain && first < kind.fields.size(); ++first)
+        if (kind.fields[first].direction >= Direction::output)
+            kind.retained.push_back(kind.fields[first].name);
+}
+
 void add_routine(Library::Made& made, const Routine& routine, const CodeRoutine& code,
                  const Options& options) {
     KindContext& kind = add_kind(made, routine.name, *routine.type, options);
@@ -325,9 +349,10 @@ void add_routine(Library::Made& made, const Routine& routine, const CodeRoutine&
     for (const Variable& variable : routine.variables) {
         const std::size_t before = kind.fields.size();
         fields.write(variable, 0, {}, FieldWriter::direction_of(variable));
-        for (std::size_t i = before; variable.retain && i < kind.fields.size(); ++i)
-            kind.retained.push_back(kind.fields[i].name);
-        if (variable.space == Space::reference) kind.references.push_back(variable.slot);
+        keep(kind, before, variable.retain);
+        if (variable.space != Space::reference) continue;
+        kind.references.push_back(variable.slot);
+        fields.write_reference(variable);
     }
 }
 
@@ -339,7 +364,11 @@ void add_global(Library::Made& made, const Global& global, const Options& option
         for (const Variable& variable : global.type->routine->variables)
             if (variable.section != Section::temp) fields.write(variable, 0, {}, Direction::local);
     }
-    for (const Variable* member : global.type->members) fields.write_member(*member);
+    for (const Variable* member : global.type->members) {
+        const std::size_t before = kind.fields.size();
+        fields.write_member(*member);
+        keep(kind, before, member->retain);
+    }
 }
 
 BlockType block_type(const KindContext& kind, const std::shared_ptr<const Library::Made>& made) {
@@ -396,7 +425,8 @@ std::span<const std::uint64_t, op_classes> Library::counts(const std::byte* inst
         std::launder(reinterpret_cast<const std::uint64_t*>(instance)) + counts_slot, op_classes);
 }
 
-std::span<const std::string_view> Library::retained(const BlockType& kind) const {
+std::span<const std::string_view> retained(const BlockType& kind) {
+    if (kind.scan_blocks != scan_blocks) return {};
     return static_cast<const KindContext*>(kind.context)->retained;
 }
 

@@ -57,9 +57,6 @@ class Library {
     /// Options::counts.
     std::span<const std::uint64_t, op_classes> counts(const std::byte* instance) const;
 
-    /// Fields of the kind that stand in VAR RETAIN (and all parts of theirs).
-    std::span<const std::string_view> retained(const BlockType& kind) const;
-
     /// For tests and people: the code of all.
     std::string listing() const;
 
@@ -73,6 +70,10 @@ class Library {
     std::shared_ptr<const Made> made_;  ///< also the owner of each kind
     std::vector<BlockType> kinds_;
 };
+
+/// Fields of a kind of some library that stand in VAR RETAIN (and all parts of theirs; texts are no
+/// fields). Of another kind none.
+std::span<const std::string_view> retained(const BlockType& kind);
 
 /// Compiles Structured Text (IEC 61131-3:2013, and the SCL of Siemens) of all `sources` together;
 /// they see each other, and of `standard` the kinds as function blocks. Empty, with all that is

@@ -116,6 +116,26 @@ double narrow(double value) {
     return double{static_cast<float>(value)};
 }
 
+/// A decimal digit in each four bits. False where one is above 9.
+bool from_bcd(std::uint64_t digits, auto put) {
+    std::uint64_t value = 0;
+    for (int shift = 60; shift >= 0; shift -= 4) {
+        const std::uint64_t digit = digits >> shift & 15;
+        if (digit > 9) return false;
+        value = value * 10 + digit;
+    }
+    put(value);
+    return true;
+}
+
+/// False where the value has more than so many digits.
+bool to_bcd(std::uint64_t value, std::uint32_t digits, auto put) {
+    std::uint64_t made = 0;
+    for (std::uint32_t i = 0; i < digits; ++i, value /= 10) made |= value % 10 << (4 * i);
+    if (value == 0) put(made);
+    return value == 0;
+}
+
 // Texts: the length, then the characters.
 
 std::string_view text_at(const std::byte* place) {

@@ -115,6 +115,10 @@
     OP(text_of_real, text, "rr-", write_number(target(U(a)), R(b)))                                  \
     OP(integer_of_text, text, "wr-", if (!read_number<std::int64_t>(target(U(b)), [&](auto v) { put(a, v); })) FAIL(out_of_range)) \
     OP(real_of_text, text, "wr-", if (!read_number<double>(target(U(b)), [&](auto v) { put(a, v); })) FAIL(out_of_range)) \
+    OP(from_bcd, integer, "wr-", if (!from_bcd(U(b), [&](auto v) { put(a, v); })) FAIL(out_of_range)) \
+    OP(to_bcd, integer, "wrn", if (!to_bcd(U(b), c, [&](auto v) { put(a, v); })) FAIL(out_of_range)) \
+    OP(is_bcd, integer, "wr-", put(a, std::uint64_t{from_bcd(U(b), [](auto) {})}))                   \
+    OP(time_now, move, "w--", put(a, now.time))                                                      \
     OP(select, move, "wrs", put(a, word(at(c), U(b) & 1)))                                           \
     OP(look_up, move, "wrx", if (!look_up(a, b, c)) FAIL(out_of_range))
 

@@ -1,6 +1,8 @@
 #include "runtime/st/parser.hpp"
 
 #include <algorithm>
+#include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -42,11 +44,14 @@ constexpr Unsupported unsupported[] = {
 };
 
 /// Words that are names wherever a name may stand.
-constexpr Word soft_words[] = {Word::version_,   Word::test_,     Word::setup_,     Word::teardown_,
-                               Word::action_,    Word::class_,    Word::final_,     Word::at_,
-                               Word::internal_,  Word::using_,    Word::property_,  Word::network_,
-                               Word::method_,    Word::override_, Word::interface_, Word::type_,
-                               Word::namespace_, Word::begin_,    Word::pointer_};
+constexpr Word soft_words[] = {
+    Word::version_,   Word::test_,      Word::setup_,         Word::teardown_,
+    Word::action_,    Word::class_,     Word::final_,         Word::at_,
+    Word::internal_,  Word::using_,     Word::property_,      Word::network_,
+    Word::method_,    Word::override_,  Word::interface_,     Word::type_,
+    Word::namespace_, Word::begin_,     Word::pointer_,       Word::private_,
+    Word::public_,    Word::protected_, Word::configuration_, Word::super_,
+    Word::implements_};
 
 struct PouWords {
     Word begin, end;
@@ -124,6 +129,10 @@ class Parser {
     static bool is_name(const Token& token) {
         return token.word == Word::name ||
                std::ranges::find(soft_words, token.word) != std::end(soft_words);
+    }
+    /// `METHOD` may be the name of a variable.
+    bool at_pou() const {
+        return is(Word::method_) ? is_name(next()) : find_pou(here().word) != nullptr;
     }
     const Token& take() { return is(Word::end_of_file) ? here() : tokens_[at_++]; }
 
@@ -208,6 +217,9 @@ class Parser {
         out_.add(code, place.mark(), std::move(message), std::move(help));
     }
 
+    /// A comment without an end took the rest of the file.
+    bool is_swallowed() const { return !mistakes_.empty() && mistakes_.back() >= last().place.end; }
+
     /// The end of a block. One that is missing is told once, for the innermost.
     bool close(Word end, const Token& opener) {
         if (accept(end)) return true;
@@ -219,6 +231,7 @@ class Parser {
             return false;
         }
         unclosed_at_ = at_;
+        if (is(Word::end_of_file) && is_swallowed()) return false;
         if (!else_ifs_.empty() && end == Word::end_if_) {
             tell("L0902", else_ifs_.back(), "'ELSE IF' begins a second IF without an END_IF",
                  "write ELSIF");
@@ -247,7 +260,7 @@ class Parser {
 
     void skip_to_declaration() {
         panic_ = false;
-        while (!is(Word::end_of_file) && !find_pou(here().word) && !is(Word::var_global_) &&
+        while (!is(Word::end_of_file) && !at_pou() && !is(Word::var_global_) &&
                !(is(Word::type_) && here().first_in_line))
             take();
     }
@@ -259,7 +272,7 @@ class Parser {
             const bool begins = is(Word::if_) || is(Word::for_) || is(Word::while_) ||
                                 is(Word::case_) || is(Word::repeat_) || is(Word::else_) ||
                                 is(Word::elsif_) || is(Word::until_);
-            if (here().first_in_line && (begins || find_pou(here().word))) return;
+            if (here().first_in_line && (begins || at_pou())) return;
             take();
         }
     }
@@ -271,8 +284,28 @@ class Parser {
             return read_pou(*words);
         if (is(Word::type_)) return read_types();
         if (is(Word::var_global_)) return tree_.globals.push_back(read_section(Section::global));
+        if (refuse_whole()) return;
         expected("a FUNCTION_BLOCK, FUNCTION, PROGRAM, DATA_BLOCK or TYPE");
         take();
+    }
+
+    /// What is not supported, up to its END_... or the ';' behind it.
+    bool refuse_whole() {
+        static constexpr Word words[] = {Word::class_,         Word::interface_, Word::namespace_,
+                                         Word::configuration_, Word::property_,  Word::action_,
+                                         Word::using_};
+        if (std::ranges::find(words, here().word) == std::end(words)) return false;
+        const std::string end = fmt::format("end_{}", here().text);
+        const auto rest = std::span(tokens_).subspan(at_);
+        const auto last = std::ranges::find_if(rest, [&](const Token& token) {
+            return is(Word::using_) ? token.word == Word::semicolon : same_name(token.text, end);
+        });
+        refuse_unsupported();
+        panic_ = false;
+        if (last != rest.end()) at_ += static_cast<std::size_t>(last - rest.begin());
+        take();
+        accept(Word::semicolon);
+        return true;
     }
 
     Token read_name(std::string_view what) {
@@ -285,18 +318,32 @@ class Parser {
         if (Pou* pou = read_pou_of(words)) tree_.units.push_back(pou);
     }
 
+    /// A word stands where the name of a variable does.
+    bool is_declared() const { return next().word == Word::colon || next().word == Word::comma; }
+
+    bool accept_access() {
+        return !is_declared() && (accept(Word::private_) || accept(Word::public_) ||
+                                  accept(Word::protected_) || accept(Word::internal_));
+    }
+
     Pou* read_pou_of(const PouWords& words) {
         const Token opener = take();
         Pou& pou = tree_.pous.emplace_back();
         pou.kind = words.kind;
-        if (accept(Word::private_)) pou.is_private = true;
-        accept(Word::public_) || accept(Word::protected_) || accept(Word::internal_);
+        pou.is_private = is(Word::private_);
+        accept_access();
+        while (is_name(next()) && (is(Word::override_) || is(Word::final_))) {
+            refuse_unsupported();
+            panic_ = false;
+            take();
+        }
         pou.name = read_name(fmt::format("the name of the {}", shown(opener.word)));
         pou.place = opener.place.to(pou.name.place);
         if (accept(Word::colon)) pou.result = read_type();
         if (panic_) skip_to_statement();
         read_header(pou);
         read_sections(pou, words.end);
+        if (std::exchange(is_spoiled_, false)) return skip_past(words.end), &pou;
         accept(Word::begin_);
         is_in_body_ = true;
         read_body(pou, words.end);
@@ -309,14 +356,12 @@ class Parser {
 
     void skip_past(Word end) {
         panic_ = false;
-        while (!is(Word::end_of_file) && !is(end) && !find_pou(here().word)) take();
+        while (!is(Word::end_of_file) && !is(end) && !at_pou()) take();
         accept(end);
     }
 
-    /// `VERSION : 0.1`, `TITLE = ...`, `AUTHOR : ...`; of a data block its type.
-    void read_header(Pou& pou) {
-        if (is(Word::extends_) || is(Word::implements_)) refuse_unsupported();
-        if (panic_) skip_line();
+    /// `VERSION : 0.1`, `TITLE = ...`, `AUTHOR : ...`
+    void skip_header() {
         static constexpr std::string_view words[] = {
             "title", "author", "family", "name", "know_how_protect", "read_only", "unlinked"};
         for (;;) {
@@ -325,11 +370,19 @@ class Parser {
                                        std::ranges::any_of(words, [&](std::string_view word) {
                                            return same_name(word, here().text);
                                        }));
-            if (!header) break;
+            if (!header) return;
             skip_line();
         }
+    }
+
+    /// What stands before the variables; of a data block its type too.
+    void read_header(Pou& pou) {
+        if (is(Word::extends_) || is(Word::implements_)) refuse_unsupported();
+        if (panic_) skip_line();
+        skip_header();
         accept(Word::non_retain_) || accept(Word::retain_);
         if (pou.kind != PouKind::data_block) return;
+        pou.base = std::exchange(pou.result, nullptr);
         if (is(Word::struct_) || is(Word::array_)) {
             pou.base = read_type();
             accept(Word::semicolon);
@@ -358,19 +411,18 @@ class Parser {
         const Token opener = take();
         DeclarationBlock block;
         block.section = section;
-        for (;;) {
+        while (!is_declared()) {
             if (accept(Word::constant_))
                 block.constant = true;
             else if (accept(Word::retain_))
                 block.retain = true;
-            else if (!accept(Word::non_retain_) && !accept(Word::public_) &&
-                     !accept(Word::private_) && !accept(Word::protected_) &&
-                     !accept(Word::internal_))
+            else if (is(Word::name) && same_name(here().text, "db_specific"))
+                take();
+            else if (!accept(Word::non_retain_) && !accept_access())
                 break;
         }
         section_left_ = false;
-        while (!section_left_ && !is_end(here().word) && !is(Word::end_of_file) &&
-               !find_pou(here().word) &&
+        while (!section_left_ && !is_end(here().word) && !is(Word::end_of_file) && !at_pou() &&
                std::ranges::find(section_words, here().word, &SectionWord::word) ==
                    std::end(section_words))
             read_variables(block.declarations);
@@ -386,6 +438,8 @@ class Parser {
         const Word behind = next().word;
         if (is_name() && (behind == Word::assign || behind == Word::open || behind == Word::dot))
             return missing_end_var();
+        if (!is_name() && here().word < Word::end_of_file && behind == Word::colon)
+            return reserved_name();
         std::vector<Token> names{read_name("the name of a variable")};
         while (accept(Word::comma)) names.push_back(read_name("the name of a variable"));
         if (is(Word::at_)) {
@@ -395,7 +449,10 @@ class Parser {
         }
         expect(Word::colon, "after the name");
         TypeText* type = read_type();
-        Expression* initial = accept(Word::assign) ? read_initial() : nullptr;
+        if (same_name(here().text, "r_edge") || same_name(here().text, "f_edge"))
+            fail("L0903", here().place, fmt::format("{} is not supported", here().text),
+                 "declare an instance of R_TRIG or F_TRIG, and call it");
+        Expression* initial = accept(Word::assign) ? read_initials() : nullptr;
         if (!panic_) end_of_statement();
         if (panic_) return skip_declaration();
         const auto [unit, place] = unit_of(first);
@@ -412,9 +469,18 @@ class Parser {
         section_left_ = true;
     }
 
+    /// Whatever uses it would be wrong too.
+    void reserved_name() {
+        tell("L0902", here().place,
+             fmt::format("'{}' is a word of the language, not a name", here().text),
+             "take another name for the variable");
+        is_spoiled_ = section_left_ = true;
+        unclosed_at_ = at_;
+    }
+
     void skip_declaration() {
         panic_ = false;
-        while (!is(Word::end_of_file) && !is_end(here().word) && !find_pou(here().word))
+        while (!is(Word::end_of_file) && !is_end(here().word) && !at_pou())
             if (take().word == Word::semicolon) return;
     }
 
@@ -434,10 +500,10 @@ class Parser {
 
     void read_types() {
         const Token opener = take();
-        while (!is_end(here().word) && !is(Word::end_of_file) && !find_pou(here().word)) {
+        while (!is_end(here().word) && !is(Word::end_of_file) && !at_pou()) {
             TypeDeclaration declared;
             declared.name = read_name("the name of a type");
-            while (is(Word::version_)) skip_line();
+            skip_header();
             if (!is(Word::struct_)) expect(Word::colon, "after the name");
             declared.type = read_type();
             if (accept(Word::assign)) declared.initial = read_initial();
@@ -488,12 +554,13 @@ class Parser {
 
     void read_struct(TypeText& type, const Token& opener) {
         type.kind = TypeText::Kind::structure;
-        while (!panic_ && !is_end(here().word) && !is(Word::end_of_file) && !find_pou(here().word))
+        while (!panic_ && !is_spoiled_ && !is_end(here().word) && !is(Word::end_of_file) &&
+               !at_pou())
             read_variables(type.members);
         close(Word::end_struct_, opener);
     }
 
-    /// `(red, green := 5)`
+    /// `(red, green := 5)`, and behind it the type of the numbers, as CODESYS has it
     void read_enumeration(TypeText& type) {
         type.kind = TypeText::Kind::enumeration;
         expect(Word::open);
@@ -503,11 +570,13 @@ class Parser {
             if (accept(Word::assign)) value.value = read_expression();
         } while (accept(Word::comma));
         expect(Word::close, "after the values");
+        if (is(Word::name) && type.name.word == Word::end_of_file) type.name = take();
     }
 
     void read_named(TypeText& type) {
         if (is(Word::pointer_) && next().word == Word::to_) refuse_unsupported();
         type.name = read_name("a type");
+        if (type.name.text == "_" && accept(Word::dot)) type.name = read_name("a type");
         if (panic_) return;
         if (same_name(type.name.text, "string") && (is(Word::open_bracket) || is(Word::open))) {
             type.kind = TypeText::Kind::text;
@@ -561,6 +630,20 @@ class Parser {
         return list;
     }
 
+    /// SCL leaves the brackets of an array's values out: `1, 2, 4(0)`.
+    Expression* read_initials() {
+        Expression* first = read_initial();
+        if (!is(Word::comma)) return first;
+        Expression* list = make(Expression::Kind::list, last());
+        list->arguments.push_back({{}, false, first, nullptr});
+        while (accept(Word::comma)) {
+            list->arguments.push_back({{}, false, read_initial(), nullptr});
+            grow(*list, *list->arguments.back().value);
+        }
+        list->place = first->place.to(last().place);
+        return list;
+    }
+
     Expression* read_repeated() {
         if (!is(Word::integer) || next().word != Word::open) return read_expression();
         const Level level(*this);
@@ -596,7 +679,7 @@ class Parser {
     Expression* read_expression(int binding = 1) {
         Expression* left = read_unary();
         for (;;) {
-            const auto* it = std::ranges::find(binaries, here().word, &Binary::word);
+            const auto* it = std::ranges::find(binaries, operator_here(), &Binary::word);
             if (panic_ || it == std::end(binaries) || it->binding < binding) return left;
             Expression* made = make(Expression::Kind::binary, take());
             made->op = it->word == Word::ampersand ? Word::and_ : it->word;
@@ -604,6 +687,12 @@ class Parser {
             add_operand(*made, 1, read_expression(it->binding + 1));
             left = made;
         }
+    }
+
+    /// SCL's DIV is no word of the standard, where it is a function.
+    Word operator_here() const {
+        const bool divides = is(Word::name) && same_name(here().place.text(), "div");
+        return divides ? Word::divided : here().word;
     }
 
     Expression* read_unary() {
@@ -666,11 +755,17 @@ class Parser {
                     return inner;
                 }
                 default:
-                    if (is_name()) return make(Expression::Kind::name, take());
+                    if (is_name() || (is_operator_name() && next().word == Word::open))
+                        return make(Expression::Kind::name, take());
             }
         }
         expected("a value");
         return make(Expression::Kind::constant, here());
+    }
+
+    /// `AND(a, b)`: of the functions that share their names with operators.
+    bool is_operator_name() const {
+        return is(Word::and_) || is(Word::or_) || is(Word::xor_) || is(Word::mod_);
     }
 
     Expression* read_typed() {
@@ -715,9 +810,8 @@ class Parser {
 
     bool at_end_of_statements() const {
         if (is(Word::end_region_) || is(Word::end_network_)) return false;
-        if (is(Word::method_))
-            return is_name(next()) || next().word == Word::private_ || next().word == Word::public_;
-        return is_end(here().word) || ends_statements(here().word) || find_pou(here().word) ||
+        if (is(Word::method_)) return at_pou();
+        return is_end(here().word) || ends_statements(here().word) || at_pou() ||
                (is(Word::type_) && is_name(next()));
     }
 
@@ -748,9 +842,9 @@ class Parser {
                 take();
                 return nullptr;
             case Word::action_:
+            case Word::property_:
                 if (!is_name(next())) return read_simple();
-                refuse_unsupported();
-                while (!is(Word::end_of_file) && !accept_any(Word::end_action_)) take();
+                refuse_whole();
                 return nullptr;
             case Word::region_:
             case Word::network_:
@@ -797,7 +891,7 @@ class Parser {
 
     /// Where the next thing begins a line or ends a block, only the ';' is missing.
     void end_of_statement() {
-        if (panic_ || accept(Word::semicolon)) return;
+        if (panic_ || unclosed_at_ == at_ || accept(Word::semicolon)) return;
         if (!here().first_in_line && !is_end(here().word) && !ends_statements(here().word))
             return expected(";", "after the statement");
         Place place = last().place;
@@ -806,6 +900,14 @@ class Parser {
     }
 
     Statement* read_simple() {
+        if (same_name(here().text, "rung") && (is_name(next()) || next().word == Word::prefix)) {
+            fail("L0903", here().place, "networks in LAD and FBD are not supported",
+                 "convert the network to SCL");
+            while (!is(Word::end_network_) && !is_end(here().word) && !is(Word::end_of_file))
+                take();
+            panic_ = false;
+            return nullptr;
+        }
         if (!is_name()) {
             expected("a statement");
             return nullptr;
@@ -988,6 +1090,7 @@ class Parser {
     int depth_ = 0;
     bool panic_ = false;
     bool section_left_ = false;  ///< a VAR ended without END_VAR
+    bool is_spoiled_ = false;    ///< the POU, by a variable that cannot be
     bool is_in_body_ = false;    ///< of a POU
 };
 

@@ -46,6 +46,10 @@ constexpr StandardFunction functions[] = {
     {"SUB", Rule::operation, 2, 2, Op::move, Word::minus},
     {"MUL", Rule::operation, 2, several, Op::move, Word::times},
     {"DIV", Rule::operation, 2, 2, Op::move, Word::divided},
+    {"MOD", Rule::operation, 2, 2, Op::move, Word::mod_},
+    {"AND", Rule::operation, 2, several, Op::move, Word::and_},
+    {"OR", Rule::operation, 2, several, Op::move, Word::or_},
+    {"XOR", Rule::operation, 2, several, Op::move, Word::xor_},
     {"GT", Rule::operation, 2, 2, Op::move, Word::greater},
     {"GE", Rule::operation, 2, 2, Op::move, Word::greater_or_equal},
     {"EQ", Rule::operation, 2, 2, Op::move, Word::equal},
@@ -55,6 +59,18 @@ constexpr StandardFunction functions[] = {
     {"NORM_X", Rule::normalise, 3, 3},
     {"SCALE_X", Rule::scale, 3, 3},
     {"IS_VALID", Rule::finite},
+    {"IS_VALID_BCD", Rule::valid_bcd},
+    {"from BCD", Rule::from_bcd},
+    {"to BCD", Rule::to_bcd},
+    {"TIME", Rule::time, 0, 0},
+    {"ADD_TIME", Rule::operation, 2, 2, Op::move, Word::plus},
+    {"ADD_LTIME", Rule::operation, 2, 2, Op::move, Word::plus},
+    {"SUB_TIME", Rule::operation, 2, 2, Op::move, Word::minus},
+    {"SUB_LTIME", Rule::operation, 2, 2, Op::move, Word::minus},
+    {"MUL_TIME", Rule::operation, 2, 2, Op::move, Word::times},
+    {"MUL_LTIME", Rule::operation, 2, 2, Op::move, Word::times},
+    {"DIV_TIME", Rule::operation, 2, 2, Op::move, Word::divided},
+    {"DIV_LTIME", Rule::operation, 2, 2, Op::move, Word::divided},
     {"LEN", Rule::length},
     {"FIND", Rule::find, 2, 2},
     {"CONCAT", Rule::text, 2, several, Op::move, Word::end_of_file, several},
@@ -66,7 +82,60 @@ constexpr StandardFunction functions[] = {
     {"REPLACE", Rule::text, 4, 4, Op::move, Word::end_of_file, 2},
 };
 
+struct Foreign {
+    std::string_view name, instead;
+};
+
+constexpr Foreign foreign[] = {
+    {"RESET_TIMER", "call the timer with IN := FALSE"},
+    {"PRESET_TIMER", "give the timer its PT"},
+    {"DECO", "write SHL(DWORD#1, n)"},
+    {"ENCO", "find the bit in a FOR: SHR(x, i)"},
+    {"SWAP", "write ROL(x, 8) for a WORD"},
+    {"PEEK", "read the variable by its name"},
+    {"PEEK_BOOL", "read the variable by its name"},
+    {"POKE", "assign to the variable by its name"},
+    {"POKE_BOOL", "assign to the variable by its name"},
+    {"MOVE_BLK", "assign the array as a whole, or its elements in a FOR"},
+    {"UMOVE_BLK", "assign the array as a whole, or its elements in a FOR"},
+    {"MOVE_BLK_VARIANT", "assign the array as a whole, or its elements in a FOR"},
+    {"BLKMOV", "assign the structure as a whole"},
+    {"FILL_BLK", "assign the elements in a FOR"},
+    {"UFILL_BLK", "assign the elements in a FOR"},
+    {"SCATTER", "assign the bits one by one: x.%X0"},
+    {"GATHER", "assign the bits one by one: x.%X0"},
+    {"Serialize", "assign the parts one by one"},
+    {"Deserialize", "assign the parts one by one"},
+    {"CountOfElements", "declare the bounds as constants"},
+    {"LOWER_BOUND", "declare the bounds as constants"},
+    {"UPPER_BOUND", "declare the bounds as constants"},
+    {"SIZEOF", "declare the size as a constant"},
+    {"ADR", "pass the variable as VAR_IN_OUT"},
+    {"REF", "pass the variable as VAR_IN_OUT"},
+    {"TypeOf", "write a block for each type"},
+    {"RD_SYS_T", "wire the time to a VAR_INPUT"},
+    {"RD_LOC_T", "wire the time to a VAR_INPUT"},
+    {"TIME_TCK", "write TIME()"},
+    {"BCD16_TO_INT", "write WORD_BCD_TO_UINT(x) for a number without a sign"},
+    {"INT_TO_BCD16", "write UINT_TO_BCD_WORD(x) for a number without a sign"},
+    {"BCD32_TO_DINT", "write DWORD_BCD_TO_UDINT(x) for a number without a sign"},
+    {"DINT_TO_BCD32", "write UDINT_TO_BCD_DWORD(x) for a number without a sign"},
+    {"RUNTIME", "a controller's 'instruction_time' gives what code costs"},
+    {"GET_ERROR", "a fault ends the scan and is the block's output 'error_id'"},
+    {"GET_ERR_ID", "a fault ends the scan and is the block's output 'error_id'"},
+    {"S_MOVE", "assign the STRING with ':='"},
+    {"VAL_STRG", "write LREAL_TO_STRING(x) or DINT_TO_STRING(x)"},
+    {"STRG_VAL", "write STRING_TO_LREAL(x) or STRING_TO_DINT(x)"},
+    {"Chars_TO_Strg", "keep the characters in a STRING"},
+    {"Strg_TO_Chars", "keep the characters in a STRING"}};
+
 }  // namespace
+
+std::string_view instead_of_function(std::string_view name) {
+    const auto* it =
+        std::ranges::find_if(foreign, [&](const Foreign& f) { return same_name(f.name, name); });
+    return it == std::end(foreign) ? std::string_view() : it->instead;
+}
 
 std::span<const StandardFunction> standard_functions() {
     return functions;

@@ -31,9 +31,13 @@ enum class Rule : std::uint8_t {
     find,       ///< FIND(text, text)
     text,       ///< CONCAT, LEFT, ...: texts, then numbers; gives a text
     finite,     ///< IS_VALID, of a real
+    from_bcd,   ///< WORD_BCD_TO_UINT
+    to_bcd,     ///< UINT_TO_BCD_WORD
+    valid_bcd,  ///< IS_VALID_BCD
+    time,       ///< TIME(), of the scan
 };
 
-/// A function of IEC 61131-3:2013, tables 28 to 33, or of Siemens' SCL.
+/// A function of IEC 61131-3:2013, tables 25 to 38, or of Siemens' SCL.
 struct StandardFunction {
     std::string_view name;
     Rule rule = Rule::real;
@@ -47,6 +51,9 @@ std::span<const StandardFunction> standard_functions();
 
 /// Its place in the list, or -1.
 int find_standard_function(std::string_view name);
+
+/// What to write instead of a function that other controllers have; empty for another name.
+std::string_view instead_of_function(std::string_view name);
 
 /// `IN1`, `MN`: the standard's name of an argument.
 std::string argument_name(const StandardFunction& function, int argument);

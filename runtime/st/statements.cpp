@@ -75,7 +75,22 @@ void Checker::check_condition(Expression*& condition, std::string_view of) {
          type->is_number() || type->is_bits() ? "compare it, as in 'x <> 0'" : "");
 }
 
+/// Siemens' ENO, a flag of each block: here no caller reads it, so it is a variable of the block.
+void Checker::declare_eno(const Expression& target) {
+    const bool is_eno =
+        target.kind == Expression::Kind::name && same_name(target.token.text, "eno");
+    if (!is_eno || !routine_ || find_variable(target.token)) return;
+    Variable& variable = routine_->variables.emplace_back();
+    variable.name = target.token;
+    variable.text = target.token.text;
+    variable.type = &bool_type;
+    variable.section = Section::temp;
+    variable.of = routine_->pou;
+    routine_->names.emplace(variable.text, &variable);
+}
+
 void Checker::check_assignment(Statement& s) {
+    declare_eno(*s.target);
     const Type* type = check(*s.target);
     if (s.op != Word::assign && type) {
         Expression* sum = make(Expression::Kind::binary, *s.target);

@@ -247,6 +247,7 @@ Slot Generator::convert_time(Slot slot, const Type& from, const Type& to, Slot w
 Location Generator::locate(const Expression& e) {
     if (e.kind == E::member) return part(locate(*e.operands[0]), *e.variable);
     if (e.kind == E::index) return locate_element(e);
+    if (e.kind == E::call) return {Mode::slot, call(e, none)};
     const Variable& variable = *e.variable;
     if (variable.space == Space::reference) {
         const bool of_block = routine_->owner && variable.of != routine_->pou;

@@ -27,6 +27,17 @@ VAR_INPUT go : BOOL; preset : TIME; END_VAR
 VAR inner : Inner; END_VAR
 inner(go := go, preset := preset);
 END_FUNCTION_BLOCK
+DATA_BLOCK Totals
+VAR RETAIN starts : DINT; END_VAR
+VAR ended : BOOL; END_VAR
+BEGIN
+END_DATA_BLOCK
+PROGRAM Keeper
+VAR RETAIN scans : DINT; list : ARRAY[0..1] OF LREAL; END_VAR
+VAR fresh : DINT; END_VAR
+IF fresh = 0 THEN Totals.starts := Totals.starts + 1; END_IF;
+scans := scans + 1; fresh := fresh + 1; list[1] := list[1] + 0.5; Totals.ended := TRUE;
+END_PROGRAM
 )";
 
 constexpr const char* barrier = R"(
@@ -38,6 +49,7 @@ blocks:
   delay: {type: ton, task: main, in: inputs.barrier, pt: $preset}
   job: {type: Job, task: main, go: inputs.barrier, preset: $preset}
   mean: {type: filter_pt1, task: main, in: inputs.level, time_constant: 0.5 s}
+  keeper: {type: Keeper, task: main}
 inputs: {barrier: true, level: 1}
 retain: [$counted, delay, mean, job]
 sources: job.st
@@ -107,6 +119,20 @@ TEST_CASE("a retained timer goes on where it stood when the power went", "[retai
         CHECK(value_of(loaded, "job.inner.delays[1,2].et") == Value(elapsed * 1'000'000));
         CHECK(value_of(loaded, "job.inner.done") == Value(restart >= 5));
     }
+}
+
+TEST_CASE("what stands in VAR RETAIN is retained without a word of the program", "[retain]") {
+    const Folder folder;
+    std::int64_t scans = 0;
+    for (std::int64_t restart = 1; restart <= 3; ++restart) {
+        Loaded loaded = load(folder);
+        run_on(loaded, folder);
+        scans += std::get<std::int64_t>(value_of(loaded, "keeper.fresh"));
+        CHECK(value_of(loaded, "keeper.scans") == Value(scans));
+        CHECK(value_of(loaded, "keeper.list[1]") == Value(0.5 * static_cast<double>(scans)));
+        CHECK(value_of(loaded, "Totals.starts") == Value(restart));
+    }
+    CHECK(scans > 3);
 }
 
 TEST_CASE("what a program says of a retained block counts after the restart", "[retain]") {

@@ -104,7 +104,9 @@ TEST_CASE("Structured Text: nesting without end is told with its place", "[st]")
     CHECK(told("x := " + repeated("-", many) + "1;") == "L0912 ");
     CHECK(told("x := 1" + repeated("+ x", many) + ";") == "L0912 ");
     CHECK(told("x := x" + repeated("[1", many) + repeated("]", many) + ";") == "L0912 ");
-    CHECK(told(repeated("(*", many) + repeated("*)", many)).empty());
-    CHECK(told(repeated("(*", many)) == "L0901 L0902 ");
+    CHECK(told(repeated("(*", many) + repeated("*)", many)) == "L0912 ");
+    CHECK(told(repeated("(*", many)) == "L0912 ");
+    CHECK(told(repeated("(*", 200) + repeated("*)", 200)).empty());
+    CHECK(told(repeated("(*", 200)) == "L0901 ");
     CHECK(told("x := " + repeated("(", 60) + "1" + repeated(")", 60) + ";").empty());
 }

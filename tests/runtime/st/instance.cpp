@@ -58,7 +58,7 @@ std::vector<std::string> Instances::faults() const {
 std::string Instances::text(const std::string& name) const {
     for (std::size_t i = 0; i < places_.size(); ++i)
         for (const Field& field : library_.kinds()[i].fields)
-            if (same_name(field.name, name))
+            if (field.direction != Direction::in_out && same_name(field.name, name))
                 return describe(load(field.type, places_[i] + field.offset), field.type,
                                 field.names, {});
     return "no such field";

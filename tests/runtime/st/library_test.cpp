@@ -51,7 +51,7 @@ TEST_CASE("Structured Text: variables are fields of the kind", "[st]") {
     CHECK(field(kind, "delay.et").unit == "ns");
     CHECK(field(kind, "error").direction == Direction::output);
     std::vector<std::string> retained;
-    for (const std::string_view name : library.retained(kind)) retained.emplace_back(name);
+    for (const std::string_view name : st::retained(kind)) retained.emplace_back(name);
     CHECK(retained == std::vector<std::string>{"table[1]", "table[2]", "delay.in", "delay.pt",
                                                "delay.q", "delay.et"});
 }
