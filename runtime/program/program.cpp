@@ -5,6 +5,7 @@
 
 #include "runtime/program/program_form.hpp"
 #include "runtime/program/program_reader.hpp"
+#include "runtime/st/test_sources.hpp"
 
 namespace lineshaft {
 
@@ -93,11 +94,15 @@ bool are_known(const Node& tasks) {
     });
 }
 
+}  // namespace
+
 bool is_structured_text(const fs::path& file) {
     const std::string extension = file.extension().string();
     return same_letters(extension, ".st") || same_letters(extension, ".scl") ||
            same_letters(extension, ".s7dcl");
 }
+
+namespace {
 
 /// A text from the command line: it has no place.
 Node node_of(std::string_view text) {
@@ -223,7 +228,7 @@ void ProgramReader::find_file(ReplayPlan& replay) const {
         read_.fail("L0001", replay.file, fmt::format("there is no file '{}'", *path));
 }
 
-/// A file, or a folder with all that lie below it.
+/// A file, or a folder with all that lie below it, other than files of tests.
 void ProgramReader::find_source(const Node& named) {
     const auto path = named.is_unknown_parameter()
                           ? std::nullopt
@@ -249,7 +254,10 @@ void ProgramReader::find_source(const Node& named) {
                    "their names end with .st, .scl or .s7dcl");
     program_.sources_known = program_.sources_known && !error && !files.empty();
     std::ranges::sort(files);
-    for (const std::string& file : files) read_source_file(file, named.mark);
+    Diagnostics unread;
+    for (const std::string& file : files)
+        if (const auto source = read_source(file, unread); !source || !st::is_test_file(source))
+            read_source_file(file, named.mark);
 }
 
 void ProgramReader::read_source_file(const std::string& path, const Mark& mark) {

@@ -27,7 +27,7 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
                 Routine& method = *it->second;
                 const bool outside =
                     !routine_ || (routine_ != of->routine && routine_->owner != of->routine);
-                if (method.pou->is_private && outside)
+                if (method.pou->is_private && outside && !is_in_test())
                     return fail("L0907", callee.token.place,
                                 fmt::format("'{}' is PRIVATE to {}", callee.token.text, of->name),
                                 "only its own block calls it");
@@ -42,8 +42,11 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
                 return check_routine_call(call, *it->second, as_statement);
         if (const auto it = routines_.find(name); it != routines_.end() && !it->second->type)
             return check_routine_call(call, *it->second, as_statement);
-        if (!callee.token.quoted && !find_variable(callee.token))
+        if (!callee.token.quoted && !find_variable(callee.token)) {
+            if (find_test_statement(name) != TestCall::none)
+                return check_test_statement(call, as_statement);
             return check_standard_function(call, expected);
+        }
     }
     const Type* type = check(callee);
     if (!type) return nullptr;
@@ -93,9 +96,10 @@ Variable* Checker::find_parameter(Argument& argument, Routine& routine, std::siz
     std::vector<std::string> names;
     std::size_t i = 0;
     for (Variable& variable : routine.variables) {
-        if (!is_parameter(variable)) continue;
-        names.emplace_back(variable.text);
         const bool named = argument.name.word != Word::end_of_file;
+        const bool inner = is_in_test() && named && routine.has_instances();
+        if (!is_parameter(variable) && !inner) continue;
+        names.emplace_back(variable.text);
         if (named ? same_name(variable.text, argument.name.text) : i == position) return &variable;
         ++i;
     }
@@ -139,7 +143,10 @@ void Checker::check_arguments(Expression& call, Routine& routine) {
 void Checker::check_argument(Expression&, Argument& argument, Variable& parameter) {
     Expression*& value = argument.value;
     const Type* type = parameter.type;
-    if (argument.is_output != (parameter.section == Section::output) &&
+    const bool is_set = is_in_test() && !argument.is_output &&
+                        argument.name.word != Word::end_of_file &&
+                        parameter.section != Section::in_out;
+    if (!is_set && argument.is_output != (parameter.section == Section::output) &&
         argument.name.word != Word::end_of_file) {
         check(*value);
         fail("L0907", argument.name.place,
@@ -149,7 +156,7 @@ void Checker::check_argument(Expression&, Argument& argument, Variable& paramete
                                                   : "write ':='");
         return;
     }
-    if (parameter.section == Section::input) {
+    if (parameter.section == Section::input || is_set) {
         if (check(*value, type) && type) coerce(value, *type);
         return;
     }

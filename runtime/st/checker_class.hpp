@@ -107,6 +107,7 @@ class Checker {
     const Type* check_routine_call(Expression& call, Routine& routine, bool as_statement);
     const Type* check_instance_call(Expression& call, const Type& type, bool as_statement);
     bool is_instance(const Token& name) const;
+    bool is_in_test() const { return routine_ && routine_->is_test(); }
     void check_arguments(Expression& call, Routine& routine);
     void check_argument(Expression& call, Argument& argument, Variable& parameter);
     void check_standard_arguments(Expression& call, const Type& type);
@@ -114,6 +115,15 @@ class Checker {
     const Type* check_standard_function(Expression& call, const Type* expected);
     const Type* check_conversion(Expression& call, std::string_view name);
     const Type* standard_result(Expression& call, const Type* expected);
+
+    // test_statements.cpp
+    const Type* check_test_statement(Expression& call, bool as_statement);
+    void become_text(Expression& expression) const;
+    bool check_compared(Expression& call);
+    bool check_distance(Expression& call);
+    bool make_concrete(Expression*& expression, const Type& other);
+    void check_mock_function(Expression& call);
+    void add_mock(Routine& function);
 
     // statements.cpp
     void check_body(Routine& routine);
@@ -149,6 +159,8 @@ class Checker {
     NameMap<Variable*> globals_;
     NameMap<const Type*> standard_types_;
     NameMap<Place> top_names_;
+    bool has_tests_ = false;
+    Type* mocks_ = nullptr;       ///< of the global that has what MOCK_FUNCTION says
     Routine* routine_ = nullptr;  ///< that is being checked
     int loops_ = 0;               ///< around the statement
 };

@@ -127,7 +127,7 @@ bool Checker::check_target(Expression& target, std::string_view how) {
                       "copy it to a variable of VAR, or make it a VAR_IN_OUT");
     if (own) return true;
     const Type* of = target.operands[0]->type;
-    if (of && of->is_instance() && variable->section != Section::input &&
+    if (of && of->is_instance() && variable->section != Section::input && !is_in_test() &&
         target.operands[0]->variable)
         return refuse(fmt::format("'{}' of {}", variable->text, of->name),
                       "only inputs of an instance are set from outside");

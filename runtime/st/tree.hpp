@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/st/constant.hpp"
+#include "runtime/st/testing.hpp"
 #include "runtime/st/token.hpp"
 
 /// What the parser makes of a source, and what the checker notes in it.
@@ -48,11 +49,12 @@ struct Expression {
     std::vector<Argument> arguments = {};
 
     // Noted by the checker.
-    const Type* type = nullptr;    ///< null: wrong, already reported
-    Constant constant = {};        ///< of a constant
-    Variable* variable = nullptr;  ///< that a name or a member means
-    Routine* routine = nullptr;    ///< that a name means, or a call calls
-    int standard = -1;             ///< the standard function that a call calls
+    const Type* type = nullptr;      ///< null: wrong, already reported
+    Constant constant = {};          ///< of a constant
+    Variable* variable = nullptr;    ///< that a name or a member means
+    Routine* routine = nullptr;      ///< that a name means, or a call calls
+    int standard = -1;               ///< the standard function that a call calls
+    TestCall test = TestCall::none;  ///< the statement of tests that a call is
 };
 
 struct Statement;
@@ -130,6 +132,7 @@ struct Pou {
     TypeText* result = nullptr;  ///< null: none
     TypeText* base = nullptr;    ///< of a data block that is an instance, or a structure
     bool is_private = false;
+    bool is_tests = false;  ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it
     std::vector<DeclarationBlock> blocks = {};
     Block body = {};
     std::vector<Pou*> methods = {};
