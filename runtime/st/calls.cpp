@@ -133,7 +133,10 @@ void Checker::check_arguments(Expression& call, Routine& routine) {
         const bool due = variable.section == Section::in_out ||
                          (variable.section == Section::input && !routine.has_instances() &&
                           !by_name && !variable.initial);
-        if (due && std::ranges::find(given, &variable) == given.end())
+        if (!due || std::ranges::find(given, &variable) != given.end()) continue;
+        if (is_in_test() && routine.has_instances())
+            leave_out(call, const_cast<Variable&>(variable));
+        else
             fail("L0907", call.operands[0]->place,
                  fmt::format("'{}' is called without '{}'", routine.name, variable.text),
                  fmt::format("write {} := ...", variable.text));
@@ -220,6 +223,8 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
                         "declare one in VAR, and call that");
         std::vector<std::string> names = visible_names();
         for (const StandardFunction& f : standard_functions()) names.emplace_back(f.name);
+        if (is_in_test())
+            for (const TestStatement& known : test_statements) names.emplace_back(known.name);
         for (Argument& argument : call.arguments) check(*argument.value);
         return fail("L0904", name.place, fmt::format("'{}' is not declared", name.text),
                     suggest(name.text, nearest(name.text, names)));

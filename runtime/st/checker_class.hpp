@@ -124,6 +124,7 @@ class Checker {
     bool make_concrete(Expression*& expression, const Type& other);
     void check_mock_function(Expression& call);
     void add_mock(Routine& function);
+    void leave_out(Expression& call, Variable& parameter);
 
     // statements.cpp
     void check_body(Routine& routine);

@@ -109,9 +109,11 @@ void Generator::call_instance(const Expression& e) {
 /// Inputs and references, and what is left out.
 void Generator::give(const Location& frame, const Expression& e, const Routine& routine) {
     const auto is_given = [](const Argument& argument) {
-        return argument.variable->section == Section::input ||
-               argument.variable->section == Section::in_out || is_set(argument);
+        const Section section = argument.variable->section;
+        return !argument.is_left_out &&
+               (section == Section::input || section == Section::in_out || is_set(argument));
     };
+    give_left_out(frame, e);
     const bool nested = std::ranges::any_of(
         e.arguments, [&](const Argument& a) { return is_given(a) && has_call(*a.value); });
     std::vector<std::pair<Location, Slot>> later;
@@ -166,6 +168,17 @@ void Generator::give(const Location& frame, const Expression& e, const Routine& 
         image_uses_.push_back({next(), block, &routine});
         put(Op::initialise, made, variable.slot, slots);
         if (frame.mode != Mode::slot) copy(part(frame, variable.slot), {Mode::slot, made}, slots);
+    }
+}
+
+void Generator::give_left_out(const Location& frame, const Expression& e) {
+    for (const Argument& argument : e.arguments) {
+        if (!argument.is_left_out) continue;
+        const Location reference = part(frame, argument.variable->slot);
+        std::vector<std::uint32_t> given;
+        jump(Op::jump_if, 0, load(reference), given);
+        store(reference, address_of(locate(*argument.value)));
+        land(given);
     }
 }
 

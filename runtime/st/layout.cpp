@@ -104,7 +104,7 @@ void Generator::lay_out_method(Routine& method) {
 }
 
 void Generator::fill(Image& image, std::uint32_t at, const Variable& variable) {
-    if (variable.space != Space::frame) return;
+    if (variable.space == Space::none || variable.space == Space::reference) return;
     fill_default(image, at, *variable.type);
     if (variable.initial) fill(image, at, *variable.type, *variable.initial);
 }

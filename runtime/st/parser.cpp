@@ -275,7 +275,12 @@ class Parser {
             return read_pou(*words);
         if (is(Word::type_)) return read_types();
         if (is(Word::var_global_)) return tree_.globals.push_back(read_section(Section::global));
-        if (at_test()) return read_test();
+        if (at_test() || (is_tests_ && is(Word::test_))) return read_test();
+        if (is_end(here().word) && unclosed_at_ < at_) {
+            take();
+            accept(Word::semicolon);
+            return;
+        }
         expected("a FUNCTION_BLOCK, FUNCTION, PROGRAM, DATA_BLOCK or TYPE");
         take();
     }
@@ -335,7 +340,12 @@ class Parser {
         }
         Pou& test = tree_.pous.emplace_back();
         test.kind = PouKind::method;
-        test.name = is_test ? take() : opener;
+        test.name = opener;
+        if (is_test && (is(Word::text) || here().quoted))
+            test.name = take();
+        else if (is_test)
+            expected("a text in quotes", "after TEST");
+        if (panic_) skip_to_statement();
         test.place = opener.place.to(test.name.place);
         if (is_test) test.name.text = test.place.text();
         const Word end = is_test                       ? Word::end_test_

@@ -14,9 +14,17 @@ bool is_place(const Expression& e) {
     return e.kind == E::name || e.kind == E::member || e.kind == E::index;
 }
 
-/// What has a number in its slot. Of a time it is that of its nanoseconds.
-bool is_comparable(const Type& type) {
-    return type.is_scalar();
+/// Each is compared by instructions of its own.
+constexpr Wide most_parts = 4096;
+
+Wide parts_of(const Type& type) {
+    if (type.kind == Kind::array)
+        return (Wide{type.upper} - type.lower + 1) * parts_of(*type.element);
+    if (type.kind != Kind::structure) return 1;
+    Wide parts = 0;
+    for (const Variable* member : type.members)
+        if (member->type) parts += parts_of(*member->type);
+    return parts;
 }
 
 bool is_whole(const Type& type) {
@@ -48,7 +56,7 @@ const Type* Checker::check_test_statement(Expression& call, bool as_statement) {
         return fail(
             "L0907", name.place,
             fmt::format("{} takes {} argument{}{}", known.name, values, values == 1 ? "" : "s",
-                        known.has_message ? ", and a message" : ""));
+                        known.has_message ? " and an optional message" : ""));
     for (const Argument& argument : call.arguments)
         if (argument.name.word != Word::end_of_file)
             return fail("L0907", argument.name.place,
@@ -146,7 +154,6 @@ bool Checker::check_compared(Expression& call) {
     const Type* first = check(*a, b->type);
     const Type* second = check(*b, first);
     if (!first || !second) return false;
-    const bool equality = call.test == TestCall::assert_eq || call.test == TestCall::assert_neq;
     const bool parts = first->kind == Kind::array || first->kind == Kind::structure;
     const auto refuse = [&](std::string help) {
         fail("L0905", call.place,
@@ -156,12 +163,15 @@ bool Checker::check_compared(Expression& call) {
         return false;
     };
     if (first->kind == Kind::text && second->kind == Kind::text) return true;
-    if (parts && equality && same_type(*first, *second) && is_place(*a) && is_place(*b))
+    if (parts && parts_of(*first) > most_parts)
+        return refuse("these are more than 4096 parts: compare them in a FOR loop");
+    if (parts && call.test == TestCall::assert_eq && same_type(*first, *second) && is_place(*a) &&
+        is_place(*b))
         return true;
     if (parts && same_type(*first, *second))
         return refuse(call.test == TestCall::assert_eq ? "assign the value to a variable first"
                                                        : "compare its parts one by one");
-    if (!is_comparable(*first) || !is_comparable(*second)) return refuse("");
+    if (!first->is_scalar() || !second->is_scalar()) return refuse("");
     const bool enumerations = first->kind == Kind::enumeration && second->kind == Kind::enumeration;
     if (enumerations && first->values != second->values) return refuse("");
     const bool one_is_time = (first->kind == Kind::time) != (second->kind == Kind::time);
@@ -215,6 +225,19 @@ void Checker::check_mock_function(Expression& call) {
     if (check(*value, type)) coerce(value, *type);
     if (!function.mock_flag) add_mock(function);
     call.routine = &function;
+}
+
+/// A VAR_IN_OUT that a test does not give stays what it was; at first it is a variable of its own.
+void Checker::leave_out(Expression& call, Variable& parameter) {
+    if (!parameter.type) return;
+    Variable& own = routine_->variables.emplace_back();
+    own.type = parameter.type;
+    own.of = routine_->pou;
+    Expression* value = make(E::name, call);
+    value->variable = &own;
+    value->type = own.type;
+    call.arguments.push_back({parameter.name, false, value, &parameter, true});
+    depend(own.type, call.place);
 }
 
 /// Two variables that the function looks at: whether it is replaced, and its value then.

@@ -22,6 +22,7 @@ struct Argument {
     bool is_output = false;  ///< `=>`
     Expression* value = nullptr;
     Variable* variable = nullptr;  ///< that it goes to or comes from, noted by the checker
+    bool is_left_out = false;      ///< in a test: taken only if nothing was given before
 };
 
 struct Expression {

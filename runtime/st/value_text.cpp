@@ -11,6 +11,7 @@ namespace {
 
 /// The shortest number that reads back as the same value of its width.
 std::string real_text(double value, bool is_long) {
+    if (std::isnan(value)) return "NaN";
     std::string text =
         is_long ? fmt::format("{}", value) : fmt::format("{}", static_cast<float>(value));
     const bool plain = std::isfinite(value) && text.find_first_of(".e") == std::string::npos;

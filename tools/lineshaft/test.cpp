@@ -41,7 +41,7 @@ std::vector<std::string> find_files(const std::string& path) {
         const auto file = read_source(entry.path().string(), unread);
         if (!file) continue;
         if (is_yaml ? is_study(*file) || is_program(*file) : st::is_test_file(file))
-            files.push_back(entry.path().string());
+            files.push_back(entry.path().lexically_normal().string());
     }
     std::ranges::sort(files);
     return files;
@@ -102,7 +102,7 @@ void add_sources(st::SourcePool& pool, const std::string& path) {
         files.clear();
         for (const auto& entry : fs::recursive_directory_iterator(path))
             if (entry.is_regular_file() && is_structured_text(entry.path()))
-                files.push_back(entry.path().string());
+                files.push_back(entry.path().lexically_normal().string());
     }
     std::ranges::sort(files);
     Diagnostics unread;
