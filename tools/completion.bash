@@ -72,7 +72,8 @@ _lineshaft() {
         --signals) [ "$command" != show ] && { _lineshaft_list "$lineshaft" "$current"; return; } ;;
         --path | --command | --actual) _lineshaft_list "$lineshaft" "$current"; return ;;
         --set) compopt -o nospace 2>/dev/null; _lineshaft_words "$current" < <(_lineshaft_parameters); return ;;
-        --include-dir) _lineshaft_files "$current"; return ;;
+        --include-dir | --source) _lineshaft_files "$current" st scl; return ;;
+        --coverage) _lineshaft_files "$current" info; return ;;
         --trace | --pulses) _lineshaft_files "$current" csv; return ;;
         --junit) _lineshaft_files "$current" xml; return ;;
         -o | --output) _lineshaft_files "$current" html svg png csv json; return ;;
@@ -86,6 +87,7 @@ _lineshaft() {
         form) _lineshaft_words "$current" < <("$lineshaft" form 2>/dev/null | grep -o "^[a-z_]*") ;;
         plot | plan | diff | verify | contour) _lineshaft_files "$current" csv ;;
         report) _lineshaft_files "$current" csv json ;;
+        test) _lineshaft_files "$current" yaml yml st scl ;;
         *) _lineshaft_files "$current" yaml yml ;;
     esac
 }

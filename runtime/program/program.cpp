@@ -5,6 +5,7 @@
 
 #include "runtime/program/program_form.hpp"
 #include "runtime/program/program_reader.hpp"
+#include "runtime/st/test_sources.hpp"
 
 namespace lineshaft {
 
@@ -93,12 +94,16 @@ bool are_known(const Node& tasks) {
     });
 }
 
+}  // namespace
+
 bool is_structured_text(const fs::path& file) {
     static constexpr std::string_view extensions[] = {".st", ".scl", ".s7dcl", ".udt", ".db"};
     const std::string extension = file.extension().string();
     return std::ranges::any_of(extensions,
                                [&](std::string_view e) { return same_letters(extension, e); });
 }
+
+namespace {
 
 /// A text from the command line: it has no place.
 Node node_of(std::string_view text) {
@@ -224,7 +229,7 @@ void ProgramReader::find_file(ReplayPlan& replay) const {
         read_.fail("L0001", replay.file, fmt::format("there is no file '{}'", *path));
 }
 
-/// A file, or a folder with all that lie below it.
+/// A file, or a folder with all that lie below it, other than files of tests.
 void ProgramReader::find_source(const Node& named) {
     const auto path = named.is_unknown_parameter()
                           ? std::nullopt
@@ -250,7 +255,10 @@ void ProgramReader::find_source(const Node& named) {
                    "their names end with .st, .scl, .s7dcl, .udt or .db");
     program_.sources_known = program_.sources_known && !error && !files.empty();
     std::ranges::sort(files);
-    for (const std::string& file : files) read_source_file(file, named.mark);
+    Diagnostics unread;
+    for (const std::string& file : files)
+        if (const auto source = read_source(file, unread); !source || !st::is_test_file(source))
+            read_source_file(file, named.mark);
 }
 
 void ProgramReader::read_source_file(const std::string& path, const Mark& mark) {

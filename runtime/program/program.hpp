@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -169,5 +170,8 @@ bool check_kind(const Reader& read, const Node& root, std::string_view kind);
 std::optional<std::string> resolve_path(const std::string& named, const std::string& from,
                                         const std::vector<std::string>& include_dirs, Mark where,
                                         Diagnostics& out);
+
+/// Whether the file's name ends as one of Structured Text does.
+bool is_structured_text(const std::filesystem::path& file);
 
 }  // namespace lineshaft

@@ -39,7 +39,7 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
                 Routine& method = *it->second;
                 const bool outside =
                     !routine_ || (routine_ != of->routine && routine_->owner != of->routine);
-                if (method.pou->is_private && outside)
+                if (method.pou->is_private && outside && !is_in_test())
                     return fail("L0907", callee.token.place,
                                 fmt::format("'{}' is PRIVATE to {}", callee.token.text, of->name),
                                 "only its own block calls it");
@@ -57,6 +57,8 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
         const bool is_function =
             !callee.token.quoted && !callee.token.local &&
             (find_standard_function(name) >= 0 || !find_variable(callee.token));
+        if (is_function && find_test_statement(name) != TestCall::none)
+            return check_test_statement(call, as_statement);
         if (is_function) return check_standard_function(call, expected);
     }
     const Type* type = check(callee);
@@ -107,9 +109,10 @@ Variable* Checker::find_parameter(Argument& argument, Routine& routine, std::siz
     std::vector<std::string> names;
     std::size_t i = 0;
     for (Variable& variable : routine.variables) {
-        if (!is_parameter(variable)) continue;
-        names.emplace_back(variable.text);
         const bool named = argument.name.word != Word::end_of_file;
+        const bool inner = is_in_test() && named && routine.has_instances();
+        if (!is_parameter(variable) && !inner) continue;
+        names.emplace_back(variable.text);
         if (named ? same_name(variable.text, argument.name.text) : i == position) return &variable;
         ++i;
     }
@@ -143,7 +146,10 @@ void Checker::check_arguments(Expression& call, Routine& routine) {
         const bool due = variable.section == Section::in_out ||
                          (variable.section == Section::input && !routine.has_instances() &&
                           !by_name && !variable.initial);
-        if (due && std::ranges::find(given, &variable) == given.end())
+        if (!due || std::ranges::find(given, &variable) != given.end()) continue;
+        if (is_in_test() && routine.has_instances())
+            leave_out(call, const_cast<Variable&>(variable));
+        else
             fail("L0907", call.operands[0]->place,
                  fmt::format("'{}' is called without '{}'", routine.name, variable.text),
                  fmt::format("write {} := ...", variable.text));
@@ -153,7 +159,10 @@ void Checker::check_arguments(Expression& call, Routine& routine) {
 void Checker::check_argument(Expression&, Argument& argument, Variable& parameter) {
     Expression*& value = argument.value;
     const Type* type = parameter.type;
-    if (argument.is_output != (parameter.section == Section::output) &&
+    const bool is_set = is_in_test() && !argument.is_output &&
+                        argument.name.word != Word::end_of_file &&
+                        parameter.section != Section::in_out;
+    if (!is_set && argument.is_output != (parameter.section == Section::output) &&
         argument.name.word != Word::end_of_file) {
         check(*value);
         fail("L0907", argument.name.place,
@@ -163,7 +172,7 @@ void Checker::check_argument(Expression&, Argument& argument, Variable& paramete
                                                   : "write ':='");
         return;
     }
-    if (parameter.section == Section::input) {
+    if (parameter.section == Section::input || is_set) {
         if (check(*value, type) && type) coerce(value, *type);
         return;
     }
@@ -232,6 +241,8 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
                         "declare one in VAR, and call that");
         std::vector<std::string> names = visible_names();
         for (const StandardFunction& f : standard_functions()) names.emplace_back(f.name);
+        if (is_in_test())
+            for (const TestStatement& known : test_statements) names.emplace_back(known.name);
         for (Argument& argument : call.arguments) check(*argument.value);
         return fail("L0904", name.place, fmt::format("'{}' is not declared", name.text),
                     suggest(name.text, nearest(name.text, names)));

@@ -109,6 +109,7 @@ class Checker {
     const Type* check_routine_call(Expression& call, Routine& routine, bool as_statement);
     const Type* check_instance_call(Expression& call, const Type& type, bool as_statement);
     bool is_instance(const Token& name) const;
+    bool is_in_test() const { return routine_ && routine_->is_test(); }
     void check_arguments(Expression& call, Routine& routine);
     void check_argument(Expression& call, Argument& argument, Variable& parameter);
     void check_standard_arguments(Expression& call, const Type& type);
@@ -119,6 +120,16 @@ class Checker {
     const Type* convert_result(Expression& call, const Type& from, const Type& to);
     const Type* check_scale(Expression& call, const Type* expected);
     const Type* standard_result(Expression& call, const Type* expected);
+
+    // test_statements.cpp
+    const Type* check_test_statement(Expression& call, bool as_statement);
+    void become_text(Expression& expression) const;
+    bool check_compared(Expression& call);
+    bool check_distance(Expression& call);
+    bool make_concrete(Expression*& expression, const Type& other);
+    void check_mock_function(Expression& call);
+    void add_mock(Routine& function);
+    void leave_out(Expression& call, Variable& parameter);
 
     // statements.cpp
     void check_body(Routine& routine);
@@ -155,6 +166,8 @@ class Checker {
     NameMap<Variable*> globals_;
     NameMap<const Type*> standard_types_;
     NameMap<Place> top_names_;
+    bool has_tests_ = false;
+    Type* mocks_ = nullptr;       ///< of the global that has what MOCK_FUNCTION says
     Routine* routine_ = nullptr;  ///< that is being checked
     int loops_ = 0;               ///< around the statement
 };

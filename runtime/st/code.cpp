@@ -51,6 +51,8 @@ std::string instruction_error(const Code& code, const CodeRoutine& routine, cons
             return in.b >= code.standard.size() ? "a kind of block that is not there" : "";
         case Op::set_global:
             return in.b >= code.globals ? "a data block that is not there" : "";
+        case Op::cover:
+            return in.a >= code.points.size() ? "a point that is not there" : "";
         case Op::look_up: {
             const IndexTable& table = code.tables[in.c];
             const auto end = static_cast<std::uint64_t>(table.lower) + table.count;

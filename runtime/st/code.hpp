@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -34,6 +36,15 @@ struct CodeRoutine {
     std::uint32_t depth = 0;           ///< levels of calls below it
 };
 
+/// What an Op::cover counts the passes of.
+struct CoverPoint {
+    enum class Kind : std::uint8_t { function, branch, statement };
+    Kind kind = Kind::statement;
+    Place place = {};
+    std::uint32_t branch = 0;  ///< of the IF, the CASE or the loop at `place`
+    std::string name = {};     ///< of a function
+};
+
 /// An instance begins with these slots. Then come the numbers of the data blocks among the
 /// program's instances, two slots for each call that runs (where it goes on, and on which frame),
 /// and its variables.
@@ -56,6 +67,8 @@ struct Code {
     std::vector<std::uint64_t> images;       ///< frames as they begin
     std::vector<const BlockType*> standard;  ///< kinds of the catalogue that are called
     std::uint32_t globals = 0;
+    std::vector<CoverPoint> points;                      ///< only with coverage
+    std::unique_ptr<std::atomic<std::uint64_t>[]> hits;  ///< of each of them
 };
 
 /// Empty when every operand is within its routine's frame, every jump within its routine, every

@@ -82,6 +82,7 @@ void Checker::collect_names() {
         if (is_new_name(declared.name, top_names_))
             named_types_.emplace(declared.name.text, NamedType{&declared});
     for (Pou* pou : tree_.units) {
+        has_tests_ |= pou->is_tests;
         const bool added = is_new_name(pou->name, top_names_);
         if (pou->kind == PouKind::data_block) continue;
         Routine& routine = make_routine(*pou, std::string(pou->name.text));
@@ -91,10 +92,13 @@ void Checker::collect_names() {
         routine.type->routine = &routine;
         NameMap<Place> names;
         for (Pou* method : pou->methods) {
-            Routine& made =
-                make_routine(*method, fmt::format("{}.{}", routine.name, method->name.text));
+            const std::string name(method->name.text);
+            Routine& made = make_routine(*method, pou->is_tests ? name : routine.name + "." + name);
             made.owner = &routine;
-            if (is_new_name(method->name, names)) routine.methods.emplace(method->name.text, &made);
+            const bool is_test = pou->is_tests && method->name.word != Word::setup_ &&
+                                 method->name.word != Word::teardown_;
+            if (!is_test && is_new_name(method->name, names))
+                routine.methods.emplace(method->name.text, &made);
         }
     }
     for (const TypeDeclaration& declared : tree_.types)
@@ -223,7 +227,7 @@ void Checker::declare(Routine& routine, const DeclarationBlock& block) {
                  it->second->section == Section::result
                      ? "the function's own name is that of its result"
                      : fmt::format("first in line {}", it->second->name.place.mark().line));
-        if (type && type->is_instance() && !routine.has_instances() &&
+        if (type && type->is_instance() && !routine.has_instances() && !routine.is_test() &&
             block.section != Section::in_out)
             fail("L0914", declared->name.place,
                  "a function keeps nothing from call to call, so it has no instances",
@@ -577,7 +581,7 @@ const Type* Checker::standard_type(std::string_view name) {
     if (kind == standard_.types().end() || kind->is_device()) return nullptr;
     Type& type = make_type(Kind::standard, upper(name));
     type.standard = &*kind;
-    type.slots = static_cast<std::uint32_t>((kind->size + 7) / 8);
+    type.slots = static_cast<std::uint32_t>((kind->size + 7) / 8) + (has_tests_ ? 1 : 0);
     for (const Field& field : kind->fields) {
         Variable& member = checked_.variables.emplace_back();
         member.text = field.name;
@@ -643,7 +647,7 @@ void Checker::visit(Routine& routine, std::vector<const Routine*>& path) {
 void Checker::warn_of_unused() {
     for (const Routine& routine : checked_.routines)
         for (const Variable& variable : routine.variables)
-            if (!variable.used &&
+            if (!variable.used && !routine.is_test() && !routine.pou->is_tests &&
                 (variable.section == Section::local || variable.section == Section::temp))
                 out_.warn("L0921", variable.name.place.mark(),
                           fmt::format("'{}' is declared and never used", variable.text),

@@ -271,6 +271,10 @@ const Type* Checker::check_member(Expression& e) {
         for (Variable& variable : routine.variables) {
             names.emplace_back(variable.text);
             if (!same_name(variable.text, name)) continue;
+            if (variable.space == Space::none && is_in_test()) {
+                become(e, *variable.type, variable.value);
+                return variable.type;
+            }
             if (variable.section == Section::temp || variable.space == Space::none)
                 return fail("L0904", e.token.place,
                             fmt::format("'{}' of {} is not seen from outside", name, type->name),

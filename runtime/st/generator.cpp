@@ -14,8 +14,8 @@ constexpr std::uint32_t region_mask = 3U << 30;
 
 }  // namespace
 
-Generated generate(Checked& checked, Diagnostics& out) {
-    return Generator(checked, out).generate();
+Generated generate(Checked& checked, Diagnostics& out, bool covered) {
+    return Generator(checked, out, covered).generate();
 }
 
 Generated Generator::generate() {
@@ -23,6 +23,12 @@ Generated Generator::generate() {
     for (Routine* routine : checked_.order)
         for (const Routine* called : routine->calls)
             routine->depth = std::max(routine->depth, called->depth + 1);
+    for (const Routine& routine : checked_.routines) {
+        if (!routine.is_test()) continue;
+        has_tests_ = true;
+        test_file_ = routine.pou->place.file->get();
+        routine.owner->depth = std::max(routine.owner->depth, routine.depth);
+    }
     for (const Global& global : checked_.globals)
         if (global.type->kind != Kind::block) slots_of(*global.type);
     for (Routine* routine : checked_.order) {
@@ -36,7 +42,7 @@ Generated Generator::generate() {
         images_[global.type] = std::move(image);
     }
     finish_images();
-    return {std::move(code_), std::move(images_)};
+    return {std::move(code_), std::move(images_), std::move(assertions_)};
 }
 
 std::uint32_t Generator::routine_number(const Routine& routine) {
@@ -45,6 +51,8 @@ std::uint32_t Generator::routine_number(const Routine& routine) {
 
 void Generator::write(Routine& routine) {
     begin(routine);
+    begin_mockable(routine);
+    cover(CoverPoint::Kind::function, routine.pou->place);
     write_block(routine.pou->body);
     put(Op::leave);
     finish(routine);
@@ -163,6 +171,7 @@ std::uint32_t Generator::table(IndexTable made) {
 void Generator::write_block(const Block& block) {
     for (const Statement* statement : block) {
         const std::uint32_t kept = temporaries_;
+        cover(CoverPoint::Kind::statement, statement->place);
         write_statement(*statement);
         temporaries_ = kept;
     }
@@ -174,7 +183,9 @@ void Generator::write_statement(const Statement& s) {
         case S::assign:
             return write_assignment(s);
         case S::call:
-            if (s.value->routine && s.value->routine->has_instances())
+            if (s.value->test != TestCall::none)
+                write_test_statement(*s.value);
+            else if (s.value->routine && s.value->routine->has_instances())
                 call_instance(*s.value);
             else if (s.value->operands[0]->type && s.value->operands[0]->type->is_instance())
                 call_instance(*s.value);
@@ -242,12 +253,16 @@ void Generator::write_if(const Statement& s) {
     for (const Branch& branch : s.branches) {
         const std::uint32_t kept = temporaries_;
         place_ = branch.condition->place;
+        if (&branch != &s.branches.front()) cover(CoverPoint::Kind::statement, place_);
         jump_unless(*branch.condition, skip);
         temporaries_ = kept;
+        cover_branch(s, static_cast<std::size_t>(&branch - s.branches.data()));
         write_block(branch.body);
-        if (&branch != &s.branches.back() || !s.body.empty()) jump(Op::jump, 0, 0, ends);
+        if (&branch != &s.branches.back() || !s.body.empty() || covered_)
+            jump(Op::jump, 0, 0, ends);
         land(skip);
     }
+    cover_branch(s, s.branches.size());
     write_block(s.body);
     land(ends);
 }
@@ -274,10 +289,12 @@ void Generator::write_case(const Statement& s) {
         }
         jump(Op::jump, 0, 0, past);
         land(here);
+        cover_branch(s, static_cast<std::size_t>(&branch - s.branches.data()));
         write_block(branch.body);
         jump(Op::jump, 0, 0, ends);
         land(past);
     }
+    cover_branch(s, s.branches.size());
     write_block(s.body);
     land(ends);
 }
@@ -298,11 +315,13 @@ void Generator::write_for(const Statement& s) {
     loops_.push_back(std::move(loop));
     const std::uint32_t start = next();
     if (!direct) store(target, counter);
+    cover_branch(s, 0);
     write_block(s.body);
     land(loops_.back().nexts);
     place_ = s.place;
     put(Op::repeat_next, counter, limit, start);
     land(loops_.back().exits);
+    cover_branch(s, 1);
     loops_.pop_back();
     const Type& type = s.target->type->plain();
     if (type.bits < 64) put(of_type(Op::wrap_sint, type), counter, counter);
@@ -314,6 +333,7 @@ void Generator::write_loop(const Statement& s) {
     const std::uint32_t start = next();
     const bool is_while = s.kind == S::while_;
     if (is_while) jump_unless(*s.value, loops_.back().exits);
+    cover_branch(s, 0);
     write_block(s.body);
     land(loops_.back().nexts);
     std::vector<std::uint32_t> again;
@@ -325,6 +345,7 @@ void Generator::write_loop(const Statement& s) {
     }
     put(Op::repeat, 0, 0, start);
     land(loops_.back().exits);
+    cover_branch(s, 1);
     loops_.pop_back();
 }
 

@@ -17,6 +17,11 @@ bool has_call(const Expression& e) {
     return std::ranges::any_of(e.arguments, [](const Argument& a) { return has_call(*a.value); });
 }
 
+/// A test sets an output or a local by its name.
+bool is_set(const Argument& argument) {
+    return argument.name.word != Word::end_of_file && !argument.is_output;
+}
+
 }  // namespace
 
 Slot Generator::call(const Expression& e, Slot wanted) {
@@ -81,25 +86,34 @@ void Generator::call_instance(const Expression& e) {
         return take(frame, e);
     }
     for (const Argument& argument : e.arguments)
-        if (!argument.is_output && argument.variable->section == Section::input)
+        if (argument.variable->section == Section::input || is_set(argument))
             assign(part(frame, *argument.variable), *argument.variable->type, *argument.value);
     const auto [it, added] =
         standard_numbers_.emplace(type.standard, static_cast<std::uint32_t>(code_.standard.size()));
     if (added) code_.standard.push_back(type.standard);
     place_ = e.place;
+    std::vector<std::uint32_t> runs, mocked;
+    if (has_tests_) {
+        count_call(part(frame, type.slots - 1), runs);
+        jump(Op::jump, 0, 0, mocked);
+        land(runs);
+    }
     if (frame.mode == Mode::slot)
         put(Op::call_block, frame.slot, it->second);
     else
         put(Op::call_block_at, address_of(frame), it->second);
+    land(mocked);
     take(frame, e);
 }
 
 /// Inputs and references, and what is left out.
 void Generator::give(const Location& frame, const Expression& e, const Routine& routine) {
     const auto is_given = [](const Argument& argument) {
-        return argument.variable->section == Section::input ||
-               argument.variable->section == Section::in_out;
+        const Section section = argument.variable->section;
+        return !argument.is_left_out &&
+               (section == Section::input || section == Section::in_out || is_set(argument));
     };
+    give_left_out(frame, e);
     const bool nested = std::ranges::any_of(
         e.arguments, [&](const Argument& a) { return is_given(a) && has_call(*a.value); });
     std::vector<std::pair<Location, Slot>> later;
@@ -135,7 +149,7 @@ void Generator::give(const Location& frame, const Expression& e, const Routine& 
         const bool now = variable.section == Section::in_out || nested;
         if (!now) continue;
         ++next_later;
-        if (variable.section == Section::input && !variable.type->is_scalar())
+        if (variable.section != Section::in_out && !variable.type->is_scalar())
             copy(to, {Mode::slot, slot}, slots_of(*variable.type));
         else
             store(to, slot);
@@ -157,11 +171,22 @@ void Generator::give(const Location& frame, const Expression& e, const Routine& 
     }
 }
 
+void Generator::give_left_out(const Location& frame, const Expression& e) {
+    for (const Argument& argument : e.arguments) {
+        if (!argument.is_left_out) continue;
+        const Location reference = part(frame, argument.variable->slot);
+        std::vector<std::uint32_t> given;
+        jump(Op::jump_if, 0, load(reference), given);
+        store(reference, address_of(locate(*argument.value)));
+        land(given);
+    }
+}
+
 /// Outputs.
 void Generator::take(const Location& frame, const Expression& e) {
     for (const Argument& argument : e.arguments) {
         const Variable& variable = *argument.variable;
-        if (variable.section != Section::output) continue;
+        if (variable.section != Section::output || is_set(argument)) continue;
         const Location from = part(frame, variable);
         const Location to = locate(*argument.value);
         const Type &given = *variable.type, &wanted = *argument.value->type;

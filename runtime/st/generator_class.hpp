@@ -31,7 +31,8 @@ struct Location {
 
 class Generator {
   public:
-    Generator(Checked& checked, Diagnostics& out) : checked_(checked), out_(out) {}
+    Generator(Checked& checked, Diagnostics& out, bool covered)
+        : checked_(checked), out_(out), covered_(covered) {}
     Generated generate();
 
   private:
@@ -110,6 +111,7 @@ class Generator {
     Location method_base(const Expression& e);
     void call_instance(const Expression& e);
     void call_routine(const Expression& e);
+    void give_left_out(const Location& frame, const Expression& e);
     void give(const Location& frame, const Expression& e, const Routine& routine);
     void take(const Location& frame, const Expression& e);
     Slot standard(const Expression& e, Slot wanted);
@@ -117,9 +119,34 @@ class Generator {
     Slot several(const Expression& e, std::size_t first);
     Slot value_or_address(const Expression& e, Slot wanted);
 
+    // generator_tests.cpp
+    struct Compared {
+        Slot holds = none, found = none, wanted = none, tolerance = none;
+    };
+    void write_test_statement(const Expression& e);
+    Location calls_of(const Expression& instance);
+    Location locate_global(const Variable& variable);
+    Compared compared(const Expression& e);
+    Slot relation(TestCall test, const Type& type, Slot a, Slot b);
+    void write_distance(const Expression& e);
+    void write_equal(const Expression& e, const Type& type, const Location& a, const Location& b,
+                     const std::string& path);
+    void write_assertion(const Expression& e, const Compared& values, const Type* part = nullptr,
+                         const std::string& path = {});
+    void count_call(const Location& calls, std::vector<std::uint32_t>& runs);
+    void begin_mockable(const Routine& routine);
+    void cover(CoverPoint::Kind kind, Place place, std::size_t branch = 0);
+    void cover_branch(const Statement& s, std::size_t branch) {
+        cover(CoverPoint::Kind::branch, s.place, branch);
+    }
+
     Checked& checked_;
     Diagnostics& out_;
     Code code_;
+    std::vector<Assertion> assertions_;
+    bool covered_ = false;
+    bool has_tests_ = false;
+    const SourceFile* test_file_ = nullptr;
     std::unordered_map<const Type*, Image> images_;
     std::unordered_map<const Routine*, Image> function_images_;
     std::unordered_map<const Routine*, std::uint32_t> numbers_;

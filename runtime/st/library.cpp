@@ -1,13 +1,11 @@
 #include "runtime/st/library.hpp"
 
 #include <cstring>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "runtime/st/compiled.hpp"
 #include "runtime/st/elementary.hpp"
-#include "runtime/st/generator.hpp"
-#include "runtime/st/parser.hpp"
 
 namespace lineshaft::st {
 
@@ -68,7 +66,8 @@ bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
     }
     for (const KindContext::Check& check : kind.checks)
         if (!is_in_range(check, instance)) return refuse(kind, instance, Fault::out_of_range);
-    return execute(*kind.code, *kind.routine, instance, now, context, kind.options.fuel,
+    Scan moment = now;
+    return execute(*kind.code, *kind.routine, instance, moment, context, kind.options.fuel,
                    kind.options.counts) != Fault::none;
 }
 
@@ -78,31 +77,6 @@ bool scan_blocks(std::byte* first, std::size_t count, const Scan& now, const Con
     bool error = false;
     for (; count > 0; --count, first += kind.size) error |= scan_one(kind, first, now, context);
     return error;
-}
-
-FaultPlace fault_of(const Code& code, const std::byte* instance) {
-    const auto slot = [&](std::uint32_t number) {
-        std::uint64_t value = 0;
-        std::memcpy(&value, instance + 8 * std::size_t{number}, sizeof value);
-        return value;
-    };
-    const auto place = [&](std::uint64_t instruction) { return code.places[instruction].mark(); };
-    const auto routine = [&](std::uint64_t instruction) -> const std::string& {
-        std::size_t i = 0;
-        while (code.routines[i].end <= instruction) ++i;
-        return code.routines[i].name;
-    };
-    FaultPlace found;
-    found.fault = static_cast<Fault>(slot(error_id_slot));
-    if (found.fault == Fault::none) return found;
-    std::uint64_t at = slot(place_slot);
-    found.mark = place(at);
-    const std::uint32_t stack = globals_slot + code.globals;
-    for (std::uint64_t level = slot(depth_slot);; --level) {
-        found.calls.push_back(fmt::format("{} (line {})", routine(at), place(at).line));
-        if (level == 0) return found;
-        at = slot(stack + 2 * static_cast<std::uint32_t>(level - 1)) - 1;
-    }
 }
 
 std::string why(const std::byte* block, const void* context) {
@@ -126,11 +100,7 @@ void make(std::byte* place, const void* context) {
 
 }  // namespace
 
-struct Library::Made {
-    std::vector<std::shared_ptr<const SourceFile>> sources;
-    Tree tree;
-    Checked checked;
-    Generated generated;
+struct Library::Made : Compiled {
     std::deque<KindContext> kinds;
     std::deque<std::string> names;                     ///< of fields
     std::deque<std::vector<std::string_view>> values;  ///< of enumerations
@@ -394,14 +364,7 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
                                const Catalog& standard, Diagnostics& out, const Options& options) {
     const auto made = std::make_shared<Library::Made>();
     made->sources = sources;
-    for (const auto& source : made->sources) parse(read_tokens(source, out), made->tree, out);
-    if (!out.empty()) return {};
-    made->checked = check(made->tree, standard, out);
-    if (!out.empty()) return {};
-    made->generated = generate(made->checked, out);
-    if (!out.empty()) return {};
-    const std::string wrong = verify(made->generated.code);
-    if (!wrong.empty()) throw std::logic_error("Structured Text was compiled wrong: " + wrong);
+    if (!compile(*made, standard, out)) return {};
     const auto& routines = made->generated.code.routines;
     std::unordered_map<std::string_view, const CodeRoutine*> codes;
     for (const CodeRoutine& code : routines) codes.emplace(code.name, &code);

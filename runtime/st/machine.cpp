@@ -199,7 +199,7 @@ struct Memory {
 };
 
 template <bool counts>
-Fault run(const Code& code, const CodeRoutine& routine, std::byte* root, const Scan& now,
+Fault run(const Code& code, const CodeRoutine& routine, std::byte* root, Scan& now,
           const Context& context, std::int64_t fuel) {
     const Memory memory{root, context.instances};
     const Instruction* const first = code.instructions.data();
@@ -208,7 +208,7 @@ Fault run(const Code& code, const CodeRoutine& routine, std::byte* root, const S
     std::uint64_t base_address = 0;
     std::byte* const bottom = root + 8 * (globals_slot + code.globals);
     std::byte* top = bottom;
-    std::uint64_t counted[op_classes] = {};
+    std::uint64_t counted[op_classes + 1] = {};
 
     const auto U = [&](std::uint32_t slot) {
         return read<std::uint64_t>(base + 8 * std::size_t{slot});
@@ -284,7 +284,7 @@ Fault run(const Code& code, const CodeRoutine& routine, std::byte* root, const S
         set_word(root, error_id_slot, static_cast<std::uint64_t>(fault));
         set_word(root, place_slot, static_cast<std::uint64_t>(pc - first) - 1);
         set_word(root, depth_slot, static_cast<std::uint64_t>(top - bottom) / 16);
-        if constexpr (counts) std::memcpy(root + 8 * counts_slot, counted, sizeof counted);
+        if constexpr (counts) std::memcpy(root + 8 * counts_slot, counted, 8 * op_classes);
         return fault;
     };
 
@@ -327,7 +327,7 @@ Fault run(const Code& code, const CodeRoutine& routine, std::byte* root, const S
 
 }  // namespace
 
-Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, const Scan& now,
+Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, Scan& now,
               const Context& context, std::int64_t fuel, bool counts) {
     return counts ? run<true>(code, routine, instance, now, context, fuel)
                   : run<false>(code, routine, instance, now, context, fuel);

@@ -15,6 +15,7 @@ enum class Fault : std::int64_t {
     out_of_range,  ///< a value beyond its type: of a conversion, a subrange, an enumeration
     no_reference,  ///< a block with VAR_IN_OUT that no other block calls, or has called yet
     no_end,        ///< more loops and calls than one scan may have
+    assertion,     ///< of a TEST, which ends with it
 };
 
 inline constexpr std::string_view fault_names[] = {
@@ -24,7 +25,8 @@ inline constexpr std::string_view fault_names[] = {
 /// instruction; the return addresses of the calls that ran are left for messages. Allocates
 /// nothing, throws nothing, and ends after at most `fuel` passes of loops and calls. With `counts`
 /// the header has how many instructions of each class were executed, at a third of the speed.
-Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, const Scan& now,
+/// ADVANCE_TIME of a test changes `now`.
+Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, Scan& now,
               const Context& context, std::int64_t fuel, bool counts);
 
 }  // namespace lineshaft::st

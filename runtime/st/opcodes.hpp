@@ -46,6 +46,9 @@
     OP(call_at, call, "rf-", if (--fuel < 0) FAIL(no_end); enter(U(a), b))                          \
     OP(call_block, call, "sn-", call_block(at(a), b))                                                \
     OP(call_block_at, call, "rn-", call_block(target(U(a)), b))                                      \
+    OP(advance_time, call, "-r-", now.time += I(b); now.interval = I(b); ++now.index)                \
+    OP(cover, none, "n--", code.hits[a].fetch_add(1, std::memory_order_relaxed))                      \
+    OP(stop, jump, "rrr", FAIL(assertion))                                                           \
     OP(leave, jump, "---", LEAVE)                                                                    \
     OP(and_bits, boolean, "wrr", put(a, U(b) & U(c)))                                                \
     OP(or_bits, boolean, "wrr", put(a, U(b) | U(c)))                                                 \
@@ -162,7 +165,7 @@ enum class Op : std::uint16_t {
 };
 
 /// What an instruction is priced as.
-enum class OpClass : std::uint8_t { move, jump, call, boolean, integer, real, text };
+enum class OpClass : std::uint8_t { move, jump, call, boolean, integer, real, text, none };
 inline constexpr std::size_t op_classes = 7;
 
 struct OpInfo {

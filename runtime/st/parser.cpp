@@ -38,9 +38,9 @@ constexpr Unsupported unsupported[] = {
     {Word::direct, "direct addresses are", "declare a VAR_INPUT or VAR_OUTPUT and wire it"},
     {Word::override_, "inheritance is", "leave it out"},
     {Word::final_, "inheritance is", "leave it out"},
-    {Word::test_, "tests beside blocks are", "put the TEST into a file of its own"},
-    {Word::setup_, "tests beside blocks are", "put the SETUP into a file of its own"},
-    {Word::teardown_, "tests beside blocks are", "put the TEARDOWN into a file of its own"},
+    {Word::test_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
+    {Word::setup_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
+    {Word::teardown_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
 };
 
 /// Words that are names wherever a name may stand.
@@ -104,8 +104,9 @@ const PouWords* find_pou(Word word) {
 
 class Parser {
   public:
-    Parser(const Tokens& tokens, Tree& tree, Diagnostics& out)
-        : tokens_(tokens.tokens),
+    Parser(const Tokens& tokens, Tree& tree, Diagnostics& out, bool is_tests)
+        : is_tests_(is_tests),
+          tokens_(tokens.tokens),
           pragmas_(tokens.pragmas),
           mistakes_(tokens.mistakes),
           tree_(tree),
@@ -116,6 +117,7 @@ class Parser {
             read_declaration();
             if (panic_) skip_to_declaration();
         }
+        if (fixture_) tree_.units.push_back(fixture_);
     }
 
   private:
@@ -225,7 +227,8 @@ class Parser {
         if (accept(end)) return true;
         if (panic_ || unclosed_at_ == at_) return false;
         const bool left = is(Word::end_of_file) || is_end(here().word) || is(Word::else_) ||
-                          is(Word::elsif_) || is(Word::until_) || find_pou(here().word);
+                          is(Word::elsif_) || is(Word::until_) || find_pou(here().word) ||
+                          at_test();
         if (!left) {
             expected(shown(end));
             return false;
@@ -260,7 +263,7 @@ class Parser {
 
     void skip_to_declaration() {
         panic_ = false;
-        while (!is(Word::end_of_file) && !at_pou() && !is(Word::var_global_) &&
+        while (!is(Word::end_of_file) && !at_pou() && !is(Word::var_global_) && !at_test() &&
                !(is(Word::type_) && here().first_in_line))
             take();
     }
@@ -272,7 +275,7 @@ class Parser {
             const bool begins = is(Word::if_) || is(Word::for_) || is(Word::while_) ||
                                 is(Word::case_) || is(Word::repeat_) || is(Word::else_) ||
                                 is(Word::elsif_) || is(Word::until_);
-            if (here().first_in_line && (begins || at_pou())) return;
+            if (here().first_in_line && (begins || at_pou() || at_test())) return;
             take();
         }
     }
@@ -285,6 +288,12 @@ class Parser {
         if (is(Word::type_)) return read_types();
         if (is(Word::var_global_)) return tree_.globals.push_back(read_section(Section::global));
         if (refuse_whole()) return;
+        if (at_test() || (is_tests_ && is(Word::test_))) return read_test();
+        if (is_end(here().word) && unclosed_at_ < at_) {
+            take();
+            accept(Word::semicolon);
+            return;
+        }
         expected("a FUNCTION_BLOCK, FUNCTION, PROGRAM, DATA_BLOCK or TYPE");
         take();
     }
@@ -354,9 +363,56 @@ class Parser {
         return &pou;
     }
 
+    /// A TEST has a text behind it; SETUP and TEARDOWN are names, too.
+    bool at_test() const {
+        if (!is_tests_ || !here().first_in_line) return false;
+        const Word behind = next().word;
+        if (is(Word::test_)) return behind == Word::text || next().quoted;
+        return (is(Word::setup_) || is(Word::teardown_)) && behind != Word::assign &&
+               behind != Word::dot && behind != Word::open && behind != Word::open_bracket;
+    }
+
+    /// What SETUP and TEARDOWN declare all tests see.
+    void read_test() {
+        const Token opener = take();
+        const bool is_test = opener.word == Word::test_;
+        if (!fixture_) {
+            fixture_ = &tree_.pous.emplace_back();
+            fixture_->kind = PouKind::function_block;
+            fixture_->is_tests = true;
+            fixture_->place = opener.place;
+            fixture_->name = opener;
+            fixture_->name.text = "the tests";
+        }
+        Pou& test = tree_.pous.emplace_back();
+        test.kind = PouKind::method;
+        test.name = opener;
+        if (is_test && (is(Word::text) || here().quoted))
+            test.name = take();
+        else if (is_test)
+            expected("a text in quotes", "after TEST");
+        if (panic_) skip_to_statement();
+        test.place = opener.place.to(test.name.place);
+        if (is_test) test.name.text = test.place.text();
+        const Word end = is_test                       ? Word::end_test_
+                         : opener.word == Word::setup_ ? Word::end_setup_
+                                                       : Word::end_teardown_;
+        read_sections(test, end);
+        if (!is_test)
+            for (DeclarationBlock& block : std::exchange(test.blocks, {}))
+                fixture_->blocks.push_back(std::move(block));
+        is_in_body_ = is_in_test_ = true;
+        read_statements(test.body, end);
+        close(end, opener);
+        is_in_body_ = is_in_test_ = false;
+        accept(Word::semicolon);
+        if (panic_) skip_past(end);
+        fixture_->methods.push_back(&test);
+    }
+
     void skip_past(Word end) {
         panic_ = false;
-        while (!is(Word::end_of_file) && !is(end) && !at_pou()) take();
+        while (!is(Word::end_of_file) && !is(end) && !at_pou() && !at_test()) take();
         accept(end);
     }
 
@@ -810,8 +866,9 @@ class Parser {
 
     bool at_end_of_statements() const {
         if (is(Word::end_region_) || is(Word::end_network_)) return false;
-        if (is(Word::method_)) return at_pou();
-        return is_end(here().word) || ends_statements(here().word) || at_pou() ||
+        if (is(Word::method_))
+            return is_name(next()) || next().word == Word::private_ || next().word == Word::public_;
+        return is_end(here().word) || ends_statements(here().word) || at_pou() || at_test() ||
                (is(Word::type_) && is_name(next()));
     }
 
@@ -912,6 +969,7 @@ class Parser {
             expected("a statement");
             return nullptr;
         }
+        if (is_in_test_ && at_test_word()) return read_test_word();
         Expression* target = read_postfix();
         if (panic_) return nullptr;
         const Word op = here().word;
@@ -928,6 +986,32 @@ class Parser {
                 expected(":=", "or '('");
             return nullptr;
         }
+        return ended(statement);
+    }
+
+    /// `MOCK a.b;`, `MOCK_FUNCTION f RETURNS 5;`, `ADVANCE_TIME T#1s;`
+    bool at_test_word() const {
+        if (!is_name(next()) && next().word != Word::prefix) return false;
+        return same_name(here().text, "mock") || same_name(here().text, "mock_function") ||
+               same_name(here().text, "advance_time");
+    }
+
+    /// As a call.
+    Statement* read_test_word() {
+        Expression* name = make(Expression::Kind::name, take());
+        Expression* call = make(Expression::Kind::call, name->token);
+        call->operands[0] = name;
+        call->arguments.push_back({{}, false, read_postfix(), nullptr});
+        if (same_name(name->token.text, "mock_function")) {
+            if (!same_name(here().text, "returns")) expected("RETURNS", "after the function");
+            if (panic_) return nullptr;
+            take();
+            call->arguments.push_back({{}, false, read_expression(), nullptr});
+        }
+        call->place = call->place.to(last().place);
+        Statement* statement = make(Statement::Kind::call, name->token);
+        statement->place = call->place;
+        statement->value = call;
         return ended(statement);
     }
 
@@ -1079,6 +1163,8 @@ class Parser {
         return statement->value ? statement : nullptr;
     }
 
+    const bool is_tests_;
+    Pou* fixture_ = nullptr;  ///< that the tests are methods of
     const std::vector<Token>& tokens_;
     const std::vector<Pragma>& pragmas_;
     const std::vector<std::uint32_t>& mistakes_;
@@ -1092,12 +1178,13 @@ class Parser {
     bool section_left_ = false;  ///< a VAR ended without END_VAR
     bool is_spoiled_ = false;    ///< the POU, by a variable that cannot be
     bool is_in_body_ = false;    ///< of a POU
+    bool is_in_test_ = false;
 };
 
 }  // namespace
 
-void parse(const Tokens& tokens, Tree& tree, Diagnostics& out) {
-    Parser(tokens, tree, out).read();
+void parse(const Tokens& tokens, Tree& tree, Diagnostics& out, bool is_tests) {
+    Parser(tokens, tree, out, is_tests).read();
 }
 
 }  // namespace lineshaft::st

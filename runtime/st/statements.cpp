@@ -135,14 +135,16 @@ bool Checker::check_target(Expression& target, std::string_view how) {
     const Variable* variable = target.variable;
     if (!variable) return false;
     const bool own = target.kind == E::name;
-    if (variable->constant)
+    const bool of_instance = target.kind == E::member && target.operands[0]->type &&
+                             target.operands[0]->type->is_instance();
+    if (variable->constant && !(is_in_test() && of_instance))
         return refuse(fmt::format("the constant '{}'", variable->text), "remove CONSTANT");
     if (own && variable->section == Section::input)
         return refuse(fmt::format("the input '{}'", variable->text),
                       "copy it to a variable of VAR, or make it a VAR_IN_OUT");
     if (own) return true;
     const Type* of = target.operands[0]->type;
-    if (of && of->is_instance() && variable->section != Section::input &&
+    if (of && of->is_instance() && variable->section != Section::input && !is_in_test() &&
         target.operands[0]->variable)
         return refuse(fmt::format("'{}' of {}", variable->text, of->name),
                       "only inputs of an instance are set from outside");

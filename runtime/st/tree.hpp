@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/st/constant.hpp"
+#include "runtime/st/testing.hpp"
 #include "runtime/st/token.hpp"
 
 /// What the parser makes of a source, and what the checker notes in it.
@@ -21,6 +22,7 @@ struct Argument {
     bool is_output = false;  ///< `=>`
     Expression* value = nullptr;
     Variable* variable = nullptr;  ///< that it goes to or comes from, noted by the checker
+    bool is_left_out = false;      ///< in a test: taken only if nothing was given before
 };
 
 struct Expression {
@@ -53,6 +55,8 @@ struct Expression {
     Variable* variable = nullptr;  ///< that a name or a member means
     Routine* routine = nullptr;    ///< that a name means, or a call calls
     int standard = -1;             ///< the standard function that a call calls
+
+    TestCall test = TestCall::none;  ///< the statement of tests that a call is
 
     /// Of a list: it has lists of elements again, `[[1, 2], [3, 4]]`, not structures, `[(x := 1)]`.
     bool is_nested() const {
@@ -141,6 +145,7 @@ struct Pou {
     TypeText* result = nullptr;  ///< null: none
     TypeText* base = nullptr;    ///< of a data block that is an instance, or a structure
     bool is_private = false;
+    bool is_tests = false;  ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it
     std::vector<DeclarationBlock> blocks = {};
     Block body = {};
     std::vector<Pou*> methods = {};

@@ -113,7 +113,10 @@ struct Routine {
     std::vector<Place> call_places = {};
     enum class State : std::uint8_t { fresh, visiting, done } state = State::fresh;
 
+    const Variable *mock_flag = nullptr, *mock_value = nullptr;  ///< of a function: MOCK_FUNCTION
+
     bool is_function() const { return pou->kind == PouKind::function; }
+    bool is_test() const { return owner && owner->pou->is_tests; }
     bool has_instances() const {
         return pou->kind == PouKind::function_block || pou->kind == PouKind::program;
     }

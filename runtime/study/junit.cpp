@@ -45,8 +45,11 @@ std::string junit_xml(const std::vector<SuiteEntry>& entries) {
         "time=\"{:.3f}\">\n",
         entries.size(), failures, errors, seconds);
     for (const SuiteEntry& e : entries) {
-        xml +=
-            fmt::format("  <testcase name=\"{}\" time=\"{:.3f}\"", escape(e.name), e.wall_seconds);
+        xml += "  <testcase";
+        if (!e.file.empty())
+            xml +=
+                fmt::format(" classname=\"{0}\" file=\"{0}\" line=\"{1}\"", escape(e.file), e.line);
+        xml += fmt::format(" name=\"{}\" time=\"{:.3f}\"", escape(e.name), e.wall_seconds);
         if (e.failure.empty()) {
             xml += "/>\n";
             continue;

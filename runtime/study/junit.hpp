@@ -6,11 +6,13 @@
 namespace lineshaft {
 
 struct SuiteEntry {
-    std::string name;
+    std::string name;  ///< of a file, or of a test in one
     double wall_seconds = 0;
     std::string failure = {};  ///< first deviation; empty: passed
     bool error = false;        ///< it could not be judged: a wrong program, a fault
     std::string warnings = {};
+    std::string file = {};  ///< of a test in one
+    int line = 0;           ///< where it begins
 };
 
 /// JUnit XML of a suite, as CI servers read it.

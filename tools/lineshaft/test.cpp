@@ -7,6 +7,9 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/run/single_run.hpp"
+#include "runtime/st/coverage.hpp"
+#include "runtime/st/test_sources.hpp"
+#include "runtime/st/test_suite.hpp"
 #include "runtime/study/junit.hpp"
 #include "runtime/study/report.hpp"
 #include "runtime/study/study_reader.hpp"
@@ -22,20 +25,23 @@ namespace {
 
 struct TestCommand {
     std::vector<std::string> paths;
-    std::string junit;
-    std::vector<std::string> include_dirs;
+    std::string junit, coverage, only;
+    std::vector<std::string> include_dirs, sources;
     bool strict = false;
 };
 
-/// The file itself, or every program and study below a folder, sorted.
+/// The file itself, or every program, study and file of tests below a folder, sorted.
 std::vector<std::string> find_files(const std::string& path) {
     if (!fs::is_directory(path)) return {path};
     std::vector<std::string> files;
     for (const auto& entry : fs::recursive_directory_iterator(path)) {
-        if (entry.path().extension() != ".yaml" || !entry.is_regular_file()) continue;
+        const bool is_yaml = entry.path().extension() == ".yaml";
+        if (!(is_yaml || is_structured_text(entry.path())) || !entry.is_regular_file()) continue;
         Diagnostics unread;
         const auto file = read_source(entry.path().string(), unread);
-        if (file && (is_study(*file) || is_program(*file))) files.push_back(entry.path().string());
+        if (!file) continue;
+        if (is_yaml ? is_study(*file) || is_program(*file) : st::is_test_file(file))
+            files.push_back(entry.path().lexically_normal().string());
     }
     std::ranges::sort(files);
     return files;
@@ -89,41 +95,124 @@ SuiteEntry test_program(const std::string& path, const LoadOptions& options, boo
     return entry;
 }
 
-SuiteEntry test(const std::string& path, const LoadOptions& options, bool strict) {
+/// All Structured Text of a file, or of a folder and those below it.
+void add_sources(st::SourcePool& pool, const std::string& path) {
+    std::vector<std::string> files{path};
+    if (fs::is_directory(path)) {
+        files.clear();
+        for (const auto& entry : fs::recursive_directory_iterator(path))
+            if (entry.is_regular_file() && is_structured_text(entry.path()))
+                files.push_back(entry.path().lexically_normal().string());
+    }
+    std::ranges::sort(files);
+    Diagnostics unread;
+    for (const std::string& file : files)
+        if (const auto source = read_source(file, unread)) pool.add(source);
+}
+
+/// Of a folder what lies in it; of a file its folder, and the one around that if it is one of
+/// tests.
+st::SourcePool sources_for(const std::string& path, const std::vector<std::string>& more) {
+    st::SourcePool pool;
+    for (const std::string& source : more) add_sources(pool, source);
+    if (fs::is_directory(path)) {
+        add_sources(pool, path);
+    } else if (is_structured_text(path)) {
+        const fs::path folder = fs::path(path).parent_path();
+        const std::string name = folder.filename().string();
+        const bool is_of_tests = name == "tests" || name == "test";
+        const fs::path root = is_of_tests ? folder.parent_path() : folder;
+        add_sources(pool, root.empty() ? "." : root.string());
+    }
+    return pool;
+}
+
+std::string failure_text(const st::TestResult& result) {
+    if (result.failure.empty()) return {};
+    std::string text =
+        fmt::format("{}:{}: {}", result.mark.file->path, result.mark.line, result.failure);
+    for (std::size_t i = 0; i < result.calls.size(); ++i)
+        text += (i == 0 ? " in " : ", called by ") + result.calls[i];
+    return text;
+}
+
+std::vector<SuiteEntry> test_structured_text(const std::shared_ptr<const SourceFile>& file,
+                                             const st::SourcePool& pool, const std::string& only) {
+    Diagnostics out;
+    const Catalog catalog = standard_blocks();
+    if (!st::is_test_file(file))
+        out.add("L0904", {file, 0, 0, 1}, "there is no TEST in this file",
+                "write TEST 'text' ... END_TEST");
+    std::optional<st::TestSuite> suite;
+    if (out.empty()) suite = st::compile_tests(file, pool.needed_by(file), catalog, out);
+    if (!suite) return {{file->path, 0, out.render(), true}};
+    std::vector<SuiteEntry> entries;
+    for (std::size_t i = 0; i < suite->tests().size() && !interrupt_requested; ++i) {
+        const st::Test& test = suite->tests()[i];
+        if (test.name.find(only) == std::string::npos) continue;
+        const double start = wall_seconds();
+        const st::TestResult result = suite->run(i);
+        entries.push_back({.name = test.name,
+                           .wall_seconds = wall_seconds() - start,
+                           .failure = failure_text(result),
+                           .error = result.is_fault,
+                           .file = file->path,
+                           .line = static_cast<int>(test.mark.line)});
+    }
+    return entries;
+}
+
+std::vector<SuiteEntry> test(const std::string& path, const st::SourcePool& pool,
+                             const TestCommand& command) {
+    const LoadOptions options{.settings = {}, .include_dirs = command.include_dirs};
     Diagnostics out;
     const auto file = read_source(path, out);
-    if (!file) return {path, 0, out.render(), true};
-    return is_study(*file) ? test_study(file, options) : test_program(path, options, strict);
+    if (!file) return {{path, 0, out.render(), true}};
+    if (is_structured_text(path)) return test_structured_text(file, pool, command.only);
+    if (!command.only.empty()) return {};
+    return {is_study(*file) ? test_study(file, options)
+                            : test_program(path, options, command.strict)};
+}
+
+void print(const SuiteEntry& entry) {
+    fmt::print("{}  {}{}{} ({:.2f} s)\n", entry.failure.empty() ? "ok    " : "FAILED", entry.file,
+               entry.file.empty() ? "" : ": ", entry.name, entry.wall_seconds);
+    if (!entry.failure.empty()) fmt::print("        {}\n", entry.failure);
+    std::fflush(stdout);
+    fmt::print(stderr, "{}", entry.warnings);
+}
+
+/// False, and reported, when it cannot be written.
+bool write(const std::string& path, const std::string& text) {
+    if (path.empty()) return true;
+    OutputFile file(path);
+    file.write(text);
+    const bool written = file.commit();
+    if (!written) spdlog::error("{}", file.error());
+    return written;
 }
 
 Exit execute(const TestCommand& command) {
+    if (!command.coverage.empty()) st::start_coverage();
     std::vector<SuiteEntry> entries;
     for (const std::string& path : command.paths) {
+        const st::SourcePool pool = sources_for(path, command.sources);
         for (const std::string& file : find_files(path)) {
-            entries.push_back(
-                test(file, {.settings = {}, .include_dirs = command.include_dirs}, command.strict));
+            for (SuiteEntry& entry : test(file, pool, command)) {
+                if (!interrupt_requested) print(entry);
+                entries.push_back(std::move(entry));
+            }
             if (interrupt_requested) return Exit::interrupted;
-            const SuiteEntry& entry = entries.back();
-            fmt::print("{}  {} ({:.2f} s)\n", entry.failure.empty() ? "ok    " : "FAILED",
-                       entry.name, entry.wall_seconds);
-            if (!entry.failure.empty()) fmt::print("        {}\n", entry.failure);
-            std::fflush(stdout);
-            fmt::print(stderr, "{}", entry.warnings);
         }
     }
     const auto failed =
         std::ranges::count_if(entries, [](const SuiteEntry& e) { return !e.failure.empty(); });
     fmt::print("{} of {} passed\n", static_cast<std::ptrdiff_t>(entries.size()) - failed,
                entries.size());
-    if (!command.junit.empty()) {
-        OutputFile xml(command.junit);
-        xml.write(junit_xml(entries));
-        if (!xml.commit()) {
-            spdlog::error("{}", xml.error());
-            return Exit::fault;
-        }
-    }
-    if (entries.empty()) spdlog::error("no program and no study was found");
+    const bool written =
+        write(command.junit, junit_xml(entries)) && write(command.coverage, st::lcov_text());
+    if (!written) return Exit::fault;
+    if (entries.empty()) spdlog::error("no program, no study and no TEST was found");
     if (entries.empty()) return Exit::wrong;
     return failed == 0 ? Exit::fine : Exit::failed;
 }
@@ -132,11 +221,25 @@ Exit execute(const TestCommand& command) {
 
 void add_test(CLI::App& app, Exit& result) {
     auto command = std::make_shared<TestCommand>();
-    CLI::App* sub = app.add_subcommand("test", "Run programs and studies as a test suite");
+    CLI::App* sub = app.add_subcommand(
+        "test", "Run programs, studies and TESTs of Structured Text as a test suite");
     sub->add_option("paths", command->paths, "Files, or folders to search")->required();
     sub->add_option("--junit", command->junit, "Write a JUnit report, too")->type_name("OUT.xml");
     sub->add_option("--include-dir", command->include_dirs, "Allow files below this folder, too")
         ->type_name("DIR");
+    sub->add_option("--source", command->sources,
+                    "Look for what TESTs test in this file or folder, too")
+        ->type_name("PATH");
+    sub->add_option("--only", command->only, "Run only TESTs with this in their name")
+        ->type_name("TEXT");
+    sub->add_option("--coverage", command->coverage,
+                    "Write which lines and branches of Structured Text all of it executed, for "
+                    "lcov and genhtml")
+        ->type_name("FILE.info");
+    sub->footer(
+        "A file of Structured Text with a TEST is a file of tests. It sees those files of the\n"
+        "folder that declare what it names, x.st first for test_x.st. programs/README.md says "
+        "more.");
     add_strict(*sub, command->strict);
     sub->callback([command, &result] { result = execute(*command); });
 }

@@ -1,0 +1,58 @@
+#include "runtime/st/compiled.hpp"
+
+#include <cstring>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "runtime/st/coverage.hpp"
+#include "runtime/st/parser.hpp"
+
+namespace lineshaft::st {
+
+Compiled::~Compiled() {
+    if (generated.code.hits) record(generated.code);
+}
+
+bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, const SourceFile* tests) {
+    for (const auto& source : to.sources)
+        parse(read_tokens(source, out), to.tree, out, source.get() == tests);
+    if (!out.empty()) return false;
+    to.checked = check(to.tree, standard, out);
+    if (!out.empty()) return false;
+    to.generated = generate(to.checked, out, is_covered());
+    if (!out.empty()) return false;
+    const std::string wrong = verify(to.generated.code);
+    if (!wrong.empty()) throw std::logic_error("Structured Text was compiled wrong: " + wrong);
+    Code& code = to.generated.code;
+    if (is_covered())
+        code.hits = std::make_unique<std::atomic<std::uint64_t>[]>(code.points.size());
+    return true;
+}
+
+FaultPlace fault_of(const Code& code, const std::byte* instance) {
+    const auto slot = [&](std::uint32_t number) {
+        std::uint64_t value = 0;
+        std::memcpy(&value, instance + 8 * std::size_t{number}, sizeof value);
+        return value;
+    };
+    const auto place = [&](std::uint64_t instruction) { return code.places[instruction].mark(); };
+    const auto routine = [&](std::uint64_t instruction) -> const std::string& {
+        std::size_t i = 0;
+        while (code.routines[i].end <= instruction) ++i;
+        return code.routines[i].name;
+    };
+    FaultPlace found;
+    found.fault = static_cast<Fault>(slot(error_id_slot));
+    if (found.fault == Fault::none) return found;
+    std::uint64_t at = slot(place_slot);
+    found.mark = place(at);
+    const std::uint32_t stack = globals_slot + code.globals;
+    for (std::uint64_t level = slot(depth_slot);; --level) {
+        found.calls.push_back(fmt::format("{} (line {})", routine(at), place(at).line));
+        if (level == 0) return found;
+        at = slot(stack + 2 * static_cast<std::uint32_t>(level - 1)) - 1;
+    }
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "runtime/source/diagnostic.hpp"
+
+namespace lineshaft::st {
+
+/// True if a TEST stands in it.
+bool is_test_file(const std::shared_ptr<const SourceFile>& file);
+
+/// Sources among which files of tests find what they test.
+class SourcePool {
+  public:
+    /// A file, once; a file of tests is none of the sources.
+    void add(const std::shared_ptr<const SourceFile>& file);
+
+    /// What `tests` needs: `x.st` of the same folder for `test_x.st` and `x_test.st`, and then
+    /// every file that declares a name which the tests or a file found so far use and do not
+    /// declare. Of several that declare it the nearest, by path. So files that tests do not name
+    /// may hold whatever they like, and two that declare the same do not meet.
+    std::vector<std::shared_ptr<const SourceFile>> needed_by(
+        const std::shared_ptr<const SourceFile>& tests) const;
+
+  private:
+    /// Names in small letters.
+    struct Entry {
+        std::shared_ptr<const SourceFile> file;
+        std::set<std::string> types;   ///< declared blocks and types
+        std::set<std::string> values;  ///< declared globals and values of enumerations
+        std::set<std::string> own;     ///< variables and members, which hide others' values
+        std::set<std::string> used;
+    };
+    static Entry entry_of(const std::shared_ptr<const SourceFile>& file);
+    const Entry* nearest(const std::string& name, const Entry& user, const std::string& to) const;
+
+    std::vector<Entry> entries_;
+};
+
+}  // namespace lineshaft::st

@@ -1,0 +1,75 @@
+#include "runtime/st/value_text.hpp"
+
+#include <bit>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace lineshaft::st {
+
+namespace {
+
+/// The shortest number that reads back as the same value of its width.
+std::string real_text(double value, bool is_long) {
+    if (std::isnan(value)) return "NaN";
+    std::string text =
+        is_long ? fmt::format("{}", value) : fmt::format("{}", static_cast<float>(value));
+    const bool plain = std::isfinite(value) && text.find_first_of(".e") == std::string::npos;
+    return plain ? text + ".0" : text;
+}
+
+}  // namespace
+
+std::string value_text(const Type& type, std::uint64_t slot) {
+    using Kind = Type::Kind;
+    const auto number = static_cast<std::int64_t>(slot);
+    switch (type.kind) {
+        case Kind::boolean:
+            return slot != 0 ? "TRUE" : "FALSE";
+        case Kind::bits:
+            return fmt::format("16#{:X}", slot);
+        case Kind::real:
+        case Kind::any_real:
+            return real_text(std::bit_cast<double>(slot), type.bits != 32);
+        case Kind::time:
+            return time_literal(number);
+        case Kind::enumeration:
+            return slot < type.values.size() ? fmt::format("{}#{}", type.name, type.values[slot])
+                                             : std::to_string(number);
+        default:
+            return type.is_unsigned_64() ? std::to_string(slot) : std::to_string(number);
+    }
+}
+
+std::string time_literal(std::int64_t nanoseconds) {
+    constexpr std::pair<std::uint64_t, const char*> units[] = {{86'400'000'000'000, "d"},
+                                                               {3'600'000'000'000, "h"},
+                                                               {60'000'000'000, "m"},
+                                                               {1'000'000'000, "s"},
+                                                               {1'000'000, "ms"},
+                                                               {1'000, "us"},
+                                                               {1, "ns"}};
+    if (nanoseconds == 0) return "T#0s";
+    auto left = static_cast<std::uint64_t>(nanoseconds);
+    if (nanoseconds < 0) left = 0 - left;
+    std::string text = nanoseconds < 0 ? "T#-" : "T#";
+    for (const auto& [size, unit] : units) {
+        if (left >= size) text += fmt::format("{}{}", left / size, unit);
+        left %= size;
+    }
+    return text;
+}
+
+std::string text_literal(std::string_view text) {
+    std::string out = "'";
+    for (const char c : text) {
+        if (c == '$' || c == '\'') out += '$';
+        if (static_cast<unsigned char>(c) < 0x20)
+            out += fmt::format("${:02X}", static_cast<unsigned>(c));
+        else
+            out += c;
+    }
+    return out + "'";
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "runtime/st/types.hpp"
+
+namespace lineshaft::st {
+
+/// A scalar as the language writes it, from what its slot has: `TRUE`, `5`, `16#FF`, `2.0`,
+/// `T#1s500ms`, `Colour#red`.
+std::string value_text(const Type& type, std::uint64_t slot);
+
+/// `T#1d2h3m4s5ms6us7ns`
+std::string time_literal(std::int64_t nanoseconds);
+
+/// `'it$'s'`
+std::string text_literal(std::string_view text);
+
+}  // namespace lineshaft::st

@@ -1,0 +1,106 @@
+#!/usr/bin/python3
+"""TESTs of Structured Text: those of `pass` pass, those of `fail` fail with the messages of
+fail/expected.txt, and each file of `bad` is refused with the message in the file NAME.txt beside it.
+
+usage: st_tests.py LINESHAFT FOLDER [--update-expected]
+"""
+
+import difflib
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as xml
+
+lineshaft = str(pathlib.Path(sys.argv[1]).resolve())
+root = pathlib.Path(sys.argv[2])
+update = "--update-expected" in sys.argv
+wrong = []
+
+
+def run(folder, *arguments):
+    answer = subprocess.run([lineshaft, "test", *arguments], cwd=folder, capture_output=True, timeout=60)
+    said = re.sub(r" \(\d+\.\d\d s\)", "", answer.stdout.decode("utf-8"))
+    return answer.returncode, said, answer.stderr.decode("utf-8")
+
+
+def expect(what, value, wanted):
+    if value != wanted:
+        wrong.append(f"{what}: {value!r}, expected {wanted!r}")
+
+
+def compare(golden, said):
+    if update:
+        golden.write_text(said, encoding="utf-8")
+    expected = golden.read_text(encoding="utf-8") if golden.exists() else ""
+    wrong.extend(difflib.unified_diff(expected.splitlines(), said.splitlines(), golden.name, "answer", lineterm=""))
+
+
+def counts(text):
+    """Of an lcov file: for each source what it says, as a list of (key, value)."""
+    files = {}
+    for record in text.split("end_of_record\n")[:-1]:
+        lines = [line.split(":", 1) for line in record.splitlines()]
+        files[next(value for key, value in lines if key == "SF")] = lines
+    return files
+
+
+def check_coverage(path):
+    files = counts(path.read_text(encoding="utf-8"))
+    expect("covered", sorted(files), [f"pass/{name}.st" for name in (
+        "counter", "globals", "mocks", "pairs/a", "pairs/b", "values")])
+    for name, lines in files.items():
+        totals = {key: int(value) for key, value in lines if key in ("LF", "LH", "BRF", "BRH", "FNF", "FNH")}
+        hit = lambda key, at: sum(k == key and v.split(",")[at] not in ("0", "-") for k, v in lines)
+        of = lambda key: sum(k == key for k, _ in lines)
+        expect(f"totals of {name}", totals, {
+            "LF": of("DA"), "LH": hit("DA", 1), "BRF": of("BRDA"), "BRH": hit("BRDA", 3),
+            "FNF": of("FN"), "FNH": hit("FNDA", 0)})
+    counter = [":".join(line) for line in files["pass/counter.st"]]
+    text = (root / "pass/counter.st").read_text(encoding="utf-8").splitlines()
+    line = next(i for i, t in enumerate(text, 1) if t.startswith("IF reset"))
+    branches = [entry.split(",") for entry in counter if entry.startswith(f"BRDA:{line},")]
+    expect("branches of the IF", [b[2] for b in branches], ["0", "1", "2"])
+    expect("the branch that no test takes", branches[2][3], "0")
+    passes = sum(int(b[3]) for b in branches)
+    expect("the IF was reached as often as its branches", f"DA:{line},{passes}" in counter, True)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    junit, info = pathlib.Path(folder, "out.xml"), pathlib.Path(folder, "out.info")
+    code, said, errors = run(root, "pass", "--junit", str(junit), "--coverage", str(info))
+    expect("exit code of what passes", (code, errors), (0, ""))
+    if code != 0:
+        wrong.append(said)
+    cases = xml.parse(junit).getroot().findall("testcase")
+    declared = sum(len(re.findall(r"^TEST ", file.read_text(encoding="utf-8"), re.M))
+                   for file in (root / "pass").rglob("*test*.s*"))
+    expect("cases in the JUnit file", len(cases), declared)
+    expect("a case", {key: cases[-1].get(key) for key in ("classname", "file", "name")},
+           {"classname": "pass/tests/values_test.st", "file": "pass/tests/values_test.st", "name": "leaves early"})
+    check_coverage(info)
+    code, said, _ = run(root / "fail", "machine_test.st", "--junit", str(junit))
+    expect("exit code of what fails", code, 1)
+    compare(root / "fail/expected.txt", said)
+    suite = xml.parse(junit).getroot()
+    expect("failures and errors", (suite.get("failures"), suite.get("errors")), ("16", "3"))
+
+code, said, _ = run(root, "pass", "--only", "mocked function")
+expect("--only", (code, said.splitlines()[-1]), (0, "1 of 1 passed"))
+code, said, _ = run(root, "pass/tests/values_test.st")
+expect("a folder of tests sees the one around it", (code, said.splitlines()[-1]), (0, "6 of 6 passed"))
+code, said, _ = run(root, "fail/machine_test.st", "--only", "equal", "--source", "pass")
+expect("--source", code, 1)
+code, _, errors = run(root, "pass/counter.st")
+expect("a file without a TEST", code, 1)
+
+for path in sorted((root / "bad").glob("*.st")):
+    code, said, errors = run(path.parent, path.name)
+    expect(f"exit code of {path.name}", (code, errors), (1, ""))
+    compare(path.with_suffix(".txt"), said)
+    if not re.search(r"^ *\S+\.st:(\d+:\d+:)? error\[L\d{4}\]: ", said, re.M):
+        wrong.append(f"{path.name}: no message with a place")
+
+print("\n".join(wrong) or "ok")
+sys.exit(bool(wrong))
