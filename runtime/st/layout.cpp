@@ -104,7 +104,7 @@ void Generator::lay_out_method(Routine& method) {
 }
 
 void Generator::fill(Image& image, std::uint32_t at, const Variable& variable) {
-    if (variable.space == Space::none || variable.space == Space::reference) return;
+    if (variable.space == Space::reference || variable.space == Space::none) return;
     fill_default(image, at, *variable.type);
     if (variable.initial) fill(image, at, *variable.type, *variable.initial);
 }
