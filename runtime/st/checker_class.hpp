@@ -123,6 +123,9 @@ class Checker {
 
     // test_statements.cpp
     const Type* check_test_statement(Expression& call, bool as_statement);
+    bool check_test_arguments(Expression& call, const TestStatement& known);
+    void check_single(Expression& call);
+    void check_mocked(Expression& call);
     void become_text(Expression& expression) const;
     bool check_compared(Expression& call);
     bool check_distance(Expression& call);

@@ -48,8 +48,8 @@ std::string functions_text(const Points& points) {
 std::string branches_text(const Points& points) {
     std::string text;
     for (const auto& [key, point] : points) {
-        const bool reached = std::ranges::any_of(points, [&](const auto& other) {
-            return other.first.first == key.first && other.second.hits > 0;
+        const bool reached = std::ranges::any_of(points, [&, begin = key.first](const auto& other) {
+            return other.first.first == begin && other.second.hits > 0;
         });
         text += fmt::format("BRDA:{},{},{},{}\n", point.line, key.first, key.second,
                             reached ? std::to_string(point.hits) : "-");

@@ -163,7 +163,7 @@ void Generator::write_assertion(const Expression& e, const Compared& values, con
         {next(), e.test, e.place, type(0), count > 1 ? type(1) : nullptr, path, has_message});
     put(Op::stop, values.found, values.wanted,
         values.tolerance == none ? values.found : values.tolerance);
-    put(Op::move, message, message);
+    put(Op::message, message);
     land(holds);
 }
 

@@ -47,6 +47,7 @@
     OP(call_block, call, "sn-", call_block(at(a), b))                                                \
     OP(call_block_at, call, "rn-", call_block(target(U(a)), b))                                      \
     OP(advance_time, call, "-r-", now.time += I(b); now.interval = I(b); ++now.index)                \
+    OP(message, none, "r--", (void)a)                                                                \
     OP(cover, none, "n--", code.hits[a].fetch_add(1, std::memory_order_relaxed))                      \
     OP(stop, jump, "rrr", FAIL(assertion))                                                           \
     OP(leave, jump, "---", LEAVE)                                                                    \

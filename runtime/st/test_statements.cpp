@@ -51,76 +51,85 @@ const Type* Checker::check_test_statement(Expression& call, bool as_statement) {
     if (!as_statement)
         return fail("L0905", call.place, fmt::format("{} has no value", known.name),
                     "write it as a statement of its own");
-    const auto values = static_cast<std::size_t>(known.values), count = call.arguments.size();
-    if (count < values || count > values + (known.has_message ? 1 : 0))
-        return fail(
-            "L0907", name.place,
-            fmt::format("{} takes {} argument{}{}", known.name, values, values == 1 ? "" : "s",
-                        known.has_message ? " and an optional message" : ""));
-    for (const Argument& argument : call.arguments)
-        if (argument.name.word != Word::end_of_file)
-            return fail("L0907", argument.name.place,
-                        fmt::format("the arguments of {} have no names", known.name),
-                        "leave the name out");
-    for (Argument& argument : call.arguments) become_text(*argument.value);
-    if (count > values) {
-        Expression& message = *call.arguments.back().value;
-        const Type* type = check(message, &string_type);
-        if (!type) return nullptr;
-        if (type->kind != Kind::text)
-            return fail(
-                "L0905", message.place,
-                fmt::format("the message of {} is a STRING, not {}", known.name, describe(*type)));
-    }
+    if (!check_test_arguments(call, known)) return nullptr;
     call.test = which;
-    Expression*& first = call.arguments[0].value;
     switch (which) {
         case TestCall::assert_true:
-        case TestCall::assert_false: {
-            const Type* type = check(*first, &bool_type);
-            if (!type || !(type->is_any() || is_whole(*type)))
-                return type ? fail("L0905", first->place,
-                                   fmt::format("{} takes a BOOL, not {}", known.name,
-                                               describe(*type)))
-                            : nullptr;
-            if (type->is_any()) coerce(first, lint_type);
+        case TestCall::assert_false:
+        case TestCall::advance_time:
+            check_single(call);
             return nullptr;
-        }
         case TestCall::assert_near:
             check_distance(call);
             return nullptr;
-        case TestCall::advance_time: {
-            const Type* type = check(*first, &time_type);
-            if (!type) return nullptr;
-            if (type->is_any() && !type->is_real()) coerce(first, lint_type);
-            if (first->type->kind != Kind::time && first->type->kind != Kind::integer)
-                return fail("L0905", first->place,
-                            fmt::format("{} takes a TIME, or a whole number of ns, not {}",
-                                        known.name, describe(*type)),
-                            "write it as in T#20ms");
-            return nullptr;
-        }
         case TestCall::mock_function:
             check_mock_function(call);
             return nullptr;
         case TestCall::mock:
         case TestCall::mock_verify_called:
-        case TestCall::mock_verify_call_count: {
-            const Type* type = check(*first);
-            if (!type) return nullptr;
-            if (!is_place(*first) || !type->is_instance())
-                return fail("L0905", first->place,
-                            fmt::format("{} takes an instance of a function block, not {}",
-                                        known.name, describe(*type)),
-                            "MOCK_FUNCTION replaces a function");
-            if (count >= 2 && values == 2 && check(*call.arguments[1].value, &lint_type))
-                coerce(call.arguments[1].value, lint_type);
+        case TestCall::mock_verify_call_count:
+            check_mocked(call);
             return nullptr;
-        }
         default:
             check_compared(call);
             return nullptr;
     }
+}
+
+/// Their number, and the message.
+bool Checker::check_test_arguments(Expression& call, const TestStatement& known) {
+    const auto values = static_cast<std::size_t>(known.values), count = call.arguments.size();
+    const auto refuse = [&](Place place, std::string message, std::string help = {}) {
+        fail("L0907", place, std::move(message), std::move(help));
+        return false;
+    };
+    if (count < values || count > values + (known.has_message ? 1 : 0))
+        return refuse(
+            call.operands[0]->place,
+            fmt::format("{} takes {} argument{}{}", known.name, values, values == 1 ? "" : "s",
+                        known.has_message ? " and an optional message" : ""));
+    for (const Argument& argument : call.arguments)
+        if (argument.name.word != Word::end_of_file)
+            return refuse(argument.name.place,
+                          fmt::format("the arguments of {} have no names", known.name),
+                          "leave the name out");
+    for (Argument& argument : call.arguments) become_text(*argument.value);
+    if (count == values) return true;
+    Expression& message = *call.arguments.back().value;
+    const Type* type = check(message, &string_type);
+    if (type && type->kind != Kind::text)
+        fail("L0905", message.place,
+             fmt::format("the message of {} is a STRING, not {}", known.name, describe(*type)));
+    return type && type->kind == Kind::text;
+}
+
+/// A condition, or a duration.
+void Checker::check_single(Expression& call) {
+    Expression*& value = call.arguments[0].value;
+    const bool is_time = call.test == TestCall::advance_time;
+    const Type* given = check(*value, is_time ? &time_type : &bool_type);
+    if (!given) return;
+    if (given->is_any() && !given->is_real()) coerce(value, lint_type);
+    const Type& type = *value->type;
+    if (is_time ? type.kind == Kind::time || type.kind == Kind::integer : is_whole(type)) return;
+    fail("L0905", value->place,
+         fmt::format("{} takes {}, not {}", info(call.test).name,
+                     is_time ? "a TIME, or a whole number of ns" : "a BOOL", describe(*given)),
+         is_time ? "write it as in T#20ms" : "");
+}
+
+void Checker::check_mocked(Expression& call) {
+    Expression& instance = *call.arguments[0].value;
+    const TestStatement& known = info(call.test);
+    const Type* type = check(instance);
+    if (!type) return;
+    if (!is_place(instance) || !type->is_instance())
+        fail("L0905", instance.place,
+             fmt::format("{} takes an instance of a function block, not {}", known.name,
+                         describe(*type)),
+             "MOCK_FUNCTION replaces a function");
+    if (known.values == 2 && check(*call.arguments[1].value, &lint_type))
+        coerce(call.arguments[1].value, lint_type);
 }
 
 /// `"text"` is a text where it names nothing.

@@ -95,34 +95,39 @@ SuiteEntry test_program(const std::string& path, const LoadOptions& options, boo
     return entry;
 }
 
-/// All Structured Text of a file, or of a folder and those below it.
-void add_sources(st::SourcePool& pool, const std::string& path) {
-    std::vector<std::string> files{path};
-    if (fs::is_directory(path)) {
-        files.clear();
-        for (const auto& entry : fs::recursive_directory_iterator(path))
-            if (entry.is_regular_file() && is_structured_text(entry.path()))
-                files.push_back(entry.path().lexically_normal().string());
-    }
+/// The file itself, or all Structured Text of a folder: what lies in it, and if `below` in those
+/// below it.
+void add_sources(st::SourcePool& pool, const std::string& path, bool below) {
+    std::vector<std::string> files;
+    const auto take = [&](const fs::directory_entry& entry) {
+        if (entry.is_regular_file() && is_structured_text(entry.path()))
+            files.push_back(entry.path().lexically_normal().string());
+    };
+    constexpr auto options = fs::directory_options::skip_permission_denied;
+    if (!fs::is_directory(path))
+        files.push_back(path);
+    else if (below)
+        for (const auto& entry : fs::recursive_directory_iterator(path, options)) take(entry);
+    else
+        for (const auto& entry : fs::directory_iterator(path, options)) take(entry);
     std::ranges::sort(files);
     Diagnostics unread;
     for (const std::string& file : files)
         if (const auto source = read_source(file, unread)) pool.add(source);
 }
 
-/// Of a folder what lies in it; of a file its folder, and the one around that if it is one of
-/// tests.
+/// Of a folder what lies below it; of a file its folder, and the one around that if it is `tests`.
 st::SourcePool sources_for(const std::string& path, const std::vector<std::string>& more) {
     st::SourcePool pool;
-    for (const std::string& source : more) add_sources(pool, source);
+    for (const std::string& source : more) add_sources(pool, source, true);
     if (fs::is_directory(path)) {
-        add_sources(pool, path);
+        add_sources(pool, path, true);
     } else if (is_structured_text(path)) {
         const fs::path folder = fs::path(path).parent_path();
         const std::string name = folder.filename().string();
-        const bool is_of_tests = name == "tests" || name == "test";
-        const fs::path root = is_of_tests ? folder.parent_path() : folder;
-        add_sources(pool, root.empty() ? "." : root.string());
+        add_sources(pool, folder.empty() ? "." : folder.string(), false);
+        if (name == "tests" || name == "test")
+            add_sources(pool, (folder / "..").lexically_normal().string(), false);
     }
     return pool;
 }

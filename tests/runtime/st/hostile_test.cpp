@@ -8,6 +8,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/st/lexer.hpp"
+#include "runtime/st/test_suite.hpp"
 #include "tests/runtime/st/instance.hpp"
 
 using namespace lineshaft;
@@ -33,6 +34,31 @@ void try_out(const std::string& text) {
         if (kind.size > 1 << 20) return;
     st::Instances instances(*library);
     for (int i = 0; i < 3; ++i) instances.scan(i, 1);
+}
+
+/// The same of a file of tests.
+void try_tests(const std::string& text) {
+    Diagnostics out;
+    const auto suite = st::compile_tests(st::source(text), {}, standard_blocks(), out,
+                                         {.fuel = 2000, .counts = false});
+    CHECK(suite.has_value() == out.empty());
+    for (const Diagnostic& d : out.list()) CHECK(d.mark.line > 0);
+    for (std::size_t i = 0; suite && i < suite->tests().size(); ++i) {
+        const st::TestResult result = suite->run(i);
+        CHECK((result.failure.empty() || result.mark.line > 0));
+    }
+}
+
+/// Each with the blocks that it tests before it.
+std::vector<std::string> tests() {
+    const std::string root = LINESHAFT_SOURCE_DIR "/tests/st_tests/";
+    std::vector<std::string> texts;
+    for (const auto& [tested, test] : {std::pair{"pass/counter.st", "pass/test_counter.st"},
+                                       std::pair{"pass/mocks.st", "pass/test_mocks.st"},
+                                       std::pair{"pass/values.st", "pass/tests/values_test.st"},
+                                       std::pair{"fail/machine.st", "fail/machine_test.st"}})
+        texts.push_back(st::read(root + tested)->text + st::read(root + test)->text);
+    return texts;
 }
 
 std::vector<std::string> sources() {
@@ -61,6 +87,31 @@ TEST_CASE("Structured Text: sources cut off anywhere, and with one byte changed"
             changed[at] = bytes[random() % bytes.size()];
             INFO("byte " << at << " changed to '" << changed[at] << "' in " << text.substr(0, 60));
             try_out(changed);
+        }
+    }
+}
+
+TEST_CASE("Structured Text: tests cut off anywhere, with words left out, doubled and exchanged",
+          "[st]") {
+    const auto seed = std::random_device{}();
+    INFO("seed " << seed);
+    std::mt19937 random(seed);
+    for (const std::string& text : tests()) {
+        try_tests(text);
+        for (std::size_t end = random() % 99; end < text.size(); end += 1 + random() % 99)
+            try_tests(text.substr(0, end));
+        Diagnostics out;
+        const auto source = st::source(text);
+        const auto tokens = st::read_tokens(source, out).tokens;
+        for (int i = 0; i < 60; ++i) {
+            const auto& a = tokens[random() % tokens.size()];
+            const auto& b = tokens[random() % tokens.size()];
+            std::string changed = text;
+            changed.replace(a.place.begin, a.place.end - a.place.begin,
+                            random() % 3 == 0 ? std::string() : std::string(b.place.text()));
+            INFO("'" << a.place.text() << "' at byte " << a.place.begin << " changed to '"
+                     << b.place.text() << "' in " << text.substr(0, 60));
+            try_tests(changed);
         }
     }
 }
