@@ -14,8 +14,8 @@ constexpr std::uint32_t region_mask = 3U << 30;
 
 }  // namespace
 
-Generated generate(Checked& checked, Diagnostics& out) {
-    return Generator(checked, out).generate();
+Generated generate(Checked& checked, bool overflow_faults, Diagnostics& out) {
+    return Generator(checked, overflow_faults, out).generate();
 }
 
 Generated Generator::generate() {

@@ -12,7 +12,8 @@ struct Generated {
     std::unordered_map<const Type*, std::vector<std::uint64_t>> images;
 };
 
-/// L0912: more memory than a block may have.
-Generated generate(Checked& checked, Diagnostics& out);
+/// With `overflow_faults` an integer beyond its type is a fault, else it wraps.
+///   L0912  more memory than a block may have
+Generated generate(Checked& checked, bool overflow_faults, Diagnostics& out);
 
 }  // namespace lineshaft::st

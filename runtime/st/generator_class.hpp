@@ -31,7 +31,8 @@ struct Location {
 
 class Generator {
   public:
-    Generator(Checked& checked, Diagnostics& out) : checked_(checked), out_(out) {}
+    Generator(Checked& checked, bool overflow_faults, Diagnostics& out)
+        : checked_(checked), overflow_faults_(overflow_faults), out_(out) {}
     Generated generate();
 
   private:
@@ -79,6 +80,8 @@ class Generator {
     Slot result(Slot wanted) { return wanted == none ? new_temporary() : wanted; }
     Slot unary(const Expression& e, Slot wanted);
     Slot binary(const Expression& e, Slot wanted);
+    Slot exact(Word op, const Type& type, Slot a, Slot b, Slot wanted);
+    Slot within(const Type& type, Slot slot);
     Slot comparison(const Expression& e, Slot wanted);
     Slot lazy(const Expression& e);
     Slot bit(const Expression& e, Slot wanted);
@@ -117,6 +120,7 @@ class Generator {
     Slot several(const Expression& e, std::size_t first);
 
     Checked& checked_;
+    bool overflow_faults_;
     Diagnostics& out_;
     Code code_;
     std::unordered_map<const Type*, Image> images_;

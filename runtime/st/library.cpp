@@ -398,7 +398,7 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     if (!out.empty()) return {};
     made->checked = check(made->tree, standard, out);
     if (!out.empty()) return {};
-    made->generated = generate(made->checked, out);
+    made->generated = generate(made->checked, options.overflow_faults, out);
     if (!out.empty()) return {};
     const std::string wrong = verify(made->generated.code);
     if (!wrong.empty()) throw std::logic_error("Structured Text was compiled wrong: " + wrong);
