@@ -553,10 +553,9 @@ const Type* Checker::check_power(Expression& e, const Type* expected) {
         }
     }
     const auto is_narrow = [](const Type& t) { return t.is_any() || t.bits <= 32; };
-    const bool untyped = left->type->is_any() && right->type->is_any();
-    const bool narrow = (untyped && expected && is_single(*expected)) ||
-                        (is_single(*left->type) && is_narrow(*right->type)) ||
-                        (is_single(*right->type) && is_narrow(*left->type));
+    const bool wanted =
+        (expected && is_single(*expected)) || is_single(*left->type) || is_single(*right->type);
+    const bool narrow = wanted && is_narrow(*left->type) && is_narrow(*right->type);
     const Type& type = narrow ? real_type : lreal_type;
     const auto widen = [&](Expression*& operand) {
         if (widens(*operand->type, type) || operand->type->is_any()) return coerce(operand, type);
