@@ -569,6 +569,10 @@ const Form& program_form() {
                   "Structured Text (.st, .scl, .s7dcl, .udt, .db), files or folders, relative to "
                   "this file: "
                   "its programs and function blocks are types of blocks"),
+              key("overflow", one_of("what an overflow does", {"wrap", "fault"}),
+                  "what an integer of Structured Text does beyond its "
+                  "type: wrap, or end the scan with an error")
+                  .by_default("wrap"),
               key<read_blocks>(
                   "blocks",
                   named("a block", a_block(block_form)).filled("'blocks' has no block", block_help),

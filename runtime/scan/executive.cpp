@@ -112,7 +112,9 @@ Executive::Executive(Machine& machine) : machine_(machine), forces_(machine.forc
     interpolates_ =
         std::ranges::count(machine.replays, Replay::Between::interpolated, &Replay::between) > 0;
     nothing_waits_ = machine.devices.empty() && machine.triggers.empty() &&
-                     std::ranges::none_of(machine.tasks, &Task::takes_time);
+                     std::ranges::none_of(machine.tasks, [](const Task& task) {
+                         return task.takes_time() || task.on_overrun >= 0;
+                     });
     warned_.resize(machine.devices.size());
     running_.reserve(machine.tasks.size());
     result_.scans.resize(machine.tasks.size());

@@ -221,6 +221,36 @@ void Checker::check_standard_arguments(Expression& call, const Type& type) {
 
 // Standard functions.
 
+/// Arguments by name may stand in any order.
+bool Checker::put_in_order(Expression& call, const StandardFunction& f) {
+    const int count = static_cast<int>(call.arguments.size());
+    std::vector<Argument> sorted(call.arguments.size());
+    std::vector<std::string> names;
+    for (int i = 0; i < count; ++i) names.push_back(argument_name(f, i));
+    for (int i = 0; i < count; ++i) {
+        const Argument& argument = call.arguments[static_cast<std::size_t>(i)];
+        const auto is_called = [&](const std::string& name) {
+            return same_name(name, argument.name.text);
+        };
+        const auto it = argument.name.word == Word::end_of_file
+                            ? names.begin() + i
+                            : std::ranges::find_if(names, is_called);
+        const char* wrong = it == names.end() ? "not an argument of"
+                            : sorted[static_cast<std::size_t>(it - names.begin())].value
+                                ? "given twice to"
+                                : nullptr;
+        if (wrong) {
+            fail("L0907", argument.name.place,
+                 fmt::format("'{}' is {} {}", argument.name.text, wrong, f.name),
+                 fmt::format("it takes {}", fmt::join(names, ", ")));
+            return false;
+        }
+        sorted[static_cast<std::size_t>(it - names.begin())] = argument;
+    }
+    call.arguments = std::move(sorted);
+    return true;
+}
+
 const Type* Checker::check_standard_function(Expression& call, const Type* expected) {
     const Token& name = call.operands[0]->token;
     call.standard = find_standard_function(name.text);
@@ -253,15 +283,7 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
         return fail("L0907", call.operands[0]->place,
                     fmt::format("{} takes {}{} argument{}", f.name, f.least,
                                 f.most > f.least ? " or more" : "", f.most == 1 ? "" : "s"));
-    for (int i = 0; i < count; ++i) {
-        const Argument& argument = call.arguments[static_cast<std::size_t>(i)];
-        if (argument.name.word == Word::end_of_file) continue;
-        if (!same_name(argument.name.text, argument_name(f, i)))
-            return fail(
-                "L0907", argument.name.place,
-                fmt::format("'{}' is not argument {} of {}", argument.name.text, i + 1, f.name),
-                fmt::format("it is called {}", argument_name(f, i)));
-    }
+    if (!put_in_order(call, f)) return nullptr;
     const bool first_differs = f.rule == Rule::select || f.rule == Rule::multiplex;
     const bool passes = f.rule == Rule::extremum || f.rule == Rule::limit || first_differs ||
                         f.rule == Rule::move ||

@@ -10,6 +10,8 @@
 
 namespace lineshaft::st {
 
+struct StandardFunction;
+
 /// What check() keeps while it works: declarations.cpp, expressions.cpp, calls.cpp, statements.cpp.
 class Checker {
   public:
@@ -85,10 +87,11 @@ class Checker {
     const Type* check_binary(Expression& expression, const Type* expected);
     const Type* check_logic(Expression& expression);
     const Type* check_comparison(Expression& expression);
-    const Type* check_arithmetic(Expression& expression);
+    const Type* check_arithmetic(Expression& expression, const Type* expected);
     const Type* check_time_arithmetic(Expression& expression);
     const Type* check_power(Expression& expression, const Type* expected);
-    const Type* unite(Expression& expression);
+    const Type* unite(Expression& expression, const Type* expected = nullptr);
+    bool rounds(const Expression& expression, const Type& to);
     const Type* check_typed(Expression& expression);
     void fold(Expression& expression);
     void fold_unary(Expression& expression, const Constant& value);
@@ -114,6 +117,7 @@ class Checker {
     void check_argument(Expression& call, Argument& argument, Variable& parameter);
     void check_standard_arguments(Expression& call, const Type& type);
     Variable* find_parameter(Argument& argument, Routine& routine, std::size_t position);
+    bool put_in_order(Expression& call, const StandardFunction& function);
     const Type* check_standard_function(Expression& call, const Type* expected);
     const Type* check_conversion(Expression& call, std::string_view name);
     const Type* check_bcd(Expression& call, const Type* source, const Type& target, bool to_bcd);

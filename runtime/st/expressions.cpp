@@ -20,6 +20,16 @@ double as_real(const Expression& constant) {
                                     : static_cast<double>(constant.constant.integer);
 }
 
+bool is_single(const Type& type) {
+    return type.kind == Kind::real && type.bits == 32;
+}
+
+/// By the name of its file: all but the standard's ST.
+bool is_scl(const Expression& e) {
+    const std::string_view path = (*e.place.file)->path;
+    return !path.ends_with(".st") && !path.ends_with(".ST");
+}
+
 bool is_comparison(Word op) {
     return op >= Word::less && op <= Word::unequal;
 }
@@ -403,11 +413,11 @@ const Type* Checker::check_binary(Expression& e, const Type* expected) {
     if (is_logic(e.op)) return check_logic(e);
     if (is_comparison(e.op)) return check_comparison(e);
     if (e.op == Word::power) return check_power(e, expected);
-    return check_arithmetic(e);
+    return check_arithmetic(e, expected);
 }
 
 /// Brings both operands to one type, if there is one.
-const Type* Checker::unite(Expression& e) {
+const Type* Checker::unite(Expression& e, const Type* expected) {
     Expression *&left = e.operands[0], *&right = e.operands[1];
     const Type &a = *left->type, &b = *right->type;
     const Type* common = nullptr;
@@ -426,6 +436,8 @@ const Type* Checker::unite(Expression& e) {
         return common_type(typed, real_type);
     };
     if (const Type* real = a.is_any() ? real_of(a, b) : real_of(b, a)) common = real;
+    const bool narrows = expected && is_single(*expected) && common == &lreal_type && is_scl(e);
+    if (narrows && !same_type(a, lreal_type) && !same_type(b, lreal_type)) common = &real_type;
     if (!common) {
         const bool numbers = a.is_number() && b.is_number();
         return fail(
@@ -475,7 +487,7 @@ const Type* Checker::check_comparison(Expression& e) {
     return e.type;
 }
 
-const Type* Checker::check_arithmetic(Expression& e) {
+const Type* Checker::check_arithmetic(Expression& e, const Type* expected) {
     const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
     if (a.kind == Kind::time || b.kind == Kind::time) return check_time_arithmetic(e);
     for (const Expression* operand : e.operands) {
@@ -491,7 +503,7 @@ const Type* Checker::check_arithmetic(Expression& e) {
         return fail("L0905", operand->place,
                     fmt::format("'{}' does not go with {}", shown(e.op), describe(type)), help);
     }
-    e.type = unite(e);
+    e.type = unite(e, expected);
     if (e.type && e.type->kind == Kind::any_bits) e.type = &any_integer_type;
     if (e.type && e.op == Word::mod_ && e.type->is_real())
         return fail("L0905", e.token.place, "MOD takes whole numbers",
@@ -545,11 +557,9 @@ const Type* Checker::check_power(Expression& e, const Type* expected) {
         }
     }
     const auto is_narrow = [](const Type& t) { return t.is_any() || t.bits <= 32; };
-    const auto is_real = [](const Type& t) { return t.kind == Kind::real && t.bits == 32; };
-    const bool untyped = left->type->is_any() && right->type->is_any();
-    const bool narrow = (untyped && expected && is_real(*expected)) ||
-                        (is_real(*left->type) && is_narrow(*right->type)) ||
-                        (is_real(*right->type) && is_narrow(*left->type));
+    const bool wanted =
+        (expected && is_single(*expected)) || is_single(*left->type) || is_single(*right->type);
+    const bool narrow = wanted && is_narrow(*left->type) && is_narrow(*right->type);
     const Type& type = narrow ? real_type : lreal_type;
     const auto widen = [&](Expression*& operand) {
         if (widens(*operand->type, type) || operand->type->is_any()) return coerce(operand, type);
@@ -670,14 +680,22 @@ bool Checker::coerce_constant(Expression& e, const Type& to) {
     return true;
 }
 
-/// Siemens' SCL takes a bit string for an integer of its width or a wider one, and the other way.
+/// SCL takes a bit string for an integer of its width or a wider one, and the other way.
 bool is_same_pattern(const Expression& e, const Type& to) {
     const Type& from = *e.type;
     const bool mixes = (from.kind == Kind::bits && to.kind == Kind::integer) ||
                        (from.kind == Kind::integer && to.kind == Kind::bits);
-    const std::string_view path = (*e.place.file)->path;
-    return mixes && from.bits <= to.bits && !to.is_subrange && !path.ends_with(".st") &&
-           !path.ends_with(".ST");
+    return mixes && from.bits <= to.bits && !to.is_subrange && is_scl(e);
+}
+
+/// SCL makes a REAL of a DINT, which loses above 2^24.
+bool Checker::rounds(const Expression& e, const Type& to) {
+    const Type& from = e.type->plain();
+    if (!is_scl(e) || from.kind != Kind::integer || from.bits != 32 || !is_single(to)) return false;
+    out_.warn("L0906", e.place.mark(),
+              fmt::format("{} does not hold every {}", describe(to), from.name),
+              fmt::format("write {}_TO_{}(...) where it is meant", from.name, to.name));
+    return true;
 }
 
 bool Checker::coerce(Expression*& e, const Type& to) {
@@ -699,7 +717,8 @@ bool Checker::coerce(Expression*& e, const Type& to) {
     if (from.kind == Kind::enumeration && to.kind == Kind::enumeration && from.name == to.name &&
         from.values == to.values)
         return true;
-    const bool fits = from.is_scalar() && (widens(from, to) || is_same_pattern(*e, to));
+    const bool fits =
+        from.is_scalar() && (widens(from, to) || is_same_pattern(*e, to) || rounds(*e, to));
     if (!fits) return refuse_conversion(*e, to);
     convert(e, to);
     return true;

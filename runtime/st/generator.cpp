@@ -14,8 +14,8 @@ constexpr std::uint32_t region_mask = 3U << 30;
 
 }  // namespace
 
-Generated generate(Checked& checked, Diagnostics& out, bool covered) {
-    return Generator(checked, out, covered).generate();
+Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& options) {
+    return Generator(checked, out, options).generate();
 }
 
 Generated Generator::generate() {
@@ -258,7 +258,7 @@ void Generator::write_if(const Statement& s) {
         temporaries_ = kept;
         cover_branch(s, static_cast<std::size_t>(&branch - s.branches.data()));
         write_block(branch.body);
-        if (&branch != &s.branches.back() || !s.body.empty() || covered_)
+        if (&branch != &s.branches.back() || !s.body.empty() || options_.covered)
             jump(Op::jump, 0, 0, ends);
         land(skip);
     }

@@ -25,8 +25,12 @@ struct Generated {
     std::vector<Assertion> assertions;
 };
 
-/// L0912: more memory than a block may have. With `covered` the code counts what it executes, other
-/// than of the file of tests.
-Generated generate(Checked& checked, Diagnostics& out, bool covered = false);
+struct CodeOptions {
+    bool overflow_faults = false;  ///< an integer beyond its type is a fault, else it wraps
+    bool covered = false;          ///< count what is executed, other than of the file of tests
+};
+
+/// L0912: more memory than a block may have.
+Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& options);
 
 }  // namespace lineshaft::st

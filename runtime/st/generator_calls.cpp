@@ -227,6 +227,8 @@ Slot Generator::standard(const Expression& e, Slot wanted) {
             if (type.is_real()) return emit(Op::abs_lreal, wanted, argument(0));
             if (!type.is_signed) return argument(0);
             const Slot a = emit(Op::abs_signed, none, argument(0));
+            if (options_.overflow_faults && type.kind == Kind::integer && type.bits < 64)
+                return within(type, a);
             return emit(of_type(Op::wrap_sint, type), wanted, a);
         }
         case Rule::extremum:

@@ -31,8 +31,8 @@ struct Location {
 
 class Generator {
   public:
-    Generator(Checked& checked, Diagnostics& out, bool covered)
-        : checked_(checked), out_(out), covered_(covered) {}
+    Generator(Checked& checked, Diagnostics& out, const CodeOptions& options)
+        : checked_(checked), out_(out), options_(options) {}
     Generated generate();
 
   private:
@@ -80,6 +80,8 @@ class Generator {
     Slot result(Slot wanted) { return wanted == none ? new_temporary() : wanted; }
     Slot unary(const Expression& e, Slot wanted);
     Slot binary(const Expression& e, Slot wanted);
+    Slot exact(Word op, const Type& type, Slot a, Slot b, Slot wanted);
+    Slot within(const Type& type, Slot slot);
     Slot comparison(const Expression& e, Slot wanted);
     Slot lazy(const Expression& e);
     Slot bit(const Expression& e, Slot wanted);
@@ -142,9 +144,9 @@ class Generator {
 
     Checked& checked_;
     Diagnostics& out_;
+    CodeOptions options_;
     Code code_;
     std::vector<Assertion> assertions_;
-    bool covered_ = false;
     bool has_tests_ = false;
     const SourceFile* test_file_ = nullptr;
     std::unordered_map<const Type*, Image> images_;

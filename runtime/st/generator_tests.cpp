@@ -175,7 +175,7 @@ void Generator::count_call(const Location& calls, std::vector<std::uint32_t>& ru
 }
 
 void Generator::cover(CoverPoint::Kind kind, Place place, std::size_t branch) {
-    if (!covered_ || place.file->get() == test_file_) return;
+    if (!options_.covered || place.file->get() == test_file_) return;
     const bool is_function = kind == CoverPoint::Kind::function;
     put(Op::cover, static_cast<Slot>(code_.points.size()));
     code_.points.push_back({kind, place, static_cast<std::uint32_t>(branch),

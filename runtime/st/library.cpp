@@ -364,7 +364,7 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
                                const Catalog& standard, Diagnostics& out, const Options& options) {
     const auto made = std::make_shared<Library::Made>();
     made->sources = sources;
-    if (!compile(*made, standard, out)) return {};
+    if (!compile(*made, standard, out, options.overflow_faults)) return {};
     const auto& routines = made->generated.code.routines;
     std::unordered_map<std::string_view, const CodeRoutine*> codes;
     for (const CodeRoutine& code : routines) codes.emplace(code.name, &code);

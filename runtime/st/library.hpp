@@ -14,8 +14,9 @@ namespace lineshaft::st {
 
 struct Options {
     std::int64_t fuel =
-        10'000'000;       ///< passes of loops and calls that one scan of a block may take
-    bool counts = false;  ///< count executed instructions, see `Library::counts`
+        10'000'000;                ///< passes of loops and calls that one scan of a block may take
+    bool counts = false;           ///< count executed instructions, see `Library::counts`
+    bool overflow_faults = false;  ///< an integer beyond its type is a fault: it does not wrap
 };
 
 /// Where the last scan of an instance ended with a fault.

@@ -119,6 +119,7 @@
     OP(text_of_real, text, "rr-", write_number(target(U(a)), R(b)))                                  \
     OP(integer_of_text, text, "wr-", if (!read_number<std::int64_t>(target(U(b)), [&](auto v) { put(a, v); })) FAIL(out_of_range)) \
     OP(real_of_text, text, "wr-", if (!read_number<double>(target(U(b)), [&](auto v) { put(a, v); })) FAIL(out_of_range)) \
+    LINESHAFT_ST_EXACT(OP, signed, std::int64_t) LINESHAFT_ST_EXACT(OP, unsigned, std::uint64_t)     \
     OP(from_bcd, integer, "wr-", if (!from_bcd(U(b), [&](auto v) { put(a, v); })) FAIL(out_of_range)) \
     OP(to_bcd, integer, "wrn", if (!to_bcd(U(b), c, [&](auto v) { put(a, v); })) FAIL(out_of_range)) \
     OP(is_bcd, integer, "wr-", put(a, std::uint64_t{from_bcd(U(b), [](auto) {})}))                   \
@@ -136,6 +137,12 @@
     OP(neg_##type, integer, "wr-", put(a, wrap<T>(0 - U(b))))                                        \
     OP(wrap_##type, integer, "wr-", put(a, wrap<T>(U(b))))                                           \
     OP(round_##type, real, "wr-", if (!fits<T>(std::nearbyint(R(b)))) FAIL(out_of_range); put(a, whole<T>(std::nearbyint(R(b)))))
+
+/// Arithmetic of 64 bits: what is beyond them is a fault.
+#define LINESHAFT_ST_EXACT(OP, type, T)                                                              \
+    OP(add_exact_##type, integer, "wrr", T sum; if (__builtin_add_overflow(T(U(b)), T(U(c)), &sum)) FAIL(out_of_range); put(a, sum)) \
+    OP(sub_exact_##type, integer, "wrr", T sum; if (__builtin_sub_overflow(T(U(b)), T(U(c)), &sum)) FAIL(out_of_range); put(a, sum)) \
+    OP(mul_exact_##type, integer, "wrr", T sum; if (__builtin_mul_overflow(T(U(b)), T(U(c)), &sum)) FAIL(out_of_range); put(a, sum))
 
 #define LINESHAFT_ST_SHIFTS(OP, bits)                                                                \
     OP(shl_##bits, boolean, "wrr", put(a, shift_left<bits>(U(b), U(c))))                             \

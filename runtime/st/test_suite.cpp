@@ -172,7 +172,7 @@ std::optional<TestSuite> compile_tests(
     made->options = options;
     made->sources = sources;
     made->sources.push_back(file);
-    if (!compile(*made, standard, out, file.get())) return {};
+    if (!compile(*made, standard, out, false, file.get())) return {};
     const CodeRoutine* code = made->generated.code.routines.data();
     for (const Routine* routine : made->checked.order) made->add(*routine, *code++);
     for (const Assertion& assertion : made->generated.assertions)

@@ -65,6 +65,8 @@ Slot Generator::unary(const Expression& e, Slot wanted) {
         return emit(Op::not_bits, wanted, operand, static_cast<Slot>(type.bits));
     }
     if (type.is_real()) return emit(Op::neg_lreal, wanted, operand);
+    if (options_.overflow_faults && type.kind == Kind::integer)
+        return exact(Word::minus, type, constant_slot(0), operand, wanted);
     return emit(of_type(Op::neg_sint, type), wanted, operand);
 }
 
@@ -102,6 +104,8 @@ Slot Generator::binary(const Expression& e, Slot wanted) {
                         ? of_op(Op::add_real, Op::sub_real, Op::mul_real, Op::div_real)
                         : of_op(Op::add_lreal, Op::sub_lreal, Op::mul_lreal, Op::div_lreal),
                     wanted, a, b);
+    if (options_.overflow_faults && type.kind == Kind::integer)
+        return exact(e.op, type, a, b, wanted);
     const Op family = e.op == Word::mod_
                           ? Op::mod_sint
                           : of_op(Op::add_sint, Op::sub_sint, Op::mul_sint, Op::div_sint);
@@ -129,6 +133,29 @@ Slot Generator::comparison(const Expression& e, Slot wanted) {
     if (type.is_real()) return emit(less ? Op::lt_float : Op::le_float, wanted, a, b);
     if (type.is_unsigned_64()) return emit(less ? Op::lt_unsigned : Op::le_unsigned, wanted, a, b);
     return emit(less ? Op::lt_signed : Op::le_signed, wanted, a, b);
+}
+
+/// What is beyond its type is a fault. Of a narrow type as a LINT, which holds it all.
+Slot Generator::exact(Word op, const Type& type, Slot a, Slot b, Slot wanted) {
+    const bool narrow = type.bits < 64;
+    const auto pick = [&](Op wide, Op signed_one, Op unsigned_one) {
+        return narrow ? wide : type.is_signed ? signed_one : unsigned_one;
+    };
+    const Op of =
+        op == Word::plus    ? pick(Op::add_lint, Op::add_exact_signed, Op::add_exact_unsigned)
+        : op == Word::minus ? pick(Op::sub_lint, Op::sub_exact_signed, Op::sub_exact_unsigned)
+        : op == Word::times
+            ? pick(Op::mul_lint, Op::mul_exact_signed, Op::mul_exact_unsigned)
+            : of_type(op == Word::mod_ ? Op::mod_sint : Op::div_sint, narrow ? lint_type : type);
+    const Slot made = emit(of, narrow ? none : wanted, a, b);
+    return narrow ? within(type, made) : made;
+}
+
+Slot Generator::within(const Type& type, Slot slot) {
+    const auto least = static_cast<std::int64_t>(smallest(type));
+    const auto count = static_cast<std::uint64_t>(largest(type) - smallest(type)) + 1;
+    put(Op::within, 0, slot, table({least, count, 1}));
+    return slot;
 }
 
 /// AND_THEN, OR_ELSE. Not into a variable, which the right side may read.

@@ -89,7 +89,7 @@ std::unique_ptr<Program> prepare(std::string text, std::uint64_t seed) {
     for (const Routine& routine : p.checked.routines)
         if (routine.pou->kind == PouKind::program) p.main = &routine;
     if (!p.main) return program;
-    p.generated = generate(p.checked, out);
+    p.generated = generate(p.checked, out, {});
     p.parts = parts_of(p.checked, *p.main);
     Random random(seed, "inputs");
     for (int i = 0; i < scans; ++i) {

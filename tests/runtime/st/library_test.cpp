@@ -1,10 +1,14 @@
 #include "runtime/st/library.hpp"
 
 #include <cstring>
+#include <random>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/st/elementary.hpp"
+#include "runtime/st/literals.hpp"
 #include "tests/allocations.hpp"
 #include "tests/runtime/st/instance.hpp"
 
@@ -54,6 +58,52 @@ TEST_CASE("Structured Text: variables are fields of the kind", "[st]") {
     for (const std::string_view name : st::retained(kind)) retained.emplace_back(name);
     CHECK(retained == std::vector<std::string>{"table[1]", "table[2]", "delay.in", "delay.pt",
                                                "delay.q", "delay.et"});
+}
+
+TEST_CASE("Structured Text: with overflow_faults an integer's overflow is a fault", "[st]") {
+    const unsigned seed = Catch::rngSeed() != 0 ? Catch::rngSeed() : 1;
+    INFO("seed " << seed);
+    std::mt19937_64 chance(seed);
+    for (const char* name : {"SINT", "INT", "DINT", "LINT", "USINT", "UINT", "UDINT", "ULINT"}) {
+        const st::Type& type = *st::find_elementary(name);
+        const st::Library library = compiled(
+            fmt::format("FUNCTION_BLOCK Job VAR_INPUT op : INT; a, b : {0}; END_VAR\n"
+                        "VAR_OUTPUT x : {0}; END_VAR\n"
+                        "CASE op OF 0: x := a + b; 1: x := a - b; 2: x := a * b; 3: x := a / b;\n"
+                        "4: x := a MOD b; 5: x := -a; 6: x := a; x += b; END_CASE;\n"
+                        "END_FUNCTION_BLOCK\n",
+                        name),
+            {.overflow_faults = true});
+        st::Instances instances(library);
+        const auto place = [&](std::string_view port) {
+            return instances.memory(0) + field(library.kinds()[0], port).offset;
+        };
+        const auto some = [&] {
+            const int bits = static_cast<int>(chance() % static_cast<unsigned>(type.bits + 1));
+            const st::Wide value = bits == 0 ? 0 : st::Wide{chance() >> (64 - bits)};
+            return st::wrapped(type, chance() % 4 == 0 ? st::largest(type) - value : value);
+        };
+        for (int i = 0; i < 4000; ++i) {
+            const auto op = static_cast<std::int64_t>(chance() % 7);
+            const st::Wide a = some(), b = some();
+            if (type.is_unsigned_64() && (a >> 63 != 0 || b >> 63 != 0)) continue;  // no wire
+            if (b == 0 && (op == 3 || op == 4)) continue;
+            if (op == 3 && type.bits == 64 && b == -1) continue;
+            const st::Wide right[] = {a + b, a - b, a * b, b == 0 ? 0 : a / b, b == 0 ? 0 : a % b,
+                                      -a,    a + b};
+            const st::Wide wanted = right[op];
+            store(Type::integer, place("op"), op);
+            store(Type::integer, place("a"), static_cast<std::int64_t>(a));
+            store(Type::integer, place("b"), static_cast<std::int64_t>(b));
+            instances.scan(i, 1);
+            INFO(name << " op " << op << " of " << st::to_string(a) << " and " << st::to_string(b));
+            const bool fits = wanted >= st::smallest(type) && wanted <= st::largest(type);
+            CHECK(instances.text("error") == (fits ? "false" : "true"));
+            if (fits)
+                CHECK(std::get<std::int64_t>(load(Type::integer, place("x"))) ==
+                      static_cast<std::int64_t>(wanted));
+        }
+    }
 }
 
 TEST_CASE("Structured Text: a wire's value beyond an input's type is a fault", "[st]") {
