@@ -522,7 +522,7 @@ class SourceMaker {
         if (depth <= 0) return leaf(type);
         if (type.base) return into_subrange(type, depth);
         if (below(9) == 8)
-            if (auto text = pure_call(type, depth)) return *text;
+            if (auto text = function_call(type, depth)) return *text;
         switch (type.kind) {
             case Kind::boolean:
                 return boolean(type, depth);
@@ -926,18 +926,17 @@ class SourceMaker {
     /// A whole array or structure: a variable of its type, or what a function gives.
     Text aggregate(const Type& type, int depth) {
         if (depth > 0 && below(3) == 2)
-            if (auto made = pure_call(type, 1)) return *made;
+            if (auto made = function_call(type, 1)) return *made;
         if (depth > 1 && below(4) == 3) return selection(type, depth - 1);
         return {*place(type, false)};
     }
 
     // Calls.
 
-    std::optional<Text> pure_call(const Type& type, int depth) {
+    std::optional<Text> function_call(const Type& type, int depth) {
         std::vector<const Callable*> fitting;
         for (const Callable& callable : callables_)
-            if (callable.result == &type && callable.pure && !callable.is_method)
-                fitting.push_back(&callable);
+            if (callable.result == &type && !callable.is_method) fitting.push_back(&callable);
         if (fitting.empty()) return {};
         const Callable& callable = *choices_.one_of(fitting);
         const auto given = arguments(callable, depth - 1);
