@@ -319,7 +319,7 @@ const Type* Checker::check_bit(Expression& e) {
                : letter == 'W' || letter == 'w'              ? 16
                : letter == 'D' || letter == 'd'              ? 32
                                                              : 0;
-        text.remove_prefix(has_letter ? 2 : 1);
+        text.remove_prefix(std::min<std::size_t>(text.size(), has_letter ? 2 : 1));
     }
     const auto number = read_integer(text);
     if (!number || bits == 0)
