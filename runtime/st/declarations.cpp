@@ -376,6 +376,11 @@ void Checker::check_elements(Expression& list, const Type& array) {
 
 void Checker::check_members(Expression& list, const Type& type) {
     for (Argument& argument : list.arguments) {
+        if (argument.name.word == Word::end_of_file) {
+            fail("L0905", argument.value->place, "this value has no name",
+                 fmt::format("name the member of {}: (name := value)", describe(type)));
+            continue;
+        }
         std::vector<std::string> names;
         const auto& members = type.members;
         for (const Variable* member : members) names.emplace_back(member->text);

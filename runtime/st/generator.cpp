@@ -230,7 +230,7 @@ void Generator::jump_unless(const Expression& condition, std::vector<std::uint32
                           e.operands[0]->type->kind != Kind::text;
     if (!compares) return jump(Op::jump_unless, 0, value(e), to);
     const Type& type = *e.operands[0]->type;
-    Slot a = value(*e.operands[0]), b = value(*e.operands[1]);
+    Slot a = value_before(*e.operands[0], *e.operands[1]), b = value(*e.operands[1]);
     const bool swapped = e.op == Word::greater || e.op == Word::greater_or_equal;
     if (swapped) std::swap(a, b);
     const bool equal = e.op == Word::equal || e.op == Word::unequal;

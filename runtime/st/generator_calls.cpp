@@ -10,19 +10,19 @@ using Kind = Type::Kind;
 using E = Expression::Kind;
 using Mode = Location::Mode;
 
-bool has_call(const Expression& e) {
-    if (e.kind == E::call && e.routine) return true;
-    for (const Expression* operand : e.operands)
-        if (operand && has_call(*operand)) return true;
-    return std::ranges::any_of(e.arguments, [](const Argument& a) { return has_call(*a.value); });
-}
-
 /// A test sets an output or a local by its name.
 bool is_set(const Argument& argument) {
     return argument.name.word != Word::end_of_file && !argument.is_output;
 }
 
 }  // namespace
+
+bool has_call(const Expression& e) {
+    if (e.kind == E::call && e.routine) return true;
+    for (const Expression* operand : e.operands)
+        if (operand && has_call(*operand)) return true;
+    return std::ranges::any_of(e.arguments, [](const Argument& a) { return has_call(*a.value); });
+}
 
 Slot Generator::call(const Expression& e, Slot wanted) {
     if (!e.routine) return standard(e, wanted);
@@ -201,7 +201,7 @@ void Generator::take(const Location& frame, const Expression& e) {
 
 Slot Generator::standard(const Expression& e, Slot wanted) {
     const StandardFunction& f = standard_functions()[static_cast<std::size_t>(e.standard)];
-    const auto argument = [&](std::size_t i) { return value(*e.arguments[i].value); };
+    const auto argument = [&](std::size_t i) { return value_before(*e.arguments[i].value, e); };
     const Type& type = *e.type;
     const bool narrow = type.kind == Kind::real && type.bits == 32;
     const auto rounded = [&](Slot slot) { return narrow ? emit(Op::narrow, wanted, slot) : slot; };
@@ -305,7 +305,7 @@ Slot Generator::extremum(const Expression& e, bool greatest, Slot wanted) {
     const Op op = type.is_real()          ? (greatest ? Op::max_lreal : Op::min_lreal)
                   : type.is_unsigned_64() ? (greatest ? Op::max_unsigned : Op::min_unsigned)
                                           : (greatest ? Op::max_signed : Op::min_signed);
-    Slot so_far = value(*e.arguments[0].value);
+    Slot so_far = value_before(*e.arguments[0].value, e);
     for (std::size_t i = 1; i < e.arguments.size(); ++i) {
         const bool last = i + 1 == e.arguments.size();
         so_far = emit(op, last ? wanted : none, so_far, value(*e.arguments[i].value));

@@ -77,6 +77,7 @@ class Generator {
     // values.cpp
     Slot value(const Expression& e, Slot wanted = none);
     void value_to(const Expression& e, Slot to);
+    Slot value_before(const Expression& e, const Expression& later);
     Slot result(Slot wanted) { return wanted == none ? new_temporary() : wanted; }
     Slot unary(const Expression& e, Slot wanted);
     Slot binary(const Expression& e, Slot wanted);
@@ -172,6 +173,9 @@ class Generator {
     };
     std::vector<Loop> loops_;
 };
+
+/// A function or a method is called in it, which may write variables.
+bool has_call(const Expression& e);
 
 /// An opcode of a family, for a type: `add_sint` and DINT give `add_dint`.
 Op of_type(Op first, const Type& type);

@@ -56,6 +56,13 @@ void Generator::value_to(const Expression& e, Slot to) {
     if (from != to) put(Op::move, to, from);
 }
 
+/// A value that stays what it is while `later` is computed: operands go from left to right.
+Slot Generator::value_before(const Expression& e, const Expression& later) {
+    const Slot slot = value(e);
+    const bool is_variable = e.kind == E::name || e.kind == E::member;
+    return is_variable && has_call(later) ? emit(Op::move, none, slot) : slot;
+}
+
 Slot Generator::unary(const Expression& e, Slot wanted) {
     const Slot operand = value(*e.operands[0]);
     const Type& type = *e.type;
@@ -74,7 +81,7 @@ Slot Generator::binary(const Expression& e, Slot wanted) {
     if (e.op >= Word::less && e.op <= Word::unequal) return comparison(e, wanted);
     if (e.op == Word::and_then_ || e.op == Word::or_else_) return lazy(e);
     const Type& type = *e.type;
-    Slot a = value(*e.operands[0]), b = value(*e.operands[1]);
+    Slot a = value_before(*e.operands[0], *e.operands[1]), b = value(*e.operands[1]);
     if (type.kind == Kind::time && e.operands[1]->type->is_real()) {
         const Slot real = emit(Op::lreal_from_signed, none, a);
         const Slot product =
@@ -121,7 +128,7 @@ Slot Generator::comparison(const Expression& e, Slot wanted) {
         a = emit(Op::text_compare, none, left, right);
         b = constant_slot(0);
     } else {
-        a = value(*e.operands[0]), b = value(*e.operands[1]);
+        a = value_before(*e.operands[0], *e.operands[1]), b = value(*e.operands[1]);
     }
     if (e.op == Word::greater || e.op == Word::greater_or_equal) std::swap(a, b);
     if (e.op == Word::equal || e.op == Word::unequal) {
@@ -174,7 +181,7 @@ Slot Generator::bit(const Expression& e, Slot wanted) {
 }
 
 void Generator::store_bits(const Expression& target, const Expression& from) {
-    const Slot bits = value(from);
+    const Slot bits = value_before(from, target);
     const Location whole = locate(*target.operands[0]);
     const Type& type = *target.operands[0]->type;
     const Slot slot = load(whole);

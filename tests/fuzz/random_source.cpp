@@ -55,7 +55,7 @@ struct Callable {
     const Type* result = nullptr;  ///< null: none
     const Type* of = nullptr;      ///< the block of a method or of an instance
     bool is_method = false;
-    bool pure = true;  ///< changes nothing but its result, so that it may stand in any expression
+    bool pure = true;  ///< changes nothing but its result
     std::vector<Parameter> parameters = {};
 };
 
@@ -522,7 +522,7 @@ class SourceMaker {
         if (depth <= 0) return leaf(type);
         if (type.base) return into_subrange(type, depth);
         if (below(9) == 8)
-            if (auto text = pure_call(type, depth)) return *text;
+            if (auto text = function_call(type, depth)) return *text;
         switch (type.kind) {
             case Kind::boolean:
                 return boolean(type, depth);
@@ -588,7 +588,7 @@ class SourceMaker {
             case 6:
                 return comparison(depth);
             case 7:
-                if (auto made = bit_of(1, depth)) return *made;
+                if (auto made = bit_of(1)) return *made;
                 return leaf(type);
             case 8:
                 return {fmt::format("IS_VALID({})",
@@ -616,7 +616,7 @@ class SourceMaker {
     }
 
     /// A part of a whole number: `.%X3`, `.3`, `.%B0`.
-    std::optional<Text> bit_of(int bits, int) {
+    std::optional<Text> bit_of(int bits) {
         std::vector<const Type*> fitting;
         for (const Type* t : scalars_)
             if (is_whole(*t) && !t->base && (t->bits > bits || bits == 1)) fitting.push_back(t);
@@ -704,11 +704,12 @@ class SourceMaker {
             case 10:
                 return selection(type, depth);
             case 11:
-                return {found_in_text(type, depth)};
+                return {whole_of_other(type, depth)};
         }
     }
 
-    std::string found_in_text(const Type& type, int depth) {
+    /// Of a real number, or of texts.
+    std::string whole_of_other(const Type& type, int depth) {
         const Type& any = *choices_.one_of(texts_);
         if (type.name == "DINT") {
             const char* const names[] = {"ROUND", "TRUNC", "FLOOR", "CEIL"};
@@ -796,7 +797,7 @@ class SourceMaker {
                 return selection(type, depth);
             case 7:
                 if (type.bits < 64)
-                    if (auto made = bit_of(type.bits, depth)) return *made;
+                    if (auto made = bit_of(type.bits)) return *made;
                 return leaf(type);
         }
     }
@@ -926,18 +927,17 @@ class SourceMaker {
     /// A whole array or structure: a variable of its type, or what a function gives.
     Text aggregate(const Type& type, int depth) {
         if (depth > 0 && below(3) == 2)
-            if (auto made = pure_call(type, 1)) return *made;
+            if (auto made = function_call(type, 1)) return *made;
         if (depth > 1 && below(4) == 3) return selection(type, depth - 1);
         return {*place(type, false)};
     }
 
     // Calls.
 
-    std::optional<Text> pure_call(const Type& type, int depth) {
+    std::optional<Text> function_call(const Type& type, int depth) {
         std::vector<const Callable*> fitting;
         for (const Callable& callable : callables_)
-            if (callable.result == &type && callable.pure && !callable.is_method)
-                fitting.push_back(&callable);
+            if (callable.result == &type && !callable.is_method) fitting.push_back(&callable);
         if (fitting.empty()) return {};
         const Callable& callable = *choices_.one_of(fitting);
         const auto given = arguments(callable, depth - 1);

@@ -20,34 +20,39 @@ class Blocks {
             starts_.push_back(memory_.size());
             memory_.resize(memory_.size() + kind.size / 8);
         }
-        for (std::size_t i = 0; i < starts_.size(); ++i) library.kinds()[i].construct(place(i));
+        find_places();
+        for (std::size_t i = 0; i < starts_.size(); ++i) library.kinds()[i].construct(places_[i]);
         for (std::size_t i = 0; i < starts_.size(); ++i) bind(i);
     }
 
     /// All programs; their inputs have other values now and then.
     void scan(int number, Random& random) {
         const Scan now{number * std::int64_t{7'000'000}, 7'000'000, number};
-        std::vector<std::byte*> places;
-        for (std::size_t i = 0; i < starts_.size(); ++i) places.push_back(place(i));
         for (std::size_t i = 0; i < starts_.size(); ++i) {
             const BlockType& kind = library_.kinds()[i];
             if (!kind.doc.starts_with("PROGRAM")) continue;
-            if (random.below(4) == 0) set_inputs(kind, places[i], random);
-            const bool error = kind.scan_blocks(places[i], 1, now, {kind.context, places.data()});
-            const bool told = library_.fault(kind, places[i]).fault != st::Fault::none;
+            if (random.below(4) == 0) set_inputs(kind, places_[i], random);
+            const bool error = kind.scan_blocks(places_[i], 1, now, {kind.context, places_.data()});
+            const bool told = library_.fault(kind, places_[i]).fault != st::Fault::none;
             disagrees |= error != told;
         }
     }
 
     /// The same memory elsewhere: nothing in it may be an address.
-    void move() { memory_ = std::vector<std::uint64_t>(memory_); }
+    void move() {
+        auto elsewhere = memory_;
+        std::swap(memory_, elsewhere);
+        find_places();
+    }
 
     const std::vector<std::uint64_t>& memory() const { return memory_; }
     bool disagrees = false;
 
   private:
-    std::byte* place(std::size_t i) {
-        return reinterpret_cast<std::byte*>(memory_.data() + starts_[i]);
+    void find_places() {
+        places_.clear();
+        for (const std::size_t start : starts_)
+            places_.push_back(reinterpret_cast<std::byte*>(memory_.data() + start));
     }
 
     void bind(std::size_t i) {
@@ -56,7 +61,7 @@ class Blocks {
             std::int64_t number = 0;
             for (const BlockType& kind : library_.kinds()) {
                 if (kind.name == field.refers)
-                    store(Type::integer, place(i) + field.offset, number);
+                    store(Type::integer, places_[i] + field.offset, number);
                 ++number;
             }
         }
@@ -79,6 +84,7 @@ class Blocks {
     const st::Library& library_;
     std::vector<std::uint64_t> memory_;
     std::vector<std::size_t> starts_;
+    std::vector<std::byte*> places_;
 };
 
 }  // namespace
