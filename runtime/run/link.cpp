@@ -22,7 +22,8 @@ std::shared_ptr<const Catalog> kinds_of(const Program& program, const Catalog& c
     auto kinds = std::make_shared<Catalog>();
     if (program.texts.empty()) return kinds;
     Diagnostics found;
-    const auto library = st::compile(program.texts, catalog, found);
+    const auto library =
+        st::compile(program.texts, catalog, found, {.times = program.instruction_times});
     for (const Diagnostic& d : found.warnings()) out.warn(d.code, d.mark, d.message, d.help);
     for (const Diagnostic& d : found.list()) out.add(d.code, d.mark, d.message, d.help);
     if (!library) return {};

@@ -12,7 +12,7 @@ struct Generated {
     std::unordered_map<const Type*, std::vector<std::uint64_t>> images;
 };
 
-/// L0912: more memory than a block may have.
-Generated generate(Checked& checked, Diagnostics& out);
+/// L0912: more memory than a block may have. Code that `counts` its instructions has none fused.
+Generated generate(Checked& checked, Diagnostics& out, bool counts);
 
 }  // namespace lineshaft::st

@@ -54,7 +54,8 @@ Location Generator::method_base(const Expression& e) {
 void Generator::call_routine(const Expression& e) {
     const Routine& routine = *e.routine;
     const bool is_function = routine.is_function();
-    const Location frame = is_function ? Location{Mode::slot, Region::window} : method_base(e);
+    Location frame = is_function ? Location{Mode::slot, Region::window} : method_base(e);
+    if (frame.mode == Mode::indexed) frame = as_address(frame);
     give(frame, e, routine);
     place_ = e.place;
     if (frame.mode == Mode::slot)

@@ -54,7 +54,8 @@ bool is_in_range(const KindContext::Check& check, std::byte* instance) {
 
 /// Before the first instruction.
 bool refuse(const KindContext& kind, std::byte* instance, Fault fault) {
-    const std::uint64_t header[] = {1, static_cast<std::uint64_t>(fault), kind.routine->entry, 0};
+    const std::uint64_t header[] = {1, static_cast<std::uint64_t>(fault), kind.routine->entry, 0,
+                                    0};
     std::memcpy(instance, header, sizeof header);
     return true;
 }
@@ -68,8 +69,9 @@ bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
     }
     for (const KindContext::Check& check : kind.checks)
         if (!is_in_range(check, instance)) return refuse(kind, instance, Fault::out_of_range);
+    const auto& times = kind.options.times;
     return execute(*kind.code, *kind.routine, instance, now, context, kind.options.fuel,
-                   kind.options.counts) != Fault::none;
+                   times ? times->data() : nullptr) != Fault::none;
 }
 
 bool scan_blocks(std::byte* first, std::size_t count, const Scan& now, const Context& context) {
@@ -354,6 +356,7 @@ BlockType block_type(const KindContext& kind, const std::shared_ptr<const Librar
     type.shift = shift;
     type.why = why;
     type.single = !kind.routine;
+    if (kind.routine && kind.options.times) type.time_taken = 8 * std::size_t{time_slot};
     type.context = &kind;
     type.owner = made;
     return type;
@@ -369,7 +372,7 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     if (!out.empty()) return {};
     made->checked = check(made->tree, standard, out);
     if (!out.empty()) return {};
-    made->generated = generate(made->checked, out);
+    made->generated = generate(made->checked, out, options.times.has_value());
     if (!out.empty()) return {};
     const std::string wrong = verify(made->generated.code);
     if (!wrong.empty()) throw std::logic_error("Structured Text was compiled wrong: " + wrong);

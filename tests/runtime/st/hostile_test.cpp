@@ -15,8 +15,7 @@ namespace {
 /// Compiles it, and if it is right scans it a few times with little fuel. It must come back.
 void try_out(const std::string& text) {
     Diagnostics out;
-    const auto library =
-        st::compile({st::source(text)}, standard_blocks(), out, {.fuel = 2000, .counts = false});
+    const auto library = st::compile({st::source(text)}, standard_blocks(), out, {.fuel = 2000});
     CHECK(library.has_value() == out.empty());
     if (!out.empty()) {
         CHECK(!out.render().empty());
