@@ -50,9 +50,10 @@ struct BlockType {
     void (*shift)(std::byte* block, std::int64_t by, const void* context) = nullptr;  ///< or null
     std::string (*why)(const std::byte* block,
                        const void* context) = nullptr;  ///< where its last error came from; or null
-    bool single = false;                     ///< one a program, without an entry: a data block
-    const void* context = nullptr;           ///< what all blocks of the kind share; may be null
-    std::shared_ptr<const void> owner = {};  ///< of a kind that a program brings along
+    std::optional<std::size_t> time_taken = {};  ///< place of what a scan took: std::int64_t [ns]
+    bool single = false;                         ///< one a program, without an entry: a data block
+    const void* context = nullptr;               ///< what all blocks of the kind share; may be null
+    std::shared_ptr<const void> owner = {};      ///< of a kind that a program brings along
 
     /// Whether `b` means the name `a` of the kind or of one of its fields.
     bool is_called(std::string_view a, std::string_view b) const;

@@ -132,6 +132,8 @@ void fill_blocks(Layout& layout) {
         machine.instances[i] = place.live;
         task.infos.push_back({block.described(), block.cost});
         add_error_flag(block, place.live, task);
+        if (const auto at = block.type->time_taken)
+            task.times_taken.push_back(reinterpret_cast<const std::int64_t*>(place.live + *at));
         add_seed(block, place.live, machine);
         if (is_device)
             machine.devices.push_back({.calls = block.type->device,
@@ -173,6 +175,9 @@ Machine lay_out(const Net& net) {
     for (const TaskSettings& settings : net.tasks)
         static_cast<TaskSettings&>(machine.tasks.emplace_back()) = settings;
     Layout layout{net, machine, levels_of(net), kinds_of(net)};
+    for (const Instance& block : net.instances)
+        if (block.known() && block.type->time_taken)
+            machine.tasks[static_cast<std::size_t>(block.task)].is_timed = true;
     place_blocks(layout);
     place_tasks(layout);
     fill_blocks(layout);

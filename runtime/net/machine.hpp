@@ -136,7 +136,9 @@ struct TaskSettings {
     int on_overrun = -1;                      ///< index of the time-error task; -1: STOP
     std::vector<CostStimulus> costs;          ///< sorted
 
-    bool takes_time() const { return cost > 0 || cost_jitter > 0 || !costs.empty(); }
+    bool is_timed = false;  ///< a block in it says what its scan took
+
+    bool takes_time() const { return cost > 0 || cost_jitter > 0 || !costs.empty() || is_timed; }
 };
 
 /// A task ready to run: one flat list.
@@ -145,8 +147,9 @@ struct Task : TaskSettings {
     std::vector<BlockInfo> infos;  ///< in the order of the file
     Wires wires;
     std::vector<ErrorFlag> errors;
-    std::vector<Stimulus> stimuli;   ///< by scan, sorted
-    std::byte* live = nullptr;       ///< the task's blocks
+    std::vector<const std::int64_t*> times_taken;  ///< by its blocks in a scan [ns]
+    std::vector<Stimulus> stimuli;                 ///< by scan, sorted
+    std::byte* live = nullptr;                     ///< the task's blocks
     std::byte* published = nullptr;  ///< what others see of them: the same place without cost
     std::size_t size = 0;            ///< bytes of either
 };

@@ -12,6 +12,7 @@
 #include "runtime/source/diagnostic.hpp"
 #include "runtime/source/reader.hpp"
 #include "runtime/source/yaml_files.hpp"
+#include "runtime/st/op_class.hpp"
 
 namespace lineshaft {
 
@@ -131,6 +132,7 @@ struct Program {
     std::string title;
     std::vector<std::pair<std::string, std::string>> parameters;  ///< name, value in force
     std::vector<TaskPlan> tasks;
+    std::optional<st::InstructionTimes> instruction_times;  ///< of the controller
     bool tasks_known = true;  ///< false: not all could be read, a name may be one of the missing
     std::vector<BlockPlan> blocks;
     std::vector<Node> sources;                             ///< files and folders of Structured Text

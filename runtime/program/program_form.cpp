@@ -138,6 +138,43 @@ Key tasks_key(std::string_view doc) {
         "tasks", named("a task", a_form(task_form)).filled("'tasks' has no task", task_help), doc);
 }
 
+// What instructions take
+
+template <st::OpClass of>
+void read_time(const Reader& read, const Node& node, st::InstructionTimes& times) {
+    times[static_cast<std::size_t>(of)] = read.time(node).value_or(0);
+}
+
+const Form& instruction_time_form() {
+    using enum st::OpClass;
+    static const Form form = form_of<st::InstructionTimes>(
+        {.name = "instruction_time",
+         .what = "'instruction_time'",
+         .doc = "what an instruction of Structured Text takes. A scan's execution time is then what "
+                "its task's cost says, and what the code that it executes takes",
+         .keys = {key<read_time<boolean>>("bool", a_time, "AND, OR, NOT, shifts, bits of words")
+                      .by_default("0 s"),
+                  key<read_time<integer>>(
+                      "integer", a_time,
+                      "arithmetic and comparisons of whole numbers and times, an array's index")
+                      .by_default("0 s"),
+                  key<read_time<real>>("real", a_time, "arithmetic, comparisons and functions")
+                      .by_default("0 s"),
+                  key<read_time<text>>("text", a_time, "functions of a STRING").by_default("0 s"),
+                  key<read_time<move>>("move", a_time, "an assignment, also of a structure")
+                      .by_default("0 s"),
+                  key<read_time<jump>>("jump", a_time, "to another place: IF, CASE, loops, RETURN")
+                      .by_default("0 s"),
+                  key<read_time<call>>("call", a_time, "of a function or a function block")
+                      .by_default("0 s")}});
+    return form;
+}
+
+void read_instruction_time(const Reader& read, const Node& node, Program& program) {
+    if (read.expect_map(node, "'instruction_time'"))
+        read_form(instruction_time_form(), read, node, program.instruction_times.emplace());
+}
+
 // Blocks
 
 constexpr const char* block_help =
@@ -616,7 +653,10 @@ const Form& controller_form() {
                 "say what starts it",
          .keys = {key("lineshaft_controller", a_version, "version of this form").must(),
                   key("title", a_value.as("the title"), "what it is"),
-                  tasks_key<read_controller_tasks>("its tasks").must()}});
+                  tasks_key<read_controller_tasks>("its tasks").must(),
+                  key<read_instruction_time>(
+                      "instruction_time", a_form(instruction_time_form),
+                      "what an instruction of Structured Text takes; no time unless said")}});
     return form;
 }
 

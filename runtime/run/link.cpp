@@ -24,7 +24,9 @@ std::shared_ptr<const Catalog> kinds_of(const Program& program, const Catalog& c
     const Node* overflow = program.root.find("overflow");
     const bool faults = overflow && overflow->text == "fault";
     Diagnostics found;
-    const auto library = st::compile(program.texts, catalog, found, {.overflow_faults = faults});
+    const auto library =
+        st::compile(program.texts, catalog, found,
+                    {.times = program.instruction_times, .overflow_faults = faults});
     for (const Diagnostic& d : found.warnings()) out.warn(d.code, d.mark, d.message, d.help);
     for (const Diagnostic& d : found.list()) out.add(d.code, d.mark, d.message, d.help);
     if (!library) return {};

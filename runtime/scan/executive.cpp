@@ -350,10 +350,13 @@ void Executive::start(int index) {
     state.active = true;
     state.cost =
         task.cost + (task.cost_jitter > 0 ? state.cost_jitter.around_zero(task.cost_jitter) : 0);
+    const std::size_t said = state.next_cost;
     begin(index);
+    state.may_err |= scan_blocks(task, state.scan);
+    if (state.next_cost == said)
+        for (const std::int64_t* taken : task.times_taken) state.cost = later(state.cost, *taken);
     state.remaining = state.cost;
     state.deadline = state.cost > 0 ? later(now_, task.maximum_cycle_time) : never;
-    state.may_err |= scan_blocks(task, state.scan);
 }
 
 void Executive::begin(int index) {

@@ -18,15 +18,24 @@ inline constexpr std::int64_t longest_result = 254;
 
 struct Instruction {
     Op op = Op::leave;
-    std::uint32_t a = 0, b = 0, c = 0;
+    std::uint32_t a = 0, b = 0, d = 0;
+    std::uint64_t c = 0;
 };
-static_assert(sizeof(Instruction) == 16);
+static_assert(sizeof(Instruction) == 24);
 
-/// Of an index: `(value - lower) * stride`, where value is one of `count` from `lower` on. Of a
-/// look_up `lower` is the place of the first number.
+/// Of a value that is one of `count` from `lower` on: the place of an element in an array, or in
+/// `Code::numbers` of an enumeration's number or a CASE's jump.
 struct IndexTable {
     std::int64_t lower = 0;
-    std::uint64_t count = 0, stride = 1;
+    std::uint64_t count = 0, stride = 1, first = 0;
+
+    bool contains(std::uint64_t value) const {
+        return value - static_cast<std::uint64_t>(lower) < count;
+    }
+    std::uint64_t place(std::uint64_t value) const {
+        return first + (value - static_cast<std::uint64_t>(lower)) * stride;
+    }
+    auto operator<=>(const IndexTable&) const = default;
 };
 
 struct CodeRoutine {
@@ -53,6 +62,7 @@ enum HeaderSlot : std::uint32_t {
     error_id_slot,  ///< Fault
     place_slot,     ///< the instruction it ended with
     depth_slot,     ///< calls that ran then
+    time_slot,      ///< what its instructions took [ns], if they are counted
     counts_slot,    ///< executed instructions of each class, if they are counted
     globals_slot = counts_slot + op_classes,
 };
@@ -63,12 +73,19 @@ struct Code {
     std::vector<Place> places;  ///< of each instruction
     std::vector<CodeRoutine> routines;
     std::vector<IndexTable> tables;
-    std::vector<std::int64_t> numbers;       ///< of enumerations
+    std::vector<std::int64_t> numbers;       ///< of enumerations; addresses of jumps
     std::vector<std::uint64_t> images;       ///< frames as they begin
     std::vector<const BlockType*> standard;  ///< kinds of the catalogue that are called
     std::uint32_t globals = 0;
     std::vector<CoverPoint> points;                      ///< only with coverage
     std::unique_ptr<std::atomic<std::uint64_t>[]> hits;  ///< of each of them
+
+    /// Of a jump's address; none of this code if it is not one.
+    std::uint64_t place_of(std::uint64_t address) const {
+        const auto first = reinterpret_cast<std::uint64_t>(instructions.data());
+        const std::uint64_t distance = address - first;
+        return distance % sizeof(Instruction) == 0 ? distance / sizeof(Instruction) : ~distance;
+    }
 };
 
 /// Empty when every operand is within its routine's frame, every jump within its routine, every

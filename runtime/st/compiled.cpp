@@ -14,14 +14,15 @@ Compiled::~Compiled() {
     if (generated.code.hits) record(generated.code);
 }
 
-bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, bool overflow_faults,
+bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOptions options,
              const SourceFile* tests) {
     for (const auto& source : to.sources)
         parse(read_tokens(source, out), to.tree, out, source.get() == tests);
     if (!out.empty()) return false;
     to.checked = check(to.tree, standard, out);
     if (!out.empty()) return false;
-    to.generated = generate(to.checked, out, {overflow_faults, is_covered()});
+    options.covered = is_covered();
+    to.generated = generate(to.checked, out, options);
     if (!out.empty()) return false;
     const std::string wrong = verify(to.generated.code);
     if (!wrong.empty()) throw std::logic_error("Structured Text was compiled wrong: " + wrong);

@@ -20,7 +20,7 @@ struct Compiled {
 
 /// Compiles all `sources` together; of them `tests`, if any, is a file of tests. False with all
 /// that is wrong in `out`.
-bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, bool overflow_faults = false,
+bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOptions options = {},
              const SourceFile* tests = nullptr);
 
 /// Where the last execution on an instance ended with a fault.

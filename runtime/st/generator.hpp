@@ -28,6 +28,7 @@ struct Generated {
 struct CodeOptions {
     bool overflow_faults = false;  ///< an integer beyond its type is a fault, else it wraps
     bool covered = false;          ///< count what is executed, other than of the file of tests
+    bool counted = false;          ///< instructions are counted: none is fused
 };
 
 /// L0912: more memory than a block may have.

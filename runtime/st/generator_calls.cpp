@@ -59,7 +59,8 @@ Location Generator::method_base(const Expression& e) {
 void Generator::call_routine(const Expression& e) {
     const Routine& routine = *e.routine;
     const bool is_function = routine.is_function();
-    const Location frame = is_function ? Location{Mode::slot, Region::window} : method_base(e);
+    Location frame = is_function ? Location{Mode::slot, Region::window} : method_base(e);
+    if (frame.mode == Mode::indexed) frame = as_address(frame);
     give(frame, e, routine);
     place_ = e.place;
     if (frame.mode == Mode::slot)
@@ -264,12 +265,14 @@ Slot Generator::standard(const Expression& e, Slot wanted) {
         }
         case Rule::normalise: {
             const Slot min = argument(0), in = argument(1), max = argument(2);
+            land();  // MIN is read twice
             const Op sub = narrow ? Op::sub_real : Op::sub_lreal;
             const Slot above = emit(sub, none, in, min), range = emit(sub, none, max, min);
             return emit(narrow ? Op::div_real : Op::div_lreal, wanted, above, range);
         }
         case Rule::scale: {
             const Slot min = argument(0), in = argument(1), max = argument(2);
+            land();  // MIN is read twice
             const Slot range = emit(narrow ? Op::sub_real : Op::sub_lreal, none, max, min);
             const Slot above = emit(narrow ? Op::mul_real : Op::mul_lreal, none, in, range);
             return emit(narrow ? Op::add_real : Op::add_lreal, wanted, above, min);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "runtime/st/elementary.hpp"
@@ -56,8 +57,13 @@ class Generator {
     void write(Routine& routine);
     void begin(Routine& routine);
     void finish(Routine& routine);
-    void put(Op op, Slot a = 0, Slot b = 0, Slot c = 0);
+    void put(Op op, Slot a = 0, Slot b = 0, Slot c = 0, Slot d = 0);
     std::uint32_t next() const { return static_cast<std::uint32_t>(code_.instructions.size()); }
+    void fuse();
+    void fuse_guarded_move(std::vector<std::uint32_t>& skip);
+    void thread(std::uint32_t instruction);
+    void link();
+    void land();
     void land(std::vector<std::uint32_t>& jumps);
     void jump(Op op, Slot a, Slot b, std::vector<std::uint32_t>& to);
     Slot new_temporary(std::uint32_t slots = 1);
@@ -69,8 +75,13 @@ class Generator {
     void write_statement(const Statement& s);
     void write_if(const Statement& s);
     void write_case(const Statement& s);
+    void test_label(const Statement& s, Slot selector, const Branch::Label& label, bool is_last,
+                    std::vector<std::uint32_t>& here, std::vector<std::uint32_t>& past);
+    std::optional<IndexTable> jump_table(const Statement& s) const;
+    void write_choice(const Statement& s, Slot selector, const IndexTable& table);
     void write_for(const Statement& s);
     void write_loop(const Statement& s);
+    bool repeat_test(std::uint32_t start, std::uint32_t end);
     void write_assignment(const Statement& s);
     void jump_unless(const Expression& condition, std::vector<std::uint32_t>& to);
 
@@ -146,6 +157,7 @@ class Generator {
     Checked& checked_;
     Diagnostics& out_;
     CodeOptions options_;
+    bool fuses_ = true;
     Code code_;
     std::vector<Assertion> assertions_;
     bool has_tests_ = false;
@@ -160,6 +172,7 @@ class Generator {
         const Routine* function;
     };
     std::vector<ImageUse> image_uses_;
+    std::map<IndexTable, std::uint32_t> tables_;  ///< their numbers
 
     // Of the routine that is being written.
     Routine* routine_ = nullptr;
@@ -168,6 +181,7 @@ class Generator {
     std::vector<std::uint64_t> constants_;
     std::unordered_map<std::uint64_t, Slot> constant_slots_;
     Place place_ = {};
+    std::uint32_t landed_ = 0;  ///< the last instruction that a jump goes to
     struct Loop {
         std::vector<std::uint32_t> exits, nexts;
     };

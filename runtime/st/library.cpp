@@ -52,7 +52,8 @@ bool is_in_range(const KindContext::Check& check, std::byte* instance) {
 
 /// Before the first instruction.
 bool refuse(const KindContext& kind, std::byte* instance, Fault fault) {
-    const std::uint64_t header[] = {1, static_cast<std::uint64_t>(fault), kind.routine->entry, 0};
+    const std::uint64_t header[] = {1, static_cast<std::uint64_t>(fault), kind.routine->entry, 0,
+                                    0};
     std::memcpy(instance, header, sizeof header);
     return true;
 }
@@ -67,8 +68,9 @@ bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
     for (const KindContext::Check& check : kind.checks)
         if (!is_in_range(check, instance)) return refuse(kind, instance, Fault::out_of_range);
     Scan moment = now;
+    const auto& times = kind.options.times;
     return execute(*kind.code, *kind.routine, instance, moment, context, kind.options.fuel,
-                   kind.options.counts) != Fault::none;
+                   times ? times->data() : nullptr) != Fault::none;
 }
 
 bool scan_blocks(std::byte* first, std::size_t count, const Scan& now, const Context& context) {
@@ -353,6 +355,7 @@ BlockType block_type(const KindContext& kind, const std::shared_ptr<const Librar
     type.shift = shift;
     type.why = why;
     type.single = !kind.routine;
+    if (kind.routine && kind.options.times) type.time_taken = 8 * std::size_t{time_slot};
     type.context = &kind;
     type.owner = made;
     return type;
@@ -364,7 +367,9 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
                                const Catalog& standard, Diagnostics& out, const Options& options) {
     const auto made = std::make_shared<Library::Made>();
     made->sources = sources;
-    if (!compile(*made, standard, out, options.overflow_faults)) return {};
+    const CodeOptions code_options{.overflow_faults = options.overflow_faults,
+                                   .counted = options.times.has_value()};
+    if (!compile(*made, standard, out, code_options)) return {};
     const auto& routines = made->generated.code.routines;
     std::unordered_map<std::string_view, const CodeRoutine*> codes;
     for (const CodeRoutine& code : routines) codes.emplace(code.name, &code);

@@ -14,8 +14,8 @@ namespace lineshaft::st {
 
 struct Options {
     std::int64_t fuel =
-        10'000'000;                ///< passes of loops and calls that one scan of a block may take
-    bool counts = false;           ///< count executed instructions, see `Library::counts`
+        10'000'000;  ///< passes of loops and calls that one scan of a block may take
+    std::optional<InstructionTimes> times = {};  ///< see `Library::counts`
     bool overflow_faults = false;  ///< an integer beyond its type is a fault: it does not wrap
 };
 
@@ -55,7 +55,7 @@ class Library {
     FaultPlace fault(const BlockType& kind, const std::byte* instance) const;
 
     /// Instructions of each class that its last scan took, calls of other blocks included; with
-    /// Options::counts.
+    /// Options::times; what they took is the kind's `time_taken`.
     std::span<const std::uint64_t, op_classes> counts(const std::byte* instance) const;
 
     /// For tests and people: the code of all.

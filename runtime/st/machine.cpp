@@ -6,9 +6,13 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <string_view>
 
 #include <sleef.h>
+
+#include "runtime/st/constant.hpp"
 
 namespace lineshaft::st {
 
@@ -112,28 +116,44 @@ std::uint64_t rotate_right(std::uint64_t value, std::uint64_t places) {
     return rotate_left<bits>(value, bits - places % bits);
 }
 
+double exact(double value) {
+    return value;
+}
+
 double narrow(double value) {
     return double{static_cast<float>(value)};
 }
 
-/// A decimal digit in each four bits. False where one is above 9.
-bool from_bcd(std::uint64_t digits, auto put) {
+/// A decimal digit in each four bits: none may be above 9.
+std::optional<std::uint64_t> from_bcd(std::uint64_t digits) {
     std::uint64_t value = 0;
     for (int shift = 60; shift >= 0; shift -= 4) {
         const std::uint64_t digit = digits >> shift & 15;
-        if (digit > 9) return false;
+        if (digit > 9) return {};
         value = value * 10 + digit;
     }
-    put(value);
-    return true;
+    return value;
 }
 
-/// False where the value has more than so many digits.
-bool to_bcd(std::uint64_t value, std::uint32_t digits, auto put) {
+/// Of a value that has no more than so many digits.
+std::optional<std::uint64_t> to_bcd(std::uint64_t value, std::uint32_t digits) {
     std::uint64_t made = 0;
     for (std::uint32_t i = 0; i < digits; ++i, value /= 10) made |= value % 10 << (4 * i);
-    if (value == 0) put(made);
-    return value == 0;
+    return value == 0 ? std::optional(made) : std::nullopt;
+}
+
+/// A FOR goes on with this counter; behind the limit stands the step.
+bool is_within(std::int64_t counter, const std::byte* limit) {
+    const auto last = read<std::int64_t>(limit);
+    return read<std::int64_t>(limit + 8) >= 0 ? counter <= last : counter >= last;
+}
+
+bool next(std::byte* counter, const std::byte* limit) {
+    std::int64_t sum = 0;
+    const bool over =
+        __builtin_add_overflow(read<std::int64_t>(counter), read<std::int64_t>(limit + 8), &sum);
+    write(counter, sum);
+    return !over && is_within(sum, limit);
 }
 
 // Texts: the length, then the characters.
@@ -176,127 +196,118 @@ void write_number(std::byte* to, T value) {
 }
 
 template <class T>
-bool read_number(const std::byte* from, auto put) {
+std::optional<T> number_of_text(const std::byte* from) {
     const std::string_view text = text_at(from);
     T value{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return false;
-    put(value);
-    return true;
+    if (error != std::errc() || end != text.data() + text.size()) return {};
+    return value;
 }
 
-/// Memory by its address: the number of an instance of the program plus 1, or 0 for the block
-/// itself, times 2^32, plus a slot.
-struct Memory {
+/// What a scan needs besides where it is: apart, so that the registers are left to that.
+struct Frames {
+    const Code& code;
+    Scan& now;
+    const Context& context;
+    std::int64_t fuel;
     std::byte* root;
-    std::byte* const* instances;
+    std::byte* bottom = root + 8 * (globals_slot + code.globals);
+    std::byte* top = bottom;           ///< of the calls that run
+    std::uint64_t base = 0;            ///< address of the frame
+    std::uint64_t* counted = nullptr;  ///< instructions of each class
 
-    std::byte* at(std::uint64_t address) const {
+    /// Of an address: the number of an instance of the program plus 1, or 0 for the block itself,
+    /// times 2^32, plus a slot.
+    std::byte* place(std::uint64_t address) const {
         const std::uint64_t space = address >> 32;
-        std::byte* first = space == 0 ? root : instances[space - 1];
+        std::byte* first = space == 0 ? root : context.instances[space - 1];
         return first + 8 * (address & 0xFFFF'FFFF);
+    }
+
+    std::uint64_t address_of(std::uint32_t slot) const { return base + slot; }
+
+    std::uint64_t global(std::uint32_t number) const {
+        return (word(root, globals_slot + number) + 1) << 32;
+    }
+
+    void call_block(std::byte* block, std::uint32_t number) const {
+        const BlockType& type = *code.standard[number];
+        type.scan_blocks(block, 1, now, {type.context, context.instances});
+    }
+
+    void enter(std::uint64_t address, const Instruction* back) {
+        set_word(top, 0, static_cast<std::uint64_t>(back - code.instructions.data()));
+        set_word(top, 1, base);
+        top += 16;
+        base = address;
+    }
+
+    const Instruction* leave() {
+        top -= 16;
+        base = word(top, 1);
+        return code.instructions.data() + word(top, 0);
+    }
+
+    Fault end(Fault fault, const Instruction* at) {
+        set_word(root, error_slot, fault != Fault::none);
+        set_word(root, error_id_slot, static_cast<std::uint64_t>(fault));
+        if (fault == Fault::none) return fault;
+        set_word(root, place_slot, static_cast<std::uint64_t>(at - code.instructions.data()));
+        set_word(root, depth_slot, static_cast<std::uint64_t>(top - bottom) / 16);
+        return fault;
     }
 };
 
 template <bool counts>
-Fault run(const Code& code, const CodeRoutine& routine, std::byte* root, Scan& now,
-          const Context& context, std::int64_t fuel) {
-    const Memory memory{root, context.instances};
+Fault run(Frames& frames, const CodeRoutine& routine) {
+    const Code& code = frames.code;
     const Instruction* const first = code.instructions.data();
     const Instruction* pc = first + routine.entry;
-    std::byte* base = root;
-    std::uint64_t base_address = 0;
-    std::byte* const bottom = root + 8 * (globals_slot + code.globals);
-    std::byte* top = bottom;
-    std::uint64_t counted[op_classes + 1] = {};
+    std::byte* base = frames.root;
+    std::int64_t fuel = frames.fuel;
+    Fault fault = Fault::none;
 
-    const auto U = [&](std::uint32_t slot) {
-        return read<std::uint64_t>(base + 8 * std::size_t{slot});
-    };
-    const auto I = [&](std::uint32_t slot) {
-        return read<std::int64_t>(base + 8 * std::size_t{slot});
-    };
-    const auto R = [&](std::uint32_t slot) { return read<double>(base + 8 * std::size_t{slot}); };
-    const auto put = [&](std::uint32_t slot, auto value) {
-        write(base + 8 * std::size_t{slot}, value);
-    };
-    const auto at = [&](std::uint32_t slot) { return base + 8 * std::size_t{slot}; };
-    const auto target = [&](std::uint64_t address) { return memory.at(address); };
-    const auto address_of = [&](std::uint32_t slot) { return base_address + slot; };
-    const auto global_address = [&](std::uint32_t global) {
-        return (word(root, globals_slot + global) + 1) << 32;
-    };
-    const auto initialise = [&](std::byte* to, std::uint32_t image, std::uint32_t slots) {
-        std::memcpy(to, &code.images[image], 8 * std::size_t{slots});
-    };
-    const auto checked_index = [&](std::uint32_t slot, std::uint32_t number, std::uint64_t& index) {
-        const IndexTable& table = code.tables[number];
-        index = U(slot) - static_cast<std::uint64_t>(table.lower);
-        if (index >= table.count) return false;
-        index *= table.stride;
-        return true;
-    };
-    const auto index = [&](std::uint32_t to, std::uint32_t slot, std::uint32_t number) {
-        std::uint64_t found = 0;
-        if (!checked_index(slot, number, found)) return false;
-        put(to, found);
-        return true;
-    };
-    const auto index_more = [&](std::uint32_t to, std::uint32_t slot, std::uint32_t number) {
-        std::uint64_t found = 0;
-        if (!checked_index(slot, number, found)) return false;
-        put(to, U(to) + found);
-        return true;
-    };
-    const auto within = [&](std::uint32_t slot, std::uint32_t number) {
-        std::uint64_t found = 0;
-        return checked_index(slot, number, found);
-    };
-    const auto look_up = [&](std::uint32_t to, std::uint32_t slot, std::uint32_t number) {
-        const IndexTable& table = code.tables[number];
-        if (U(slot) >= table.count) return false;
-        put(to, code.numbers[static_cast<std::size_t>(table.lower) + U(slot)]);
-        return true;
-    };
-    const auto begins = [&](std::uint32_t counter, std::uint32_t limit) {
-        return I(limit + 1) >= 0 ? I(counter) <= I(limit) : I(counter) >= I(limit);
-    };
-    const auto next = [&](std::uint32_t counter, std::uint32_t limit) {
-        std::int64_t sum = 0;
-        const bool over = __builtin_add_overflow(I(counter), I(limit + 1), &sum);
-        put(counter, sum);
-        return !over && begins(counter, limit);
-    };
-    const auto call_block = [&](std::byte* block, std::uint32_t number) {
-        const BlockType& type = *code.standard[number];
-        type.scan_blocks(block, 1, now, {type.context, context.instances});
-    };
-    const auto enter = [&](std::uint64_t address, std::uint32_t number) {
-        set_word(top, 0, static_cast<std::uint64_t>(pc - first));
-        set_word(top, 1, base_address);
-        top += 16;
-        base_address = address;
-        base = memory.at(address);
-        pc = first + code.routines[number].entry;
-    };
-    const auto end = [&](Fault fault) {
-        set_word(root, error_slot, fault != Fault::none);
-        set_word(root, error_id_slot, static_cast<std::uint64_t>(fault));
-        set_word(root, place_slot, static_cast<std::uint64_t>(pc - first) - 1);
-        set_word(root, depth_slot, static_cast<std::uint64_t>(top - bottom) / 16);
-        if constexpr (counts) std::memcpy(root + 8 * counts_slot, counted, 8 * op_classes);
-        return fault;
-    };
-
-#define GO(to) pc = first + (to)
-#define FAIL(fault) return end(Fault::fault)
-#define LEAVE                                       \
-    {                                               \
-        if (top == bottom) return end(Fault::none); \
-        top -= 16;                                  \
-        pc = first + word(top, 0);                  \
-        base_address = word(top, 1);                \
-        base = memory.at(base_address);             \
+// Macros, because gcc keeps what a function object refers to in memory.
+#define at(slot) (base + 8 * std::size_t{slot})
+#define U(slot) word(base, slot)
+#define I(slot) static_cast<std::int64_t>(U(slot))
+#define R(slot) std::bit_cast<double>(U(slot))
+#define put(slot, value) write(at(slot), value)
+#define target(address) frames.place(address)
+#define table(number) code.tables.data()[number]
+#define number_of(value, number) code.numbers.data()[table(number).place(value)]
+#define within(value, number) table(number).contains(value)
+// The empty statement keeps a jump that is not taken off the way to the next instruction.
+#define GO(address)                                                                      \
+    {                                                                                    \
+        pc = reinterpret_cast<const Instruction*>(static_cast<std::uintptr_t>(address)); \
+        asm volatile("" : "+r"(pc));                                                     \
+    }
+#define AGAIN(address)                \
+    {                                 \
+        if (--fuel < 0) FAIL(no_end); \
+        GO(address);                  \
+    }
+#define FAIL(why)           \
+    {                       \
+        fault = Fault::why; \
+        goto ended;         \
+    }
+#define ELEMENT(slot, number)                         \
+    if (!within(U(slot), number)) FAIL(array_bounds); \
+    const std::uint64_t element = table(number).place(U(slot))
+#define CALL(address, number)                            \
+    {                                                    \
+        if (--fuel < 0) FAIL(no_end);                    \
+        frames.enter(address, pc);                       \
+        base = frames.place(frames.base);                \
+        pc = first + code.routines.data()[number].entry; \
+    }
+#define LEAVE                                        \
+    {                                                \
+        if (frames.top == frames.bottom) FAIL(none); \
+        pc = frames.leave();                         \
+        base = frames.place(frames.base);            \
     }
     // A jump from each instruction to the next one's place: the processor foresees them one by one.
 #pragma GCC diagnostic push
@@ -304,33 +315,38 @@ Fault run(const Code& code, const CodeRoutine& routine, std::byte* root, Scan& n
 #define OP(name, class, operands, ...) &&at_##name,
     static const void* const places[] = {LINESHAFT_ST_OPCODES(OP)};
 #undef OP
-    std::uint32_t a = 0, b = 0, c = 0;
-    const auto fetch = [&] {
-        const Instruction& in = *pc++;
-        a = in.a, b = in.b, c = in.c;
-        if constexpr (counts) ++counted[static_cast<std::size_t>(info(in.op).cost)];
-        return places[static_cast<std::size_t>(in.op)];
-    };
-    goto* fetch();
-#define OP(name, class, operands, ...) \
-    at_##name : {                      \
-        __VA_ARGS__;                   \
-        goto* fetch();                 \
+#define NEXT goto* places[static_cast<std::size_t>(pc->op)]
+    NEXT;
+#define OP(name, class, operands, ...)                                                    \
+    at_##name : {                                                                         \
+        [[maybe_unused]] const std::uint64_t to = pc->c;                                  \
+        [[maybe_unused]] const std::uint32_t a = pc->a, b = pc->b, d = pc->d,             \
+                                             c = static_cast<std::uint32_t>(to);          \
+        ++pc;                                                                             \
+        if constexpr (counts) ++frames.counted[static_cast<std::size_t>(OpClass::class)]; \
+        __VA_ARGS__;                                                                      \
+        NEXT;                                                                             \
     }
     LINESHAFT_ST_OPCODES(OP)
 #undef OP
 #pragma GCC diagnostic pop
-#undef GO
-#undef FAIL
-#undef LEAVE
+ended:
+    return frames.end(fault, pc - 1);
 }
 
 }  // namespace
 
 Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, Scan& now,
-              const Context& context, std::int64_t fuel, bool counts) {
-    return counts ? run<true>(code, routine, instance, now, context, fuel)
-                  : run<false>(code, routine, instance, now, context, fuel);
+              const Context& context, std::int64_t fuel, const std::int64_t* times) {
+    Frames frames{code, now, context, fuel, instance};
+    if (!times) return run<false>(frames, routine);
+    std::uint64_t counted[op_classes + 1] = {};
+    frames.counted = counted;
+    const Fault fault = run<true>(frames, routine);
+    std::memcpy(instance + 8 * counts_slot, counted, 8 * op_classes);
+    const Wide taken = std::inner_product(times, times + op_classes, counted, Wide{0});
+    set_word(instance, time_slot, static_cast<std::uint64_t>(std::min<Wide>(taken, never)));
+    return fault;
 }
 
 }  // namespace lineshaft::st

@@ -23,10 +23,10 @@ inline constexpr std::string_view fault_names[] = {
 
 /// Executes the routine on an instance. Its header then says how that ended: the fault, and the
 /// instruction; the return addresses of the calls that ran are left for messages. Allocates
-/// nothing, throws nothing, and ends after at most `fuel` passes of loops and calls. With `counts`
-/// the header has how many instructions of each class were executed, at a third of the speed.
+/// nothing, throws nothing, and ends after at most `fuel` passes of loops and calls. With `times`
+/// of an instruction of each class [ns] the header has how many were executed and what they took.
 /// ADVANCE_TIME of a test changes `now`.
 Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, Scan& now,
-              const Context& context, std::int64_t fuel, bool counts);
+              const Context& context, std::int64_t fuel, const std::int64_t* times);
 
 }  // namespace lineshaft::st

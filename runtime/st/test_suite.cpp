@@ -64,7 +64,7 @@ class Bench {
         if (!routine) return {};
         const Code& code = made_.generated.code;
         const Fault fault = execute(code, *routine, bytes(root_), now_, {nullptr, places_.data()},
-                                    made_.options.fuel, false);
+                                    made_.options.fuel, nullptr);
         if (fault == Fault::none) return {};
         if (fault == Fault::assertion) return failed_assertion();
         const FaultPlace place = fault_of(code, bytes(root_));
@@ -145,7 +145,7 @@ class Bench {
 
     std::string distance(const Assertion& failed, const Instruction& stop) {
         const Type& type = *failed.found;
-        const auto shown = [&](std::uint32_t slot) {
+        const auto shown = [&](std::uint64_t slot) {
             const double real = std::bit_cast<double>(root_[slot]);
             if (type.is_real()) return value_text(type, root_[slot]);
             if (type.kind == Type::Kind::time) return time_literal(static_cast<std::int64_t>(real));
@@ -172,7 +172,7 @@ std::optional<TestSuite> compile_tests(
     made->options = options;
     made->sources = sources;
     made->sources.push_back(file);
-    if (!compile(*made, standard, out, false, file.get())) return {};
+    if (!compile(*made, standard, out, {}, file.get())) return {};
     const CodeRoutine* code = made->generated.code.routines.data();
     for (const Routine* routine : made->checked.order) made->add(*routine, *code++);
     for (const Assertion& assertion : made->generated.assertions)

@@ -75,8 +75,10 @@ using Block = std::vector<Statement*>;
 
 /// The condition of an IF, or the values of a CASE, and what is then done.
 struct Branch {
+    using Label = std::pair<Expression*, Expression*>;  ///< from, to; to may be null
+
     Expression* condition = nullptr;
-    std::vector<std::pair<Expression*, Expression*>> labels = {};  ///< from, to; to may be null
+    std::vector<Label> labels = {};
     Block body = {};
 };
 

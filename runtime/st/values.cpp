@@ -183,6 +183,7 @@ Slot Generator::bit(const Expression& e, Slot wanted) {
 void Generator::store_bits(const Expression& target, const Expression& from) {
     const Slot bits = value_before(from, target);
     const Location whole = locate(*target.operands[0]);
+    land();
     const Type& type = *target.operands[0]->type;
     const Slot slot = load(whole);
     put(Op::set_bits, slot, bits, static_cast<Slot>(target.constant.integer));
@@ -217,9 +218,9 @@ Slot Generator::convert(Slot slot, const Type& given_from, const Type& given_to,
         return whole;
     }
     if (from.kind == Kind::enumeration && !from.counted) {
-        const auto first = static_cast<std::int64_t>(code_.numbers.size());
+        const std::uint64_t first = code_.numbers.size();
         code_.numbers.insert(code_.numbers.end(), from.numbers.begin(), from.numbers.end());
-        slot = emit(Op::look_up, none, slot, table({first, from.numbers.size(), 1}));
+        slot = emit(Op::look_up, none, slot, table({0, from.numbers.size(), 1, first}));
         return convert(slot, *from.base, to, truncates, wanted);
     }
     if (to.kind == Kind::enumeration) {

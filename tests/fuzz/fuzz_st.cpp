@@ -92,7 +92,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     look(out);
     if (!out.empty()) return 0;
     Diagnostics again;
-    const auto library = st::compile({file}, catalog, again, {.fuel = 1000, .counts = false});
+    const auto library = st::compile({file}, catalog, again, {.fuel = 1000});
     look(again);
     if (library.has_value() != again.empty()) std::abort();
     if (library) scan(*library);

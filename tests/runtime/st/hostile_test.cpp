@@ -21,8 +21,7 @@ void try_out(const std::string& text) {
     static const Catalog catalog = standard_blocks();
     Diagnostics out;
     const std::clock_t begun = std::clock();
-    const auto library =
-        st::compile({st::source(text)}, catalog, out, {.fuel = 2000, .counts = false});
+    const auto library = st::compile({st::source(text)}, catalog, out, {.fuel = 2000});
     CHECK(std::clock() - begun < CLOCKS_PER_SEC / 10);
     CHECK(library.has_value() == out.empty());
     if (!out.empty()) {
@@ -39,8 +38,8 @@ void try_out(const std::string& text) {
 /// The same of a file of tests.
 void try_tests(const std::string& text) {
     Diagnostics out;
-    const auto suite = st::compile_tests(st::source(text), {}, standard_blocks(), out,
-                                         {.fuel = 2000, .counts = false});
+    const auto suite =
+        st::compile_tests(st::source(text), {}, standard_blocks(), out, {.fuel = 2000});
     CHECK(suite.has_value() == out.empty());
     for (const Diagnostic& d : out.list()) CHECK(d.mark.line > 0);
     for (std::size_t i = 0; suite && i < suite->tests().size(); ++i) {

@@ -145,7 +145,7 @@ TEST_CASE("Structured Text: executed instructions are counted by class", "[st]")
         "PROGRAM Main\nVAR i, n : DINT; x : LREAL; t : TON; END_VAR\n"
         "FOR i := 1 TO 10 DO n := n + i; x := x + 0.5; END_FOR;\nt(IN := TRUE, PT := T#1s);\n"
         "END_PROGRAM\n",
-        {.counts = true});
+        {.times = st::InstructionTimes{}});
     st::Instances instances(library);
     for (int i = 0; i < 2; ++i) instances.scan(i, 1);
     const auto counts = library.counts(instances.memory(0));
