@@ -9,10 +9,6 @@
 
 namespace lineshaft::st {
 
-namespace {
-
-using Kind = Type::Kind;
-
 /// What the blocks of a kind share.
 struct KindContext {
     const Code* code = nullptr;
@@ -35,6 +31,10 @@ struct KindContext {
     std::vector<Check> checks;              ///< inputs narrower than what a wire brings
     std::vector<std::uint32_t> references;  ///< slots of VAR_IN_OUT, which a call fills
 };
+
+namespace {
+
+using Kind = Type::Kind;
 
 bool is_in_range(const KindContext::Check& check, std::byte* instance) {
     std::byte* place = instance + 8 * std::size_t{check.slot};

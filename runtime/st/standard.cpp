@@ -82,11 +82,11 @@ constexpr StandardFunction functions[] = {
     {"REPLACE", Rule::text, 4, 4, Op::move, Word::end_of_file, 2},
 };
 
-struct Foreign {
+struct Elsewhere {
     std::string_view name, instead;
 };
 
-constexpr Foreign foreign[] = {
+constexpr Elsewhere elsewhere[] = {
     {"RESET_TIMER", "call the timer with IN := FALSE"},
     {"PRESET_TIMER", "give the timer its PT"},
     {"DECO", "write SHL(DWORD#1, n)"},
@@ -132,9 +132,9 @@ constexpr Foreign foreign[] = {
 }  // namespace
 
 std::string_view instead_of_function(std::string_view name) {
-    const auto* it =
-        std::ranges::find_if(foreign, [&](const Foreign& f) { return same_name(f.name, name); });
-    return it == std::end(foreign) ? std::string_view() : it->instead;
+    const auto* it = std::ranges::find_if(
+        elsewhere, [&](const Elsewhere& f) { return same_name(f.name, name); });
+    return it == std::end(elsewhere) ? std::string_view() : it->instead;
 }
 
 std::span<const StandardFunction> standard_functions() {
