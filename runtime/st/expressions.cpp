@@ -726,8 +726,8 @@ bool Checker::coerce(Expression*& e, const Type& to) {
 
 bool Checker::refuse_conversion(const Expression& e, const Type& to) {
     const Type& from = *e.type;
-    const bool any_real = from.kind == Kind::any_real;
-    if (any_real && !to.is_real() && to.is_number()) {
+    const bool of_literal = from.kind == Kind::any_real;
+    if (of_literal && !to.is_real() && to.is_number()) {
         fail("L0906", e.place, fmt::format("expected {}, found a real number", describe(to)),
              "write a whole number, or convert it: ROUND(...)");
         return false;

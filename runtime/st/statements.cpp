@@ -7,6 +7,9 @@ namespace lineshaft::st {
 
 namespace {
 
+using E = Expression::Kind;
+using S = Statement::Kind;
+
 bool leaves(const Statement& statement) {
     return statement.kind == Statement::Kind::return_ || statement.kind == Statement::Kind::exit ||
            statement.kind == Statement::Kind::continue_;
@@ -32,7 +35,6 @@ void Checker::check(Block& block) {
 }
 
 void Checker::check(Statement& s) {
-    using S = Statement::Kind;
     switch (s.kind) {
         case S::assign:
             return check_assignment(s);
@@ -119,7 +121,6 @@ void Checker::check_assignment(Statement& s) {
 }
 
 bool Checker::check_target(Expression& target, std::string_view how) {
-    using E = Expression::Kind;
     const auto refuse = [&](std::string what, std::string help) {
         fail("L0910", target.place, fmt::format("{} cannot be {}", what, how), std::move(help));
         return false;

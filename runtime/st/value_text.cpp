@@ -9,6 +9,8 @@ namespace lineshaft::st {
 
 namespace {
 
+using Kind = Type::Kind;
+
 /// The shortest number that reads back as the same value of its width.
 std::string real_text(double value, bool is_long) {
     if (std::isnan(value)) return "NaN";
@@ -21,7 +23,6 @@ std::string real_text(double value, bool is_long) {
 }  // namespace
 
 std::string value_text(const Type& type, std::uint64_t slot) {
-    using Kind = Type::Kind;
     const auto number = static_cast<std::int64_t>(slot);
     switch (type.kind) {
         case Kind::boolean:

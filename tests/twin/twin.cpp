@@ -208,8 +208,8 @@ void shell(const std::string& command) {
 class Twins {
   public:
     Twins() {
-        shell(fmt::format("{} {} -O1 -c {}/prelude.c -o {}/prelude.o", LINESHAFT_COMPILER, flags,
-                          LINESHAFT_TWIN_DIR, folder_.path));
+        shell(fmt::format("{} {} -O1 -c '{}/prelude.c' -o '{}/prelude.o'", LINESHAFT_COMPILER,
+                          flags, LINESHAFT_TWIN_DIR, folder_.path));
     }
 
     /// What differs in each of the programs; empty where nothing does.
@@ -226,7 +226,8 @@ class Twins {
         std::string command;
         for (const std::string_view level : levels)
             command += fmt::format(
-                "{0} {1} {2} -shared {3}/twins.c -x none {3}/prelude.o -o {3}/{4}{2}.so -lsleef "
+                "{0} {1} {2} -shared '{3}/twins.c' -x none '{3}/prelude.o' -o '{3}/{4}{2}.so' "
+                "-lsleef "
                 "-lm &\n",
                 LINESHAFT_COMPILER, flags, level, folder_.path, ++builds_);
         shell(command + "wait %1" + (levels.size() > 1 ? " && wait %2" : ""));

@@ -351,9 +351,10 @@ async function testDrawnAtTheMark(browser, address) {
 async function testLarge(browser) {
   const program = readFileSync(join(project, "programs/04_circle.yaml"), "utf8")
     .replace("every: 10\n", "every: 1\n")
+    .replace("sources: paper/", `sources: ${project}/programs/paper/`)
     .replace(/signals: \[.*\]/, `signals: [${tenSignals.join(", ")}]`);
   writeFileSync(file("million.yaml"), program);
-  run("run", file("million.yaml"), "--set", "radius=160 mm", "--quiet", "--trace", file("million.csv"));
+  run("run", file("million.yaml"), "--include-dir", project, "--set", "radius=160 mm", "--quiet", "--trace", file("million.csv"));
   const address = report("million.html", file("million.csv"));
   const megabytes = statSync(file("million.html")).size / 2 ** 20;
   const draws = [];
