@@ -150,8 +150,9 @@ const Form& instruction_time_form() {
     static const Form form = form_of<st::InstructionTimes>(
         {.name = "instruction_time",
          .what = "'instruction_time'",
-         .doc = "what an instruction of Structured Text takes. A scan's execution time is then what "
-                "its task's cost says, and what the code that it executes takes",
+         .doc =
+             "what an instruction of Structured Text takes. A scan's execution time is then what "
+             "its task's cost says, and what the code that it executes takes",
          .keys = {key<read_time<boolean>>("bool", a_time, "AND, OR, NOT, shifts, bits of words")
                       .by_default("0 s"),
                   key<read_time<integer>>(
