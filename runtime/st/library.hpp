@@ -34,7 +34,7 @@ struct FaultPlace {
 /// instances each part is one, by its path: `table[3].x`, `delay.ET`, up to `most_parts` of a
 /// kind. REAL and LREAL are real, TIME an integer of unit ns, all integers and bit strings integers
 /// (a ULINT from 2^63 on shows as negative), with the limits of their type. `{unit := 'mm/s'}`
-/// gives a real its unit.
+/// gives a number its unit.
 ///
 /// A value that a wire brings into an input of a narrower type is checked when the block is
 /// scanned: out of range is a fault, with the first instruction as its place.

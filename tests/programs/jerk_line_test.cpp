@@ -18,7 +18,7 @@ struct JerkLine : Twin<ConstantJerkLine> {
     void scan(const Scan& now) {
         static const st::Library in_lreal = compiled({"jerk_line.st", "jerk_line_lreal.st"});
         static const st::Library in_real = compiled({"jerk_line.st", "jerk_line_real.st"});
-        scan_both(real == Width::real_32 ? in_real : in_lreal, "JerkLine", now);
+        scan_both(real == Width::real_32 ? in_real : in_lreal, "JerkLine", now, "real");
     }
 };
 

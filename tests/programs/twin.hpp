@@ -23,19 +23,23 @@ inline st::Library compiled(const std::vector<std::string>& files) {
 }
 
 /// A function block in Structured Text with `Hand`, the same in C++, beside it: every scan gives
-/// the same bits. Parameters and inputs are those of `Hand`, by their names.
+/// the same bits. Parameters and inputs are those of `Hand`, by their names;
+/// but `by_source`, if any, which chooses the library.
 template <class Hand>
 struct Twin : Hand {
-    void scan_both(const st::Library& library, std::string_view name, const Scan& now) {
+    void scan_both(const st::Library& library, std::string_view name, const Scan& now,
+                   std::string_view by_source = {}) {
         const BlockType& block = *std::ranges::find(library.kinds(), name, &BlockType::name);
         if (memory.empty()) {
             memory.resize(block.size / 8);
             block.construct(place());
         }
         for (const Field& from : Hand::fields()) {
+            if (from.direction == Direction::output || from.name == by_source) continue;
             const Field* to = find(block, from.name);
-            if (to && from.direction != Direction::output)
-                store(to->type, place() + to->offset, load(from.type, self() + from.offset));
+            INFO(from.name);
+            REQUIRE(to);
+            store(to->type, place() + to->offset, load(from.type, self() + from.offset));
         }
         if (const Field* cycle = find(block, "cycle"))
             store(cycle->type, place() + cycle->offset, seconds(now.interval));

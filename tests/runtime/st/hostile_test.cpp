@@ -70,6 +70,24 @@ std::vector<std::string> sources() {
     return texts;
 }
 
+/// Tries the text so many times, each time with another word left out, doubled or exchanged.
+void exchange_words(const std::string& text, int times, std::mt19937& random,
+                    void (*attempt)(const std::string&)) {
+    Diagnostics out;
+    const auto source = st::source(text);
+    const auto tokens = st::read_tokens(source, out).tokens;
+    for (int i = 0; i < times; ++i) {
+        const auto& a = tokens[random() % tokens.size()];
+        const auto& b = tokens[random() % tokens.size()];
+        std::string changed = text;
+        changed.replace(a.place.begin, a.place.end - a.place.begin,
+                        random() % 3 == 0 ? std::string() : std::string(b.place.text()));
+        INFO("'" << a.place.text() << "' at byte " << a.place.begin << " changed to '"
+                 << b.place.text() << "' in " << text.substr(0, 60));
+        attempt(changed);
+    }
+}
+
 }  // namespace
 
 TEST_CASE("Structured Text: sources cut off anywhere, and with one byte changed", "[st]") {
@@ -99,38 +117,14 @@ TEST_CASE("Structured Text: tests cut off anywhere, with words left out, doubled
         try_tests(text);
         for (std::size_t end = random() % 99; end < text.size(); end += 1 + random() % 99)
             try_tests(text.substr(0, end));
-        Diagnostics out;
-        const auto source = st::source(text);
-        const auto tokens = st::read_tokens(source, out).tokens;
-        for (int i = 0; i < 60; ++i) {
-            const auto& a = tokens[random() % tokens.size()];
-            const auto& b = tokens[random() % tokens.size()];
-            std::string changed = text;
-            changed.replace(a.place.begin, a.place.end - a.place.begin,
-                            random() % 3 == 0 ? std::string() : std::string(b.place.text()));
-            INFO("'" << a.place.text() << "' at byte " << a.place.begin << " changed to '"
-                     << b.place.text() << "' in " << text.substr(0, 60));
-            try_tests(changed);
-        }
+        exchange_words(text, 60, random, try_tests);
     }
 }
 
 TEST_CASE("Structured Text: sources with words left out, doubled and exchanged", "[st]") {
     std::mt19937 random(8);
     for (const std::string& text : sources()) {
-        Diagnostics out;
-        const auto source = st::source(text);
-        const auto tokens = st::read_tokens(source, out).tokens;
-        for (int i = 0; i < 15; ++i) {
-            const auto& a = tokens[random() % tokens.size()];
-            const auto& b = tokens[random() % tokens.size()];
-            std::string changed = text;
-            changed.replace(a.place.begin, a.place.end - a.place.begin,
-                            random() % 3 == 0 ? std::string() : std::string(b.place.text()));
-            INFO("'" << a.place.text() << "' at byte " << a.place.begin << " changed to '"
-                     << b.place.text() << "' in " << text.substr(0, 60));
-            try_out(changed);
-        }
+        exchange_words(text, 15, random, try_out);
     }
 }
 
