@@ -1,5 +1,6 @@
 #include "blocks/catalog.hpp"
 
+#include "blocks/axis/axis.hpp"
 #include "blocks/axis/gear_axis.hpp"
 #include "blocks/axis/move.hpp"
 #include "blocks/axis/servo_drive.hpp"
@@ -19,6 +20,14 @@
 #include "blocks/logic/select.hpp"
 #include "blocks/logic/signal.hpp"
 #include "blocks/logic/timer.hpp"
+#include "blocks/motion/cam_table.hpp"
+#include "blocks/motion/cam_table_select.hpp"
+#include "blocks/motion/moves.hpp"
+#include "blocks/motion/probes.hpp"
+#include "blocks/motion/reads.hpp"
+#include "blocks/motion/settings.hpp"
+#include "blocks/motion/state_commands.hpp"
+#include "blocks/motion/synchronous.hpp"
 #include "blocks/pulse/pto.hpp"
 
 namespace lineshaft {
@@ -31,6 +40,42 @@ Catalog make_catalog() {
     blocks.add<GearAxis>();
     blocks.add<Move>();
     blocks.add<ServoDrive>();
+    blocks.add<Axis>();
+    blocks.add<Power>();
+    blocks.add<Reset>();
+    blocks.add<Stop>();
+    blocks.add<Halt>();
+    blocks.add<MoveAbsolute>();
+    blocks.add<MoveRelative>();
+    blocks.add<MoveAdditive>();
+    blocks.add<MoveVelocity>();
+    blocks.add<MoveContinuousAbsolute>();
+    blocks.add<MoveContinuousRelative>();
+    blocks.add<MoveSuperimposed>();
+    blocks.add<HaltSuperimposed>();
+    blocks.add<GearIn>();
+    blocks.add<GearOut>();
+    blocks.add<GearInPos>();
+    blocks.add<CamTable>();
+    blocks.add<CamTableSelect>();
+    blocks.add<CamIn>();
+    blocks.add<CamOut>();
+    blocks.add<PhasingAbsolute>();
+    blocks.add<PhasingRelative>();
+    blocks.add<CombineAxes>();
+    blocks.add<Home>();
+    blocks.add<SetPosition>();
+    blocks.add<SetOverride>();
+    blocks.add<ReadStatus>();
+    blocks.add<ReadMotionState>();
+    blocks.add<ReadAxisError>();
+    blocks.add<ReadActualPosition>();
+    blocks.add<ReadActualVelocity>();
+    blocks.add<ReadParameter>();
+    blocks.add<WriteParameter>();
+    blocks.add<TouchProbe>();
+    blocks.add<AbortTrigger>();
+    blocks.add<DigitalCamSwitch>();
     blocks.add<CircleFit>();
     blocks.add<PathCircle>();
     blocks.add<PathRectangle>();

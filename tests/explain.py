@@ -36,7 +36,7 @@ retain: [counter]
 run: {for: 2 s}
 trace: {task: servo, signals: [shaft.position, slave.position]}
 """
-PROGRAM_KEYS = set("lineshaft title parameters tasks blocks inputs retain run stimulus trace expect".split())
+PROGRAM_KEYS = set("lineshaft title parameters tasks blocks inputs retain run stimulus trace modbus expect".split())
 PARAMETERS = {"parameters": {"speed": "10 mm/s", "radius": "20 mm", "ratio": "1.5"}}
 
 CASE = {"name": "early", "compare": ["slave.position"]}

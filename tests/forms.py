@@ -23,6 +23,7 @@ forms = [form["form"] for form in json.loads(
 forms.remove("block")  # each type of block is a form of its own
 
 NAMES = ["a", "b", "shaft", "slave_2", "Axis", "_x"]
+NUMBERS = ["0", "7", "100", "65535"]
 TIMES = ["2 ms", "1 s", "0.5 ms", "10us", "1e3 ns", "3 min"]
 SIGNALS = [f"{block}.{port}" for block in ("a", "inputs", "shaft") for port in ("q", "cv", "position")]
 LEAVES = {
@@ -69,7 +70,7 @@ def draw_list(of, objects, _):
 def draw_map(of, objects, definition):
     if "properties" not in of:
         ((pattern, value),) = of.get("patternProperties", {}).items()
-        names = NAMES if "\\." not in pattern else SIGNALS
+        names = SIGNALS if "\\." in pattern else NAMES if "A-Z" in pattern else NUMBERS
         size = rng.randint(of.get("minProperties", 0), of.get("maxProperties", 3))
         return {name: draw(value, objects) for name in rng.sample(names, size)}
     rules = jsonschema.Draft7Validator({"allOf": of.get("allOf", [])})
@@ -120,13 +121,19 @@ def relate_force(force):
 
 
 def relate_expectation(expectation):
-    """One signal, and a value or bounds."""
-    bounds = {key: expectation.pop(key) for key in ("at_least", "at_most") if key in expectation}
-    if "always" in expectation:
-        expectation.pop("within", None)
-        expectation.update(bounds or {"at_most": 3})
+    """One signal, and a value or bounds, or a count; or a signal that answers, and no more."""
+    given = {key: expectation.pop(key) for key in ("count", "equals", "within", "at_least", "at_most")
+             if key in expectation}
+    bounds = {key: given[key] for key in ("at_least", "at_most") if key in given}
+    if "between" in expectation:
+        expectation["between"] = ["1 s", "2 s"]
+    if not {"at", "always", "never", "between", "rising"} & expectation.keys():
+        expectation[f"within {rng.choice(TIMES)} of {rng.choice(SIGNALS)}"] = rng.choice(SIGNALS)
+    elif "rising" in expectation:
+        expectation.update(bounds or {"count": 3})
+    elif {"always", "never"} & expectation.keys():
+        expectation.update(bounds or rng.choice([{}, {"equals": 3}, {"equals": 3, "within": 1}]))
     elif bounds:
-        expectation.pop("within", None)
         expectation[rng.choice(SIGNALS)] = bounds
     else:
         expectation[rng.choice(SIGNALS)] = LEAVES["scalar"]()

@@ -68,8 +68,15 @@ for tag, pattern, first in (
 CoreLoader.add_constructor("tag:yaml.org,2002:float", lambda loader, node: float(node.value))
 
 
+def with_names(document):
+    """As editors see it: a key is text, an address of Modbus, too."""
+    if isinstance(document, dict):
+        return {str(key): with_names(value) for key, value in document.items()}
+    return [with_names(item) for item in document] if isinstance(document, list) else document
+
+
 def read(text):
-    return yaml.load(text, Loader=CoreLoader)
+    return with_names(yaml.load(text, Loader=CoreLoader))
 
 
 def reason(validator, document):

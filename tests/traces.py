@@ -257,6 +257,19 @@ def check_diff():
     found = json.loads(lineshaft("diff", "a.csv", "other.csv", "--json")[1])
     if found["same"] or found["first"]["ulp"] != 1 or found["first"]["column"] != "slave.velocity":
         yield f"diff --json: {found}"
+    said = lineshaft("diff", "a.csv", "other.csv", "--tolerance", "1e-14")[1]
+    if not said.startswith("within tolerance: 1001 rows of 6 columns") or "1.77636e-15    5.61453e-17  row 101" not in said:
+        yield f"diff within tolerance: {said}"
+    (FOLDER / "more.csv").write_text("".join(f"{line.rstrip()},{'b.x' if not i else i}\n" for i, line in enumerate(lines)))
+    if lineshaft("diff", "a.csv", "more.csv")[0] != 2:
+        yield "diff of other columns is not refused"
+    code, out, err = lineshaft("diff", "a.csv", "more.csv", "--common", "--report", "diff.html")
+    if code != 0 or "same: 1001 rows of 6 columns" not in out or "slave.velocity" not in (FOLDER / "diff.html").read_text():
+        yield f"diff --common: {code} {out}{err}"
+    (FOLDER / "alien.csv").write_text("time,scan,z\n0,0,1\n")
+    code, out, err = lineshaft("diff", "a.csv", "alien.csv", "--common")
+    if code != 2 or "no column in common" not in err:
+        yield f"diff --common of nothing: {code} {out}{err}"
     (FOLDER / "other.csv").write_text("".join(lines[:500]))
     code, out, err = lineshaft("diff", "a.csv", "other.csv")
     if code != 1 or "1001 and 499 rows" not in out:

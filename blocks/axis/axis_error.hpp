@@ -27,8 +27,8 @@ constexpr AxisError axis_error(PlanResult result) {
 }
 
 /// Units an axis can be configured for, as on the controller; the master's unit of a gear likewise.
-enum class AxisUnit : std::int64_t { mm, rad, deg };
+enum class AxisUnit : std::int64_t { mm, rad, deg, m, rev };
 
-inline constexpr std::string_view axis_unit_names[] = {"mm", "rad", "deg"};
+inline constexpr std::string_view axis_unit_names[] = {"mm", "rad", "deg", "m", "rev"};
 
 }  // namespace lineshaft

@@ -9,13 +9,9 @@ bool same_letters(std::string_view a, std::string_view b) {
     return std::ranges::equal(a, b, {}, small, small);
 }
 
-bool BlockType::is_called(std::string_view a, std::string_view b) const {
-    return owner ? same_letters(a, b) : a == b;
-}
-
 const Field* BlockType::find_settable(std::string_view field) const {
     for (const Field& f : fields)
-        if (is_called(f.name, field) && f.direction != Direction::output &&
+        if (same_letters(f.name, field) && f.direction != Direction::output &&
             f.direction != Direction::local)
             return &f;
     return nullptr;
@@ -23,7 +19,7 @@ const Field* BlockType::find_settable(std::string_view field) const {
 
 const Field* BlockType::find_readable(std::string_view field) const {
     for (const Field& f : fields)
-        if (is_called(f.name, field) &&
+        if (same_letters(f.name, field) &&
             (f.direction == Direction::output || f.direction == Direction::local))
             return &f;
     const Field* settable = find_settable(field);
@@ -32,13 +28,13 @@ const Field* BlockType::find_readable(std::string_view field) const {
 
 const TableField* BlockType::find_table(std::string_view table) const {
     for (const TableField& t : tables)
-        if (t.name == table) return &t;
+        if (same_letters(t.name, table)) return &t;
     return nullptr;
 }
 
 const BlockType* Catalog::find(std::string_view name) const {
     const auto it = std::ranges::find_if(
-        types_, [&](const BlockType& type) { return type.is_called(type.name, name); });
+        types_, [&](const BlockType& type) { return same_letters(type.name, name); });
     return it == types_.end() ? nullptr : &*it;
 }
 

@@ -51,16 +51,16 @@ struct BlockType {
     std::string (*why)(const std::byte* block,
                        const void* context) = nullptr;  ///< where its last error came from; or null
     std::optional<std::size_t> time_taken = {};  ///< place of what a scan took: std::int64_t [ns]
-    bool single = false;                         ///< one a program, without an entry: a data block
-    const void* context = nullptr;               ///< what all blocks of the kind share; may be null
-    std::shared_ptr<const void> owner = {};      ///< of a kind that a program brings along
+    std::string_view handle =
+        {};               ///< `AXIS_REF`: how Structured Text calls references to it; or empty
+    bool single = false;  ///< one a program, without an entry: a data block
+    const void* context = nullptr;           ///< what all blocks of the kind share; may be null
+    std::shared_ptr<const void> owner = {};  ///< of a kind that a program brings along
 
-    /// Whether `b` means the name `a` of the kind or of one of its fields.
-    bool is_called(std::string_view a, std::string_view b) const;
     bool is_device() const { return device.advance != nullptr; }
     void construct(std::byte* place) const { make(place, context); }
 
-    /// Of a kind with an owner capital letters make no difference.
+    /// Capital letters make no difference.
     /// What a program may set (a parameter, an input, a reference), or what it may read (an output
     /// or a local, else an input or a parameter). An output may bear an input's name: `velocity` is
     /// set as the wanted one and read as the axis' own. Null when there is none.
@@ -102,6 +102,8 @@ class Catalog {
         static_assert(PlainData<Block>);
         std::span<const TableField> tables;
         if constexpr (requires { Block::tables(); }) tables = Block::tables();
+        std::string_view handle;
+        if constexpr (requires { Block::handle; }) handle = Block::handle;
         return add({.name = Block::type,
                     .doc = Block::doc,
                     .fields = Block::fields(),
@@ -112,7 +114,8 @@ class Catalog {
                     .scan_blocks = scan_blocks<Block>,
                     .device = device_calls<Block>(),
                     .misfit = misfit<Block>(),
-                    .shift = shift<Block>()});
+                    .shift = shift<Block>(),
+                    .handle = handle});
     }
 
     Catalog& add(BlockType type) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -30,8 +32,9 @@ constexpr std::string_view name_of(Direction direction) {
 struct Field {
     std::string_view name = {};
     std::string_view doc = {};
-    std::string_view unit =
-        {};  ///< `mm/s`; `{p}` in it stands for the value of the enumeration parameter p
+    std::string_view unit = {};  ///< `mm/s`; `{p}` in it stands for the value of the enumeration
+                                 ///< parameter p, or for the `unit` of the block that the reference
+                                 ///< p names, of which `names` has the values
     Direction direction = Direction::parameter;
     Type type = Type::real;
     std::size_t offset = 0;  ///< of the member in the block's struct
@@ -87,9 +90,16 @@ struct Field {
     }
 };
 
-/// A list of rows of whole numbers that a program may give a block once, before it runs:
-/// `profile: [[2 kHz, 10 kHz, 200], [10 kHz, 10 kHz, 3400]]`. Plain data: room for `capacity` rows
-/// in the block, each of as many std::int64_t as there are columns, and the number of those given.
+/// What is wrong with the rows of a table that each for itself is right.
+struct TableFault {
+    std::size_t row = 0;  ///< first one that it is true of
+    std::string_view message, help;
+};
+
+/// A list of rows of numbers that a program may give a block once, before it runs, itself or as the
+/// name of a CSV file with such columns: `profile: [[2 kHz, 10 kHz, 200], [10 kHz, 10 kHz, 3400]]`.
+/// Plain data: room for `capacity` rows in the block, each of 8 bytes a column, and the number of
+/// those given. What a row does not give is as in a new block.
 struct TableField {
     std::string_view name = {};
     std::string_view doc = {};
@@ -97,6 +107,14 @@ struct TableField {
     std::size_t capacity = 0;             ///< rows
     std::size_t size_offset = 0;          ///< of the number of rows given, std::int64_t
     std::size_t rows_offset = 0;
+    std::size_t needed = 0;  ///< columns that each row gives; 0: all
+
+    std::size_t row_size() const { return columns.size() * sizeof(std::int64_t); }  ///< [bytes]
+    bool has_names() const {
+        return std::ranges::any_of(columns, [](const Field& c) { return !c.names.empty(); });
+    }
+    std::optional<TableFault> (*complete)(std::byte* block) =
+        nullptr;  ///< checks all rows, and puts in what they leave open; or null
 };
 
 namespace detail {
@@ -165,6 +183,12 @@ Field input(std::string_view name, T Block::*member, std::string_view unit, std:
     return detail::field(Direction::input, name, member, unit, doc);
 }
 
+template <class Block, class Part, class T>
+Field input(std::string_view name, Part Block::*part, T Part::*member, std::string_view unit,
+            std::string_view doc) {
+    return detail::field(Direction::input, name, part, member, unit, doc);
+}
+
 template <class Block, class T>
 Field output(std::string_view name, T Block::*member, std::string_view unit, std::string_view doc) {
     return detail::field(Direction::output, name, member, unit, doc);
@@ -209,6 +233,26 @@ TableField table(std::string_view name, T Block::*member, std::span<const Field>
 }
 
 /// One number of a row; limits as those of a field.
+/// Of real numbers; `{p}` in the unit as of a field.
+inline Field real_column(std::string_view name, std::string_view unit, std::string_view doc) {
+    Field f;
+    f.name = name;
+    f.doc = doc;
+    f.unit = unit;
+    return f;
+}
+
+/// Of the names of an enumeration; in a file of their numbers.
+inline Field name_column(std::string_view name, std::span<const std::string_view> names,
+                         std::string_view doc) {
+    Field f;
+    f.name = name;
+    f.doc = doc;
+    f.type = Type::enumeration;
+    f.names = names;
+    return f;
+}
+
 inline Field column(std::string_view name, std::string_view unit, std::string_view doc) {
     Field f;
     f.name = name;

@@ -18,11 +18,37 @@ struct Scan {
 struct Context {
     const void* kind = nullptr;  ///< what all blocks of the kind share: BlockType::context
     std::byte* const* instances = nullptr;  ///< the program's blocks, by number
+    std::byte* const* seen = nullptr;  ///< the same, those of other tasks as they published them
+    std::byte* memory = nullptr;       ///< of the whole machine
+    int task = -1;                     ///< that scans the block
+    const std::int64_t* published = nullptr;  ///< scans of each task whose outputs all others see
 
     /// The block that a reference names.
     template <class Block>
     Block& instance(std::int64_t number) const {
         return *std::launder(reinterpret_cast<Block*>(instances[number]));
+    }
+
+    /// The same to read from: as wires see it.
+    template <class Block>
+    const Block& seen_instance(std::int64_t number) const {
+        return *std::launder(reinterpret_cast<const Block*>(seen[number]));
+    }
+
+    /// What a block keeps in place of a pointer, so that a checkpoint of the bytes is all there is:
+    /// the place of something in the machine's memory.
+    template <class T>
+    std::int64_t place_of(const T& in_memory) const {
+        return reinterpret_cast<const std::byte*>(&in_memory) - memory;
+    }
+    template <class T>
+    T& at(std::int64_t place) const {
+        return *std::launder(reinterpret_cast<T*>(memory + place));
+    }
+
+    /// Whether all others see what that scan of a task has written.
+    bool is_published(std::int64_t by_task, std::int64_t scan) const {
+        return published[by_task] > scan;
     }
 };
 

@@ -86,12 +86,20 @@ void place_tasks(Layout& layout) {
     }
 }
 
+/// Code in Structured Text may have a variable `error` of its own: its first two fields say how its
+/// scan ended.
 void add_error_flag(const Instance& block, std::byte* live, Task& task) {
-    const Field* error = block.type->find_readable("error");
+    const bool is_code = block.type->why && !block.type->single;
+    const auto find = [&](std::string_view name, std::size_t place) {
+        return is_code ? &block.type->fields[place] : block.type->find_readable(name);
+    };
+    const Field* error = find("error", 0);
     if (!error || error->type != Type::boolean || error->direction != Direction::output) return;
     ErrorFlag flag;
     flag.error = reinterpret_cast<const bool*>(live + error->offset);
-    if (const Field* id = block.type->find_readable("error_id")) {
+    const Field* id = find("error_id", 1);
+    if (!id) id = block.type->find_readable("ErrorID");
+    if (id) {
         flag.error_id = reinterpret_cast<const std::int64_t*>(live + id->offset);
         flag.names = id->names;
     }
@@ -149,6 +157,14 @@ void fill_blocks(Layout& layout) {
         if (task.published != task.live) std::memcpy(task.published, task.live, task.size);
 }
 
+void add_views(const Net& net, Machine& machine) {
+    for (int task = 0; task < static_cast<int>(net.tasks.size()); ++task) {
+        auto& seen = machine.seen.emplace_back(machine.instances);
+        for (std::size_t i = 0; i < seen.size(); ++i)
+            if (net.instances[i].task != task) seen[i] = machine.blocks[i].published;
+    }
+}
+
 void add_signals(const Net& net, Machine& machine) {
     for (const InputNode& input : net.inputs)
         if (input.signal) machine.signals.push_back(machine.placed(*input.signal));
@@ -181,6 +197,7 @@ Machine lay_out(const Net& net) {
     place_blocks(layout);
     place_tasks(layout);
     fill_blocks(layout);
+    add_views(net, machine);
     lay_out_calls(net, layout.sequence, layout.levels, machine);
     add_signals(net, machine);
     return machine;

@@ -114,7 +114,11 @@ void append_call(const Net& net, std::span<const int> blocks, Machine& machine) 
     Task& task = machine.tasks[static_cast<std::size_t>(first.task)];
     Call& call = task.calls.emplace_back();
     call.scan = first.type->scan_blocks;
-    call.context = {first.type->context, machine.instances.data()};
+    call.context = {.kind = first.type->context,
+                    .instances = machine.instances.data(),
+                    .seen = machine.seen[static_cast<std::size_t>(first.task)].data(),
+                    .memory = machine.memory.data(),
+                    .task = first.task};
     call.first = machine.blocks[static_cast<std::size_t>(blocks.front())].live;
     call.count = blocks.size();
     call.size = first.type->size;

@@ -9,6 +9,17 @@ const Signal* Machine::find(std::string_view name) const {
     return it == signals.end() ? nullptr : &*it;
 }
 
+void Machine::impose(Force force) {
+    for (Force& other : forces)
+        if (other.live == force.live) other.until = std::min(other.until, force.from);
+    forces.push_back(std::move(force));
+}
+
+void Machine::lift(const std::byte* place, std::int64_t at) {
+    for (Force& force : forces)
+        if (force.live == place && force.from <= at) force.until = std::min(force.until, at);
+}
+
 std::byte* Machine::live(Port port) {
     const auto field = static_cast<std::size_t>(port.field);
     if (port.instance < 0) return memory.data() + 8 * field;

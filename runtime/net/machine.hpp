@@ -226,8 +226,9 @@ struct ReplayedFile {
 struct Machine {
     std::vector<std::byte> memory;  ///< all blocks and inputs; zeroed, then constructed
     std::vector<Task> tasks;  ///< in scan order of equal instants: priority, then place in the file
-    std::vector<BlockPlace> blocks;     ///< in the order of the file
-    std::vector<std::byte*> instances;  ///< their live memory, for references
+    std::vector<BlockPlace> blocks;             ///< in the order of the file
+    std::vector<std::byte*> instances;          ///< their live memory, for references
+    std::vector<std::vector<std::byte*>> seen;  ///< by task: of other tasks what they published
     std::vector<Signal> signals;
     std::vector<Stimulus> stimuli;  ///< sorted by time
     std::vector<Replay> replays;    ///< in the order of the file: of one input the last wins
@@ -242,11 +243,17 @@ struct Machine {
     std::optional<Signal> until;
     int main_task = -1;         ///< the cyclic task of lowest priority: its start begins a cycle
     std::int64_t duration = 0;  ///< [ns]; with `until` the limit
+    std::int64_t end = never;   ///< where the run stops before that without a fault [ns]
     std::uint64_t seed = 1;
     bool continue_on_error = false;
 
     bool retains_nothing() const { return retained.empty() && retained_blocks.empty(); }
     const Signal* find(std::string_view name) const;
+
+    /// From its time on in place of every other force of its signal.
+    void impose(Force force);
+    /// Ends at `at` what keeps the signal at `live` then.
+    void lift(const std::byte* live, std::int64_t at);
 
     /// Where the value stands: for its own task, and for all others.
     std::byte* live(Port port);

@@ -121,15 +121,27 @@ Signal Net::signal(Port port) const {
             .port = port};
 }
 
+/// Of a reference that is missing, which is reported, any.
+std::string Net::chosen_unit(const Instance& block, const Field& chosen) const {
+    const Value value = load(chosen.type, block.image.data() + chosen.offset);
+    if (chosen.direction != Direction::in_out)
+        return describe(value, chosen.type, chosen.names, chosen.unit);
+    const auto number = static_cast<int>(std::get<std::int64_t>(value));
+    if (number < 0) return std::string(chosen.names.front());
+    const Instance& other = instance(number);
+    return chosen_unit(other, *other.type->find_settable("unit"));
+}
+
 const Unit& Net::unit_of(Port port) const {
-    const Instance& block = instance(port);
-    std::string text(field(port).unit);
+    return unit_of(instance(port), field(port).unit);
+}
+
+const Unit& Net::unit_of(const Instance& block, std::string_view of_field) const {
+    std::string text(of_field);
     for (auto open = text.find('{'); open != std::string::npos; open = text.find('{')) {
         const auto close = text.find('}', open);
         const Field& chosen = *block.type->find_settable(text.substr(open + 1, close - open - 1));
-        const Value value = load(chosen.type, block.image.data() + chosen.offset);
-        text.replace(open, close - open + 1,
-                     describe(value, chosen.type, chosen.names, chosen.unit));
+        text.replace(open, close - open + 1, chosen_unit(block, chosen));
     }
     return unit(text);
 }

@@ -111,12 +111,16 @@ struct Net {
     Port port(int instance, const Field& field) const;
     Signal signal(Port port) const;
 
-    /// `{unit}/s` with the instance's own parameter `unit` put in.
+    /// `{unit}/s` with the instance's own parameter `unit` put in, `{Axis}/s` with that of the
+    /// block which its reference `Axis` names.
     const Unit& unit_of(Port port) const;
+    /// Of a text of the block's fields, as they have it.
+    const Unit& unit_of(const Instance& block, std::string_view text) const;
     /// Of a text that is a unit.
     const Unit& unit(const std::string& text) const;
 
   private:
+    std::string chosen_unit(const Instance& block, const Field& chosen) const;
     std::optional<Signal> find_input(const Reader& read, const Node& node,
                                      std::string_view name) const;
     std::optional<Signal> find_output(const Reader& read, const Node& node,

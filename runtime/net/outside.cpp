@@ -27,51 +27,33 @@ bool is_wired(const Net& net, const Target& target) {
     return net.instance(port).wired[static_cast<std::size_t>(port.field)];
 }
 
-void add_stimulus(Connecting& to, const StimulusPlan& plan, int task, const Node& key,
-                  const Node& value) {
-    const auto set = find_settable(to, key);
-    if (!set) return;
-    const auto v = read_value(to, *set, value);
-    if (!v) return;
-    auto& list =
-        task < 0 ? to.machine.stimuli : to.machine.tasks[static_cast<std::size_t>(task)].stimuli;
-    list.push_back(
-        {plan.at, set->live, set->field.type, *v, fmt::format("{} = {}", key.text, value.text)});
+void add_force(Connecting& to, const ForcePlan& plan) {
+    auto force = find_force(to, plan.signal, plan.value);
+    if (!force) return;
+    force->from = plan.from;
+    force->until = plan.until;
+    const auto overlaps = [&](const Force& other) {
+        return other.live == force->live && plan.from < other.until && other.from < plan.until;
+    };
+    if (std::ranges::any_of(to.machine.forces, overlaps))
+        return to.read.fail("L0212", plan.signal,
+                            fmt::format("'{}' is forced twice at one time", force->name));
+    to.machine.forces.push_back(std::move(*force));
 }
 
-void add_force(Connecting& to, const ForcePlan& plan) {
-    const auto forced = find_target(to, plan.signal);
-    if (!forced) return;
-    const std::string& name = forced->signal.name;
-    if (forced->field.direction == Direction::parameter)
-        return to.read.fail("L0405", plan.signal,
-                            fmt::format("'{}' is a parameter and cannot be forced", name),
-                            "a force takes inputs and outputs");
-    const auto value = read_value(to, *forced, plan.value);
-    if (!value) return;
-    auto& forces = to.machine.forces;
-    const auto overlaps = [&](const Force& other) {
-        return other.live == forced->live && plan.from < other.until && other.from < plan.until;
-    };
-    if (std::ranges::any_of(forces, overlaps))
-        return to.read.fail("L0212", plan.signal,
-                            fmt::format("'{}' is forced twice at one time", name));
-    const std::byte* of_block =
-        forced->is_of_block()
-            ? to.machine.blocks[static_cast<std::size_t>(forced->signal.port.instance)].live
-            : nullptr;
-    const bool split = forced->published != forced->live;
-    forces.push_back({.from = plan.from,
-                      .until = plan.until,
-                      .live = forced->live,
-                      .published = split ? forced->published : nullptr,
-                      .block = of_block,
-                      .is_output = of_block && forced->field.direction != Direction::input,
-                      .task = forced->signal.task,
-                      .type = forced->field.type,
-                      .value = *value,
-                      .name = name,
-                      .text = fmt::format("force {} = {}", name, plan.value.text)});
+void add_recorded(Connecting& to, const RecordedPlan& plan) {
+    for (const auto& [signal, value] : plan.set)
+        if (auto stimulus = find_stimulus(to, signal, value)) {
+            stimulus->at = plan.at;
+            to.machine.stimuli.push_back(std::move(*stimulus));
+        }
+    for (const auto& [signal, value] : plan.force)
+        if (auto force = find_force(to, signal, value)) {
+            force->from = plan.at;
+            to.machine.impose(std::move(*force));
+        }
+    for (const Node& signal : plan.release)
+        if (const auto target = find_target(to, signal)) to.machine.lift(target->live, plan.at);
 }
 
 }  // namespace
@@ -122,16 +104,69 @@ std::optional<Target> find_settable(const Connecting& to, const Node& node) {
     return target;
 }
 
+std::optional<Stimulus> find_stimulus(const Connecting& to, const Node& signal, const Node& value) {
+    const auto set = find_settable(to, signal);
+    if (!set) return {};
+    const auto v = read_value(to, *set, value);
+    if (!v) return {};
+    return Stimulus{.target = set->live,
+                    .type = set->field.type,
+                    .value = *v,
+                    .text = fmt::format("{} = {}", signal.text, value.text)};
+}
+
+std::optional<Force> find_force(const Connecting& to, const Node& signal, const Node& value) {
+    const auto forced = find_target(to, signal);
+    if (!forced) return {};
+    const std::string& name = forced->signal.name;
+    if (forced->field.direction == Direction::parameter) {
+        to.read.fail("L0405", signal, fmt::format("'{}' is a parameter and cannot be forced", name),
+                     "a force takes inputs and outputs");
+        return {};
+    }
+    const auto v = read_value(to, *forced, value);
+    if (!v) return {};
+    const std::byte* of_block =
+        forced->is_of_block()
+            ? to.machine.blocks[static_cast<std::size_t>(forced->signal.port.instance)].live
+            : nullptr;
+    const bool split = forced->published != forced->live;
+    return Force{.live = forced->live,
+                 .published = split ? forced->published : nullptr,
+                 .block = of_block,
+                 .is_output = of_block && forced->field.direction != Direction::input,
+                 .task = forced->signal.task,
+                 .type = forced->field.type,
+                 .value = *v,
+                 .name = name,
+                 .text = fmt::format("force {} = {}", name, value.text)};
+}
+
 void connect_stimuli(Connecting& to) {
     for (const StimulusPlan& plan : to.program.stimuli) {
         const int task = plan.task ? to.net.find_task(to.read, *plan.task, plan.task->text) : -1;
         if (plan.task && task < 0) continue;
-        for (const auto& [key, value] : plan.set) add_stimulus(to, plan, task, key, value);
+        auto& list = task < 0 ? to.machine.stimuli
+                              : to.machine.tasks[static_cast<std::size_t>(task)].stimuli;
+        for (const auto& [key, value] : plan.set)
+            if (auto stimulus = find_stimulus(to, key, value)) {
+                stimulus->at = plan.at;
+                list.push_back(std::move(*stimulus));
+            }
     }
 }
 
 void connect_forces(Connecting& to) {
     for (const ForcePlan& plan : to.program.forces) add_force(to, plan);
+}
+
+/// The recording's end is the run's, whatever the program says of it.
+void connect_recorded(Connecting& to) {
+    if (!to.program.recording) return;
+    for (const RecordedPlan& plan : to.program.recording->entries) add_recorded(to, plan);
+    std::ranges::stable_sort(to.machine.stimuli, {}, &Stimulus::at);
+    to.machine.duration = never - 1;
+    to.machine.end = to.program.recording->end();
 }
 
 void connect_outside(Connecting& to) {
@@ -140,6 +175,7 @@ void connect_outside(Connecting& to) {
     connect_stimuli(to);
     connect_replays(to);
     connect_forces(to);
+    connect_recorded(to);
     connect_retained(to);
     check_constants(to);
     warn_of_what_comes_late(to);

@@ -22,6 +22,7 @@ void connect_run(Connecting& to);                    ///< likewise: duration, se
 void connect_stimuli(Connecting& to);                ///< outside.cpp
 void connect_replays(Connecting& to);                ///< outside_replays.cpp
 void connect_forces(Connecting& to);                 ///< outside.cpp
+void connect_recorded(Connecting& to);               ///< likewise: what is played back
 void connect_retained(Connecting& to);               ///< outside_retain.cpp
 void check_constants(Connecting& to);                ///< outside_checks.cpp: what comes to nothing
 void warn_of_what_comes_late(const Connecting& to);  ///< likewise
@@ -42,5 +43,10 @@ std::optional<Target> find_target(const Connecting& to, const Node& node);
 
 /// What a stimulus may set: an input that no wire feeds.
 std::optional<Target> find_settable(const Connecting& to, const Node& node);
+
+/// A value for an input, or for a signal to keep, checked; reported if it cannot be. Their times
+/// are still to be said.
+std::optional<Stimulus> find_stimulus(const Connecting& to, const Node& signal, const Node& value);
+std::optional<Force> find_force(const Connecting& to, const Node& signal, const Node& value);
 
 }  // namespace lineshaft

@@ -80,8 +80,7 @@ void warn_of_what_comes_late(const Connecting& to) {
     for (const ForcePlan& plan : to.program.forces)
         if (plan.from > end) warn("L0801", plan.mark, "the force begins");
     for (const ExpectPlan& plan : to.program.expectations)
-        if (plan.at && *plan.at > end)
-            warn("L0802", plan.mark, "the expectation would be looked at");
+        if (plan.from > end) warn("L0802", plan.mark, "the expectation would be looked at");
 }
 
 }  // namespace lineshaft

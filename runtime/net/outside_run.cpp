@@ -41,7 +41,7 @@ void connect_run(Connecting& to) {
     if (run.until) machine.until = find_boolean(to, *run.until, "until");
     if (machine.devices.empty()) return;
     for (const ExpectPlan& plan : to.program.expectations)
-        if (plan.at) machine.looks.push_back(*plan.at);
+        if (plan.when == ExpectPlan::When::at || plan.from > 0) machine.looks.push_back(plan.from);
     std::ranges::sort(machine.looks);
 }
 

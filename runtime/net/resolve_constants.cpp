@@ -1,7 +1,11 @@
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 
+#include "runtime/csv/csv_reader.hpp"
+#include "runtime/csv/csv_time.hpp"
 #include "runtime/model/literal.hpp"
 #include "runtime/net/resolve.hpp"
 
@@ -83,41 +87,118 @@ void set_constant(Resolving& to, const Assignment& assignment) {
         store(field->type, to.instance(assignment).image.data() + field->offset, *constant);
 }
 
-void set_row(Resolving& to, const TableField& table, const Node& row, std::byte* slot) {
+void set_row(Resolving& to, const Instance& block, const TableField& table, const Node& row,
+             std::byte* slot) {
     if (!to.read.expect_sequence(row, fmt::format("a row of '{}'", table.name))) return;
-    if (row.items.size() != table.columns.size()) {
+    const std::size_t most = table.columns.size(), least = table.needed > 0 ? table.needed : most;
+    if (row.items.size() < least || row.items.size() > most) {
         std::vector<std::string_view> names;
         for (const Field& column : table.columns) names.push_back(column.name);
-        return to.read.fail("L0214", row,
-                            fmt::format("a row of '{}' has {} numbers, not {}", table.name,
-                                        table.columns.size(), row.items.size()),
-                            fmt::format("write [{}]", fmt::join(names, ", ")));
+        return to.read.fail(
+            "L0214", row,
+            fmt::format("a row of '{}' has {} {}, not {}", table.name,
+                        least < most ? fmt::format("{} to {}", least, most) : std::to_string(most),
+                        table.has_names() ? "values" : "numbers", row.items.size()),
+            fmt::format("write [{}]", fmt::join(names, ", ")));
     }
     for (std::size_t i = 0; i < row.items.size(); ++i, slot += sizeof(std::int64_t)) {
         const Field& column = table.columns[i];
         if (!to.read.expect_scalar(row.items[i], fmt::format("'{}'", column.name))) continue;
         const auto number =
-            read_literal(to.read, row.items[i], column, to.net.unit(std::string(column.unit)));
-        if (number) store(Type::integer, slot, *number);
+            read_literal(to.read, row.items[i], column, to.net.unit_of(block, column.unit));
+        if (number) store(column.type, slot, *number);
     }
 }
 
-void set_table(Resolving& to, Instance& block, const TableField& table, const Node& value) {
-    if (!to.read.expect_sequence(value, fmt::format("'{}'", table.name))) return;
-    if (value.items.empty())
-        return to.read.fail("L0305", value, fmt::format("'{}' has no rows", table.name),
-                            fmt::format("it has from 1 to {} rows", table.capacity));
-    if (value.items.size() > table.capacity)
-        return to.read.fail("L0305", value,
-                            fmt::format("'{}' has {} rows, more than its {}", table.name,
-                                        value.items.size(), table.capacity));
-    std::byte* row = block.image.data() + table.rows_offset;
-    for (const Node& items : value.items) {
-        set_row(to, table, items, row);
-        row += table.columns.size() * sizeof(std::int64_t);
+bool has_room(const Resolving& to, const TableField& table, const Node& value, std::size_t rows) {
+    if (rows > 0 && rows <= table.capacity) return true;
+    to.read.fail("L0305", value,
+                 rows == 0 ? fmt::format("'{}' has no rows", table.name)
+                           : fmt::format("'{}' has {} rows, more than its {}", table.name, rows,
+                                         table.capacity),
+                 rows == 0 ? fmt::format("it has from 1 to {} rows", table.capacity) : "");
+    return false;
+}
+
+void set_size(Instance& block, const TableField& table, std::size_t rows) {
+    store(Type::integer, block.image.data() + table.size_offset, static_cast<std::int64_t>(rows));
+}
+
+void complete(const Resolving& to, Instance& block, const TableField& table, const Node& value) {
+    if (!table.complete) return;
+    const auto fault = table.complete(block.image.data());
+    if (!fault) return;
+    const bool in_file = value.items.empty();
+    to.read.fail(
+        "L0216", in_file ? value : value.items[fault->row],
+        in_file
+            ? fmt::format("line {} of '{}': {}", line_of(fault->row), value.text, fault->message)
+            : fmt::format("row {} of '{}': {}", fault->row + 1, table.name, fault->message),
+        std::string(fault->help));
+}
+
+/// A cell as the value of a column; an empty one leaves it as it is.
+bool set_cell(const Resolving& to, const Instance& block, const Field& column,
+              const CsvColumn& from, const Node& file, std::size_t row, std::byte* slot) {
+    if (from.is_missing(row)) return true;
+    const Unit& due = to.net.unit_of(block, column.unit);
+    const auto unit = from.unit.empty() ? std::optional(due) : Unit::parse(from.unit);
+    const double value = unit ? convert(from.values[row], *unit, due) : from.values[row];
+    const bool real = column.type == Type::real;
+    const bool whole = value == std::trunc(value) && std::abs(value) < 9e15;
+    const Value cell = real ? Value(value) : Value(whole ? static_cast<std::int64_t>(value) : -1);
+    const bool known = real || (whole && (column.type != Type::enumeration ||
+                                          (value >= 0 && value < double(column.names.size()))));
+    if (!unit || !unit->same_dimension(due) || !known || !column.admits(cell)) {
+        to.read.fail(
+            "L0705", file,
+            fmt::format("'{}' in line {} of '{}' is not a value of '{}'",
+                        format_number(from.values[row]), line_of(row), file.text, column.name),
+            !unit || !unit->same_dimension(due)
+                ? fmt::format("the column is in {}, not in {}", from.unit, due.text)
+                : "");
+        return false;
     }
-    store(Type::integer, block.image.data() + table.size_offset,
-          static_cast<std::int64_t>(value.items.size()));
+    store(column.type, slot, cell);
+    return true;
+}
+
+void set_table_from_file(const Resolving& to, Instance& block, const TableField& table,
+                         const Node& value) {
+    const auto path =
+        resolve_path(value.text, to.program.file->path, {}, value.mark, to.read.diagnostics());
+    std::error_code unknown;
+    if (path && !std::filesystem::is_regular_file(*path, unknown))
+        return to.read.fail("L0001", value, fmt::format("there is no file '{}'", *path));
+    const auto csv = path ? read_csv(*path, to.read.diagnostics()) : std::nullopt;
+    if (!csv || !has_room(to, table, value, csv->rows)) return;
+    const std::size_t needed = table.needed > 0 ? table.needed : table.columns.size();
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const Field& column = table.columns[i];
+        const CsvColumn* from = csv->find(column.name);
+        if (!from && i < needed) from = csv->require(column.name, to.read.diagnostics());
+        if (!from && i < needed) return;
+        std::byte* slot = block.image.data() + table.rows_offset + i * sizeof(std::int64_t);
+        for (std::size_t row = 0; from && row < csv->rows; ++row, slot += table.row_size())
+            if (!set_cell(to, block, column, *from, value, row, slot)) return;
+    }
+    set_size(block, table, csv->rows);
+    complete(to, block, table, value);
+}
+
+void set_table(Resolving& to, Instance& block, const TableField& table, const Node& value) {
+    if (value.is_scalar() && !value.text.empty())
+        return set_table_from_file(to, block, table, value);
+    if (!to.read.expect_sequence(value, fmt::format("'{}'", table.name))) return;
+    if (!has_room(to, table, value, value.items.size())) return;
+    std::byte* row = block.image.data() + table.rows_offset;
+    const std::size_t mistakes = to.read.diagnostics().list().size();
+    for (const Node& items : value.items) {
+        set_row(to, block, table, items, row);
+        row += table.row_size();
+    }
+    set_size(block, table, value.items.size());
+    if (to.read.diagnostics().list().size() == mistakes) complete(to, block, table, value);
 }
 
 void set_tables(Resolving& to) {

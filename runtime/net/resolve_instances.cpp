@@ -119,7 +119,7 @@ void refuse_port(Resolving& to, const Instance& block, const Node& key) {
 void check_required(const Resolving& to, const BlockPlan& plan, const Instance& block) {
     for (const Field& field : block.type->fields) {
         const auto is_field = [&](const auto& port) {
-            return block.type->is_called(field.name, port.first.text);
+            return same_letters(field.name, port.first.text);
         };
         if (!field.required || is_data_block(to, field) ||
             std::ranges::any_of(plan.ports, is_field))

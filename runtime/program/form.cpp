@@ -55,12 +55,28 @@ bool accept_list(const Reader& read, const Shape& s, const Node& node, std::stri
     return good;
 }
 
+std::optional<std::int64_t> whole(const Reader& read, const Shape& s, const Node& node) {
+    const bool time = s.kind == Kind::time;
+    const auto number = time ? read.time(node) : read.integer(node, std::string(s.help));
+    if (!number || (*number >= s.least && *number <= s.most)) return number;
+    const bool below = *number < s.least;
+    read.fail(time ? "L0308" : "L0305", node,
+              s.limit.empty() ? fmt::format("'{}' is {} {}", node.text, below ? "below" : "above",
+                                            below ? s.least : s.most)
+                              : fmt::format(fmt::runtime(s.limit), node.text),
+              std::string(s.help));
+    return {};
+}
+
 bool accept_map(const Reader& read, const Shape& s, const Node& node, std::string_view key) {
     if (!read.expect_map(node, key, key_help(s))) return false;
     bool good = check_size(read, s, node, node.entries.size());
+    const auto is_name = [&](const Node& name) {
+        if (s.numbered) return whole(read, an_integer.within(s.least, s.most), name).has_value();
+        return s.what.empty() || read.identifier(name, s.what);
+    };
     for (const auto& [name, value] : node.entries)
-        good = (s.what.empty() || read.identifier(name, s.what)) &&
-               accept(read, s.of[0], value, s.what.empty() ? key : s.what) && good;
+        good = is_name(name) && accept(read, s.of[0], value, s.what.empty() ? key : s.what) && good;
     return good;
 }
 
@@ -75,19 +91,6 @@ const Shape& meant(const std::vector<Shape>& shapes, const Node& node) {
     return it == shapes.end() ? shapes.back() : *it;
 }
 
-std::optional<std::int64_t> whole(const Reader& read, const Shape& s, const Node& node) {
-    const bool time = s.kind == Kind::time;
-    const auto number = time ? read.time(node) : read.integer(node, std::string(s.help));
-    if (!number || (*number >= s.least && *number <= s.most)) return number;
-    const bool below = *number < s.least;
-    read.fail(time ? "L0308" : "L0305", node,
-              s.limit.empty() ? fmt::format("'{}' is {} {}", node.text, below ? "below" : "above",
-                                            below ? s.least : s.most)
-                              : fmt::format(fmt::runtime(s.limit), node.text),
-              std::string(s.help));
-    return {};
-}
-
 std::optional<std::size_t> chosen(const Reader& read, const Shape& s, const Node& node,
                                   std::string_view key) {
     if (!read.expect_scalar(node, key)) return {};
@@ -99,12 +102,12 @@ std::optional<std::size_t> chosen(const Reader& read, const Shape& s, const Node
 }
 
 const Node* present(const Form& form, const Node& map, std::string_view name) {
-    const Node* node = map.find(name);
-    return node && says_default(*form.find(name), *node) ? nullptr : node;
+    const Node* node = form.find_in(map, name);
+    return node && form.find(name) && says_default(*form.find(name), *node) ? nullptr : node;
 }
 
 void apply(const Form& form, const Rule& rule, const Reader& read, const Node& map) {
-    const Node* node = rule.key.empty() ? nullptr : map.find(rule.key);
+    const Node* node = rule.key.empty() ? nullptr : form.find_in(map, rule.key);
     const auto fail = [&](std::string_view other, std::string_view usual, const Node* place) {
         const std::string_view message = rule.message.empty() ? usual : rule.message;
         const Node* at = rule.place == Rule::Place::the_map ? &map : place;
@@ -117,7 +120,7 @@ void apply(const Form& form, const Rule& rule, const Reader& read, const Node& m
     };
     if (rule.kind == Rule::Kind::not_with) {
         for (const std::string_view other : rule.others)
-            if (const Node* n = map.find(other); node && n)
+            if (const Node* n = form.find_in(map, other); node && n)
                 fail(other, "{0} says '{1}' or '{2}', not both",
                      rule.place == Rule::Place::the_key ? node : n);
         return;
@@ -133,7 +136,7 @@ void apply(const Form& form, const Rule& rule, const Reader& read, const Node& m
     const bool conditional = rule.kind == Rule::Kind::only_with;
     if (conditional && !present(form, map, rule.key)) return;
     const auto there = [&](std::string_view other) {
-        return conditional ? present(form, map, other) : map.find(other);
+        return conditional ? present(form, map, other) : form.find_in(map, other);
     };
     if (std::ranges::none_of(rule.others, there))
         fail(rule.others.front(), "{0} has no '{2}'", node);
@@ -174,6 +177,7 @@ void collect(const Form& form, std::vector<const Form*>& into) {
     into.push_back(&form);
     for (const Key& key : form.keys) collect(key.shape, into);
     collect(form.others.shape, into);
+    collect(form.phrase.shape, into);
 }
 
 }  // namespace
@@ -225,6 +229,11 @@ Shape named(std::string_view what, Shape value) {
 Shape signals_to(Shape value) {
     return {.kind = Kind::map, .of = {std::move(value)}};
 }
+Shape numbered(std::string_view what, std::int64_t least, std::int64_t most, Shape value) {
+    Shape s = named(what, std::move(value)).within(least, most);
+    s.numbered = true;
+    return s;
+}
 Shape either(std::vector<Shape> shapes) {
     return {.kind = Kind::either, .of = std::move(shapes)};
 }
@@ -252,6 +261,18 @@ Key key(std::string_view name, Shape shape, std::string_view doc) {
 const Key* Form::find(std::string_view name_of_key) const {
     const auto it = std::ranges::find(keys, name_of_key, &Key::name);
     return it == keys.end() ? nullptr : &*it;
+}
+
+bool Form::is_phrase(std::string_view key) const {
+    return !phrase.name.empty() &&
+           key.starts_with(phrase.name.substr(0, phrase.name.find(' ') + 1));
+}
+
+const Node* Form::find_in(const Node& map, std::string_view key) const {
+    if (key != phrase.name) return map.find(key);
+    const auto it = std::ranges::find_if(
+        map.entries, [this](const auto& entry) { return is_phrase(entry.first.text); });
+    return it == map.entries.end() ? nullptr : &it->second;
 }
 
 Form Form::with(const Form& part, std::size_t offset, bool ahead) const {

@@ -55,6 +55,7 @@ struct Shape {
     std::int64_t most = std::numeric_limits<std::int64_t>::max();
     std::string_view limit = {};  ///< message about what is beyond; `{}` is what is written
     std::string_view help = {};   ///< below that message
+    bool numbered = false;        ///< a map's names are whole numbers within `least` and `most`
     std::string_view twice = {};  ///< message about an item that stands in the list before
 
     Shape within(std::int64_t low, std::int64_t high, std::string_view message = {},
@@ -87,6 +88,7 @@ Shape list_of(Shape item);
 Shape one_or_list(Shape item, std::string_view empty = {});
 Shape named(std::string_view what, Shape value);
 Shape signals_to(Shape value);
+Shape numbered(std::string_view what, std::int64_t least, std::int64_t most, Shape value);
 Shape either(std::vector<Shape> shapes);
 
 struct Key {
@@ -132,12 +134,17 @@ struct Form {
     std::vector<Key> keys = {};
     std::vector<Rule> rules = {};
     Key others = {};  ///< keys that the file chooses, for `check` to read; nameless: there are none
+    Key phrase = {};  ///< a key with values in it: `within TIME of SIGNAL`; likewise
     std::string_view unknown = "{1} has no key '{0}'";  ///< message about another key
     const char* unknown_code = "L0201";
     void (*check)(const Reader&, const Node&, void* plan) = nullptr;   ///< when all keys are read
     bool (*probe)(const Form&, const Reader&, const Node&) = nullptr;  ///< reads, and keeps nothing
 
     const Key* find(std::string_view key) const;
+    /// Of a map, what stands at this key, or at the phrase if that is its name; or null.
+    const Node* find_in(const Node& map, std::string_view key) const;
+    /// It begins with the phrase's first word, and another follows.
+    bool is_phrase(std::string_view key) const;
     /// The keys and rules of `part` as well, whose plan is this one's or its member. They come
     /// last, or `ahead` of this form's, but behind its version.
     Form with(const Form& part, std::size_t offset = 0, bool ahead = false) const;

@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "runtime/program/meaning.hpp"
 #include "runtime/program/program_form.hpp"
 #include "runtime/program/program_reader.hpp"
+#include "runtime/program/recording_form.hpp"
+#include "runtime/program/shared_folder.hpp"
 #include "runtime/st/test_sources.hpp"
 
 namespace lineshaft {
@@ -136,7 +139,20 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     for (const BlockPlan& block : program_.blocks) check_attached(block.task);
     for (const TracePlan& trace : program_.traces) check_attached(trace.task);
     program_.root = std::move(*root);
+    if (!options_.recording.empty()) recording();
     return std::move(program_);
+}
+
+/// A program that has changed may make something else of the same recording.
+void ProgramReader::recording() {
+    program_.recording = read_recording(options_.recording, read_.diagnostics());
+    if (program_.recording && !program_.recording->meaning.empty() &&
+        program_.recording->meaning != meaning_of(program_).in_force)
+        read_.diagnostics().warn(
+            "L0806", {},
+            fmt::format("'{}' was recorded from another program, or with other parameters",
+                        options_.recording),
+            "give the same program and --set as lineshaft serve had, and the same bytes come");
 }
 
 std::optional<Node> ProgramReader::parse(const std::shared_ptr<const SourceFile>& file) const {
@@ -186,12 +202,42 @@ void ProgramReader::settings(ParameterValues& values) {
     }
 }
 
+/// `s7_1515`: NAME.yaml beside the program or in config/ of its folder, then of each above it in
+/// the project, then in lineshaft's own. Empty, and reported, when there is none.
+std::optional<std::string> ProgramReader::named_controller(const Node& node) const {
+    std::error_code unknown;
+    std::vector<fs::path> folders;
+    const fs::path root = project_root(program_.file->path);
+    for (fs::path folder = real_path(program_.file->path, unknown).parent_path();;
+         folder = folder.parent_path()) {
+        folders.insert(folders.end(), {folder, folder / "config"});
+        if (folder == root || folder == folder.root_path()) break;
+    }
+    if (!shared_folder().empty()) folders.push_back(shared_folder() / "config");
+    for (const fs::path& folder : folders)
+        if (const fs::path file = folder / (node.text + ".yaml");
+            fs::is_regular_file(file, unknown))
+            return file.string();
+    std::vector<std::string> known;
+    for (const auto& entry : fs::directory_iterator(folders.back(), unknown))
+        if (entry.path().extension() == ".yaml") known.push_back(entry.path().stem().string());
+    std::ranges::sort(known);
+    read_.fail("L0001", node, fmt::format("there is no controller '{}'", node.text),
+               suggest(node.text, known));
+    return {};
+}
+
 void ProgramReader::controller(const Node& node) {
     program_.tasks_known = false;
     if (!read_.expect_scalar(node, "'controller'") || node.is_unknown_parameter()) return;
     Diagnostics& out = read_.diagnostics();
-    const auto path =
-        resolve_path(node.text, program_.file->path, options_.include_dirs, node.mark, out);
+    std::error_code unknown;
+    const bool is_name =
+        node.text.find_first_of("./") == std::string::npos &&
+        !fs::exists(fs::path(program_.file->path).parent_path() / node.text, unknown);
+    const auto path = is_name ? named_controller(node)
+                              : resolve_path(node.text, program_.file->path, options_.include_dirs,
+                                             node.mark, out);
     if (!path) return;
     const auto file = options_.files ? options_.files->source(*path, out, node.mark)
                                      : read_source(*path, out, node.mark);
@@ -302,7 +348,8 @@ bool check_kind(const Reader& read, const Node& root, std::string_view kind) {
     static constexpr Kind kinds[] = {{"lineshaft", "a program"},
                                      {"lineshaft_study", "a study"},
                                      {"lineshaft_fit", "a fit"},
-                                     {"lineshaft_controller", "a controller"}};
+                                     {"lineshaft_controller", "a controller"},
+                                     {"lineshaft_recording", "a recording"}};
     const std::string_view wanted = std::ranges::find(kinds, kind, &Kind::key)->what;
     const std::string begin = fmt::format("{} begins with '{}: 1'", wanted, kind);
     if (const Node* version = root.find(kind)) {

@@ -94,6 +94,41 @@ enum class TriggerKind : std::uint8_t {
     equals,  ///< value = low
 };
 
+/// The four tables of Modbus.
+enum class ModbusTable : std::uint8_t {
+    coils,              ///< bits, may be written
+    discrete_inputs,    ///< bits
+    holding_registers,  ///< words of 16 bits, may be written
+    input_registers,    ///< words of 16 bits
+};
+
+/// A signal in `modbus:`. What is not written is empty.
+struct RegisterPlan {
+    ModbusTable table = ModbusTable::coils;
+    Node address, signal;
+    std::optional<Node> type = {}, scale = {};
+    bool little = false;     ///< bytes of a word
+    bool low_first = false;  ///< words of a value
+    std::optional<Node> write = {};
+};
+
+/// An entry of a recording.
+struct RecordedPlan {
+    Mark mark = {};
+    std::int64_t at = 0;  ///< [ns]
+    std::vector<std::pair<Node, Node>> set = {}, force = {};
+    std::vector<Node> release = {};
+    bool end = false;
+};
+
+/// What came from outside while a machine was served.
+struct RecordingPlan {
+    std::string program, meaning;       ///< name of its file; Meaning::in_force
+    std::vector<RecordedPlan> entries;  ///< sorted by time
+
+    std::int64_t end() const { return entries.empty() ? 0 : entries.back().at; }
+};
+
 /// When a trace begins: `signal` and what must hold of it.
 struct TriggerPlan {
     TriggerKind kind = TriggerKind::immediate;
@@ -117,10 +152,19 @@ struct TracePlan {
 
 /// One line of `expect:`.
 struct ExpectPlan {
+    enum class When : std::uint8_t {
+        at_end,
+        at,        ///< `from`
+        always,    ///< in every scan from `from` to `until`
+        excluded,  ///< in every scan it is not so
+        counted,   ///< rising edges in the whole run
+        answered   ///< by `signal` within `until` of each rising edge of `cause`
+    };
+
     Mark mark;
-    bool always = false;
-    std::optional<std::int64_t> at;  ///< [ns]; empty with always == false: at the end
-    Node signal;
+    When when = When::at_end;
+    std::int64_t from = 0, until = never;  ///< [ns]
+    Node signal, cause;
     std::optional<Node> equals, within, at_least, at_most;
 };
 
@@ -144,7 +188,9 @@ struct Program {
     std::vector<StimulusPlan> stimuli;
     std::vector<ReplayPlan> replays;
     std::vector<ForcePlan> forces;
+    std::optional<RecordingPlan> recording;  ///< that is played back
     std::vector<TracePlan> traces;
+    std::vector<RegisterPlan> registers;  ///< `modbus:`
     std::vector<ExpectPlan> expectations;
     RunPlan run;
 };
@@ -154,6 +200,7 @@ struct LoadOptions {
     std::vector<Setting> settings;
     std::vector<std::string> include_dirs;  ///< allowed besides the project root
     YamlFiles* files = nullptr;  ///< where files are looked up that were read before; may be null
+    std::string recording = {};  ///< a file to play back; empty: none
     std::vector<std::string> forces = {};  ///< `signal=value@from..until`, as `--force` has them
 };
 
@@ -163,7 +210,8 @@ Program read_program(std::shared_ptr<const SourceFile> file, const LoadOptions& 
                      Diagnostics& out);
 
 /// L0211 and false unless `root` is a file of `kind`, one of `lineshaft`, `lineshaft_study`,
-/// `lineshaft_fit`, `lineshaft_controller`, in version 1. What else it holds means nothing then.
+/// `lineshaft_fit`, `lineshaft_controller`, `lineshaft_recording`, in version 1. What else it holds
+/// means nothing then.
 bool check_kind(const Reader& read, const Node& root, std::string_view kind);
 
 /// `named` relative to the folder of `from`, if it lies below the project root of `from` (the

@@ -447,6 +447,85 @@ void read_traces(const Reader& read, const Node& node, Program& program) {
     }
 }
 
+// Modbus
+
+struct Mapped {
+    Node signal;
+    std::optional<Node> type, scale, write;
+    bool little = false, low_first = false;
+};
+
+const Form& register_form() {
+    static const Form form = form_of<Mapped>(
+        {.name = "register",
+         .what = "a register",
+         .doc = "a signal in a table of Modbus; 100: SIGNAL alone is one that is only read",
+         .keys = {
+             key<&Mapped::signal>("signal", a_signal, "what is read there, and written").must(),
+             key<&Mapped::type>(
+                 "type",
+                 one_of("a type of registers", {"int16", "uint16", "int32", "uint32", "int64",
+                                                "uint64", "real32", "real64"}),
+                 "of its value, in one register, two or four; unless said real32 of a real, "
+                 "int32 of an integer, uint16 of a boolean or an enumeration"),
+             key<&Mapped::scale>("scale", a_value,
+                                 "what one in the register is, such as 0.001 mm; the signal's "
+                                 "unit unless said"),
+             key<&Mapped::little>("order", one_of("an order of bytes", {"big", "little"}),
+                                  "of the bytes in a register; Modbus has big")
+                 .by_default("big"),
+             key<&Mapped::low_first>("words",
+                                     one_of("an order of words", {"high_first", "low_first"}),
+                                     "of the registers of one value")
+                 .by_default("high_first"),
+             key<&Mapped::write>("write", a_boolean,
+                                 "clients may write it, if serve has --allow-write; for coils "
+                                 "and holding registers")
+                 .by_default("false")}});
+    return form;
+}
+
+Shape registers() {
+    return numbered("an address", 0, 65535, either({a_form(register_form), a_signal}));
+}
+
+template <ModbusTable Table>
+void read_registers(const Reader& read, const Node& node, Program& program) {
+    if (!accept(read, registers(), node, "a table of Modbus")) return;
+    for (const auto& [address, value] : node.entries) {
+        Mapped mapped{.signal = value, .type = {}, .scale = {}, .write = {}};
+        if (value.is_map()) read_form(register_form(), read, value, mapped);
+        if (mapped.signal.is_empty())
+            read.fail("L0202", value,
+                      fmt::format("there is no signal at the address {}", address.text),
+                      "name one, or leave the address out");
+        else
+            program.registers.push_back({Table, address, mapped.signal, mapped.type, mapped.scale,
+                                         mapped.little, mapped.low_first, mapped.write});
+    }
+}
+
+const Form& modbus_form() {
+    using enum ModbusTable;
+    static const Form form = form_of<Program>(
+        {.name = "modbus",
+         .what = "'modbus'",
+         .doc = "which signals clients of Modbus/TCP find where, see 'lineshaft serve --modbus'. "
+                "Addresses count from 0",
+         .keys = {key<read_registers<coils>>("coils", registers(), "bits that may be written"),
+                  key<read_registers<discrete_inputs>>("discrete_inputs", registers(),
+                                                       "bits that are only read"),
+                  key<read_registers<holding_registers>>(
+                      "holding_registers", registers(), "registers of 16 bits that may be written"),
+                  key<read_registers<input_registers>>(
+                      "input_registers", registers(), "registers of 16 bits that are only read")}});
+    return form;
+}
+
+void read_modbus(const Reader& read, const Node& node, Program& program) {
+    read_form(modbus_form(), read, node, program);
+}
+
 // What must hold
 
 constexpr const char* expectation_help =
@@ -464,20 +543,56 @@ const Form& expected_bounds() {
 
 const Form& expectation_form();
 
-/// The bounds that only `value` is within.
-std::string as_bounds(const Node& value) {
-    if (value.text == "false") return "write at_most: false";
-    if (value.text == "true") return "write at_least: true";
-    return fmt::format("write at_least: {0}, at_most: {0}", value.text);
+using When = ExpectPlan::When;
+
+template <When when>
+void read_time_of(const Reader& read, const Node& node, ExpectPlan& plan) {
+    plan.when = when;
+    plan.from = read.time(node).value_or(0);
 }
 
-/// The key that is no other is the signal; false when nothing more is to be said.
-bool read_expected(const Reader& read, const Node& item, ExpectPlan& plan) {
+template <When when>
+void read_signal_of(const Reader&, const Node& node, ExpectPlan& plan) {
+    plan.when = when;
+    plan.signal = node;
+}
+
+void read_between(const Reader& read, const Node& node, ExpectPlan& plan) {
+    plan.when = When::always;
+    plan.from = read.time(node.items[0]).value_or(0);
+    plan.until = read.time(node.items[1]).value_or(never);
+    if (plan.until < plan.from)
+        read.fail("L0213", node.items[1], "'between' ends before it begins");
+}
+
+/// `within 2 s of inputs.start: shaft.moving`
+void read_answer(const Reader& read, const Node& name, const Node& value, ExpectPlan& plan) {
+    constexpr std::string_view begin = "within ", middle = " of ";
+    const auto of = name.text.find(middle);
+    const auto part = [&](std::size_t from, std::size_t to) {
+        Node node = name;
+        node.text = name.text.substr(from, to == name.text.npos ? to : to - from);
+        node.mark.column += static_cast<int>(from);
+        node.mark.length = static_cast<int>(node.text.size());
+        return node;
+    };
+    plan.when = When::answered;
+    plan.signal = value;
+    if (of == name.text.npos)
+        return read.fail("L0201", name, fmt::format("'{}' names no signal", name.text),
+                         "write within 2 s of inputs.start: shaft.moving");
+    plan.cause = part(of + middle.size(), name.text.npos);
+    const auto limit = read.time(part(begin.size(), of));
+    if (accept(read, a_signal, value, "what answers") && limit) plan.until = *limit;
+}
+
+/// The keys that are no others: the signal, or who answers.
+void read_expected(const Reader& read, const Node& item, ExpectPlan& plan) {
     for (const auto& [name, value] : item.entries) {
         if (expectation_form().find(name.text)) continue;
-        if (plan.always && name.text == "equals") {
-            read.fail("L0213", name, "'always' takes bounds, not 'equals'", as_bounds(value));
-            return false;
+        if (expectation_form().is_phrase(name.text)) {
+            read_answer(read, name, value, plan);
+            continue;
         }
         if (!plan.signal.text.empty()) {
             read.fail("L0201", name,
@@ -490,49 +605,93 @@ bool read_expected(const Reader& read, const Node& item, ExpectPlan& plan) {
         else if (accept(read, a_value.as("an expected value"), value, {}))
             plan.equals = value;
     }
-    return true;
 }
 
 void check_expectation(const Reader& read, const Node& item, ExpectPlan& plan) {
     plan.mark = item.mark;
-    plan.always = item.find("always") != nullptr;
-    if (plan.always == (item.find("at") != nullptr)) return;
-    if (!read_expected(read, item, plan)) return;
+    const auto has = [&](std::string_view key) { return item.find(key) != nullptr; };
+    const auto& names = expectation_form().rules.back().others;
+    if (std::ranges::count_if(names, [&](auto name) {
+            return expectation_form().find_in(item, name) != nullptr;
+        }) != 1)
+        return;
+    read_expected(read, item, plan);
+    const bool bounded = plan.at_least || plan.at_most;
+    const bool of_boolean = has("always") || has("never");
+    if ((has("count") && !has("rising")) || (has("equals") && !of_boolean)) return;
     if (plan.signal.text.empty())
         return read.fail("L0202", item, "an expectation names no signal", expectation_help);
-    if (!plan.equals && !plan.at_least && !plan.at_most)
+    if (plan.when == When::answered) {
+        if (plan.equals || bounded)
+            read.fail("L0213", item, "an answer is a signal that becomes true, without a value");
+        return;
+    }
+    if (plan.when == When::counted && !plan.equals && !bounded)
+        return read.fail("L0202", item, "an expectation has no count",
+                         "write count: 3, at_least or at_most");
+    if (!plan.equals && !bounded && !of_boolean)
         return read.fail("L0202", item, "an expectation has no value and no bound",
                          "write SIGNAL: VALUE, at_least or at_most");
     if (plan.within && !plan.equals)
-        return read.fail("L0202", *plan.within, "'within' is for a value, and there is none",
-                         "write SIGNAL: VALUE beside it");
-    if (plan.equals && (plan.at_least || plan.at_most))
+        return read.fail(
+            "L0202", *plan.within, "'within' is for a value, and there is none",
+            of_boolean ? "write equals: VALUE beside it" : "write SIGNAL: VALUE beside it");
+    if (plan.equals && bounded)
         read.fail("L0213", item, "an expectation has a value or bounds, not both",
                   "write two expectations");
 }
 
 const Form& expectation_form() {
+    constexpr std::string_view answer = "within TIME of SIGNAL";
+    constexpr std::string_view two = "write two expectations";
+    const auto apart = [&](std::string_view key, std::vector<std::string_view> others) {
+        return Rule{not_with, key, std::move(others),
+                    "an expectation says '{1}' or '{2}', not both", two};
+    };
     static const Form form = form_of<ExpectPlan>(Form{
         .name = "expectation",
         .what = "an expectation",
-        .doc = "what must hold of one signal, at a time or in every scan",
-        .keys = {key<&ExpectPlan::at>("at", a_time, "when, after all that is due then; or the end")
+        .doc = "what must hold of one signal: at a time, in every scan, or as often as it should",
+        .keys = {key<read_time_of<When::at>>("at", a_time,
+                                             "when, after all that is due then; or the end")
                      .or_word("end"),
-                 key<&ExpectPlan::signal>("always", a_signal, "judged in every scan"),
+                 key<read_signal_of<When::always>>(
+                     "always", a_signal,
+                     "judged in every scan; true, unless a value or bounds are said"),
+                 key<read_signal_of<When::excluded>>(
+                     "never", a_signal,
+                     "judged in every scan; never true, or never this value or within these "
+                     "bounds"),
+                 key<read_between>("between",
+                                   list_of(a_time).within(2, 2, "'between' takes two times",
+                                                          "write between: [1 s, 2 s]"),
+                                   "from when to when it is judged, then and in every scan"),
+                 key<read_signal_of<When::counted>>("rising", a_signal,
+                                                    "a boolean whose rising edges are counted"),
+                 key<&ExpectPlan::equals>("count", a_value, "with 'rising': how many"),
+                 key<&ExpectPlan::equals>("equals", a_value, "with 'always' or 'never': the value"),
                  key<&ExpectPlan::within>("within", a_value,
                                           "distance from the value, or a percentage of it")},
-        .rules = {{not_with,
-                   "at",
-                   {"always"},
-                   "an expectation says 'at' or 'always', not both",
-                   "write two expectations"},
+        .rules = {apart("at", {"always", "never", "between", "rising", answer}),
+                  apart("always", {"never", "between", "rising", answer}),
+                  apart("never", {"between", "rising", answer}),
+                  apart("between", {"rising", answer}),
+                  apart("rising", {answer, "within", "equals"}),
+                  {only_with, "count", {"rising"}, "'count' is for 'rising'"},
+                  {only_with,
+                   "equals",
+                   {"always", "never"},
+                   "'equals' is for 'always' and 'never'",
+                   "write SIGNAL: VALUE"},
                   {at_least_one,
                    {},
-                   {"at", "always"},
-                   "an expectation says neither 'at' nor 'always'",
+                   {"at", "always", "never", "between", "rising", answer},
+                   "an expectation does not say when it holds",
                    expectation_help}},
         .others = key("SIGNAL", either({a_form(expected_bounds), a_value}),
-                      "with 'at': its value, or its bounds"),
+                      "with 'at' or 'between': its value, or its bounds"),
+        .phrase = key(answer, a_signal,
+                      "a boolean that is true within this time of each rising edge of another"),
         .check = by<check_expectation>}
                                                      .with(expected_bounds()));
     return form;
@@ -635,6 +794,8 @@ const Form& program_form() {
               key<read_traces>("traces",
                                named("a trace", a_form(trace_form)).filled("'traces' has no trace"),
                                "further traces, written to FILE.NAME.csv"),
+              key<read_modbus>("modbus", a_form(modbus_form),
+                               "where clients of 'lineshaft serve' find signals"),
               key<&Program::expectations>("expect", list_of(a_form(expectation_form)),
                                           "what must hold; exit 1 if it does not")},
          .rules = {{at_least_one,

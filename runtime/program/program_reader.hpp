@@ -27,11 +27,13 @@ class ProgramReader {
     void unused_parameters(const Node& root, const std::set<std::string>& used);
     void settings(ParameterValues& values);
     void controller(const Node& node);
+    std::optional<std::string> named_controller(const Node& node) const;
     void check_attached(const Node& task) const;
     void find_file(ReplayPlan& replay) const;
     void find_source(const Node& named);
     void read_source_file(const std::string& path, const Mark& mark);
     void force(const std::string& text);
+    void recording();
 
     const LoadOptions& options_;
     Reader read_;

@@ -128,15 +128,20 @@ Json rows(const TableField& table) {
     Json::array_t columns;
     for (const Field& column : table.columns) {
         Json::array_t forms{reference("quantity"), reference("parameter")};
-        if (column.unit.empty()) forms.push_back(bare_number(column));
+        if (!column.names.empty()) {
+            Json::array_t names(column.names.begin(), column.names.end());
+            forms = {keyword("enum", names), reference("parameter")};
+        }
+        if (column.names.empty() && column.unit.empty()) forms.push_back(bare_number(column));
         columns.push_back(described(column.doc, any_of(forms)));
     }
     Json row = of_type("array");
-    row["minItems"] = row["maxItems"] = columns.size();
+    row["minItems"] = table.needed > 0 ? table.needed : columns.size();
+    row["maxItems"] = columns.size();
     row["items"] = std::move(columns);
     Json out = list_of(std::move(row));
     out["maxItems"] = table.capacity;
-    return described(table.doc, out);
+    return described(table.doc, any_of({out, reference("name")}));
 }
 
 /// `common` is the form of any block.
@@ -196,6 +201,19 @@ std::string time_units() {
     return names;
 }
 
+const std::string& time_pattern() {
+    static const std::string pattern = fmt::format("\\+?{} *({})", number_pattern, time_units());
+    return pattern;
+}
+
+/// `within TIME of SIGNAL` with what may stand in it.
+std::string phrase_pattern(std::string_view phrase) {
+    std::string pattern(phrase);
+    pattern.replace(pattern.find("TIME"), 4, time_pattern());
+    pattern.replace(pattern.find("SIGNAL"), 6, signal_pattern);
+    return "^" + pattern + "$";
+}
+
 /// The values that are not forms.
 Json scalars() {
     const std::string parameter = "\\$" + name_pattern;
@@ -211,8 +229,7 @@ Json scalars() {
                                 text("[-+]?[.0-9].*"));
     out["interval"] = described("every(task): the interval of a task; every() of the block's own",
                                 text("every\\((" + name_pattern + ")?\\)"));
-    out["time"] = described("a time, such as 2 ms",
-                            text(fmt::format("\\+?{} *({})", number_pattern, time_units())));
+    out["time"] = described("a time, such as 2 ms", text(time_pattern()));
     out["share"] = described("a percentage", text("[0-9.]+ *%"));
     out["integer"] =
         described("a whole number, such as 16#FF", text("[-+]?[0-9_]+|(2|8|16)#[0-9A-Fa-f_]+"));
@@ -253,6 +270,9 @@ class SchemaWriter {
         if (!form.others.name.empty())
             out["patternProperties"]["^" + signal_pattern + "$"] =
                 described(form.others.doc, shape(form.others.shape, parameters));
+        if (!form.phrase.name.empty())
+            out["patternProperties"][phrase_pattern(form.phrase.name)] =
+                described(form.phrase.doc, shape(form.phrase.shape, parameters));
         if (!needed.empty()) out["required"] = std::move(needed);
         out["additionalProperties"] = false;
         for (const Rule& r : form.rules) rules.push_back(rule(form, r));
@@ -329,11 +349,20 @@ class SchemaWriter {
     }
 
     Json map(const Shape& s, bool parameters) {
-        Json out = limited(of_type("object"), s, "minProperties", "maxProperties");
-        const std::string names = s.what.empty() ? signal_pattern : name_pattern;
+        Json out = of_type("object");
+        if (!s.numbered) out = limited(std::move(out), s, "minProperties", "maxProperties");
+        const std::string names = s.numbered       ? "[0-9]+"
+                                  : s.what.empty() ? signal_pattern
+                                                   : name_pattern;
         out["patternProperties"]["^" + names + "$"] = shape(s.of[0], parameters);
         out["additionalProperties"] = false;
         return out;
+    }
+
+    static Json is_there(const Form& form, std::string_view key) {
+        if (key != form.phrase.name) return required(key);
+        const Json another = keyword("not", keyword("pattern", phrase_pattern(key)));
+        return keyword("not", keyword("propertyNames", another));
     }
 
     /// `key` is there, and does not say its default.
@@ -352,10 +381,10 @@ class SchemaWriter {
         Json::array_t others;
         for (const std::string_view other : r.others)
             others.push_back(r.kind == Rule::Kind::only_with ? stands(form, other)
-                                                             : required(other));
+                                                             : is_there(form, other));
         switch (r.kind) {
             case Rule::Kind::not_with:
-                return if_then(required(r.key), keyword("not", any_of(others)));
+                return if_then(is_there(form, r.key), keyword("not", any_of(others)));
             case Rule::Kind::only_with:
                 return if_then(stands(form, r.key), any_of(others));
             case Rule::Kind::exactly_one:

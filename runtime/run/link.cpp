@@ -48,8 +48,10 @@ std::set<const std::byte*> places_read(Linked& linked) {
         places.insert(trace.trigger.signal.slot);
         for (const Signal& signal : trace.signals) places.insert(signal.slot);
     }
-    for (const Expectation& expectation : linked.expectations)
+    for (const Expectation& expectation : linked.expectations) {
         places.insert(expectation.signal.slot);
+        if (expectation.cause) places.insert(expectation.cause->slot);
+    }
     return places;
 }
 
@@ -75,6 +77,7 @@ Linked link(const Program& program, const Catalog& catalog, Diagnostics& out,
     connect_outside(to);
     linked.traces = connect_traces(to);
     linked.expectations = connect_expectations(to);
+    linked.modbus = connect_modbus(to);
     warn_of_unused_inputs(program, linked, out);
     return linked;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "runtime/model/catalog.hpp"
+#include "runtime/net/modbus_map.hpp"
 #include "runtime/net/net.hpp"
 #include "runtime/program/program.hpp"
 #include "runtime/scan/judge.hpp"
@@ -17,6 +18,7 @@ struct Linked {
     Machine machine;
     std::vector<TraceSetup> traces;
     std::vector<Expectation> expectations;
+    ModbusMap modbus;
 };
 
 /// Checks every name, type, unit, limit and wire of `program` and lays its blocks out in memory.

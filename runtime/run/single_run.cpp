@@ -10,6 +10,7 @@
 #include "runtime/restart/checkpoint.hpp"
 #include "runtime/restart/retain.hpp"
 #include "runtime/run/origin.hpp"
+#include "runtime/st/library.hpp"
 #include "runtime/trace/event_writer.hpp"
 #include "runtime/trace/pulse_writer.hpp"
 #include "runtime/trace/trace_files.hpp"
@@ -70,6 +71,7 @@ class SingleRun {
 
   private:
     bool begin();
+    RunResult step();
     bool restart();
     bool open_files();
     template <class Writer, class... Arguments>
@@ -80,6 +82,7 @@ class SingleRun {
     void save(std::int64_t time);
     void look(std::int64_t time);
     bool writing_fails() const;
+    void warn_of_cut_texts();
     void finish();
     void open_traces();
     bool has_trace() const {
@@ -108,16 +111,17 @@ class SingleRun {
 RunReport SingleRun::run() {
     const auto start = std::chrono::steady_clock::now();
     if (begin()) {
-        report_.result =
-            executive_->run(observers_, &stop_, [this](std::int64_t time) { look(time); });
+        report_.result = step();
         const bool broke_off = report_.result.outcome == Outcome::interrupted && writing_fails();
         if (broke_off)
             report_.result.message = "the run stopped at " + format_time(report_.result.time);
         report_.warnings = executive_->warnings();
+        warn_of_cut_texts();
         judge_.finish(report_.result);
         if (!broke_off) report_.verdicts = judge_.verdicts();
         for (const Expectation& e : judge_.expectations())
-            if (e.always && e.signal.task >= 0 &&
+            if (e.when != Expectation::When::at && e.when != Expectation::When::at_end &&
+                e.signal.task >= 0 &&
                 report_.result.scans[static_cast<std::size_t>(e.signal.task)] == 0)
                 report_.never_looked_at.push_back(e.text);
         finish();
@@ -126,6 +130,17 @@ RunReport SingleRun::run() {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     report_.wall_seconds = wall.count();
     return std::move(report_);
+}
+
+void SingleRun::warn_of_cut_texts() {
+    for (const Task& task : machine_.tasks)
+        for (const ErrorFlag& block : task.errors)
+            if (const auto cut =
+                    block.type ? st::cut_text(*block.type, block.memory) : std::nullopt)
+                report_.warnings.push_back(
+                    fmt::format("block {} cut a text short, first at {}:{}:{}; declare the STRING "
+                                "there longer",
+                                block.block, cut->file->path, cut->line, cut->column));
 }
 
 bool SingleRun::begin() {
@@ -138,6 +153,17 @@ bool SingleRun::begin() {
         executive_->checkpoint(options_.checkpoint_every,
                                [this](std::int64_t time) { save(time); });
     return true;
+}
+
+RunResult SingleRun::step() {
+    for (Observer* observer : observers_) executive_->add(*observer);
+    executive_->look_out(&stop_, [this](std::int64_t time) { look(time); });
+    executive_->begin();
+    if (options_.drive)
+        options_.drive(*executive_);
+    else
+        executive_->run_until(machine_.end);
+    return executive_->finish();
 }
 
 bool SingleRun::restart() {
@@ -169,6 +195,7 @@ bool SingleRun::open_files() {
     if (has_trace()) open_traces();
     if (!options_.pulses_path.empty()) open(pulses_, options_.pulses_path, machine_);
     if (!loaded_.linked.expectations.empty()) observers_.push_back(&judge_);
+    judge_.begin();
     if (options_.observer) observers_.push_back(options_.observer);
     return report_.refused.empty();
 }

@@ -118,6 +118,8 @@ Executive::Executive(Machine& machine) : machine_(machine), forces_(machine.forc
     warned_.resize(machine.devices.size());
     running_.reserve(machine.tasks.size());
     result_.scans.resize(machine.tasks.size());
+    for (Task& task : machine.tasks)
+        for (Call& call : task.calls) call.context.published = result_.scans.data();
 }
 
 void Executive::checkpoint(std::int64_t every, std::function<void(std::int64_t)> save) {
@@ -211,10 +213,28 @@ void Executive::remove(Observer& observer) {
     std::erase(observers_, &observer);
 }
 
-void Executive::post(Stimulus value) {
+std::int64_t Executive::post(Stimulus value) {
     value.at = known_until_;
     mail_.push_back(std::move(value));
     next_outside_ = std::min(next_outside_, known_until_);
+    return known_until_;
+}
+
+std::int64_t Executive::force(Force force) {
+    force.from = known_until_;
+    machine_.impose(std::move(force));
+    return forces_changed();
+}
+
+std::int64_t Executive::release(const std::byte* live) {
+    machine_.lift(live, known_until_);
+    return forces_changed();
+}
+
+std::int64_t Executive::forces_changed() {
+    forces_.look_ahead(known_until_ - 1);
+    look_ahead();
+    return known_until_;
 }
 
 /// What next_due_, next_outside_ and pending_ summarise.

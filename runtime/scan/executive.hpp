@@ -97,10 +97,17 @@ class Executive {
     void add(Observer& observer);
     void remove(Observer& observer);
 
+    /// When something is due next [ns].
+    std::int64_t next_time() { return next_event(); }
+
     /// Between two steps: a value from outside counts from the next nanosecond on, so before every
     /// scan that comes, and is told as a stimulus of that time. A run of the same program with that
-    /// stimulus in its file does the same.
-    void post(Stimulus value);
+    /// stimulus in its file does the same. Returns that time [ns].
+    std::int64_t post(Stimulus value);
+
+    /// Likewise: see Machine::impose() and lift().
+    std::int64_t force(Force force);
+    std::int64_t release(const std::byte* live);
 
     /// After run(): what the devices have put up with, a sentence for each that has.
     std::vector<std::string> warnings() const;
@@ -147,6 +154,7 @@ class Executive {
     void look();
     std::int64_t next_event();
     void look_ahead();
+    std::int64_t forces_changed();
     void advance(std::int64_t time);
     void instant();
     void finish_top();

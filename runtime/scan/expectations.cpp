@@ -50,32 +50,87 @@ std::optional<Value> read_tolerance(const Connecting& to, const Signal& signal, 
     return {};
 }
 
-Expectation expectation(const Connecting& to, const ExpectPlan& plan, const Signal& target) {
-    Expectation e{.text = {}, .signal = target, .always = plan.always, .at = plan.at, .wanted = {}};
-    if (plan.equals) {
-        e.low = e.high = read_bound(to, target, *plan.equals).value_or(0.0);
-        const auto slack =
-            plan.within ? read_tolerance(to, target, *plan.within, e.low) : std::nullopt;
-        if (slack) {
-            e.high = moved(e.low, *slack, 1);
-            e.low = moved(e.low, *slack, -1);
-        }
-        e.wanted = plan.equals->text;
-        if (plan.within) e.wanted += " within " + plan.within->text;
+using When = ExpectPlan::When;
+
+/// `always`, `from 1 s to 2 s`: what stands before the signal.
+std::string when_text(const ExpectPlan& plan) {
+    switch (plan.when) {
+        case When::at_end:
+            return "at the end";
+        case When::at:
+            return "at " + format_time(plan.from);
+        case When::excluded:
+            return "never";
+        case When::counted:
+            return "rising";
+        case When::answered:
+            return fmt::format("within {} of {}", format_time(plan.until), plan.cause.text);
+        case When::always:
+            break;
     }
+    if (plan.until == never) return "always";
+    return fmt::format("from {} to {}", format_time(plan.from), format_time(plan.until));
+}
+
+void read_value(const Connecting& to, const ExpectPlan& plan, const Signal& target,
+                Expectation& e) {
+    e.low = e.high = read_bound(to, target, *plan.equals).value_or(0.0);
+    const auto slack = plan.within ? read_tolerance(to, target, *plan.within, e.low) : std::nullopt;
+    if (slack) {
+        e.high = moved(e.low, *slack, 1);
+        e.low = moved(e.low, *slack, -1);
+    }
+    e.wanted = plan.equals->text;
+    if (plan.within) e.wanted += " within " + plan.within->text;
+}
+
+void read_bounds(const Connecting& to, const ExpectPlan& plan, const Signal& target,
+                 Expectation& e) {
     const auto side = [&](const std::optional<Node>& node, const char* word, Value& limit) {
         if (!node) return;
         limit = read_bound(to, target, *node).value_or(0.0);
         e.wanted += fmt::format("{}{} {}", e.wanted.empty() ? "" : ", ", word, node->text);
     };
+    if (plan.equals) read_value(to, plan, target, e);
     side(plan.at_least, "at least", e.low);
     side(plan.at_most, "at most", e.high);
     if (plan.at_least && plan.at_most && compare(e.low, e.high) > 0)
         to.read.fail("L0213", *plan.at_least, "'at_least' is above 'at_most': this never holds");
-    const std::string when = plan.always ? "always"
-                             : plan.at   ? "at " + format_time(*plan.at)
-                                         : "at the end";
-    e.text = fmt::format("{}: {} {}{}", when, target.name, plan.equals ? "= " : "", e.wanted);
+}
+
+/// False, and reported, where what is to be true or to rise is no boolean.
+bool is_boolean(const Connecting& to, const Signal& signal, const Node& place) {
+    if (signal.type == Type::boolean) return true;
+    to.read.fail(
+        "L0401", place,
+        fmt::format("a boolean is expected here, '{}' is {}", signal.name, name_of(signal.type)));
+    return false;
+}
+
+/// How often a signal rises is a whole number, whatever the signal is.
+const Signal& a_count() {
+    static const Signal count{.name = "count", .type = Type::integer, .unit = {}, .names = {}};
+    return count;
+}
+
+Expectation expectation(const Connecting& to, const ExpectPlan& plan, const Signal& target) {
+    Expectation e{.text = {},
+                  .signal = target,
+                  .when = plan.when,
+                  .from = plan.from,
+                  .until = plan.until,
+                  .wanted = {}};
+    const bool has_bounds = plan.equals || plan.at_least || plan.at_most;
+    const bool counts = plan.when == When::counted;
+    if (counts || !has_bounds) is_boolean(to, target, plan.signal);
+    if (has_bounds) read_bounds(to, plan, counts ? a_count() : target, e);
+    if (!has_bounds) e.low = e.high = std::int64_t{1};
+    e.text = fmt::format("{}: {}", when_text(plan), target.name);
+    if (has_bounds) e.text += fmt::format(" {}{}", plan.equals ? "= " : "", e.wanted);
+    if (plan.when == When::answered) e.wanted = format_time(plan.until);
+    if (plan.when == When::always && !has_bounds) e.wanted = "true";
+    if (plan.when == When::excluded)
+        e.wanted = fmt::format("never {}", has_bounds ? e.wanted : "true");
     return e;
 }
 
@@ -91,9 +146,17 @@ std::optional<Value> read_bound(const Connecting& to, const Signal& signal, cons
 
 std::vector<Expectation> connect_expectations(const Connecting& to) {
     std::vector<Expectation> expectations;
-    for (const ExpectPlan& plan : to.program.expectations)
-        if (const auto target = to.net.find(to.read, plan.signal, plan.signal.text))
-            expectations.push_back(expectation(to, plan, to.machine.placed(*target)));
+    for (const ExpectPlan& plan : to.program.expectations) {
+        const auto target = to.net.find(to.read, plan.signal, plan.signal.text);
+        const auto cause = plan.when == When::answered
+                               ? to.net.find(to.read, plan.cause, plan.cause.text)
+                               : std::nullopt;
+        if (!target) continue;
+        Expectation e = expectation(to, plan, to.machine.placed(*target));
+        if (plan.when == When::answered && !cause) continue;
+        if (cause && is_boolean(to, *cause, plan.cause)) e.cause = to.machine.placed(*cause);
+        expectations.push_back(std::move(e));
+    }
     return expectations;
 }
 

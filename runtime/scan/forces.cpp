@@ -5,7 +5,7 @@
 
 namespace lineshaft {
 
-Forces::Forces(std::span<const Force> forces) : forces_(forces), own_(forces.size()) {
+Forces::Forces(const std::vector<Force>& forces) : forces_(forces) {
     look_ahead(-1);
 }
 
@@ -29,10 +29,11 @@ void Forces::update(std::int64_t now, EventSink* events) {
 
 void Forces::look_ahead(std::int64_t now) {
     next_ = never;
+    own_.resize(forces_.size());
     active_ = std::ranges::any_of(own_, &Own::active);
     for (const Force& force : forces_)
         for (const std::int64_t time : {force.from, force.until})
-            if (time > now) next_ = std::min(next_, time);
+            if (time > now && force.from < force.until) next_ = std::min(next_, time);
 }
 
 void Forces::begin(std::size_t index) {

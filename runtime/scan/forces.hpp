@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "runtime/model/state.hpp"
@@ -15,7 +14,8 @@ namespace lineshaft {
 /// in its memory, and all are back when the force has ended.
 class Forces {
   public:
-    explicit Forces(std::span<const Force> forces);
+    /// `forces` may grow, and times of its members change, if look_ahead() is called then.
+    explicit Forces(const std::vector<Force>& forces);
 
     /// Next begin or end [ns].
     std::int64_t next_time() const { return next_; }
@@ -41,7 +41,7 @@ class Forces {
     void save(StateWriter& out) const { out.put(own_); }
     void restore(StateReader& in) { in.get(own_); }
 
-    /// Finds the next begin or end after `now`; after restore().
+    /// Finds the next begin or end after `now`; after restore(), and when the forces have changed.
     void look_ahead(std::int64_t now);
 
   private:
@@ -56,7 +56,7 @@ class Forces {
     void begin(std::size_t index);
     void end(std::size_t index);
 
-    std::span<const Force> forces_;
+    const std::vector<Force>& forces_;
     std::vector<Own> own_;
     std::int64_t next_ = 0;
     bool active_ = false;

@@ -17,33 +17,99 @@ nlohmann::ordered_json number_json(const Value& value) {
     return as_real(value);
 }
 
+using When = Expectation::When;
+
+bool is_whole_run(const Expectation& e) {
+    return e.when != When::at_end && e.when != When::at && e.from == 0 && e.until == never;
+}
+
+bool is_true(const Signal& signal) {
+    return as_real(signal.value()) != 0;
+}
+
 }  // namespace
 
 Judge::Judge(std::vector<Expectation> expectations) : expectations_(std::move(expectations)) {
     verdicts_.resize(expectations_.size());
+    watches_.resize(expectations_.size());
     for (std::size_t i = 0; i < expectations_.size(); ++i) {
-        if (expectations_[i].at) timed_.push_back(i);
-        if (!expectations_[i].always) continue;
-        always_.push_back(i);
-        verdicts_[i].ok = true;
+        const Expectation& e = expectations_[i];
+        const bool is_judged_once = e.when == When::at || e.when == When::at_end;
+        if (e.when == When::at || (e.when == When::always && !is_whole_run(e))) timed_.push_back(i);
+        if (!is_judged_once) scanned_.push_back(i);
+        verdicts_[i].ok = !is_judged_once;
     }
-    std::ranges::stable_sort(timed_, {}, [this](std::size_t i) { return *expectations_[i].at; });
+    std::ranges::stable_sort(timed_, {}, [this](std::size_t i) { return expectations_[i].from; });
+}
+
+void Judge::begin() {
+    for (std::size_t i = 0; i < expectations_.size(); ++i) {
+        const Expectation& e = expectations_[i];
+        if (e.when == When::counted) watches_[i].level = is_true(e.signal);
+        if (e.when == When::answered) watches_[i].level = is_true(*e.cause);
+    }
 }
 
 void Judge::scanned(int task, const Scan& scan) {
-    for (const std::size_t i : always_)
-        if (expectations_[i].signal.task == task && verdicts_[i].ok)
-            judge(i, scan.time, scan.index);
+    const std::int64_t now = next_ == never ? scan.time : next_;
+    for (const std::size_t i : scanned_)
+        if (verdicts_[i].ok) scanned(i, task, now, scan);
+}
+
+void Judge::scanned(std::size_t index, int task, std::int64_t now, const Scan& scan) {
+    const Expectation& e = expectations_[index];
+    Watch& watch = watches_[index];
+    const bool is_own = e.signal.task == task;
+    if (e.when == When::answered) {
+        if (e.cause->task == task && rising_edge(is_true(*e.cause), watch.level)) {
+            watch.has_risen = true;
+            ++watch.edges;
+        }
+        if (is_own && is_true(e.signal)) watch.is_answered = true;
+    } else if (is_own && e.when == When::counted) {
+        count(index, scan.time);
+    } else if (is_own && now >= e.from && now <= e.until) {
+        judge(index, scan.time, scan.index);
+    }
 }
 
 void Judge::settled(std::int64_t time, std::int64_t next) {
-    for (const std::size_t i : always_)
-        if (expectations_[i].signal.task < 0 && verdicts_[i].ok) judge(i, time, {});
+    constexpr int outside = -1;
+    for (const std::size_t i : scanned_) {
+        if (!verdicts_[i].ok) continue;
+        const Expectation& e = expectations_[i];
+        if (e.signal.task == outside || (e.cause && e.cause->task == outside))
+            scanned(i, outside, time, {.time = time, .index = outside});
+        if (e.when == When::answered) await(i, time, next);
+    }
     for (; next_timed_ < timed_.size(); ++next_timed_) {
         const std::size_t i = timed_[next_timed_];
-        if (*expectations_[i].at >= next) return;
-        judge(i, *expectations_[i].at, {});
+        if (expectations_[i].from >= next) break;
+        if (expectations_[i].when == When::at || verdicts_[i].ok) judge(i, expectations_[i].from);
     }
+    next_ = next;
+}
+
+/// The level may stand since before the cause: then that is the answer.
+void Judge::await(std::size_t index, std::int64_t time, std::int64_t next) {
+    const Expectation& e = expectations_[index];
+    Watch& watch = watches_[index];
+    if (watch.has_risen && watch.awaits == never) watch.awaits = time;
+    if (watch.is_answered || is_true(e.signal)) watch.awaits = never;
+    watch.has_risen = watch.is_answered = false;
+    if (watch.awaits == never || later(watch.awaits, e.until) >= next) return;
+    fail(index, fmt::format("{} rises at {}, {} is false until {}; expected true within {}",
+                            e.cause->name, format_time(watch.awaits), e.signal.name,
+                            format_time(later(watch.awaits, e.until)), e.wanted));
+}
+
+void Judge::count(std::size_t index, std::int64_t time) {
+    const Expectation& e = expectations_[index];
+    Watch& watch = watches_[index];
+    if (!rising_edge(is_true(e.signal), watch.level)) return;
+    if (compare(++watch.edges, e.high) > 0)
+        fail(index, fmt::format("{} rises for the {}. time at {}; expected {}", e.signal.name,
+                                watch.edges, format_time(time), e.wanted));
 }
 
 void Judge::save(StateWriter& out) const {
@@ -51,7 +117,9 @@ void Judge::save(StateWriter& out) const {
         out.put(verdict.ok);
         out.put(verdict.deviation);
     }
+    out.put(watches_);
     out.put(next_timed_);
+    out.put(next_);
 }
 
 void Judge::restore(StateReader& in) {
@@ -59,35 +127,49 @@ void Judge::restore(StateReader& in) {
         in.get(verdict.ok);
         in.get(verdict.deviation);
     }
+    in.get(watches_);
     in.get(next_timed_);
+    in.get(next_);
+}
+
+void Judge::fail(std::size_t index, std::string deviation) {
+    verdicts_[index] = {.ok = false, .deviation = std::move(deviation)};
 }
 
 void Judge::judge(std::size_t index, std::int64_t time, std::optional<std::int64_t> scan) {
     const Expectation& e = expectations_[index];
     const Value value = e.signal.value();
-    Verdict& verdict = verdicts_[index];
-    verdict.ok = compare(value, e.low) >= 0 && compare(value, e.high) <= 0;
-    if (verdict.ok) return;
-    verdict.deviation =
+    const bool is_within = compare(value, e.low) >= 0 && compare(value, e.high) <= 0;
+    verdicts_[index].ok = is_within != (e.when == When::excluded);
+    if (verdicts_[index].ok) return;
+    std::string deviation =
         fmt::format("{} is {} at {}", e.signal.name, e.signal.describe(value), format_time(time));
-    if (scan && *scan < 0)
-        verdict.deviation += ", before the first scan";
-    else if (scan)
-        verdict.deviation += fmt::format(", scan {}", *scan);
-    verdict.deviation += fmt::format("; expected {}", e.wanted);
+    if (scan && *scan < 0 && e.signal.task >= 0)
+        deviation += ", before the first scan";
+    else if (scan && *scan >= 0)
+        deviation += fmt::format(", scan {}", *scan);
+    fail(index, deviation + fmt::format("; expected {}", e.wanted));
 }
 
 void Judge::finish(const RunResult& result) {
-    for (; next_timed_ < timed_.size(); ++next_timed_)
-        verdicts_[timed_[next_timed_]].deviation =
-            fmt::format("{}: the run ended at {}, before it",
-                        expectations_[timed_[next_timed_]].text, format_time(result.time));
+    for (; next_timed_ < timed_.size(); ++next_timed_) {
+        const std::size_t i = timed_[next_timed_];
+        fail(i, fmt::format("{}: the run ended at {}, before it", expectations_[i].text,
+                            format_time(result.time)));
+    }
     for (std::size_t i = 0; i < expectations_.size(); ++i) {
         const Expectation& e = expectations_[i];
-        if (e.always || e.at) continue;
-        judge(i, result.time,
-              e.signal.task < 0 ? std::optional<std::int64_t>{}
-                                : result.scans[static_cast<std::size_t>(e.signal.task)] - 1);
+        const std::int64_t edges = watches_[i].edges;
+        if (e.when == When::at_end)
+            judge(i, result.time,
+                  e.signal.task < 0 ? std::optional<std::int64_t>{}
+                                    : result.scans[static_cast<std::size_t>(e.signal.task)] - 1);
+        if (e.when == When::counted && compare(edges, e.low) < 0)
+            fail(i, fmt::format("{} rises {} times until the end at {}; expected {}", e.signal.name,
+                                edges, format_time(result.time), e.wanted));
+        if (e.when == When::answered && edges == 0)
+            fail(i, fmt::format("{} never rises, so that {} is never awaited", e.cause->name,
+                                e.signal.name));
     }
 }
 
@@ -100,11 +182,13 @@ nlohmann::ordered_json verdicts_json(const Judge& judge) {
     for (std::size_t i = 0; i < judge.expectations().size(); ++i) {
         const Expectation& e = judge.expectations()[i];
         const Verdict& verdict = judge.verdicts()[i];
+        const bool is_always = e.when == When::always && is_whole_run(e);
         nlohmann::ordered_json object{
-            {"text", e.text}, {"signal", e.signal.name}, {"always", e.always}, {"ok", verdict.ok}};
-        if (e.at) object["at"] = seconds(*e.at);
-        if (std::isfinite(as_real(e.low))) object["low"] = number_json(e.low);
-        if (std::isfinite(as_real(e.high))) object["high"] = number_json(e.high);
+            {"text", e.text}, {"signal", e.signal.name}, {"always", is_always}, {"ok", verdict.ok}};
+        if (e.when == When::at) object["at"] = seconds(e.from);
+        const bool is_drawn = is_always || e.when == When::at || e.when == When::at_end;
+        if (is_drawn && std::isfinite(as_real(e.low))) object["low"] = number_json(e.low);
+        if (is_drawn && std::isfinite(as_real(e.high))) object["high"] = number_json(e.high);
         if (!verdict.ok) object["deviation"] = verdict.deviation;
         list.push_back(std::move(object));
     }

@@ -8,20 +8,37 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "runtime/program/program.hpp"
 #include "runtime/scan/executive.hpp"
 
 namespace lineshaft {
 
-/// A statement about a signal, at an instant, at the end, or after every scan of the task that
+/// A statement about a signal: at an instant, at the end, or after every scan of the task that
 /// writes it. It holds when low <= value <= high; true counts as 1, an enumeration as its number.
+///
+/// Counted are rising edges in the scans of the signal's task; a value that is true from the start
+/// is no edge. An answer is awaited from each rising edge of the cause on: the signal has to be
+/// true then, or in a scan up to `until` later. A run may end before that is over; that there was
+/// no cause at all is a failure.
 struct Expectation {
+    using When = ExpectPlan::When;
+
     std::string text;  ///< as `run` prints it: `at 1 s: slave.in_gear = true`
     Signal signal;
-    bool always = false;
-    std::optional<std::int64_t> at;  ///< [ns]; empty and not always: at the end
+    When when = When::at_end;
+    std::int64_t from = 0, until = never;  ///< [ns], see ExpectPlan
+    std::optional<Signal> cause = {};      ///< of an answer
     Value low = -std::numeric_limits<double>::infinity();
     Value high = std::numeric_limits<double>::infinity();
     std::string wanted;  ///< `true`, `15 mm/s`, for the message
+};
+
+/// What a judge remembers of what it counts or awaits.
+struct Watch {
+    bool level = false;           ///< of the signal, or of the cause, when last looked at
+    std::int64_t edges = 0;       ///< of it
+    std::int64_t awaits = never;  ///< an answer, since the first edge without one [ns]
+    bool has_risen = false, is_answered = false;  ///< in this instant
 };
 
 struct Verdict {
@@ -33,6 +50,9 @@ struct Verdict {
 class Judge : public Observer {
   public:
     explicit Judge(std::vector<Expectation> expectations);
+
+    /// Before the run: the levels it begins with.
+    void begin();
 
     void scanned(int task, const Scan& scan) override;
     void settled(std::int64_t time, std::int64_t next) override;
@@ -47,18 +67,24 @@ class Judge : public Observer {
     bool ok() const;
 
   private:
-    void judge(std::size_t index, std::int64_t time, std::optional<std::int64_t> scan);
+    void judge(std::size_t index, std::int64_t time, std::optional<std::int64_t> scan = {});
+    void scanned(std::size_t index, int task, std::int64_t now, const Scan& scan);
+    void count(std::size_t index, std::int64_t time);
+    void await(std::size_t index, std::int64_t time, std::int64_t next);
+    void fail(std::size_t index, std::string deviation);
 
     std::vector<Expectation> expectations_;
     std::vector<Verdict> verdicts_;
-    std::vector<std::size_t> timed_;  ///< indices with a time, soonest first
-    std::vector<std::size_t> always_;
+    std::vector<Watch> watches_;
+    std::vector<std::size_t> timed_;    ///< indices that are judged at `from`, soonest first
+    std::vector<std::size_t> scanned_;  ///< those that are judged or looked at in scans
     std::size_t next_timed_ = 0;
+    std::int64_t next_ = never;  ///< the instant after the last one that is settled
 };
 
 /// For a trace's sidecar: `[{"text", "signal", "always", "ok"}...]`, with "at" [s] where an instant
-/// is meant (the end has none), "low" and "high" where there are bounds, "deviation" where it
-/// failed.
+/// is meant (the end has none), "low" and "high" where there are bounds that hold always or at it,
+/// "deviation" where it failed.
 nlohmann::ordered_json verdicts_json(const Judge& judge);
 
 }  // namespace lineshaft

@@ -5,8 +5,9 @@
 
 namespace lineshaft {
 
-/// Room that every function below needs at `to`; each returns the end of what it has written.
-constexpr std::size_t longest_number = 32;
+/// Room that every function below needs at `to`; each returns the end of what it has written. They
+/// write in words: a sign, sixteen digits, the point and sixteen bytes more.
+constexpr std::size_t longest_number = 34;
 
 char* write_integer(char* to, std::int64_t value);
 

@@ -206,7 +206,8 @@ void Checker::check_standard_arguments(Expression& call, const Type& type) {
             if (position < type.members.size()) found = type.members[position++];
         } else {
             for (Variable* member : type.members)
-                if (same_name(member->text, argument.name.text)) found = member;
+                if (same_name(member->text, standard_name(type, argument.name.text)))
+                    found = member;
         }
         argument.variable = found;
         if (!found) {
@@ -216,6 +217,14 @@ void Checker::check_standard_arguments(Expression& call, const Type& type) {
             continue;
         }
         check_argument(call, argument, *found);
+    }
+    for (const Variable* member : type.members) {
+        if (member->section != Section::in_out ||
+            std::ranges::find(call.arguments, member, &Argument::variable) != call.arguments.end())
+            continue;
+        fail("L0907", call.operands[0]->place,
+             fmt::format("'{}' is called without '{}'", type.name, member->text),
+             fmt::format("write {} := ...", member->text));
     }
 }
 
@@ -351,9 +360,10 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         case Rule::square:
         case Rule::fraction:
         case Rule::finite: {
-            const Type& type = first.is_any() && expected && expected->kind == Kind::real
-                                   ? *expected
-                                   : real_for(first);
+            const bool suits =
+                first.is_any() || (first.is_integer() && expected && widens(first, *expected));
+            const Type& type =
+                suits && expected && expected->kind == Kind::real ? *expected : real_for(first);
             if (!coerce_from(0, type)) return nullptr;
             return f.rule == Rule::finite ? &bool_type : &type;
         }
@@ -378,7 +388,7 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         case Rule::move: {
             const Type* type = common_from(0);
             if (!type) return nullptr;
-            const bool number = type->is_number() || type->kind == Kind::time ||
+            const bool number = type->is_number() || type->is_time() ||
                                 (f.rule == Rule::extremum && type->kind == Kind::bits);
             if (number || f.rule == Rule::move) return type;
             return fail("L0905", arguments[0].value->place,
@@ -538,6 +548,16 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
     const bool impossible = !from.is_scalar() || !target->is_scalar();
     if (impossible && !(from.kind == Kind::text && target->is_scalar()) &&
         !(target->kind == Kind::text && from.is_scalar()))
+        return fail(
+            "L0905", call.place,
+            fmt::format("there is no conversion of {} to {}", describe(from), describe(*target)));
+    const auto goes = [](const Type& a, const Type& b) {
+        return (a.kind == Kind::moment && b.is_date()) ||
+               (a.kind == Kind::date && b.kind == Kind::moment) ||
+               (a.kind == Kind::clock && b.kind == Kind::time) ||
+               (a.kind == Kind::time && b.kind == Kind::clock) || same_type(a, b);
+    };
+    if (from.is_time() && target->is_time() && !goes(from, *target))
         return fail(
             "L0905", call.place,
             fmt::format("there is no conversion of {} to {}", describe(from), describe(*target)));

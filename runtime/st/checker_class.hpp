@@ -12,6 +12,9 @@ namespace lineshaft::st {
 
 struct StandardFunction;
 
+/// The standard's name of a part of its function blocks that CODESYS calls otherwise: RESET is R.
+std::string_view standard_name(const Type& type, std::string_view name);
+
 /// What check() keeps while it works: declarations.cpp, expressions.cpp, calls.cpp, statements.cpp.
 class Checker {
   public:
@@ -62,6 +65,7 @@ class Checker {
     const Type* resolve_subrange(const TypeText& text);
     const Type* resolve_text(const TypeText& text);
     const Type* standard_type(std::string_view name);
+    const Type* handle_type(std::string_view name);
     Type& make_type(Kind kind, std::string name);
     Routine& make_routine(Pou& pou, std::string name);
     void depend(const Type* type, Place place);
@@ -89,6 +93,7 @@ class Checker {
     const Type* check_comparison(Expression& expression);
     const Type* check_arithmetic(Expression& expression, const Type* expected);
     const Type* check_time_arithmetic(Expression& expression);
+    const Type* check_date_arithmetic(Expression& expression);
     const Type* check_power(Expression& expression, const Type* expected);
     const Type* unite(Expression& expression, const Type* expected = nullptr);
     bool rounds(const Expression& expression, const Type& to);

@@ -63,6 +63,7 @@ enum HeaderSlot : std::uint32_t {
     place_slot,     ///< the instruction it ended with
     depth_slot,     ///< calls that ran then
     time_slot,      ///< what its instructions took [ns], if they are counted
+    cut_slot,       ///< 1 + the first instruction that cut a text short, or 0
     counts_slot,    ///< executed instructions of each class, if they are counted
     globals_slot = counts_slot + op_classes,
 };

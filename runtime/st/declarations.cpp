@@ -31,11 +31,18 @@ constexpr Preset counters[] = {
     {"ctd_lint", "ctd", 2, "lint"},     {"ctud_lint", "ctud", 2, "lint"},
     {"ctu_udint", "ctu", 3, "udint"},   {"ctd_udint", "ctd", 3, "udint"},
     {"ctud_udint", "ctud", 3, "udint"}, {"ctu_ulint", "ctu", 4, "ulint"},
-    {"ctd_ulint", "ctd", 4, "ulint"},   {"ctud_ulint", "ctud", 4, "ulint"}};
+    {"ctd_ulint", "ctd", 4, "ulint"},   {"ctud_ulint", "ctud", 4, "ulint"},
+    {"iec_counter", "ctu", 0, "int"}};
 
 constexpr std::pair<std::string_view, std::string_view> aliases[] = {
     {"ton_time", "ton"},  {"tof_time", "tof"}, {"tp_time", "tp"},   {"ton_ltime", "ton"},
     {"tof_ltime", "tof"}, {"tp_ltime", "tp"},  {"iec_timer", "ton"}};
+
+Section section_of(Direction direction) {
+    if (direction == Direction::output) return Section::output;
+    if (direction == Direction::local) return Section::local;
+    return direction == Direction::in_out ? Section::in_out : Section::input;
+}
 
 }  // namespace
 
@@ -219,7 +226,8 @@ void Checker::declare(Routine& routine, const DeclarationBlock& block) {
         variable->constant = block.constant;
         variable->retain = block.retain;
         variable->of = routine.pou;
-        if (block.section == Section::in_out) variable->space = Space::reference;
+        if (block.section == Section::in_out && !(type && type->is_handle()))
+            variable->space = Space::reference;
         const auto [it, added] = routine.names.emplace(variable->text, variable);
         if (!added)
             fail("L0909", declared->name.place,
@@ -572,8 +580,21 @@ const Type* Checker::resolve_text(const TypeText& text) {
     return &type;
 }
 
+const Type* Checker::handle_type(std::string_view name) {
+    const auto kind = std::ranges::find_if(standard_.types(), [&](const BlockType& type) {
+        return !type.handle.empty() && same_name(type.handle, name);
+    });
+    if (kind == standard_.types().end()) return nullptr;
+    Type& type = make_type(Kind::handle, std::string(kind->handle));
+    type.standard = &*kind;
+    type.slots = 1;
+    type.initial.integer = -1;
+    return standard_types_[type.name] = &type;
+}
+
 const Type* Checker::standard_type(std::string_view name) {
     if (const auto it = standard_types_.find(name); it != standard_types_.end()) return it->second;
+    if (const Type* handle = handle_type(name)) return handle;
     const auto* preset = std::ranges::find_if(
         counters, [&](const Preset& counter) { return same_name(counter.name, name); });
     const auto* alias =
@@ -590,9 +611,7 @@ const Type* Checker::standard_type(std::string_view name) {
     for (const Field& field : kind->fields) {
         Variable& member = checked_.variables.emplace_back();
         member.text = field.name;
-        member.section = field.direction == Direction::output  ? Section::output
-                         : field.direction == Direction::local ? Section::local
-                                                               : Section::input;
+        member.section = section_of(field.direction);
         member.slot = static_cast<std::uint32_t>(field.offset / 8);
         member.byte = static_cast<std::uint32_t>(field.offset);
         member.is_byte = field.type == lineshaft::Type::boolean;
@@ -600,6 +619,8 @@ const Type* Checker::standard_type(std::string_view name) {
                       : field.type == lineshaft::Type::real  ? &lreal_type
                       : field.unit == "ns"                   ? &time_type
                                                              : &lint_type;
+        const BlockType* referred = standard_.find(field.refers);
+        if (referred && !referred->handle.empty()) member.type = standard_type(referred->handle);
         if (field.type == lineshaft::Type::enumeration) {
             Type& values =
                 make_type(Kind::enumeration, fmt::format("{}.{}", kind->name, field.name));

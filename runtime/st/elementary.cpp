@@ -25,16 +25,34 @@ Type text_type() {
 }
 
 // STRING without a length holds 254 characters, as Siemens has it.
-const Type table[] = {
-    elementary(Kind::boolean, "BOOL", 1),        elementary(Kind::integer, "SINT", 8, true),
-    elementary(Kind::integer, "INT", 16, true),  elementary(Kind::integer, "DINT", 32, true),
-    elementary(Kind::integer, "LINT", 64, true), elementary(Kind::integer, "USINT", 8),
-    elementary(Kind::integer, "UINT", 16),       elementary(Kind::integer, "UDINT", 32),
-    elementary(Kind::integer, "ULINT", 64),      elementary(Kind::bits, "BYTE", 8),
-    elementary(Kind::bits, "WORD", 16),          elementary(Kind::bits, "DWORD", 32),
-    elementary(Kind::bits, "LWORD", 64),         elementary(Kind::real, "REAL", 32),
-    elementary(Kind::real, "LREAL", 64),         elementary(Kind::time, "TIME", 64, true),
-    elementary(Kind::time, "LTIME", 64, true),   text_type()};
+const Type table[] = {elementary(Kind::boolean, "BOOL", 1),
+                      elementary(Kind::integer, "SINT", 8, true),
+                      elementary(Kind::integer, "INT", 16, true),
+                      elementary(Kind::integer, "DINT", 32, true),
+                      elementary(Kind::integer, "LINT", 64, true),
+                      elementary(Kind::integer, "USINT", 8),
+                      elementary(Kind::integer, "UINT", 16),
+                      elementary(Kind::integer, "UDINT", 32),
+                      elementary(Kind::integer, "ULINT", 64),
+                      elementary(Kind::bits, "BYTE", 8),
+                      elementary(Kind::bits, "WORD", 16),
+                      elementary(Kind::bits, "DWORD", 32),
+                      elementary(Kind::bits, "LWORD", 64),
+                      elementary(Kind::real, "REAL", 32),
+                      elementary(Kind::real, "LREAL", 64),
+                      elementary(Kind::time, "TIME", 64, true),
+                      elementary(Kind::time, "LTIME", 64, true),
+                      text_type(),
+                      elementary(Kind::date, "DATE", 64, true),
+                      elementary(Kind::date, "LDATE", 64, true),
+                      elementary(Kind::clock, "TOD", 64, true),
+                      elementary(Kind::clock, "TIME_OF_DAY", 64, true),
+                      elementary(Kind::clock, "LTOD", 64, true),
+                      elementary(Kind::clock, "LTIME_OF_DAY", 64, true),
+                      elementary(Kind::moment, "DT", 64, true),
+                      elementary(Kind::moment, "DATE_AND_TIME", 64, true),
+                      elementary(Kind::moment, "LDT", 64, true),
+                      elementary(Kind::moment, "LDATE_AND_TIME", 64, true)};
 
 const Type any_integer = elementary(Kind::any_integer, "a whole number", 64, true);
 const Type any_real = elementary(Kind::any_real, "a real number");
@@ -44,37 +62,29 @@ struct Foreign {
     std::string_view name, instead;
 };
 
-constexpr Foreign foreign[] = {
-    {"wstring", "write STRING; texts are bytes"},
-    {"wchar", "write STRING[1]"},
-    {"char", "write STRING[1], or BYTE for its number"},
-    {"date", "write TIME or LINT, counted from a moment of your own"},
-    {"time_of_day", "write TIME, counted from midnight"},
-    {"d", "write TIME or LINT, counted from a moment of your own"},
-    {"ldate", "write TIME or LINT, counted from a moment of your own"},
-    {"tod", "write TIME, counted from midnight"},
-    {"ltod", "write TIME, counted from midnight"},
-    {"date_and_time", "write TIME or LINT, counted from a moment of your own"},
-    {"dt", "write TIME or LINT, counted from a moment of your own"},
-    {"dtl", "write TIME or LINT, counted from a moment of your own"},
-    {"ldt", "write TIME or LINT, counted from a moment of your own"},
-    {"s5time", "write TIME"},
-    {"any", "write the type; a block for each"},
-    {"variant", "write the type; a block for each"},
-    {"pointer", "pass the variable as VAR_IN_OUT"},
-    {"counter", "declare an instance of CTU, CTD or CTUD"},
-    {"timer", "declare an instance of TON, TOF or TP"}};
+constexpr Foreign foreign[] = {{"wstring", "write STRING; texts are bytes"},
+                               {"wchar", "write STRING[1]"},
+                               {"char", "write STRING[1], or BYTE for its number"},
+                               {"dtl", "write LDT"},
+                               {"s5time", "write TIME"},
+                               {"any", "write the type; a block for each"},
+                               {"variant", "write the type; a block for each"},
+                               {"pointer", "pass the variable as VAR_IN_OUT"},
+                               {"counter", "declare an instance of CTU, CTD or CTUD"},
+                               {"timer", "declare an instance of TON, TOF or TP"}};
 
 }  // namespace
 
 const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &lint_type = table[4], &ulint_type = table[8], &real_type = table[13],
-           &lreal_type = table[14], &time_type = table[15], &any_integer_type = any_integer,
+           &lreal_type = table[14], &time_type = table[15], &date_type = table[18],
+           &clock_type = table[20], &moment_type = table[24], &any_integer_type = any_integer,
            &any_real_type = any_real, &any_bits_type = any_bits, &string_type = table[17];
 
 const Type* find_prefix(std::string_view name) {
     static constexpr std::pair<std::string_view, std::string_view> shorter[] = {
-        {"b", "byte"}, {"w", "word"}, {"dw", "dword"}, {"lw", "lword"}, {"l", "dint"}};
+        {"b", "byte"}, {"w", "word"}, {"dw", "dword"}, {"lw", "lword"},
+        {"l", "dint"}, {"d", "date"}, {"ld", "ldate"}};
     const auto* it =
         std::ranges::find_if(shorter, [&](const auto& s) { return same_name(s.first, name); });
     return find_elementary(it == std::end(shorter) ? name : it->second);
@@ -129,6 +139,9 @@ bool same_type(const Type& a, const Type& b) {
     if (a.kind != b.kind) return false;
     switch (a.kind) {
         case Kind::time:
+        case Kind::date:
+        case Kind::clock:
+        case Kind::moment:
         case Kind::boolean:
             return true;
         case Kind::integer:

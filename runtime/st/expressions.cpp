@@ -127,6 +127,16 @@ const Type* Checker::check_number(Expression& e) {
 }
 
 const Type* Checker::check_time(Expression& e) {
+    const std::string_view prefix = e.place.text().substr(0, e.place.text().find('#'));
+    if (const Type* type = find_prefix(prefix); type && type->is_date()) {
+        const auto value = read_date(e.token.text, *type);
+        if (!value)
+            return fail("L0908", e.place,
+                        fmt::format("'{}' is not a {}", e.place.text(), type->name),
+                        "write D#2020-02-29, TOD#12:30:15.25 or DT#2020-02-29-12:30:15");
+        e.constant.integer = *value;
+        return type;
+    }
     const auto value = read_duration(e.token.text);
     if (!value)
         return fail("L0908", e.place, fmt::format("'{}' is not a time", e.place.text()),
@@ -248,11 +258,25 @@ std::vector<std::string> Checker::visible_names() const {
     return names;
 }
 
+std::string_view standard_name(const Type& type, std::string_view name) {
+    constexpr std::pair<std::string_view, std::string_view> others[] = {
+        {"reset", "r"}, {"load", "ld"}, {"set1", "s1"}, {"set", "s"}, {"reset1", "r1"}};
+    if (type.kind != Kind::standard) return name;
+    const auto has = [&](std::string_view known) {
+        return std::ranges::any_of(type.members,
+                                   [&](const Variable* m) { return same_name(m->text, known); });
+    };
+    const auto* it = std::ranges::find_if(
+        others, [&](const auto& other) { return same_name(other.first, name); });
+    return !has(name) && it != std::end(others) && has(it->second) ? it->second : name;
+}
+
 /// The enumeration of `Colour.red`; null if this is none.
 const Type* Checker::enumeration_of(const Expression& member) const {
     const Expression& of = *member.operands[0];
-    if (of.kind != Expression::Kind::name || of.token.local || find_variable(of.token))
-        return nullptr;
+    if (of.kind != Expression::Kind::name || of.token.local) return nullptr;
+    const Variable* variable = find_variable(of.token);
+    if (variable && !(variable->type && variable->type->is_scalar())) return nullptr;
     const auto it = named_types_.find(of.token.text);
     const Type* type = it == named_types_.end() ? nullptr : it->second.type;
     return type && type->kind == Kind::enumeration ? type : nullptr;
@@ -274,7 +298,7 @@ const Type* Checker::check_member(Expression& e) {
     if (const Type* enumeration = enumeration_of(e)) return check_value(e, *enumeration, e.token);
     const Type* type = check(*e.operands[0]);
     if (!type) return nullptr;
-    const std::string_view name = e.token.text;
+    const std::string_view name = standard_name(*type, e.token.text);
     std::vector<std::string> names;
     if (type->kind == Kind::block) {
         Routine& routine = *type->routine;
@@ -416,6 +440,24 @@ const Type* Checker::check_binary(Expression& e, const Type* expected) {
     return check_arithmetic(e, expected);
 }
 
+namespace {
+
+/// The signed type that holds a constant which `typed` does not, and all of that; null if there is
+/// none, or none is needed.
+const Type* wider_for(const Expression& constant, const Type& typed) {
+    if (constant.type->kind != Kind::any_integer || typed.kind != Kind::integer) return nullptr;
+    const Wide value = constant.constant.integer;
+    const auto holds = [&](const Type& type) {
+        return value >= smallest(type) && value <= largest(type);
+    };
+    if (holds(typed.plain())) return nullptr;
+    for (const Type* wider : {&dint_type, &lint_type})
+        if (holds(*wider) && widens(typed, *wider)) return wider;
+    return nullptr;
+}
+
+}  // namespace
+
 /// Brings both operands to one type, if there is one.
 const Type* Checker::unite(Expression& e, const Type* expected) {
     Expression *&left = e.operands[0], *&right = e.operands[1];
@@ -436,6 +478,8 @@ const Type* Checker::unite(Expression& e, const Type* expected) {
         return common_type(typed, real_type);
     };
     if (const Type* real = a.is_any() ? real_of(a, b) : real_of(b, a)) common = real;
+    if (const Type* wider = a.is_any() ? wider_for(*left, b) : wider_for(*right, a))
+        if (!expected || !expected->is_integer() || widens(*wider, *expected)) common = wider;
     const bool narrows = expected && is_single(*expected) && common == &lreal_type && is_scl(e);
     if (narrows && !same_type(a, lreal_type) && !same_type(b, lreal_type)) common = &real_type;
     if (!common) {
@@ -489,7 +533,7 @@ const Type* Checker::check_comparison(Expression& e) {
 
 const Type* Checker::check_arithmetic(Expression& e, const Type* expected) {
     const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
-    if (a.kind == Kind::time || b.kind == Kind::time) return check_time_arithmetic(e);
+    if (a.is_time() || b.is_time()) return check_time_arithmetic(e);
     for (const Expression* operand : e.operands) {
         const Type& type = *operand->type;
         if (type.is_number() || type.is_any()) continue;
@@ -515,6 +559,7 @@ const Type* Checker::check_arithmetic(Expression& e, const Type* expected) {
 /// TIME + TIME, TIME * number, TIME / number.
 const Type* Checker::check_time_arithmetic(Expression& e) {
     Expression *&left = e.operands[0], *&right = e.operands[1];
+    if (left->type->is_date() || right->type->is_date()) return check_date_arithmetic(e);
     const bool both = left->type->kind == Kind::time && right->type->kind == Kind::time;
     const bool adds = e.op == Word::plus || e.op == Word::minus || e.op == Word::mod_;
     Expression*& number = left->type->kind == Kind::time ? right : left;
@@ -532,6 +577,23 @@ const Type* Checker::check_time_arithmetic(Expression& e) {
         if (!is_long && !coerce(number, to)) return nullptr;
     }
     e.type = &time_type;
+    fold(e);
+    return e.type;
+}
+
+/// DATE - DATE, TOD - TOD and DT - DT are a TIME; one is added to a TOD and a DT.
+const Type* Checker::check_date_arithmetic(Expression& e) {
+    const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
+    const bool joins = e.op == Word::plus && a.kind == Kind::date && b.kind == Kind::clock;
+    const bool distance = e.op == Word::minus && same_type(a, b);
+    const bool moves = (e.op == Word::plus || e.op == Word::minus) && b.kind == Kind::time &&
+                       (a.kind == Kind::clock || a.kind == Kind::moment);
+    if (!distance && !moves && !joins)
+        return fail(
+            "L0905", e.token.place,
+            fmt::format("'{}' does not go with {} and {}", shown(e.op), describe(a), describe(b)),
+            "a TIME is added to a TOD or a DT, and two dates have a TIME between them");
+    e.type = distance ? &time_type : joins ? &moment_type : &a;
     fold(e);
     return e.type;
 }
@@ -767,6 +829,7 @@ bool Checker::fold_conversion(Expression& e, const Type& to) {
     if (from.kind == Kind::text || to.kind == Kind::text || from.kind == Kind::enumeration)
         return false;
     if (to.is_real() && from.is_bits()) return false;
+    if (from.is_date() || to.is_date()) return false;
     if ((from.kind == Kind::time) != (to.kind == Kind::time)) return false;
     if (to.is_real()) {
         double value = as_real(e);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <stdexcept>
 
 #include "runtime/st/generator_class.hpp"
 
@@ -108,6 +109,7 @@ void Generator::begin(Routine& routine) {
     Routine* block = routine.owner ? routine.owner : &routine;
     image_ = routine.is_function() ? &function_images_[&routine] : &images_[block->type];
     temporaries_ = most_temporaries_ = windows_ = 0;
+    unwritten_.clear();
     constants_.clear();
     constant_slots_.clear();
     loops_.clear();
@@ -188,9 +190,22 @@ void Generator::link() {
 }
 
 void Generator::put(Op op, Slot a, Slot b, Slot c, Slot d) {
+    note_use({op, a, b, d, c});
     code_.instructions.push_back({op, a, b, d, c});
     code_.places.push_back(place_);
     if (fuses_ && next() - 1 > landed_) fuse();
+}
+
+/// What was fused has left its temporary unwritten: nothing may read that before it is written
+/// again.
+void Generator::note_use(const Instruction& in) {
+    const std::string_view operands = info(in.op).operands;
+    const Slot slots[] = {in.a, in.b, static_cast<Slot>(in.c), in.d};
+    for (std::size_t i = 0; i < operands.size(); ++i)
+        if (operands[i] == 'r' && unwritten_.contains(slots[i]))
+            throw std::logic_error("a fused instruction's temporary is read again");
+    for (std::size_t i = 0; i < operands.size(); ++i)
+        if (operands[i] == 'w') unwritten_.erase(slots[i]);
 }
 
 /// The last two instructions to one, where the second is the only one that reads what the first
@@ -209,17 +224,21 @@ void Generator::fuse() {
     if (const Op op = count_of(first, second); op != Op::leave)
         return replace({op, first.a, Slot(first.c), second.b, second.c});
     if ((first.a & region_mask) != Region::temporary) return;
+    const auto join = [&](Instruction by) {
+        if (second.a != first.a) unwritten_.insert(first.a);
+        replace(by);
+    };
     if (first.op == Op::index && second.c == first.a) {
         if (second.op == Op::load_at)
-            replace({Op::load_element, second.a, second.b, Slot(first.c), first.b});
+            join({Op::load_element, second.a, second.b, Slot(first.c), first.b});
         else if (second.op == Op::store_at && second.a != first.a)
-            replace({Op::store_element, second.a, second.b, Slot(first.c), first.b});
+            join({Op::store_element, second.a, second.b, Slot(first.c), first.b});
         return;
     }
     if ((second.b == first.a) == (second.c == first.a)) return;
     const Op op = pair_of(first.op, second.op, second.c == first.a);
     if (op != Op::leave)
-        replace({op, second.a, first.b, second.b == first.a ? Slot(second.c) : second.b, first.c});
+        join({op, second.a, first.b, second.b == first.a ? Slot(second.c) : second.b, first.c});
 }
 
 /// `IF a < b THEN x := y; END_IF`, the last instructions, to one without a jump.
@@ -256,6 +275,8 @@ Slot Generator::new_temporary(std::uint32_t slots) {
     const Slot slot = Region::temporary + temporaries_;
     temporaries_ += slots;
     most_temporaries_ = std::max(most_temporaries_, temporaries_);
+    for (Slot used = slot; used < slot + slots && !unwritten_.empty(); ++used)
+        unwritten_.erase(used);
     return slot;
 }
 
@@ -472,21 +493,23 @@ void Generator::write_for(const Statement& s) {
     else
         put(Op::move, limit + 1, constant_slot(1));
     Loop loop;
-    jump(Op::skip_loop, counter, limit, loop.exits);
+    const Type& type = *s.target->type;
+    const bool is_long = type.is_unsigned_64();
+    jump(is_long ? Op::skip_loop_unsigned : Op::skip_loop, counter, limit, loop.exits);
     loops_.push_back(std::move(loop));
     land();
     const std::uint32_t start = next();
+    if (type.is_subrange) within(type, counter);
     if (!direct) store(target, counter);
     cover_branch(s, 0);
     write_block(s.body);
     land(loops_.back().nexts);
     place_ = s.place;
-    put(Op::repeat_next, counter, limit, start);
+    put(is_long ? Op::repeat_next_unsigned : Op::repeat_next, counter, limit, start);
     land(loops_.back().exits);
     cover_branch(s, 1);
     loops_.pop_back();
-    const Type& type = s.target->type->plain();
-    if (type.bits < 64) put(of_type(Op::wrap_sint, type), counter, counter);
+    if (type.bits < 64) put(of_type(Op::wrap_sint, type.plain()), counter, counter);
     if (!direct) store(target, counter);
 }
 

@@ -87,7 +87,7 @@ void Generator::call_instance(const Expression& e) {
         return take(frame, e);
     }
     for (const Argument& argument : e.arguments)
-        if (argument.variable->section == Section::input || is_set(argument))
+        if (argument.variable->section != Section::output || is_set(argument))
             assign(part(frame, *argument.variable), *argument.variable->type, *argument.value);
     const auto [it, added] =
         standard_numbers_.emplace(type.standard, static_cast<std::uint32_t>(code_.standard.size()));
@@ -122,7 +122,7 @@ void Generator::give(const Location& frame, const Expression& e, const Routine& 
         if (!is_given(argument)) continue;
         const Variable& variable = *argument.variable;
         const Location to = part(frame, variable.slot);
-        if (variable.section == Section::in_out) {
+        if (variable.space == Space::reference) {
             const Slot address = address_of(locate(*argument.value));
             later.emplace_back(to, address);
         } else if (!variable.type->is_scalar()) {
@@ -147,10 +147,10 @@ void Generator::give(const Location& frame, const Expression& e, const Routine& 
         if (!is_given(argument) || next_later == later.size()) continue;
         const Variable& variable = *argument.variable;
         const auto& [to, slot] = later[next_later];
-        const bool now = variable.section == Section::in_out || nested;
+        const bool now = variable.space == Space::reference || nested;
         if (!now) continue;
         ++next_later;
-        if (variable.section != Section::in_out && !variable.type->is_scalar())
+        if (variable.space != Space::reference && !variable.type->is_scalar())
             copy(to, {Mode::slot, slot}, slots_of(*variable.type));
         else
             store(to, slot);

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <unordered_set>
 
 #include "runtime/st/elementary.hpp"
 #include "runtime/st/generator.hpp"
@@ -59,6 +60,7 @@ class Generator {
     void finish(Routine& routine);
     void put(Op op, Slot a = 0, Slot b = 0, Slot c = 0, Slot d = 0);
     std::uint32_t next() const { return static_cast<std::uint32_t>(code_.instructions.size()); }
+    void note_use(const Instruction& instruction);
     void fuse();
     void fuse_guarded_move(std::vector<std::uint32_t>& skip);
     void thread(std::uint32_t instruction);
@@ -100,6 +102,7 @@ class Generator {
     Slot converted(const Expression& e, Slot wanted);
     Slot convert(Slot from_slot, const Type& from, const Type& to, bool truncates, Slot wanted);
     Slot convert_real(Slot slot, const Type& from, const Type& to, bool truncates, Slot wanted);
+    Slot convert_date(Slot slot, const Type& from, const Type& to, Slot wanted);
     Slot convert_time(Slot slot, const Type& from, const Type& to, Slot wanted);
     Slot emit(Op op, Slot wanted, Slot b, Slot c = 0);
     Location locate(const Expression& e);
@@ -181,7 +184,8 @@ class Generator {
     std::vector<std::uint64_t> constants_;
     std::unordered_map<std::uint64_t, Slot> constant_slots_;
     Place place_ = {};
-    std::uint32_t landed_ = 0;  ///< the last instruction that a jump goes to
+    std::unordered_set<Slot> unwritten_;  ///< temporaries
+    std::uint32_t landed_ = 0;            ///< the last instruction that a jump goes to
     struct Loop {
         std::vector<std::uint32_t> exits, nexts;
     };

@@ -99,7 +99,8 @@ Slot Generator::text_conversion(const Expression& e) {
         number = convert(number, *from.type, lint_type, false, none);
     Slot made = none;
     new_text(made);
-    const Op op = from.type->is_real()          ? Op::text_of_real
+    const Op op = from.type->is_real()
+                      ? (from.type->bits == 32 ? Op::text_of_float : Op::text_of_real)
                   : from.type->is_unsigned_64() ? Op::text_of_unsigned
                                                 : Op::text_of_signed;
     put(op, made, number);

@@ -18,43 +18,10 @@ constexpr std::string_view word_names[] = {
 #undef WORD
 };
 
-constexpr std::string_view other_names[] = {"the end of the file",
-                                            "a name",
-                                            "a type",
-                                            "a number",
-                                            "a number",
-                                            "a time",
-                                            "a text",
-                                            "a direct address",
-                                            ":=",
-                                            "+=",
-                                            "-=",
-                                            "*=",
-                                            "/=",
-                                            "=>",
-                                            "REF=",
-                                            "**",
-                                            "*",
-                                            "/",
-                                            "+",
-                                            "-",
-                                            "<",
-                                            "<=",
-                                            ">",
-                                            ">=",
-                                            "=",
-                                            "<>",
-                                            "&",
-                                            "^",
-                                            "(",
-                                            ")",
-                                            "[",
-                                            "]",
-                                            ".",
-                                            "..",
-                                            ",",
-                                            ";",
-                                            ":"};
+/// Of what is neither a word nor a sign, in the order of Word.
+constexpr std::string_view other_names[] = {
+    "the end of the file", "a name", "a type", "a number", "a number", "a time", "a text",
+    "a direct address"};
 
 const NameMap<Word>& words() {
     static const NameMap<Word> map = [] {
@@ -105,6 +72,9 @@ constexpr Sign signs[] = {{":=", Word::assign},
 constexpr int deepest_comment = 200;
 
 constexpr std::string_view time_prefixes[] = {"t", "time", "lt", "ltime", "s5t", "s5time"};
+constexpr std::string_view date_prefixes[] = {"d",    "date",         "ld",  "ldate",
+                                              "tod",  "time_of_day",  "dt",  "date_and_time",
+                                              "ltod", "ltime_of_day", "ldt", "ldate_and_time"};
 
 class Lexer {
   public:
@@ -273,6 +243,12 @@ class Lexer {
         add(Word::prefix);
         start_ = ++at_;
         const auto is_prefix = [&](std::string_view p) { return same_name(p, text); };
+        if (std::ranges::any_of(date_prefixes, is_prefix) && is_digit(peek())) {
+            skip_while(
+                [](char c) { return is_digit(c) || c == '_' || c == '-' || c == ':' || c == '.'; });
+            add(Word::duration);
+            return;
+        }
         if (std::ranges::none_of(time_prefixes, is_prefix)) return;
         if (peek() == '-' || peek() == '+') ++at_;
         skip_while([](char c) { return is_letter(c) || is_digit(c) || c == '.'; });
@@ -423,7 +399,9 @@ std::string_view shown(Word word) {
         return made;
     }();
     const auto i = static_cast<std::size_t>(word);
-    return i < capitals.size() ? std::string_view(capitals[i]) : other_names[i - capitals.size()];
+    if (i < capitals.size()) return capitals[i];
+    const auto* sign = std::ranges::find(signs, word, &Sign::word);
+    return sign != std::end(signs) ? sign->text : other_names[i - capitals.size()];
 }
 
 Tokens read_tokens(const std::shared_ptr<const SourceFile>& file, Diagnostics& out) {

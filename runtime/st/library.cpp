@@ -178,6 +178,7 @@ class FieldWriter {
     static Direction direction_of(const Variable& variable) {
         if (variable.section == Section::input)
             return variable.constant ? Direction::parameter : Direction::input;
+        if (variable.section == Section::in_out) return Direction::in_out;
         return variable.section == Section::output ? Direction::output : Direction::local;
     }
 
@@ -202,9 +203,27 @@ class FieldWriter {
                 return;
             case Kind::text:
                 return;
+            case Kind::handle:
+                write_handle(type, offset, name, direction);
+                return;
             default:
                 write_scalar(type, offset, name, direction, variable);
         }
+    }
+
+    /// One that a block keeps for itself is no field.
+    void write_handle(const Type& type, std::size_t offset, const std::string& name,
+                      Direction direction) {
+        if (direction != Direction::in_out) return;
+        Field field;
+        field.name = made_.names.emplace_back(name);
+        field.refers = type.standard->name;
+        field.doc = type.standard->doc;
+        field.direction = direction;
+        field.type = lineshaft::Type::integer;
+        field.offset = offset;
+        field.required = true;
+        kind_.fields.push_back(field);
     }
 
     /// `before` is `table[`, or of the next dimension `table[2,`.
@@ -235,8 +254,7 @@ class FieldWriter {
                       Direction direction, const Variable& variable) {
         Field field;
         field.name = made_.names.emplace_back(name);
-        field.unit =
-            type.kind == Kind::time ? std::string_view("ns") : std::string_view(variable.unit);
+        field.unit = type.is_time() ? std::string_view("ns") : std::string_view(variable.unit);
         field.direction = direction;
         field.offset = offset;
         field.type = type.kind == Kind::boolean       ? lineshaft::Type::boolean
@@ -396,6 +414,14 @@ std::span<const std::uint64_t, op_classes> Library::counts(const std::byte* inst
 std::span<const std::string_view> retained(const BlockType& kind) {
     if (kind.scan_blocks != scan_blocks) return {};
     return static_cast<const KindContext*>(kind.context)->retained;
+}
+
+std::optional<Mark> cut_text(const BlockType& kind, const std::byte* instance) {
+    if (kind.scan_blocks != scan_blocks || kind.single) return {};
+    std::uint64_t behind = 0;
+    std::memcpy(&behind, instance + 8 * std::size_t{cut_slot}, sizeof behind);
+    if (behind == 0) return {};
+    return static_cast<const KindContext*>(kind.context)->code->places[behind - 1].mark();
 }
 
 std::string Library::listing() const {

@@ -76,6 +76,10 @@ class Library {
 /// fields). Of another kind none.
 std::span<const std::string_view> retained(const BlockType& kind);
 
+/// Where a block of a kind of some library first cut a text short, which was too long for its
+/// variable; empty if it never did. Of another kind empty.
+std::optional<Mark> cut_text(const BlockType& kind, const std::byte* instance);
+
 /// Compiles Structured Text (IEC 61131-3:2013, and the SCL of Siemens) of all `sources` together;
 /// they see each other, and of `standard` the kinds as function blocks. Empty, with all that is
 /// wrong in `out`, if anything is. `standard` must outlive the library.

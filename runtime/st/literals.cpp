@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
+
+#include <fmt/format.h>
 
 #include "runtime/source/letters.hpp"
 
@@ -118,6 +121,49 @@ std::optional<Wide> read_duration(std::string_view given) {
         next = unit + 1;
     }
     return negative ? -total : total;
+}
+
+namespace {
+
+/// `12:30` and `12:30:15.25`.
+std::optional<Wide> read_clock(std::string_view text) {
+    constexpr std::string_view names[] = {"h", "m", "s"};
+    constexpr int ends[] = {24, 60, 60};
+    std::string duration;
+    for (int i = 0; !text.empty(); ++i) {
+        const std::size_t end = std::min(text.find(':'), text.size());
+        const auto number = read_digits(text.substr(0, std::min(end, text.find('.'))), 10);
+        if (i == 3 || !number || *number >= ends[i]) return {};
+        duration += fmt::format("{}{}", text.substr(0, end), names[i]);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        if (i == 0 && text.empty()) return {};
+    }
+    return read_duration(duration);
+}
+
+}  // namespace
+
+std::optional<Wide> read_date(std::string_view text, const Type& type) {
+    if (type.kind == Type::Kind::clock) return read_clock(text);
+    int parts[3] = {};
+    const bool has_time = type.kind == Type::Kind::moment;
+    for (int& part : parts) {
+        const bool is_last = &part == &parts[2];
+        const std::size_t end = is_last && !has_time ? text.size() : text.find('-');
+        if (end == std::string_view::npos) return {};
+        const auto number = read_digits(text.substr(0, end), 10);
+        if (!number || *number > 9999) return {};
+        part = static_cast<int>(*number);
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    const std::chrono::year_month_day day{std::chrono::year(parts[0]),
+                                          std::chrono::month(static_cast<unsigned>(parts[1])),
+                                          std::chrono::day(static_cast<unsigned>(parts[2]))};
+    const auto clock = has_time ? read_clock(text) : Wide{0};
+    if (!day.ok() || !clock) return {};
+    const Wide days = std::chrono::sys_days(day).time_since_epoch().count();
+    const Wide moment = days * 86'400'000'000'000 + *clock;
+    return moment < beyond / 2 && moment >= -beyond / 2 ? std::optional(moment) : std::nullopt;
 }
 
 std::optional<std::string> read_text(std::string_view text) {

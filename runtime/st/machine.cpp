@@ -143,17 +143,18 @@ std::optional<std::uint64_t> to_bcd(std::uint64_t value, std::uint32_t digits) {
 }
 
 /// A FOR goes on with this counter; behind the limit stands the step.
-bool is_within(std::int64_t counter, const std::byte* limit) {
-    const auto last = read<std::int64_t>(limit);
-    return read<std::int64_t>(limit + 8) >= 0 ? counter <= last : counter >= last;
+template <class T>
+bool is_within(const std::byte* counter, const std::byte* limit) {
+    const bool rises = std::is_unsigned_v<T> || read<std::int64_t>(limit + 8) >= 0;
+    return rises ? read<T>(counter) <= read<T>(limit) : read<T>(counter) >= read<T>(limit);
 }
 
+template <class T>
 bool next(std::byte* counter, const std::byte* limit) {
-    std::int64_t sum = 0;
-    const bool over =
-        __builtin_add_overflow(read<std::int64_t>(counter), read<std::int64_t>(limit + 8), &sum);
+    T sum = 0;
+    const bool over = __builtin_add_overflow(read<T>(counter), read<T>(limit + 8), &sum);
     write(counter, sum);
-    return !over && is_within(sum, limit);
+    return !over && is_within<T>(counter, limit);
 }
 
 // Texts: the length, then the characters.
@@ -232,7 +233,9 @@ struct Frames {
 
     void call_block(std::byte* block, std::uint32_t number) const {
         const BlockType& type = *code.standard[number];
-        type.scan_blocks(block, 1, now, {type.context, context.instances});
+        Context inner = context;
+        inner.kind = type.context;
+        type.scan_blocks(block, 1, now, inner);
     }
 
     void enter(std::uint64_t address, const Instruction* back) {
@@ -240,6 +243,11 @@ struct Frames {
         set_word(top, 1, base);
         top += 16;
         base = address;
+    }
+
+    void note_cut(const Instruction* at) const {
+        if (word(root, cut_slot) == 0)
+            set_word(root, cut_slot, static_cast<std::uint64_t>(at - code.instructions.data()));
     }
 
     const Instruction* leave() {

@@ -52,8 +52,10 @@
     OP(choose, jump, "-rx-", if (within(U(b), c)) GO(number_of(U(b), c)))                            \
     OP(repeat, jump, "--j-", AGAIN(to))                                                              \
     OP(repeat_if, jump, "-rj-", if (U(b) != 0) AGAIN(to))                                            \
-    OP(repeat_next, jump, "wsj-", if (next(at(a), at(b))) AGAIN(to))                                 \
-    OP(skip_loop, jump, "rsj-", if (!is_within(I(a), at(b))) GO(to))                                 \
+    OP(repeat_next, jump, "wsj-", if (next<std::int64_t>(at(a), at(b))) AGAIN(to))                   \
+    OP(skip_loop, jump, "rsj-", if (!is_within<std::int64_t>(at(a), at(b))) GO(to))                  \
+    OP(repeat_next_unsigned, jump, "wsj-", if (next<std::uint64_t>(at(a), at(b))) AGAIN(to))         \
+    OP(skip_loop_unsigned, jump, "rsj-", if (!is_within<std::uint64_t>(at(a), at(b))) GO(to))        \
     OP(call, call, "sf--", CALL(frames.address_of(a), b))                                            \
     OP(call_at, call, "rf--", CALL(U(a), b))                                                         \
     OP(call_block, call, "sn--", frames.call_block(at(a), b))                                        \
@@ -121,7 +123,7 @@
     OP(real_bits, real, "wr--", put(a, std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(R(b)))})) \
     OP(real_of_bits, real, "wr--", put(a, double{std::bit_cast<float>(static_cast<std::uint32_t>(U(b)))})) \
     OP(is_finite, real, "wr--", put(a, std::uint64_t{std::isfinite(R(b))}))                          \
-    OP(text_copy, text, "rrn-", copy_text(target(U(a)), target(U(b)), c))                            \
+    OP(text_copy, text, "rrn-", if (word(target(U(b)), 0) > c) frames.note_cut(pc); copy_text(target(U(a)), target(U(b)), c)) \
     OP(text_append, text, "rrs-", append_text(target(U(a)), target(U(b)), I(c), I(c + 1)))           \
     OP(text_length, text, "wr--", put(a, word(target(U(b)), 0)))                                     \
     OP(text_compare, text, "wrr-", put(a, compare_texts(target(U(b)), target(U(c)))))                \
@@ -129,6 +131,7 @@
     OP(text_of_signed, text, "rr--", write_number(target(U(a)), I(b)))                               \
     OP(text_of_unsigned, text, "rr--", write_number(target(U(a)), U(b)))                             \
     OP(text_of_real, text, "rr--", write_number(target(U(a)), R(b)))                                 \
+    OP(text_of_float, text, "rr--", write_number(target(U(a)), static_cast<float>(R(b))))            \
     OP(integer_of_text, text, "wr--", if (const auto n = number_of_text<std::int64_t>(target(U(b)))) put(a, *n); else FAIL(out_of_range)) \
     OP(real_of_text, text, "wr--", if (const auto n = number_of_text<double>(target(U(b)))) put(a, *n); else FAIL(out_of_range)) \
     LINESHAFT_ST_EXACT(OP, signed, std::int64_t) LINESHAFT_ST_EXACT(OP, unsigned, std::uint64_t)      \

@@ -23,7 +23,6 @@ constexpr Unsupported unsupported[] = {
     {Word::interface_, "interfaces are", "write a FUNCTION_BLOCK with METHODs"},
     {Word::namespace_, "namespaces are", "put the namespace before its blocks' names: Lib_Block"},
     {Word::using_, "namespaces are", "leave it out, all sources see each other"},
-    {Word::configuration_, "configurations are", "write tasks into the program's YAML file"},
     {Word::extends_, "inheritance is", "declare an instance of the other block and call it"},
     {Word::implements_, "interfaces are", "leave it out, and call the block by its own type"},
     {Word::property_, "properties are", "write a METHOD, or a VAR_OUTPUT"},
@@ -287,6 +286,7 @@ class Parser {
             return read_pou(*words);
         if (is(Word::type_)) return read_types();
         if (is(Word::var_global_)) return tree_.globals.push_back(read_section(Section::global));
+        if (is(Word::configuration_)) return read_configuration();
         if (refuse_whole()) return;
         if (at_test() || (is_tests_ && is(Word::test_))) return read_test();
         if (is_end(here().word) && unclosed_at_ < at_) {
@@ -298,11 +298,28 @@ class Parser {
         take();
     }
 
+    /// Its variables are globals. Its tasks are not taken.
+    void read_configuration() {
+        const Token opener = take();
+        out_.warn("L0903", opener.place.mark(), "the tasks of a CONFIGURATION are not taken",
+                  "write tasks into the program's YAML file");
+        const auto at_end = [&] { return same_name(here().text, "end_configuration"); };
+        while (!is(Word::end_of_file) && !at_end())
+            if (is(Word::var_global_))
+                tree_.globals.push_back(read_section(Section::global));
+            else
+                take();
+        if (is(Word::end_of_file))
+            tell("L0902", opener.place, "the CONFIGURATION does not end",
+                 "it ends with END_CONFIGURATION");
+        take();
+        accept(Word::semicolon);
+    }
+
     /// What is not supported, up to its END_... or the ';' behind it.
     bool refuse_whole() {
-        static constexpr Word words[] = {Word::class_,         Word::interface_, Word::namespace_,
-                                         Word::configuration_, Word::property_,  Word::action_,
-                                         Word::using_};
+        static constexpr Word words[] = {Word::class_,    Word::interface_, Word::namespace_,
+                                         Word::property_, Word::action_,    Word::using_};
         if (std::ranges::find(words, here().word) == std::end(words)) return false;
         const std::string end = fmt::format("end_{}", here().text);
         const auto rest = std::span(tokens_).subspan(at_);
@@ -427,7 +444,11 @@ class Parser {
                                            return same_name(word, here().text);
                                        }));
             if (!header) return;
-            skip_line();
+            const bool is_number = next().word == Word::colon && next(2).word == Word::real;
+            if (is(Word::version_) && is_number && next(3).word != Word::dot)
+                at_ += 3;
+            else
+                skip_line();
         }
     }
 
@@ -474,6 +495,8 @@ class Parser {
                 block.retain = true;
             else if (is(Word::name) && same_name(here().text, "db_specific"))
                 take();
+            else if (is(Word::name) && same_name(here().text, "persistent"))
+                block.retain = take().word == Word::name;
             else if (!accept(Word::non_retain_) && !accept_access())
                 break;
         }
@@ -723,6 +746,10 @@ class Parser {
                 if (is_name() && (next().word == Word::assign || next().word == Word::output)) {
                     argument.name = take();
                     argument.is_output = take().word == Word::output;
+                    if (argument.is_output && (is(Word::comma) || is(end))) {
+                        to.arguments.pop_back();
+                        continue;
+                    }
                 }
                 argument.value = initial ? read_initial() : read_expression();
                 if (panic_) return;
@@ -811,12 +838,20 @@ class Parser {
                     return inner;
                 }
                 default:
+                    skip_this();
                     if (is_name() || (is_operator_name() && next().word == Word::open))
                         return make(Expression::Kind::name, take());
             }
         }
         expected("a value");
         return make(Expression::Kind::constant, here());
+    }
+
+    /// `THIS.x` is a variable or a method of the own block, also as CODESYS writes it, `THIS^.x`.
+    void skip_this() {
+        const std::size_t dot = next().word == Word::caret ? 2 : 1;
+        const bool has_dot = next(dot).word == Word::dot && is_name(next(dot + 1));
+        if (is(Word::name) && same_name(here().text, "this") && has_dot) at_ += dot + 1;
     }
 
     /// `AND(a, b)`: of the functions that share their names with operators.

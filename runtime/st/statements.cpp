@@ -140,7 +140,9 @@ bool Checker::check_target(Expression& target, std::string_view how) {
                              target.operands[0]->type->is_instance();
     if (variable->constant && !(is_in_test() && of_instance))
         return refuse(fmt::format("the constant '{}'", variable->text), "remove CONSTANT");
-    if (own && variable->section == Section::input)
+    const bool is_copy = variable->of && (variable->of->kind == PouKind::function ||
+                                          variable->of->kind == PouKind::method);
+    if (own && variable->section == Section::input && !is_copy)
         return refuse(fmt::format("the input '{}'", variable->text),
                       "copy it to a variable of VAR, or make it a VAR_IN_OUT");
     if (own) return true;

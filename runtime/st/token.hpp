@@ -67,7 +67,7 @@ enum class Word : std::uint8_t {
     prefix,    ///< `INT#`, `Colour#`: what stands before a typed literal, without the `#`
     integer,   ///< `1_000`, `16#FF`
     real,      ///< `1.5`, `1e3`
-    duration,  ///< what follows `T#`, `LTIME#`: `1h2m3.5s`
+    duration,  ///< what follows `T#`, `LTIME#`, `DT#`: `1h2m3.5s`, `2020-02-29-12:30:15`
     text,      ///< `'...'`, with its quotes
     direct,    ///< `%IX0.0`, and the `%X3` of a partial access
     assign,    ///< `:=`

@@ -26,6 +26,10 @@ struct Type {
         bits,     ///< BYTE to LWORD
         real,     ///< REAL, LREAL
         time,     ///< TIME, LTIME [ns]
+        handle,   ///< AXIS_REF: the number of an instance of `standard`, -1 of none
+        date,     ///< DATE, LDATE: its midnight [ns since 1970-01-01]
+        clock,    ///< TOD, LTOD [ns since midnight]
+        moment,   ///< DT, LDT [ns since 1970-01-01]
         text,     ///< STRING[length]
         enumeration,
         array,
@@ -60,10 +64,16 @@ struct Type {
 
     bool is_integer() const { return kind == Kind::integer || kind == Kind::any_integer; }
     bool is_bits() const { return kind == Kind::bits || kind == Kind::any_bits; }
+    bool is_date() const { return kind >= Kind::date && kind <= Kind::moment; }
+    bool is_time() const { return kind == Kind::time || is_date(); }
     bool is_real() const { return kind == Kind::real || kind == Kind::any_real; }
     bool is_number() const { return is_integer() || is_real() || kind == Kind::any_bits; }
     bool is_any() const { return kind >= Kind::any_integer; }
     bool is_scalar() const { return kind < Kind::text || kind == Kind::enumeration || is_any(); }
+    /// A reference to a block of the program, or an array of them: passed on by value.
+    bool is_handle() const {
+        return kind == Kind::handle || (kind == Kind::array && element->is_handle());
+    }
     bool is_instance() const { return kind == Kind::block || kind == Kind::standard; }
     bool is_unsigned_64() const {
         return (is_bits() || kind == Kind::integer) && !is_signed && bits == 64;

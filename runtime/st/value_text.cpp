@@ -1,6 +1,7 @@
 #include "runtime/st/value_text.hpp"
 
 #include <bit>
+#include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -20,6 +21,23 @@ std::string real_text(double value, bool is_long) {
     return plain ? text + ".0" : text;
 }
 
+/// `D#2020-02-29`, `TOD#12:30:15.250000000`, `DT#2020-02-29-12:30:15`
+std::string date_literal(Kind kind, std::int64_t value) {
+    using namespace std::chrono;
+    const sys_time<nanoseconds> moment{nanoseconds(value)};
+    const auto midnight = floor<days>(moment);
+    const year_month_day day(midnight);
+    const hh_mm_ss clock(moment - midnight);
+    const std::string date =
+        fmt::format("{:04}-{:02}-{:02}", static_cast<int>(day.year()),
+                    static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()));
+    if (kind == Kind::date) return "D#" + date;
+    std::string time = fmt::format("{:02}:{:02}:{:02}", clock.hours().count(),
+                                   clock.minutes().count(), clock.seconds().count());
+    if (clock.subseconds().count() != 0) time += fmt::format(".{:09}", clock.subseconds().count());
+    return kind == Kind::clock ? "TOD#" + time : "DT#" + date + "-" + time;
+}
+
 }  // namespace
 
 std::string value_text(const Type& type, std::uint64_t slot) {
@@ -34,6 +52,10 @@ std::string value_text(const Type& type, std::uint64_t slot) {
             return real_text(std::bit_cast<double>(slot), type.bits != 32);
         case Kind::time:
             return time_literal(number);
+        case Kind::date:
+        case Kind::clock:
+        case Kind::moment:
+            return date_literal(type.kind, number);
         case Kind::enumeration:
             return slot < type.values.size() ? fmt::format("{}#{}", type.name, type.values[slot])
                                              : std::to_string(number);

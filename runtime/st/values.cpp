@@ -228,8 +228,8 @@ Slot Generator::convert(Slot slot, const Type& given_from, const Type& given_to,
         put(Op::within, 0, slot, table({0, to.values.size(), 1}));
         return slot;
     }
-    if (from.kind == Kind::time || to.kind == Kind::time)
-        return convert_time(slot, from, to, wanted);
+    if (from.is_time() && to.is_time()) return convert_date(slot, from, to, wanted);
+    if (from.is_time() || to.is_time()) return convert_time(slot, from, to, wanted);
     if (from.is_real() || to.is_real()) return convert_real(slot, from, to, truncates, wanted);
     if (to.kind == Kind::boolean) return emit(Op::ne_word, wanted, slot, constant_slot(0));
     if (widens(from, to) || from.kind == Kind::boolean || from.kind == Kind::enumeration)
@@ -256,25 +256,43 @@ Slot Generator::convert_real(Slot slot, const Type& from, const Type& to, bool t
     return emit(of_type(Op::round_sint, to), wanted, slot);
 }
 
-/// A time is in s as a real number, in ms as an integer of up to 32 bits, in ns as one of 64.
+/// Of a DT its DATE and its TOD; all others keep their ns.
+Slot Generator::convert_date(Slot slot, const Type& from, const Type& to, Slot wanted) {
+    if (from.kind != Kind::moment || (to.kind != Kind::date && to.kind != Kind::clock)) return slot;
+    const Slot day = constant_slot(86'400'000'000'000);
+    const Slot rest = emit(Op::mod_lint, none, slot, day);
+    const Slot above = emit(Op::add_lint, none, rest, day);
+    const bool is_date = to.kind == Kind::date;
+    const Slot clock = emit(Op::mod_lint, is_date ? none : wanted, above, day);
+    return is_date ? emit(Op::sub_lint, wanted, slot, clock) : clock;
+}
+
+/// A time is in s as a real number, and in ns as an integer of 64 bits. In a shorter one a TIME and
+/// a TOD are in ms, as IEC 61131-3's vendors have it, a DT and a DATE in s; in 16 bits a DATE is in
+/// days since 1990, as Siemens has it.
 Slot Generator::convert_time(Slot slot, const Type& from, const Type& to, Slot wanted) {
-    const Constant billion{.integer = 1'000'000'000, .real = 1e9};
-    const Slot million = constant_slot(1'000'000);
-    if (to.kind == Kind::time && from.kind == Kind::time) return slot;
-    if (to.kind == Kind::time) {
-        if (from.is_real())
-            return emit(Op::round_lint, wanted,
-                        emit(Op::mul_lreal, none, slot, constant_slot(lreal_type, billion)));
-        return from.bits < 64 ? emit(Op::mul_lint, wanted, slot, million) : slot;
-    }
+    const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
+    const Slot billion = constant_slot(lreal_type, {.integer = 1'000'000'000, .real = 1e9});
+    if (to.kind == Kind::boolean) return emit(Op::ne_word, wanted, slot, constant_slot(0));
+    if (from.is_real())
+        return emit(Op::round_lint, wanted, emit(Op::mul_lreal, none, slot, billion));
     if (to.is_real()) {
         const Slot real = emit(Op::lreal_from_signed, none, slot);
-        const Slot seconds = emit(Op::div_lreal, wanted, real, constant_slot(lreal_type, billion));
+        const Slot seconds = emit(Op::div_lreal, wanted, real, billion);
         return to.bits == 32 ? emit(Op::narrow, wanted, seconds) : seconds;
     }
-    if (to.kind == Kind::boolean) return emit(Op::ne_word, wanted, slot, constant_slot(0));
-    if (to.bits == 64) return slot;
-    return emit(of_type(Op::wrap_sint, to), wanted, emit(Op::div_lint, none, slot, million));
+    if (number.bits == 64) return slot;
+    constexpr std::uint64_t day = 86'400'000'000'000;
+    const bool in_days = time.kind == Kind::date && number.bits == 16;
+    const bool in_seconds = time.kind == Kind::date || time.kind == Kind::moment;
+    const Slot unit = constant_slot(in_days ? day : in_seconds ? 1'000'000'000 : 1'000'000);
+    const Slot start = constant_slot(in_days ? 7305 * day : 0);
+    if (to.is_time()) {
+        if (!in_days) return emit(Op::mul_lint, wanted, slot, unit);
+        return emit(Op::add_lint, wanted, emit(Op::mul_lint, none, slot, unit), start);
+    }
+    if (in_days) slot = emit(Op::sub_lint, none, slot, start);
+    return emit(of_type(Op::wrap_sint, to), wanted, emit(Op::div_lint, none, slot, unit));
 }
 
 // Places.

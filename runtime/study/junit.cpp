@@ -31,11 +31,19 @@ std::string escape(const std::string& text) {
     return out;
 }
 
+std::string failure_element(const SuiteEntry& entry, const std::string& failure) {
+    std::string text = escape(failure);
+    const std::string message = text.substr(0, text.find('\n'));
+    if (!entry.repeat.empty()) text += "\nrepeat it by: " + escape(entry.repeat);
+    return fmt::format("    <{0} message=\"{1}\">{2}</{0}>\n", entry.error ? "error" : "failure",
+                       message, text);
+}
+
 }  // namespace
 
 std::string junit_xml(const std::vector<SuiteEntry>& entries) {
     const auto failures = std::ranges::count_if(
-        entries, [](const SuiteEntry& e) { return !e.failure.empty() && !e.error; });
+        entries, [](const SuiteEntry& e) { return !e.failures.empty() && !e.error; });
     const auto errors = std::ranges::count_if(entries, &SuiteEntry::error);
     double seconds = 0;
     for (const SuiteEntry& e : entries) seconds += e.wall_seconds;
@@ -50,14 +58,13 @@ std::string junit_xml(const std::vector<SuiteEntry>& entries) {
             xml +=
                 fmt::format(" classname=\"{0}\" file=\"{0}\" line=\"{1}\"", escape(e.file), e.line);
         xml += fmt::format(" name=\"{}\" time=\"{:.3f}\"", escape(e.name), e.wall_seconds);
-        if (e.failure.empty()) {
+        if (e.failures.empty()) {
             xml += "/>\n";
             continue;
         }
-        const char* tag = e.error ? "error" : "failure";
-        const std::string text = escape(e.failure);
-        xml += fmt::format(">\n    <{} message=\"{}\">{}</{}>\n  </testcase>\n", tag,
-                           text.substr(0, text.find('\n')), text, tag);
+        xml += ">\n";
+        for (const std::string& failure : e.failures) xml += failure_element(e, failure);
+        xml += "  </testcase>\n";
     }
     return xml + "</testsuite>\n";
 }

@@ -30,6 +30,27 @@ bool deviates(const CsvColumn& a, const CsvColumn& b, std::size_t row, double to
     return std::abs(a.values[row] - b.values[row]) > tolerance;
 }
 
+double distance(const CsvColumn& a, const CsvColumn& b, std::size_t row) {
+    if (a.is_missing(row) || b.is_missing(row)) return 0;
+    if (a.type == Type::integer) return distance(a.integers[row], b.integers[row]);
+    return std::abs(a.values[row] - b.values[row]);
+}
+
+ColumnDistance distance(const CsvTable& a, const CsvTable& b, std::size_t column,
+                        std::size_t rows) {
+    ColumnDistance apart{.column = column};
+    double sum = 0;
+    for (std::size_t row = 0; row < rows; ++row) {
+        const double d = distance(a.columns[column], b.columns[column], row);
+        sum += d * d;
+        if (!(d > apart.greatest)) continue;
+        apart.greatest = d;
+        apart.row = row;
+    }
+    apart.rms = rows == 0 ? 0 : std::sqrt(sum / static_cast<double>(rows));
+    return apart;
+}
+
 std::string names_of(const CsvTable& table) {
     std::string text;
     for (const CsvColumn& column : table.columns) text += (text.empty() ? "" : ", ") + column.name;
@@ -57,7 +78,9 @@ std::string made_by(const CsvMetadata& metadata, const std::string& what) {
 void check_columns(const CsvTable& a, const CsvTable& b, const auto& fail) {
     const auto name = [](const CsvColumn& column) { return column.name; };
     if (!std::ranges::equal(a.columns, b.columns, {}, name, name))
-        return fail("the columns differ", fmt::format("{} has: {}", a.header->path, names_of(a)));
+        return fail("the columns differ",
+                    fmt::format("{} has: {}; --common compares what both have", a.header->path,
+                                names_of(a)));
     for (std::size_t i = 0; i < a.columns.size(); ++i) {
         const CsvColumn &x = a.columns[i], &y = b.columns[i];
         if (x.unit != y.unit)
@@ -111,6 +134,19 @@ void check_comparable(const CsvTable& a, const CsvTable& b, bool same_program, D
              "record both with the same task and 'every'");
 }
 
+void keep_common(CsvTable& a, CsvTable& b) {
+    std::vector<CsvColumn> ours, theirs;
+    for (CsvColumn& x : a.columns) {
+        const auto y = std::ranges::find(b.columns, x.name, &CsvColumn::name);
+        if (y == b.columns.end() || y->unit != x.unit || y->type != x.type || y->names != x.names)
+            continue;
+        ours.push_back(std::move(x));
+        theirs.push_back(std::move(*y));
+    }
+    a.columns = std::move(ours);
+    b.columns = std::move(theirs);
+}
+
 TraceComparison compare(const CsvTable& a, const CsvTable& b, const Tolerances& tolerances) {
     TraceComparison result;
     result.compared = std::min(a.rows, b.rows);
@@ -131,6 +167,9 @@ TraceComparison compare(const CsvTable& a, const CsvTable& b, const Tolerances& 
         }
         if (result.cells != before) ++result.rows;
     }
+    for (std::size_t i = 0; i < a.columns.size(); ++i)
+        if (const auto apart = distance(a, b, i, result.compared); apart.greatest > 0)
+            result.apart.push_back(apart);
     return result;
 }
 

@@ -23,12 +23,20 @@ struct Deviation {
     std::size_t column = 0;  ///< of either table
 };
 
+/// How far the values of a column lie apart where both traces have one, whatever is tolerated.
+struct ColumnDistance {
+    std::size_t column = 0;  ///< of either table
+    double greatest = 0, rms = 0;
+    std::size_t row = 0;  ///< of the greatest
+};
+
 struct TraceComparison {
     std::optional<Deviation> first;     ///< by row, then column
     std::optional<Deviation> greatest;  ///< by the plain distance, among reals
     std::size_t cells = 0;              ///< that deviate
     std::size_t rows = 0;               ///< that hold such cells
     std::size_t compared = 0;           ///< rows that both have
+    std::vector<ColumnDistance> apart;  ///< the columns with any distance
 
     bool same(const CsvTable& a, const CsvTable& b) const { return !first && a.rows == b.rows; }
 };
@@ -46,6 +54,9 @@ std::vector<RunDifference> run_differences(const CsvMetadata& a, const CsvMetada
 /// same interval, and programs of the same form, see Meaning (asked only when `same_program`): else
 /// there is nothing to compare.
 void check_comparable(const CsvTable& a, const CsvTable& b, bool same_program, Diagnostics& out);
+
+/// Leaves the columns that both have with the same unit and type, in the order of `a`.
+void keep_common(CsvTable& a, CsvTable& b);
 
 /// Compares two comparable tables cell by cell, as far as both have rows. A missing value equals a
 /// missing one only.

@@ -46,6 +46,8 @@ class Generator {
   private:
     void add_task(std::size_t index);
     void add_block(std::size_t index);
+    const BlockType& choose_type();
+    void refer(const Field& field);
     std::string setting(const Field& field, const std::string& unit);
     std::string value(const Field& field, const std::string& unit);
     std::string literal(const Field& field, const std::string& unit);
@@ -57,11 +59,17 @@ class Generator {
     void add_bounds(const BlockType& type, const std::string& name);
     bool is_limit(const Field& field) const;
     bool may_misfit(const Field& field) const;
+    bool is_switch(const Field& field) const;
 
     struct Input {
         std::string name;
         Field field;
         std::string unit;
+    };
+
+    /// What a reference can name.
+    struct Made {
+        std::string name, unit;
     };
 
     Choices& choices_;
@@ -72,7 +80,8 @@ class Generator {
     std::vector<Source> sources_;
     std::vector<Input> inputs_;
     std::string inputs_text_;
-    std::string task_;  ///< of the block being made
+    std::string task_;                            ///< of the block being made
+    std::multimap<std::string_view, Made> made_;  ///< blocks so far by type
     const BlockType* type_ = nullptr;
     std::map<std::string, std::string> names_;  ///< of its enumeration parameters
     std::map<std::string, double> numbers_;     ///< that its settings were given
@@ -104,8 +113,25 @@ void Generator::add_task(std::size_t index) {
                                  choices_.one_of(jitters), choices_.one_of(costs));
 }
 
+/// What it refers to comes first.
+const BlockType& Generator::choose_type() {
+    const BlockType* type = &choices_.one_of(catalog_.types());
+    for (const Field& field : type->fields)
+        if (field.direction == Direction::in_out && !made_.contains(field.refers))
+            return *catalog_.find(field.refers);
+    return *type;
+}
+
+void Generator::refer(const Field& field) {
+    const auto [first, last] = made_.equal_range(field.refers);
+    const auto count = static_cast<std::size_t>(std::distance(first, last));
+    const Made& made = std::next(first, static_cast<std::ptrdiff_t>(choices_.below(count)))->second;
+    names_[std::string(field.name)] = made.unit;
+    program_.text += fmt::format("    {}: {}\n", field.name, made.name);
+}
+
 void Generator::add_block(std::size_t index) {
-    type_ = &choices_.one_of(catalog_.types());
+    type_ = &choose_type();
     task_ = choices_.one_of(tasks_);
     names_.clear();
     numbers_.clear();
@@ -119,12 +145,16 @@ void Generator::add_block(std::size_t index) {
             if (!chosen.empty()) program_.text += fmt::format("    {}: {}\n", field.name, chosen);
         }
     for (const Field& field : type_->fields)
-        if (field.direction != Direction::output && field.type != Type::enumeration)
+        if (field.direction == Direction::in_out) refer(field);
+    made_.emplace(type_->name, Made{name, names_.contains("unit") ? names_["unit"] : ""});
+    for (const Field& field : type_->fields)
+        if (field.direction != Direction::output && field.direction != Direction::in_out &&
+            field.type != Type::enumeration)
             numbers_[std::string(field.name)] = as_real(default_of(*type_, field));
     for (const Field& field : type_->fields) {
         const bool is_set =
             field.direction != Direction::output && !names_.contains(std::string(field.name)) &&
-            (field.required || choices_.once_in(2)) &&
+            (field.required || choices_.once_in(2)) && !is_switch(field) &&
             !(may_misfit(field) && !field.unit.empty() && field.type == Type::integer);
         if (is_set) program_.text += setting(field, unit_of(field));
     }
@@ -140,6 +170,11 @@ bool Generator::is_limit(const Field& field) const {
     constexpr std::string_view limits[] = {"velocity", "acceleration", "jerk"};
     return (type_->name == "virtual_axis" || type_->name == "move") &&
            std::ranges::find(limits, field.name) != std::end(limits);
+}
+
+/// It would ask for other parameters.
+bool Generator::is_switch(const Field& field) const {
+    return type_->misfit && field.type == Type::boolean && field.direction == Direction::parameter;
 }
 
 /// A constant that may come to nothing beside others; a value from outside is taken as it comes.

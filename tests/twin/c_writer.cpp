@@ -91,6 +91,9 @@ class CWriter {
             case Kind::any_bits:
                 return "u64";
             case Kind::time:
+            case Kind::date:
+            case Kind::clock:
+            case Kind::moment:
             case Kind::enumeration:
             case Kind::any_integer:
                 return "i64";
@@ -429,6 +432,8 @@ class CWriter {
         loops_.push_back(loop);
         put("for (;;) {{\nif ((i128){0} >= 0 ? {1} > {2} : {1} < {2}) break;", step, counter,
             limit);
+        const Type& given = *s.target->type;
+        if (given.is_subrange) check_range(counter, given.lower, given.upper);
         write(s.body);
         put("next{0}:;\nconst i128 sum = (i128){1} + {2};\n{1} = ({3})sum;", loop, counter, step,
             c_type(type));
@@ -722,7 +727,7 @@ class CWriter {
         const std::string name = new_text();
         const bool is_unsigned = from.is_unsigned_64();
         put("twin_{}(&{}, {});",
-            from.is_real() ? "real"
+            from.is_real() ? (from.bits == 32 ? "single" : "real")
             : is_unsigned  ? "unsigned"
                            : "signed",
             name, number);

@@ -79,7 +79,7 @@ void twin_unsigned(result* to, u64 value) {
 }
 
 /* The fewest digits that read back as the value, with or without an exponent, what is shorter. */
-void twin_real(result* to, f64 value) {
+static void shortest(result* to, f64 value, int is_single) {
     if (value != value || value - value != 0) {
         to->length = snprintf(to->c, 254, "%s%s", signbit(value) ? "-" : "", value != value ? "nan" : "inf");
         return;
@@ -87,12 +87,16 @@ void twin_real(result* to, f64 value) {
     int precision = 0;
     char scientific[40], fixed[400];
     do snprintf(scientific, sizeof scientific, "%.*e", precision, value);
-    while (strtod(scientific, 0) != value && precision++ < 17);
+    while ((is_single ? strtof(scientific, 0) : strtod(scientific, 0)) != value && precision++ < 17);
     const int exponent = atoi(strchr(scientific, 'e') + 1);
     snprintf(fixed, sizeof fixed, "%.*f", precision > exponent ? precision - exponent : 0, value);
     const char* shorter = strlen(fixed) <= strlen(scientific) ? fixed : scientific;
     put(to, 254, shorter, (i64)strlen(shorter));
 }
+
+void twin_real(result* to, f64 value) { shortest(to, value, 0); }
+
+void twin_single(result* to, f32 value) { shortest(to, value, 1); }
 
 static const char* digits(const char* c) {
     while (*c >= '0' && *c <= '9') ++c;

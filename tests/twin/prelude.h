@@ -38,6 +38,7 @@ i64 twin_compare(const void* a, const void* b);
 void twin_signed(result* to, i64 value);
 void twin_unsigned(result* to, u64 value);
 void twin_real(result* to, f64 value);
+void twin_single(result* to, f32 value);
 i64 twin_read_integer(const void* from, int line);
 f64 twin_read_real(const void* from, int line);
 

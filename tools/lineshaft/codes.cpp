@@ -131,13 +131,14 @@ a later lineshaft can still tell what an old file means. This lineshaft reads ve
 the cases of a study have different names, since the claims' formulas go by them.
 Remove one of the two, or rename it.)"},
     {"L0213", "entries that do not go together",
-     R"(An expectation is judged at one time ('at') or in every scan ('always'), and compares
-with a value or with bounds; 'within' is the tolerance of a value that is a number, and
+     R"(An expectation is judged at one time ('at'), in every scan ('always', 'never', 'between'), or
+by how often something happens ('rising', 'within TIME of SIGNAL'), and compares with a value or with bounds; 'within' is the tolerance of a value that is a number, and
 'at_least' is not above 'at_most', in a study neither. A study's grid has no name, since
 its cases would share it. Write one expectation for each thing that must hold:
     expect:
       - {at: end, slave.velocity: 15 mm/s, within: 1e-9 mm/s}
       - {always: slave.velocity, at_least: 0 mm/s, at_most: 15.001 mm/s}
+      - {within 2 s of shaft.moving: slave.in_gear}
 A task is cyclic ('every', 'offset', 'jitter') or started by the rising edges of boolean
 signals ('on'), and then has no interval that every(...) could name:
     tasks:
@@ -157,6 +158,11 @@ much). A row takes 8 bytes for each signal and 16 more. Keep fewer rows or fewer
 or record every n-th scan only. What is recorded from the trigger on goes to the disk and
 is not limited.)"},
 
+    {"L0216", "rows of a list that do not go together",
+     R"(Each row of the list is right for itself, but not after the others: the points of a cam stand
+in the order of the master, whose position rises from each to the next, and there are two at
+least. The message says which row it is. A point that comes twice is left out; a master that
+runs backwards has its points in the other order.)"},
     {"L0217", "an expression where a value is expected",
      R"(A program file has values and wires, and does not calculate. What the expression does is
 done by a block of IEC 61131-3 (and, or, not, gt, add, mul, ...), whose output is then
@@ -265,6 +271,22 @@ S7-1500 does. And a task that overruns cannot be its own help.
 outside. A parameter is the program's own constant; a wired input gets its value from the
 wire in the first scan, so retain where the wire begins. A device, such as a pulse output,
 is hardware and starts anew with the power: retain its outputs.)"},
+    {"L0421", "registers of Modbus that overlap",
+     R"(Two signals of a table have a register in common, or a signal ends beyond 65535. An int32,
+uint32 or real32 takes two registers, one of 64 bits four; unless 'type' says otherwise a real
+is a real32, an integer an int32. Give the second one the next address that is free:
+    modbus:
+      input_registers: {0: shaft.position, 2: slave.position})"},
+    {"L0422", "a table of Modbus that is not written",
+     R"(Clients write coils and holding registers; discrete inputs and input registers are only
+read. Put the signal where it can be written:
+    modbus:
+      coils: {0: {signal: inputs.go, write: true}})"},
+    {"L0423", "a type or a scale that does not fit a signal of Modbus",
+     R"(A coil or a discrete input is a boolean; other signals go into registers. A scale is what
+one in the register is, in a unit of the signal's dimension, and not 0:
+    modbus:
+      holding_registers: {100: {signal: shaft.position, type: int32, scale: 0.001 mm}})"},
 
     {"L0501", "a setting for a parameter that the program does not have",
      R"(--set and the cases of a study change what the program declares under 'parameters:',
@@ -310,6 +332,26 @@ then overwrite it:
      R"(The output would replace what it is made from: --trace program.yaml would leave a table where
 the program was. Two outputs of one name would replace each other. Name another file:
     lineshaft run program.yaml --trace program.csv)"},
+    {"L0510", "an address that nobody can be served at",
+     R"('--http' and '--modbus' take an address of this machine and a port, or off. Another program
+may be there already, for instance another 'lineshaft serve'; ports below 1024 are for root.
+127.0.0.1 is for this machine alone, 0.0.0.0 for all that reach it:
+    lineshaft serve program.yaml --http 127.0.0.1:18090 --for 0.1s)"},
+    {"L0511", "no real-time priority",
+     R"('--realtime' runs the machine before all other programs and keeps its memory in place. That
+takes root, the capabilities cap_sys_nice and cap_ipc_lock, or limits for rtprio and memlock in
+/etc/security/limits.conf. Without it the machine runs as other programs do: the virtual times
+are the same, the clock's are kept less well.)"},
+    {"L0512", "a recording that cannot be written",
+     R"(What clients write is recorded, so that a run of it can be played back. The file cannot be
+made, or another 'lineshaft serve' writes it: name another one by --record FILE.yaml.)"},
+    {"L0513", "a request that is not allowed",
+     R"(A machine that is served is only looked at, unless --allow-write is said. Clients of other
+machines need a token to write, too: the first line of the file of --token-file. A browser's
+request is refused when its page is not the machine's own.)"},
+    {"L0514", "a file without a token",
+     R"(The first line of the file of --token-file is what clients of other machines send to write:
+'Authorization: Bearer TOKEN'. It has 16 characters or more; nobody else should read the file.)"},
 
     {"L0601", "a study of too many runs",
      R"(The cases, the values of a grid multiplied with each other, and 'repeat' make more
@@ -448,6 +490,10 @@ no 'expect:'. Say what must hold:
 a timer when it was started. 'retain: [counter.cv]' keeps the number alone, and a part that stands
 in the light barrier is counted once more after the restart. Keep the whole block:
     retain: [counter])"},
+    {"L0806", "a recording of another program",
+     R"(A warning. The recording was made from a program, or with values of --set, that mean something
+else than what is run now, so that something else may come of it. With the same program and
+--set as 'lineshaft serve' had, the trace has the same bytes.)"},
 
     {"L0901", "a character of no word",
      R"(The Structured Text has a character that begins no name, number, text or sign, or a comment

@@ -101,6 +101,10 @@ ProgressLine::ProgressLine(bool quiet)
     : enabled_(!quiet && ::isatty(STDERR_FILENO) == 1), start_(now_ms()) {}
 
 ProgressLine::~ProgressLine() {
+    clear();
+}
+
+void ProgressLine::clear() {
     if (shown_ > 0) fmt::print(stderr, "\r\033[K");
 }
 

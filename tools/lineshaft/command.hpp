@@ -56,23 +56,31 @@ class ProgressLine {
     explicit ProgressLine(bool quiet);
     ~ProgressLine();
     void show(const std::function<std::string(double elapsed_seconds)>& text);
+    void clear();  ///< before a line of another kind
 
   private:
     bool enabled_;
     std::int64_t start_, shown_ = 0;
 };
 
+/// What `lineshaft report` does, of these signals.
+Exit write_report(std::vector<std::string> inputs, std::vector<std::string> signals,
+                  const std::string& output, bool quiet);
+
 /// A real number for JSON: null when it is not finite.
 nlohmann::ordered_json json_number(double value);
 
 /// `name` of the subcommand on `app`; `result` gets its exit code.
 using AddCommand = void (*)(CLI::App& app, Exit& result);
+void add_new(CLI::App& app, Exit& result);
 void add_run(CLI::App& app, Exit& result);
+void add_serve(CLI::App& app, Exit& result);
 void add_check(CLI::App& app, Exit& result);
 void add_test(CLI::App& app, Exit& result);
 void add_study(CLI::App& app, Exit& result);
 void add_blocks(CLI::App& app, Exit& result);
 void add_units(CLI::App& app, Exit& result);
+void add_states(CLI::App& app, Exit& result);
 void add_schema(CLI::App& app, Exit& result);
 void add_form(CLI::App& app, Exit& result);
 void add_explain(CLI::App& app, Exit& result);

@@ -9,10 +9,10 @@ namespace lineshaft {
 namespace {
 
 struct DiffCommand {
-    std::string a, b;
+    std::string a, b, page;
     std::vector<std::string> tolerances;
     std::size_t window = 3;
-    bool any_program = false, json = false, quiet = false;
+    bool any_program = false, common = false, json = false, quiet = false;
 };
 
 /// What `text` is in the unit of `column`; a bare number is in that unit.
@@ -83,14 +83,31 @@ std::vector<RunDifference> differences(const CsvTable& a, const CsvTable& b) {
     return run_differences(*a.metadata, *b.metadata);
 }
 
+/// Of the columns with any distance, also where it is tolerated.
+void print_summary(const CsvTable& a, const TraceComparison& found) {
+    if (found.apart.empty()) return;
+    fmt::print("\n{:32} {:>14} {:>14}  {}\n", "apart", "greatest", "rms", "where");
+    const CsvColumn* time = a.find("time");
+    for (const ColumnDistance& each : found.apart) {
+        const CsvColumn& column = a.columns[each.column];
+        fmt::print(
+            "{:32} {:>14.6g} {:>14.6g}  row {}{}\n",
+            column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit),
+            each.greatest, each.rms, each.row + 1,
+            time ? ", at " + cell(*time, each.row) + " s" : "");
+    }
+}
+
 void print_text(const DiffCommand& command, const CsvTable& a, const CsvTable& b,
                 const TraceComparison& found) {
     if (!command.quiet)
         for (const auto& [what, x, y] : differences(a, b))
             fmt::print("{}: {}, {}\n", what, x.empty() ? "none" : x, y.empty() ? "none" : y);
     if (found.same(a, b)) {
-        if (!command.quiet) fmt::print("same: {} rows of {} columns\n", a.rows, a.columns.size());
-        return;
+        if (command.quiet) return;
+        fmt::print("{}: {} rows of {} columns\n", found.apart.empty() ? "same" : "within tolerance",
+                   a.rows, a.columns.size());
+        return print_summary(a, found);
     }
     if (a.rows != b.rows) fmt::print("{} and {} rows\n", a.rows, b.rows);
     if (!found.first) return;
@@ -107,6 +124,7 @@ void print_text(const DiffCommand& command, const CsvTable& a, const CsvTable& b
     const auto [at, column] = *found.greatest;
     fmt::print("greatest: row {}, {}: {}\n", at + 1, a.columns[column].name,
                distance(a.columns[column], b.columns[column], at));
+    print_summary(a, found);
 }
 
 nlohmann::ordered_json to_json(const CsvTable& a, const CsvTable& b, const Deviation& deviation) {
@@ -130,6 +148,13 @@ void print_json(const CsvTable& a, const CsvTable& b, const TraceComparison& fou
                                   {"rows_b", b.rows},
                                   {"rows_deviating", found.rows},
                                   {"cells", found.cells}};
+    object["columns"] = nlohmann::ordered_json::array();
+    for (const auto& [column, greatest, rms, row] : found.apart)
+        object["columns"].push_back({{"column", a.columns[column].name},
+                                     {"unit", a.columns[column].unit},
+                                     {"greatest", json_number(greatest)},
+                                     {"rms", json_number(rms)},
+                                     {"row", row + 1}});
     for (const auto& [what, x, y] : differences(a, b))
         object["runs"].push_back({{"what", what}, {"a", x}, {"b", y}});
     if (found.first) object["first"] = to_json(a, b, *found.first);
@@ -137,11 +162,31 @@ void print_json(const CsvTable& a, const CsvTable& b, const TraceComparison& fou
     fmt::print("{}\n", object.dump(2));
 }
 
+/// Leaves what both have; L0708 when that is nothing but the time.
+void keep_common(CsvTable& a, CsvTable& b, Diagnostics& out) {
+    lineshaft::keep_common(a, b);
+    if (std::ranges::any_of(a.columns, [](const CsvColumn& column) {
+            return column.name != "time" && column.name != "scan";
+        }))
+        return;
+    out.add("L0708", {b.header, 0, 0, 1},
+            fmt::format("the trace has no column in common with '{}'", a.header->path));
+}
+
+Exit draw(const DiffCommand& command, const CsvTable& a) {
+    std::vector<std::string> signals;
+    for (const CsvColumn& column : a.columns)
+        if (column.name != "time" && column.name != "scan") signals.push_back(column.name);
+    return write_report({command.a, command.b}, std::move(signals), command.page, command.quiet);
+}
+
 Exit execute(const DiffCommand& command) {
     Diagnostics out;
-    const auto a = read_csv(command.a, out);
-    const auto b = read_csv(command.b, out);
+    auto a = read_csv(command.a, out);
+    auto b = read_csv(command.b, out);
     Tolerances tolerances;
+    check_outputs({command.page}, {command.a, command.b}, out);
+    if (a && b && command.common) keep_common(*a, *b, out);
     if (a && b) check_comparable(*a, *b, !command.any_program, out);
     if (a && b) tolerances = read_tolerances(command.tolerances, *a, out);
     if (!out.empty()) return report(out, command.json);
@@ -150,6 +195,8 @@ Exit execute(const DiffCommand& command) {
         print_json(*a, *b, found);
     else
         print_text(command, *a, *b, found);
+    if (!command.page.empty())
+        if (const Exit drawn = draw(command, *a); drawn != Exit::fine) return drawn;
     return found.same(*a, *b) ? Exit::fine : Exit::failed;
 }
 
@@ -170,6 +217,9 @@ void add_diff(CLI::App& app, Exit& result) {
         ->trigger_on_parse(false);
     sub->add_option("--window", command->window, "Rows shown before and after the first deviation")
         ->capture_default_str();
+    sub->add_flag("--common", command->common, "Compare the columns that both have");
+    sub->add_option("--report", command->page, "Draw both into this page, too")
+        ->type_name("FILE.html");
     sub->add_flag("--any-program", command->any_program, "The programs may differ");
     sub->add_flag("--json", command->json, "Print one JSON object for machines");
     sub->add_flag("--quiet", command->quiet, "Say nothing when they are the same");

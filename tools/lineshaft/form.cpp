@@ -38,7 +38,11 @@ std::string type_text(const Shape& s) {
         case Kind::list:
             return "list of " + type_text(s.of[0]);
         case Kind::map:
-            return fmt::format("{}: {}", s.what.empty() ? "SIGNAL" : "NAME", type_text(s.of[0]));
+            return fmt::format("{}: {}",
+                               s.numbered       ? "NUMBER"
+                               : s.what.empty() ? "SIGNAL"
+                                                : "NAME",
+                               type_text(s.of[0]));
         case Kind::form:
             return fmt::format("<{}>", s.form().name);
         case Kind::block:
@@ -111,7 +115,8 @@ void print_key(const Form& form, const Key& key) {
 void print(const Form& form) {
     fmt::print("{}: {}\n\n", form.name, wrapped(form.doc, form.name.size() + 2));
     for (const Key& key : form.keys) print_key(form, key);
-    if (!form.others.name.empty()) print_key(form, form.others);
+    for (const Key& key : {form.others, form.phrase})
+        if (!key.name.empty()) print_key(form, key);
     for (const std::string& note : notes(form, {})) fmt::print("\n{}\n", note);
 }
 
@@ -129,7 +134,8 @@ nlohmann::ordered_json to_json(const Form& form, const Key& key) {
 nlohmann::ordered_json to_json(const Form& form) {
     auto keys = nlohmann::ordered_json::array();
     for (const Key& key : form.keys) keys.push_back(to_json(form, key));
-    if (!form.others.name.empty()) keys.push_back(to_json(form, form.others));
+    for (const Key& key : {form.others, form.phrase})
+        if (!key.name.empty()) keys.push_back(to_json(form, key));
     nlohmann::ordered_json out{{"form", form.name}, {"doc", form.doc}, {"keys", keys}};
     if (const auto said = notes(form, {}); !said.empty()) out["rules"] = said;
     return out;

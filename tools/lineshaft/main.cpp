@@ -98,15 +98,16 @@ int run_command(int argc, char** argv) {
     CLI::App app{
         "A PLC soft-runtime for motion control: runs YAML programs scan by scan in virtual time.",
         "lineshaft"};
-    app.set_version_flag("--version", std::string("lineshaft ") + version());
+    app.set_version_flag("--version", fmt::format("lineshaft {} ({})", version(), LINESHAFT_BUILD));
     app.require_subcommand(1);
     app.footer(
         "Exit codes: 0 fine, 1 an expectation failed, 2 the program or the command line is wrong,\n"
         "3 a fault while running, 130 interrupted. `lineshaft COMMAND --help` says more.");
     Exit result = Exit::fine;
-    for (const AddCommand add : {add_run, add_check, add_test, add_study, add_fit, add_blocks,
-                                 add_form, add_units, add_schema, add_explain, add_plan, add_diff,
-                                 add_verify, add_contour, add_report, add_show, add_plot})
+    for (const AddCommand add :
+         {add_new,    add_run,    add_serve,   add_check,  add_test,   add_study,   add_fit,
+          add_blocks, add_form,   add_units,   add_states, add_schema, add_explain, add_plan,
+          add_diff,   add_verify, add_contour, add_report, add_show,   add_plot})
         add(app, result);
     if (argc > 1 && argv[1][0] != '-') {
         if (const std::string message = unknown_command(app, argv[1]); !message.empty()) {

@@ -22,9 +22,13 @@ constexpr const char* report_help =
     "with\n"
     "the deviation magnified. The page needs no network and nothing but a browser.";
 
-/// tools/report/page with uPlot in it, made by tools/report/bundle.mjs.
+/// tools/report/page with uPlot in it, made by tools/report/bundle.mjs; empty in a build without.
 constexpr unsigned char page_bytes[] = {
+#ifdef LINESHAFT_PAGES
 #include "report_page.inc"
+#else
+    0
+#endif
 };
 
 struct ReportCommand {
@@ -152,6 +156,14 @@ Json make_report(const ReportCommand& command, Diagnostics& out) {
 }
 
 Exit execute(const ReportCommand& command) {
+    if (std::size(page_bytes) == 1) {
+        spdlog::error(
+            "this lineshaft was built without uPlot, which draws the page; in the project's "
+            "folder: "
+            "tools/setup && cmake --preset release && cmake --build --preset release "
+            "(lineshaft plot draws by gnuplot)");
+        return Exit::wrong;
+    }
     if (!command.circle.empty() && command.circle[2] <= 0) {
         spdlog::error("--circle: the radius must be above 0, not {}", command.circle[2]);
         return Exit::wrong;
@@ -171,6 +183,16 @@ Exit execute(const ReportCommand& command) {
 }
 
 }  // namespace
+
+Exit write_report(std::vector<std::string> inputs, std::vector<std::string> signals,
+                  const std::string& output, bool quiet) {
+    ReportCommand command;
+    command.inputs = std::move(inputs);
+    command.signals = std::move(signals);
+    command.output = output;
+    command.quiet = quiet;
+    return execute(command);
+}
 
 void add_report(CLI::App& app, Exit& result) {
     auto command = std::make_shared<ReportCommand>();

@@ -5,38 +5,24 @@
 #include <spdlog/spdlog.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/run/single_run.hpp"
+#include "runtime/run/signal_json.hpp"
 #include "runtime/source/reader.hpp"
 #include "runtime/trace/event_writer.hpp"
-#include "tools/lineshaft/command.hpp"
+#include "tools/lineshaft/run_command.hpp"
 
 namespace lineshaft {
 
 namespace {
 
-struct RunCommand {
-    CommonOptions common;
-    std::string program, trace, pulses, retain, checkpoint, checkpoint_every;
-    std::vector<std::string> forces;
-    CsvStyle style;
-    Restart restart = Restart::warm;
-    bool resume = false, strict = false;
-};
+using Json = nlohmann::ordered_json;
 
-nlohmann::ordered_json json_value(const Signal& signal) {
-    const Value value = signal.value();
-    if (const auto* b = std::get_if<bool>(&value)) return *b;
-    if (signal.type == Type::enumeration) return signal.describe(value);
-    if (const auto* i = std::get_if<std::int64_t>(&value)) return *i;
-    return json_number(std::get<double>(value));
-}
-
-void print_json(const Loaded& loaded, const RunReport& report) {
+void print_json(const Loaded& loaded, const RunReport& report, const Json& more) {
     const Machine& machine = loaded.linked.machine;
     nlohmann::ordered_json scans, signals;
     for (std::size_t i = 0; i < machine.tasks.size(); ++i)
         scans[machine.tasks[i].name] = report.result.scans[i];
-    for (const Signal& signal : machine.signals) signals[signal.name] = json_value(signal);
+    for (const Signal& signal : machine.signals)
+        signals[signal.name] = to_json(signal, signal.value());
     auto expect = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
         expect.push_back(
@@ -60,6 +46,7 @@ void print_json(const Loaded& loaded, const RunReport& report) {
         object["fault"] = !report.output_error.empty()    ? report.output_error
                           : !report.restart_error.empty() ? report.restart_error
                                                           : report.result.message;
+    if (more.is_object()) object.update(more);
     fmt::print("{}\n", object.dump(2));
 }
 
@@ -115,7 +102,52 @@ void add_style(CLI::App& sub, CsvStyle& style) {
         ->transform(CLI::CheckedTransformer(dialects).description("rfc4180|excel-de"));
 }
 
-/// What the command line says of restarts; what is wrong with it goes to `out`.
+/// L0509 for what else would go to the standard output.
+void check_stdout(const RunCommand& command, const Loaded& loaded, Diagnostics& out) {
+    const auto& traces = loaded.linked.traces;
+    if (command.common.json)
+        out.add("L0509", {}, "'-' and --json would both write to the standard output",
+                "name a file");
+    if (command.trace == "-" && (traces.size() > 1 || (traces.size() == 1 && traces[0].repeat > 1)))
+        out.add("L0509", {}, "the program records more than one trace",
+                "name a file: --trace FILE.csv");
+}
+
+/// L0503, L0504, L0508 for a file that would have nothing in it.
+void check_files(const RunCommand& command, const Loaded& loaded, Diagnostics& out) {
+    const Mark program{loaded.program.file, 0, 0, 1};
+    if (!command.trace.empty() && loaded.linked.traces.empty())
+        out.add("L0503", program, "the program has no 'trace:' to write to " + command.trace,
+                "say under 'trace:' which task and signals to record");
+    if (!command.pulses.empty() && loaded.linked.machine.devices.empty())
+        out.add("L0504", program, "the program has no pulse channel to write to " + command.pulses,
+                "'lineshaft blocks pto' describes one");
+    if (!command.retain.empty() && loaded.linked.machine.retains_nothing())
+        out.add("L0508", program, "the program has nothing to keep in " + command.retain,
+                "say under 'retain:' which blocks and signals outlive a run");
+    if (writes_to_stdout(command)) check_stdout(command, loaded, out);
+}
+
+Exit execute(const RunCommand& command) {
+    Diagnostics out;
+    RunOptions how = run_options(command, out);
+    auto loaded = load(command, {}, out);
+    if (!loaded) return report(out, command.common.json);
+
+    ProgressLine line(command.common.quiet || command.common.json);
+    const Machine& machine = loaded->linked.machine;
+    const double whole = seconds(std::min(machine.duration, machine.end));
+    how.progress = [&](std::int64_t time) {
+        line.show([&](double elapsed) {
+            return fmt::format("{:.1f} s of at most {:.1f} s, {:.0f} times faster than the clock",
+                               seconds(time), whole, seconds(time) / elapsed);
+        });
+    };
+    return tell(command, *loaded, run(*loaded, how));
+}
+
+}  // namespace
+
 RunOptions run_options(const RunCommand& command, Diagnostics& out) {
     namespace fs = std::filesystem;
     RunOptions options{.trace_path = command.trace,
@@ -137,61 +169,36 @@ RunOptions run_options(const RunCommand& command, Diagnostics& out) {
     return options;
 }
 
-/// L0509 for what else would go to the standard output.
-void check_stdout(const RunCommand& command, const Loaded& loaded, Diagnostics& out) {
-    const auto& traces = loaded.linked.traces;
-    if (command.common.json)
-        out.add("L0509", {}, "'-' and --json would both write to the standard output",
-                "name a file");
-    if (command.trace == "-" && (traces.size() > 1 || (traces.size() == 1 && traces[0].repeat > 1)))
-        out.add("L0509", {}, "the program records more than one trace",
-                "name a file: --trace FILE.csv");
-}
-
-Exit execute(const RunCommand& command) {
-    Diagnostics out;
+std::optional<Loaded> load(const RunCommand& command, const std::vector<std::string>& outputs,
+                           Diagnostics& out) {
     YamlFiles files;
     LoadOptions options = command.common.load_options(out);
     options.files = &files;
     options.forces = command.forces;
-    RunOptions how = run_options(command, out);
+    options.recording = command.recording;
     auto loaded = load_program(command.program, options, standard_blocks(), out);
-    if (loaded && !command.trace.empty() && loaded->linked.traces.empty())
-        out.add("L0503", {loaded->program.file, 0, 0, 1},
-                "the program has no 'trace:' to write to " + command.trace,
-                "say under 'trace:' which task and signals to record");
-    if (loaded && !command.pulses.empty() && loaded->linked.machine.devices.empty())
-        out.add("L0504", {loaded->program.file, 0, 0, 1},
-                "the program has no pulse channel to write to " + command.pulses,
-                "'lineshaft blocks pto' describes one");
-    if (loaded && !command.retain.empty() && loaded->linked.machine.retains_nothing())
-        out.add("L0508", {loaded->program.file, 0, 0, 1},
-                "the program has nothing to keep in " + command.retain,
-                "say under 'retain:' which blocks and signals outlive a run");
     std::vector<std::string> inputs;
     for (const auto& file : files.sources()) inputs.push_back(file->path);
+    if (!command.recording.empty()) inputs.push_back(command.recording);
     if (loaded)
         for (const ReplayPlan& replay : loaded->program.replays) inputs.push_back(replay.path);
-    if (loaded && writes_to_stdout(command)) check_stdout(command, *loaded, out);
-    check_outputs({command.trace, command.pulses, command.retain, command.checkpoint}, inputs, out);
+    if (loaded) check_files(command, *loaded, out);
+    std::vector<std::string> all{command.trace, command.pulses, command.retain, command.checkpoint};
+    all.insert(all.end(), outputs.begin(), outputs.end());
+    check_outputs(all, inputs, out);
     if (command.strict) out.be_strict();
-    if (!out.empty()) return report(out, command.common.json);
+    if (!out.empty()) return {};
     fmt::print(stderr, "{}", out.render());
+    return loaded;
+}
 
-    ProgressLine line(command.common.quiet || command.common.json);
-    const double whole = seconds(loaded->linked.machine.duration);
-    how.progress = [&](std::int64_t time) {
-        line.show([&](double elapsed) {
-            return fmt::format("{:.1f} s of at most {:.1f} s, {:.0f} times faster than the clock",
-                               seconds(time), whole, seconds(time) / elapsed);
-        });
-    };
-    const RunReport result = run(*loaded, how);
+Exit tell(const RunCommand& command, const Loaded& loaded, const RunReport& result,
+          const Json& more) {
     if (!result.refused.empty()) return report(result.refused, command.common.json);
     if (command.common.json)
-        print_json(*loaded, result);
+        print_json(loaded, result, more);
     else
-        print_text(command, *loaded, result);
+        print_text(command, loaded, result);
     for (const TraceReport& trace : result.traces)
         if (trace.measurements == 0)
             spdlog::warn("the trigger of trace '{}' did not come: {} has no rows",
@@ -208,32 +215,38 @@ Exit execute(const RunCommand& command) {
     return exit == Exit::fine && unseen ? Exit::failed : exit;
 }
 
-}  // namespace
-
-void add_run(CLI::App& app, Exit& result) {
-    auto command = std::make_shared<RunCommand>();
-    CLI::App* sub = app.add_subcommand("run", "Run a program and judge its expectations");
-    sub->add_option("program", command->program, "The program, a YAML file")->required();
-    sub->add_option(
-           "--trace", command->trace,
-           "Write the program's trace to this CSV file, the trace NAME of its 'traces:' to "
-           "FILE.NAME.csv; - is the standard output")
+void RunCommand::add_to(CLI::App& sub) {
+    sub.add_option("program", program, "The program, a YAML file")->required();
+    sub.add_option("--trace", trace,
+                   "Write the program's trace to this CSV file, the trace NAME of its 'traces:' to "
+                   "FILE.NAME.csv; - is the standard output")
         ->type_name("FILE.csv");
-    add_style(*sub, command->style);
-    sub->add_option(
-           "--pulses", command->pulses,
+    add_style(sub, style);
+    sub.add_option(
+           "--pulses", pulses,
            "Write the rising edges of all pulse channels to this CSV file; - is the standard "
            "output")
         ->type_name("FILE");
-    sub->add_option("--force", command->forces,
-                    "Keep a signal at a value, whatever the program writes: slave.ratio=2@1s..2s")
+    sub.add_option("--force", forces,
+                   "Keep a signal at a value, whatever the program writes: slave.ratio=2@1s..2s")
         ->type_name("SIGNAL=VALUE@FROM..UNTIL")
         ->take_all()
         ->expected(1, -1)
         ->trigger_on_parse(false);
-    sub->add_option("--retain-file", command->retain,
-                    "Begin with the retained values of this file, and keep them there at the end")
+    sub.add_option("--retain-file", retain,
+                   "Begin with the retained values of this file, and keep them there at the end")
         ->type_name("FILE");
+    add_strict(sub, strict);
+    common.add_to(sub);
+}
+
+void add_run(CLI::App& app, Exit& result) {
+    auto command = std::make_shared<RunCommand>();
+    CLI::App* sub = app.add_subcommand("run", "Run a program and judge its expectations");
+    command->add_to(*sub);
+    sub->add_option("--recording", command->recording,
+                    "Play back what 'lineshaft serve' recorded, and end where that ends")
+        ->type_name("FILE.yaml");
     const std::map<std::string, Restart> restarts{
         {"cold", Restart::cold}, {"warm", Restart::warm}, {"hot", Restart::hot}};
     sub->add_option("--restart", command->restart,
@@ -248,8 +261,6 @@ void add_run(CLI::App& app, Exit& result) {
     sub->add_option("--checkpoint-every", command->checkpoint_every,
                     "Write a checkpoint each time so much virtual time has passed, such as 10s")
         ->type_name("TIME");
-    add_strict(*sub, command->strict);
-    command->common.add_to(*sub);
     sub->callback([command, &result] { result = execute(*command); });
 }
 

@@ -58,19 +58,26 @@ std::string Drawing::text(const Wire& wire) const {
                        source(wire), value(wire), previous ? ")" : "");
 }
 
+/// Below a second in ms, as tasks are thought of.
+std::string interval(std::int64_t time) {
+    constexpr std::int64_t second = 1'000'000'000;
+    if (time >= second) return format_time(time);
+    return fmt::format("{} ms", static_cast<double>(time) / 1e6);
+}
+
 std::string timing(const Drawing& drawing, const Task& task) {
     std::string text;
     if (task.on_event) {
         const auto plan = std::ranges::find(drawing.program.tasks, task.name, &TaskPlan::name);
         for (const Node& signal : plan->on) text += (text.empty() ? "on " : ", ") + signal.text;
     } else {
-        text = "every " + format_time(task.every);
+        text = "every " + interval(task.every);
     }
-    if (task.offset != 0) text += ", offset " + format_time(task.offset);
-    if (task.jitter != 0) text += ", jitter " + format_time(task.jitter);
+    if (task.offset != 0) text += ", offset " + interval(task.offset);
+    if (task.jitter != 0) text += ", jitter " + interval(task.jitter);
     text += fmt::format(", priority {}", task.priority);
-    if (task.cost != 0) text += ", cost " + format_time(task.cost);
-    if (task.cost_jitter != 0) text += ", cost jitter " + format_time(task.cost_jitter);
+    if (task.cost != 0) text += ", cost " + interval(task.cost);
+    if (task.cost_jitter != 0) text += ", cost jitter " + interval(task.cost_jitter);
     return text;
 }
 

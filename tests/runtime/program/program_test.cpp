@@ -96,8 +96,8 @@ expect:
     CHECK(program.traces[0].every == 10);
     REQUIRE(program.expectations.size() == 3);
     CHECK(program.expectations[0].within->text == "1");
-    CHECK(program.expectations[1].at == 5'000'000);
-    CHECK(program.expectations[2].always);
+    CHECK(program.expectations[1].from == 5'000'000);
+    CHECK(program.expectations[2].when == ExpectPlan::When::always);
 }
 
 TEST_CASE("program: settings replace parameters") {

@@ -229,8 +229,8 @@ TEST_CASE("link: bounds of expectations") {
     CHECK(as_real(e[0].low) == 18);
     CHECK(as_real(e[0].high) == 22);
     CHECK(as_real(e[1].low) == 19);
-    CHECK(e[1].at == 1'000'000);
-    CHECK(e[2].always);
+    CHECK(e[1].from == 1'000'000);
+    CHECK(e[2].when == Expectation::When::always);
     CHECK(as_real(e[2].low) == 1);
     CHECK(as_real(e[2].high) == 3);
     CHECK(as_real(e[3].low) == 1);

@@ -1,5 +1,6 @@
 #include "runtime/scan/judge.hpp"
 
+#include <array>
 #include <limits>
 #include <random>
 
@@ -19,20 +20,19 @@ struct Counted {
     Expectation expect(double low, double high) {
         return {.text = "the count",
                 .signal = bench.output("a"),
-                .always = false,
-                .at = {},
                 .low = low,
                 .high = high,
                 .wanted = "something else"};
     }
     Expectation at(std::int64_t time, double value) {
         Expectation e = expect(value, value);
-        e.at = time * ms;
+        e.when = Expectation::When::at;
+        e.from = time * ms;
         return e;
     }
     Expectation always(double low, double high) {
         Expectation e = expect(low, high);
-        e.always = true;
+        e.when = Expectation::When::always;
         return e;
     }
     Judge judged(std::vector<Expectation> expectations) {
@@ -60,7 +60,7 @@ TEST_CASE("integers are judged as integers, whatever their size") {
         const std::int64_t value = any_integer(random);
         const std::int64_t low = random() % 2 == 0 ? value + (value < 0) : any_integer(random);
         const std::int64_t high = random() % 2 == 0 ? value - (value > 0) : any_integer(random);
-        Expectation e{.text = {}, .signal = {}, .at = {}, .low = low, .high = high, .wanted = {}};
+        Expectation e{.text = {}, .signal = {}, .low = low, .high = high, .wanted = {}};
         e.signal.type = Type::integer;
         e.signal.slot = reinterpret_cast<const std::byte*>(&value);
         Judge judge({e});
@@ -86,7 +86,7 @@ TEST_CASE("an expectation at an instant sees what was published at it, and until
 TEST_CASE("an expectation between two scans sees the value before the second") {
     Counted c;
     Expectation just_before = c.at(0, 2);
-    just_before.at = 4 * ms - 1;
+    just_before.from = 4 * ms - 1;
     CHECK(c.judged({just_before}).ok());
 }
 
@@ -131,8 +131,6 @@ TEST_CASE("a value that is no number fulfils nothing") {
                              .unit = {},
                              .names = {},
                              .slot = reinterpret_cast<std::byte*>(&value)},
-                  .always = false,
-                  .at = {},
                   .low = -infinite,
                   .high = infinite,
                   .wanted = "a number"};
@@ -149,8 +147,7 @@ TEST_CASE("a signal from outside is judged after each instant") {
                              .unit = {},
                              .names = {},
                              .slot = reinterpret_cast<std::byte*>(&input)},
-                  .always = true,
-                  .at = {},
+                  .when = Expectation::When::always,
                   .low = 0,
                   .high = 0,
                   .wanted = "false"};
@@ -164,14 +161,160 @@ TEST_CASE("a signal from outside is judged after each instant") {
 
 TEST_CASE("a task that never ran is told as such, not as a scan before the first") {
     Bench bench({{.name = "a", .every = 2, .offset = 50}});
-    Judge judge({{.text = "the count",
-                  .signal = bench.output("a"),
-                  .always = false,
-                  .at = {},
-                  .low = 1,
-                  .high = 1,
-                  .wanted = "1"}});
+    Judge judge(
+        {{.text = "the count", .signal = bench.output("a"), .low = 1, .high = 1, .wanted = "1"}});
     judge.finish(bench.run({&judge}));
     CHECK(judge.verdicts()[0].deviation ==
           "a.output is 0 at 0.01 s, before the first scan; expected 1");
+}
+
+namespace {
+
+/// What stood in three booleans at each look: those of task 0 and 1 after their scans, the third,
+/// from outside, once an instant.
+struct Seen {
+    std::int64_t time = 0;
+    int task = -1;
+    bool value = false;
+};
+
+/// A run of random instants, in which tasks scan in any order and as often as they like, and the
+/// judge of it.
+struct RandomRun {
+    explicit RandomRun(std::uint64_t seed) : random(seed) {}
+
+    Expectation expect(Expectation::When when, int signal, int cause) {
+        Expectation e{.text = "e", .signal = named(signal), .when = when, .wanted = "w"};
+        if (when == Expectation::When::answered) e.cause = named(cause);
+        if (when == Expectation::When::answered) e.until = below(8);
+        if (when == Expectation::When::always && below(2) == 0) {
+            e.from = below(30);
+            e.until = e.from + below(10);
+        }
+        if (when == Expectation::When::at) e.from = below(50);
+        e.low = when == Expectation::When::counted ? below(4) : below(2);
+        e.high = as_real(e.low) + static_cast<double>(below(2));
+        return e;
+    }
+
+    void run(Judge& judge) {
+        judge.begin();
+        begin = levels;
+        std::int64_t time = 0;
+        for (int instants = 1 + static_cast<int>(below(12)); instants > 0; --instants) {
+            for (auto n = below(4); n > 0; --n) scan(judge, time);
+            if (below(3) == 0) levels[2] = !levels[2];
+            seen.push_back({time, -1, levels[2]});
+            const std::int64_t next = time + 1 + below(8);
+            judge.settled(time, next);
+            ends.push_back(next);
+            time = next;
+        }
+        RunResult result;
+        result.time = ends.back() - 1;
+        result.scans = {scans[0], scans[1]};
+        judge.finish(result);
+    }
+
+    std::int64_t below(std::uint64_t limit) { return static_cast<std::int64_t>(random() % limit); }
+
+    std::array<bool, 3> levels{}, begin{};
+    std::vector<Seen> seen;
+    std::vector<std::int64_t> ends;  ///< of the instants: when the next one begins
+
+  private:
+    Signal named(int i) {
+        const auto n = static_cast<std::size_t>(i);
+        return {.name = "s",
+                .type = Type::boolean,
+                .unit = {},
+                .names = {},
+                .slot = reinterpret_cast<const std::byte*>(&levels[n]),
+                .task = i == 2 ? -1 : i};
+    }
+    void scan(Judge& judge, std::int64_t time) {
+        const auto task = static_cast<std::size_t>(below(2));
+        if (below(2) == 0) levels[task] = !levels[task];
+        seen.push_back({time, static_cast<int>(task), levels[task]});
+        judge.scanned(static_cast<int>(task), {.time = time, .index = scans[task]++});
+    }
+
+    std::mt19937_64 random;
+    std::array<std::int64_t, 2> scans{};
+};
+
+/// Judges by looking at all that was seen, again and again.
+struct SlowJudge {
+    const RandomRun& run;
+
+    static std::size_t of(const Signal& s) {
+        return s.task < 0 ? 2 : static_cast<std::size_t>(s.task);
+    }
+    std::int64_t end() const { return run.ends.back() - 1; }
+    /// After all that was seen until `time`, included.
+    bool level(const Signal& s, std::int64_t time) const {
+        bool value = run.begin[of(s)];
+        for (const Seen& look : run.seen)
+            if (look.task == s.task && look.time <= time) value = look.value;
+        return value;
+    }
+    /// Instants at which it rises, each as often as it does.
+    std::vector<std::int64_t> edges(const Signal& s) const {
+        std::vector<std::int64_t> times;
+        bool last = run.begin[of(s)];
+        for (const Seen& look : run.seen) {
+            if (look.task != s.task) continue;
+            if (look.value && !last) times.push_back(look.time);
+            last = look.value;
+        }
+        return times;
+    }
+    bool within(const Expectation& e, double value) const {
+        return value >= as_real(e.low) && value <= as_real(e.high);
+    }
+    bool answered(const Expectation& e, std::int64_t from) const {
+        const std::int64_t until = from + e.until;
+        if (level(e.signal, from) || until > end()) return true;
+        return std::ranges::any_of(run.seen, [&](const Seen& look) {
+            return look.task == e.signal.task && look.value && look.time >= from &&
+                   look.time <= until;
+        });
+    }
+    bool operator()(const Expectation& e) const {
+        using enum Expectation::When;
+        if (e.when == at_end) return within(e, level(e.signal, end()));
+        if (e.when == at) return e.from <= end() && within(e, level(e.signal, e.from));
+        if (e.when == counted) return within(e, static_cast<double>(edges(e.signal).size()));
+        if (e.when == answered) {
+            const auto times = edges(*e.cause);
+            return !times.empty() &&
+                   std::ranges::all_of(times, [&](auto t) { return this->answered(e, t); });
+        }
+        if (e.from > end()) return false;
+        const bool bounded = e.until != never;
+        if (bounded && !within(e, level(e.signal, e.from))) return false;
+        return std::ranges::all_of(run.seen, [&](const Seen& look) {
+            const bool meant =
+                look.task == e.signal.task && look.time >= e.from && look.time <= e.until;
+            return !meant || within(e, look.value) != (e.when == Expectation::When::excluded);
+        });
+    }
+};
+
+}  // namespace
+
+TEST_CASE("each way to expect is judged as by one who looks at all of the run") {
+    for (std::uint64_t seed = 1; seed <= 20'000; ++seed) {
+        RandomRun run(seed);
+        const auto when = static_cast<Expectation::When>(run.below(6));
+        const int signal = static_cast<int>(run.below(3));
+        const int cause = static_cast<int>(run.below(3));
+        const Expectation e = run.expect(when, signal, cause);
+        Judge judge({e});
+        run.run(judge);
+        INFO("seed " << seed << ", kind " << static_cast<int>(when) << ": "
+                     << judge.verdicts()[0].deviation);
+        REQUIRE(judge.ok() == SlowJudge{run}(e));
+        REQUIRE(judge.ok() == judge.verdicts()[0].deviation.empty());
+    }
 }

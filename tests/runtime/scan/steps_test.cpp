@@ -105,6 +105,50 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("what is forced and released between two steps is so in a run that knows it before") {
+    for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+        INFO("seed " << seed);
+        Rig live(seed), again(seed);
+        const auto force = [](Rig& rig, std::int64_t value) {
+            auto& block = rig.bench.live("a");
+            auto* const live_place = reinterpret_cast<std::byte*>(&block.output);
+            auto* const published = const_cast<std::byte*>(rig.bench.output("a").slot);
+            return Force{.live = live_place,
+                         .published = published == live_place ? nullptr : published,
+                         .block = reinterpret_cast<std::byte*>(&block),
+                         .is_output = true,
+                         .task = rig.bench.index("a"),
+                         .type = Type::integer,
+                         .value = value,
+                         .name = "a.output",
+                         .text = "force a.output"};
+        };
+        for (Rig* rig : {&live, &again}) {
+            Force planned = force(*rig, -1);
+            planned.from = 60 * ms;
+            planned.until = 120 * ms;
+            rig->bench.machine.forces = {planned};
+        }
+        Executive executive(live.bench.machine);
+        executive.add(live.watch);
+        executive.begin();
+        std::int64_t time = 0, value = 100;
+        while (executive.run_until(time)) {
+            if (live.random() % 3 == 0) {
+                Force forced = force(again, ++value);
+                forced.from = executive.force(force(live, value));
+                again.bench.machine.impose(forced);
+            } else if (live.random() % 2 == 0) {
+                const std::int64_t at = executive.release(force(live, 0).live);
+                again.bench.machine.lift(force(again, 0).live, at);
+            }
+            time += static_cast<std::int64_t>(live.random() % (9 * ms));
+        }
+        const RunResult wanted = executive.finish();
+        check_equal(live, wanted, again, again.bench.run({&again.watch}));
+    }
+}
+
 TEST_CASE("an observer may come and go between steps") {
     Rig rig(1);
     Executive executive(rig.bench.machine);

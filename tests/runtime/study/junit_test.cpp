@@ -6,13 +6,17 @@ using namespace lineshaft;
 
 TEST_CASE("a suite is counted, and passed cases are empty elements") {
     CHECK(junit_xml({{.name = "a.yaml", .wall_seconds = 0.25},
-                     {.name = "b.yaml", .wall_seconds = 1.5, .failure = "x is 1"},
-                     {.name = "c.yaml", .failure = "no such file", .error = true}}) ==
+                     {.name = "b.yaml",
+                      .wall_seconds = 1.5,
+                      .failures = {"x is 1", "y is 2"},
+                      .repeat = "lineshaft run b.yaml"},
+                     {.name = "c.yaml", .failures = {"no such file"}, .error = true}}) ==
           "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
           "<testsuite name=\"lineshaft\" tests=\"3\" failures=\"1\" errors=\"1\" time=\"1.750\">\n"
           "  <testcase name=\"a.yaml\" time=\"0.250\"/>\n"
           "  <testcase name=\"b.yaml\" time=\"1.500\">\n"
-          "    <failure message=\"x is 1\">x is 1</failure>\n"
+          "    <failure message=\"x is 1\">x is 1\nrepeat it by: lineshaft run b.yaml</failure>\n"
+          "    <failure message=\"y is 2\">y is 2\nrepeat it by: lineshaft run b.yaml</failure>\n"
           "  </testcase>\n"
           "  <testcase name=\"c.yaml\" time=\"0.000\">\n"
           "    <error message=\"no such file\">no such file</error>\n"
@@ -26,7 +30,7 @@ TEST_CASE("a suite without cases is still a suite") {
 
 TEST_CASE("what XML reserves is escaped, what it forbids is replaced") {
     const std::string xml =
-        junit_xml({{.name = "<a> & \"b\"", .failure = "first <line>\nsecond\tline \x01\x1b"}});
+        junit_xml({{.name = "<a> & \"b\"", .failures = {"first <line>\nsecond\tline \x01\x1b"}}});
     CHECK_THAT(xml, Catch::Contains("name=\"&lt;a&gt; &amp; &quot;b&quot;\""));
     CHECK_THAT(xml, Catch::Contains("message=\"first &lt;line&gt;\">"));
     CHECK_THAT(xml, Catch::Contains("first &lt;line&gt;\nsecond\tline ?\?</failure>"));

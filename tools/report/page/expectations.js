@@ -69,6 +69,7 @@ export function drawExpectations(u, curves, lift) {
   ctx.clip();
   for (const curve of curves)
     for (const e of curve.run.expectations.filter((each) => each.signal === curve.signal.name)) {
+      if (e.low === undefined && e.high === undefined) continue;
       const place = (value) =>
         value === undefined ? undefined : u.valToPos(lift(curve, value), "y", true);
       ctx.strokeStyle = colour(e.ok ? "good" : "bad");

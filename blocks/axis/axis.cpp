@@ -1,0 +1,203 @@
+#include "blocks/axis/axis.hpp"
+
+#include <cmath>
+
+#include "blocks/inputs.hpp"
+
+namespace lineshaft {
+
+std::span<const Field> Axis::fields() {
+    using A = Axis;
+    static const Field table[] = {
+        parameter("unit", &A::unit, "", "unit of the axis").one_of(axis_unit_names),
+        parameter("modulo", &A::modulo, "", "the position is shown in 0..`period`"),
+        parameter("period", &A::period, "{unit}", "of a modulo axis").at_least(0),
+        parameter("default_velocity", &A::default_velocity, "{unit}/s",
+                  "of commands with a velocity below 0")
+            .above(0),
+        parameter("default_acceleration", &A::default_acceleration, "{unit}/s^2",
+                  "of commands with an acceleration below 0")
+            .above(0),
+        parameter("default_deceleration", &A::default_deceleration, "{unit}/s^2",
+                  "of commands with a deceleration below 0, and of the axis when it must stop")
+            .above(0),
+        parameter("default_jerk", &A::default_jerk, "{unit}/s^3",
+                  "of commands with a jerk below 0; 0: trapezoids")
+            .at_least(0),
+        parameter("software_limits", &A::software_limits, "",
+                  "the position stays in `lowest_position`..`highest_position`"),
+        parameter("lowest_position", &A::lowest_position, "{unit}", "with `software_limits`"),
+        parameter("highest_position", &A::highest_position, "{unit}", "with `software_limits`"),
+        parameter("start_position", &A::start_position, "{unit}", "position at the first scan"),
+        parameter("has_drive", &A::has_drive, "",
+                  "`actual_position` comes from a drive; else it is the set-point"),
+        input("actual_position", &A::actual_position, "{unit}", "with `has_drive`"),
+        output("position", &A::position, "{unit}", "set-point"),
+        output("velocity", &A::velocity, "{unit}/s", "of the set-point"),
+        output("acceleration", &A::acceleration, "{unit}/s^2", "of the set-point"),
+        output("jerk", &A::jerk, "{unit}/s^3", "of the set-point"),
+        output("state", &A::state, "", "of PLCopen").one_of(axis_state_names),
+        output("error", &A::error, "", "the axis has stopped; MC_Reset ends it"),
+        output("error_id", &A::error_id, "", "why").one_of(motion_error_names),
+    };
+    return table;
+}
+
+std::optional<Misfit> Axis::misfit(const IsConstant&) const {
+    if (modulo && !(period > 0))
+        return Misfit{"modulo", "a modulo axis needs its 'period', as 360 deg"};
+    if (software_limits && !(lowest_position < highest_position))
+        return Misfit{"software_limits", "'lowest_position' is not below 'highest_position'"};
+    if (software_limits && modulo)
+        return Misfit{"software_limits", "a modulo axis turns without end: it has no limits"};
+    return {};
+}
+
+double within_period(double position, double period) {
+    if (!(period > 0)) return position;
+    const double rest = std::fmod(position, period);
+    return rest < 0 ? (rest + period < period ? rest + period : 0) : rest;
+}
+
+void Axis::scan(const Scan& now, const Context& context) {
+    if (started == 0) start(now);
+    task = context.task;
+    scan_index = now.index;
+    scan_time = now.time;
+    scan_interval = now.interval;
+    advance(context, now.time);
+    if (has_drive) watch_drive(context, now);
+    if (inbox.first != nowhere) {
+        take_up(context, now);
+        advance(context, now.time);
+    }
+    if (software_limits) keep_limits(context, now);
+    publish();
+}
+
+void Axis::start(const Scan& now) {
+    started = 1;
+    goal = start_position;
+    hold({.position = start_position}, {now.time});
+    base.position = start_position;
+}
+
+void Axis::shift(std::int64_t by) {
+    for (Moment* moment : {&velocity_motion.start, &point_motion.start, &added_motion.start,
+                           &sync.start, &sync.shifting.start})
+        moment->time += by;
+}
+
+void Axis::watch_drive(const Context& context, const Scan& now) {
+    if (!std::isfinite(actual_position)) return fail(context, {now.time}, MotionError::not_finite);
+    if (now.index > 0) actual_velocity = (actual_position - last_actual) / seconds(now.interval);
+    last_actual = actual_position;
+}
+
+MotionState Axis::actual() const {
+    if (!has_drive) return {position, velocity, acceleration, jerk};
+    return {modulo ? within_period(actual_position, period) : actual_position, actual_velocity};
+}
+
+MotionState Axis::total() const {
+    return {base.position + offset + extra.position, base.velocity + extra.velocity,
+            base.acceleration + extra.acceleration, base.jerk + extra.jerk};
+}
+
+void Axis::advance(const Context& context, std::int64_t now) {
+    while (has_ended(now)) end_motion(context);
+    if (added.exists() && added_motion.has_ended(now)) end_added(context);
+    look(context, now);
+}
+
+bool Axis::has_ended(std::int64_t now) const {
+    if (doing == Doing::moving_to_point) return point_motion.has_ended(now);
+    return doing == Doing::following_velocity && velocity_motion.has_ended(now);
+}
+
+void Axis::look(const Context& context, std::int64_t now) {
+    if (doing == Doing::following_axes)
+        follow(context);
+    else
+        base = doing == Doing::moving_to_point ? point_motion.at(now) : velocity_motion.at(now);
+    if (added.exists()) extra = added_motion.at(now);
+}
+
+/// What comes next begins at that very moment.
+void Axis::end_motion(const Context& context) {
+    const bool to_point = doing == Doing::moving_to_point;
+    const Moment at = to_point ? point_motion.end() : velocity_motion.end();
+    if (leg.exists != 0) return end_leg(at);
+    const bool pauses = paused != 0;
+    hold(to_point ? point_motion.plan.end : velocity_motion.end_state(), at);
+    if (added.exists()) extra = added_motion.at(at.time);
+    paused = pauses ? 1 : 0;
+    if (pauses) return;
+    if (state == AxisState::error_stop || state == AxisState::disabled)
+        return come_to_rest(context);
+    if (state == AxisState::stopping) return end_stop(context);
+    if (!active.exists()) return settle();
+    if (state == AxisState::homing && active.request.option == homing_on_signal) return;
+    if (state == AxisState::continuous_motion && active.request.command != Command::gear_out &&
+        active.request.command != Command::cam_out)
+        tell(context, active, Progress::reached);
+    else
+        end(context, active, Progress::done);
+    if (queue.first != nowhere) return begin_next(context, at);
+    settle();
+}
+
+/// MC_Stop is done, and goes on to hold the axis.
+void Axis::end_stop(const Context& context) {
+    tell(context, active, Progress::done);
+    active.told_end = 1;
+    if (active.request.option == 0) active = {};
+    settle();
+}
+
+void Axis::end_leg(const Moment& at) {
+    const Leg next = leg;
+    base = point_motion.plan.end;
+    point_motion.begin(base, next.goal, next.velocity, next.dynamics, at);
+    leg.exists = 0;
+}
+
+void Axis::end_added(const Context& context) {
+    offset += added_motion.plan.end.position;
+    extra = {};
+    end(context, added, Progress::done);
+    settle();
+}
+
+/// A motion that does not know where it ends: it stops with the defaults, in time.
+void Axis::keep_limits(const Context& context, const Scan& now) {
+    if (doing == Doing::moving_to_point && !added.exists()) return;
+    if (state == AxisState::error_stop || state == AxisState::standstill) return;
+    const MotionState next = total().after(seconds(now.interval));
+    const double stop = stopping_position(next, defaults());
+    const bool beyond = next.velocity > 0 ? stop > highest_position : stop < lowest_position;
+    if (beyond && next.velocity != 0) fail(context, {now.time}, MotionError::software_limit);
+}
+
+/// Standing, with nothing to do.
+void Axis::settle() {
+    if (active.exists() || added.exists() || doing != Doing::holding) return;
+    if (velocity_motion.ramp.end.velocity != 0) return;
+    if (state != AxisState::disabled && state != AxisState::error_stop)
+        state = AxisState::standstill;
+}
+
+void Axis::publish() {
+    const MotionState now = total();
+    if (!all_finite(now.position, now.velocity, now.acceleration, now.jerk)) {
+        error = true;
+        error_id = MotionError::not_finite;
+        return;
+    }
+    position = modulo ? within_period(now.position, period) : now.position;
+    velocity = now.velocity;
+    acceleration = now.acceleration;
+    jerk = now.jerk;
+}
+
+}  // namespace lineshaft

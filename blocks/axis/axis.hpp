@@ -1,0 +1,220 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "blocks/axis/axis_error.hpp"
+#include "blocks/axis/axis_motion.hpp"
+#include "blocks/axis/axis_states.hpp"
+#include "blocks/axis/job.hpp"
+#include "blocks/axis/sync_motion.hpp"
+#include "runtime/model/catalog.hpp"
+#include "runtime/model/field.hpp"
+#include "runtime/model/scan.hpp"
+
+namespace lineshaft {
+
+/// A technology object: it owns its motion, and command blocks of any task tell it what to do
+/// (PLCopen Part 1 v2.0; blocks/motion/). See README.md for the way of a command.
+///
+/// Each motion begins in the state in which the one before ends, at that moment, which may lie
+/// between two scans, and is a closed form from there on: positions do not drift. The position
+/// of a modulo axis is shown in 0..period.
+struct Axis {
+    // Parameters.
+    AxisUnit unit = AxisUnit::mm;
+    bool modulo = false, software_limits = false, has_drive = false;
+    double period = 0, lowest_position = 0, highest_position = 0;
+    double default_velocity = 100, default_acceleration = 1000, default_deceleration = 1000,
+           default_jerk = 5e4;
+    double start_position = 0;
+
+    double actual_position = 0;
+
+    double position = 0, velocity = 0, acceleration = 0, jerk = 0;
+    AxisState state = AxisState::standstill;
+    bool error = false;
+    MotionError error_id = MotionError::none;
+
+    /// A job at work: a copy of what its command asked, who reads how far it is.
+    struct Running {
+        std::int64_t place = nowhere;  ///< of the Job, nowhere: none
+        std::int64_t ticket = 0;
+        Request request;
+        std::int64_t told_end = 0;  ///< its end has been told; it still holds the axis (MC_Stop)
+
+        bool exists() const { return place != nowhere; }
+    };
+    struct JobList {
+        std::int64_t first = nowhere, last = nowhere;
+    };
+    /// What the set-point does. The motions of gears and cams join here.
+    enum class Doing : std::int64_t {
+        holding,
+        moving_to_point,
+        following_velocity,
+        following_axes
+    };
+
+    /// The way that is left behind the end of `point_motion`, of the same job.
+    struct Leg {
+        std::int64_t exists = 0;
+        double goal = 0, velocity = 0;
+        Dynamics dynamics;
+    };
+
+    JobList inbox, queue;
+    Running active;  ///< on the axis' motion
+    Running added;   ///< MC_MoveSuperimposed, on top of it
+    Doing doing = Doing::holding;
+    Running phased;  ///< MC_Phasing, on the master as the axis sees it
+    SyncMotion sync;
+    VelocityMotion velocity_motion;
+    PointMotion point_motion;
+    Leg leg;
+    PointMotion added_motion;  ///< from 0 on
+    MotionState base;          ///< of the motion without what is added
+    MotionState extra;         ///< of added_motion
+    double offset = 0;         ///< what the position is further than both
+    double relocated = 0;      ///< by all MC_SetPosition: followers do not see it
+    double goal = 0;           ///< of `active`, as a position; where it ended
+    double origin = 0;         ///< from where the distance of `active` counts
+    double velocity_factor = 1, acceleration_factor = 1, jerk_factor = 1;  ///< MC_SetOverride
+    std::int64_t paused = 0;                      ///< on the way to `goal`, by an override of 0
+    std::int64_t powered = 1;                     ///< what MC_Power wants
+    double actual_velocity = 0, last_actual = 0;  ///< of the drive
+    std::int64_t renamed = 0;                     ///< times that the place got another position
+    std::int64_t trigger_aborts = 0;
+    std::int64_t started = 0;
+    std::int64_t task = 0, scan_index = 0;  ///< of the scan under way, to stamp what is told
+    std::int64_t scan_time = 0, scan_interval = 0;  ///< [ns]
+
+    static constexpr std::string_view type = "axis";
+    static constexpr std::string_view doc = "axis that takes commands: see the MC_ blocks";
+    static constexpr std::string_view handle = "AXIS_REF";
+    static std::span<const Field> fields();
+    std::optional<Misfit> misfit(const IsConstant& is_constant) const;
+    void scan(const Scan& now, const Context& context);
+    void shift(std::int64_t by);
+
+    /// Of a command block: the job, or its changed request, is put into the inbox. Before that the
+    /// command writes the request and, at each start, the next ticket.
+    void send(const Context& context, const Scan& now, Job& job);
+
+    Dynamics defaults() const;
+    /// Of a request: with the defaults where it is below 0, and the override.
+    Dynamics dynamics_of(const Request& request) const;
+
+    /// A parameter by PLCopen's number, in the unit of the axis; empty for one that it has not.
+    std::optional<double> read_parameter(std::int64_t number) const;
+
+    /// Of the drive where there is one, else of the set-point: position and velocity.
+    MotionState actual() const;
+    MotionState total() const;  ///< as it is shown, but for the modulo
+
+  private:
+    /// Where a motion begins, and what still comes on top of it.
+    struct Start {
+        MotionState state;
+        double origin = 0;   ///< of distances
+        double to_come = 0;  ///< of `added`, which goes on
+    };
+    Start start_of(const Request& request, bool keeps_added) const;
+
+    // axis.cpp: time passes.
+    void start(const Scan& now);
+    void advance(const Context& context, std::int64_t now);
+    bool has_ended(std::int64_t now) const;
+    void look(const Context& context, std::int64_t now);
+    void end_motion(const Context& context);
+    void end_stop(const Context& context);
+    void end_leg(const Moment& at);
+    void end_added(const Context& context);
+    void watch_drive(const Context& context, const Scan& now);
+    void keep_limits(const Context& context, const Scan& now);
+    void publish();
+
+    // axis_sync.cpp: other axes are followed.
+    MotionState led_by(const Context& context, const MasterLink& link) const;
+    MotionState master(const Context& context) const;
+    bool follows(const Context& context, const Axis& leader) const;
+    MotionError check_masters(const Context& context, const Coupling& c) const;
+    MotionError plan_sync(const Context& context, const Request& request, const Moment& at,
+                          const Start& from);
+    MotionError get_onto_guide(const Context& context, const Moment& at, const MotionState& from);
+    MotionError join_law(const Context& context, const Moment& at, const MotionState& from);
+    MotionError place_cam(const Context& context, const MotionState& leader,
+                          const MotionState& from);
+    Cam cam(const Context& context) const;
+    void begin_phasing(const Context& context, Job& job);
+    void look_at_shift(const Context& context);
+    void follow(const Context& context);
+    void follow_guide(const Context& context);
+    void follow_law(const Context& context);
+    void foresee(const Context& context, const MotionState& leader);
+    void count_periods(const Context& context, const Cam& table, const MotionState& leader);
+    void reach(const Context& context);
+
+    // axis_jobs.cpp: commands are taken up, told how far they are, and ended.
+    void take_up(const Context& context, const Scan& now);
+    JobList due_jobs(const Context& context);
+    void take(const Context& context, const Moment& at, Job& job);
+    void change(const Context& context, const Moment& at, Running& running, const Job& job);
+    void wait(const Context& context, const Moment& at, Job& job);
+    void begin(const Context& context, const Moment& at, Job& job);
+    void begin_added(const Context& context, const Moment& at, Job& job);
+    void begin_next(const Context& context, const Moment& at);
+    void abort_all(const Context& context, MotionError why = MotionError::none);
+    void end(const Context& context, Running& running, Progress how,
+             MotionError why = MotionError::none);
+    void tell(const Context& context, const Running& running, Progress how,
+              MotionError why = MotionError::none) const;
+    void tell(Job& job, Progress how, MotionError why = MotionError::none) const;
+    Job& front(const Context& context) const;
+    void link(const Context& context, Job& job, JobList& list, JobPlace in) const;
+    void unlink(const Context& context, Job& job, JobList& list) const;
+    void settle();
+    MotionError refusal() const;
+
+    // axis_commands.cpp: what each command does.
+    MotionError administer(const Context& context, const Moment& at, const Request& request);
+    MotionError set_position(const Request& request);
+    MotionError set_override(const Context& context, const Moment& at, const Request& request);
+    MotionError write_parameter(std::int64_t number, double value);
+    double* limit_of(std::int64_t number);
+    void switch_power(const Context& context, const Moment& at, bool on);
+    void come_to_rest(const Context& context);
+    void leave_error();
+    void fail(const Context& context, const Moment& at, MotionError why);
+    void brake(const Moment& at);
+    void hold(const MotionState& as, const Moment& at);
+    MotionError plan(const Request& request, const Moment& at, const Start& from);
+    MotionError plan_velocity(const Request& request, const Moment& at, const Start& from);
+    MotionError plan_point(const Request& request, double to, const Moment& at, const Start& from);
+    MotionError plan_added(const Request& request, const Moment& at);
+    MotionError pause(double to, const Dynamics& d, const Moment& at, const Start& from);
+    MotionError plan_homing(const Request& request, const Moment& at, const Start& from);
+    void replan(const Moment& at);
+    double target_of(const Request& request, const Start& from) const;
+    double modulo_target(const Request& request, const Start& from) const;
+
+    // axis_blending.cpp: from one move into the next.
+    struct Junction;
+    void blend(const Context& context, const Moment& at);
+    bool plan_to_junction(const Junction& junction, double end_velocity, PointMotion& motion,
+                          Leg& rest, const Moment& at) const;
+    bool goes_on(const Request& next, const Junction& junction, double velocity_there) const;
+    double direction_of(const Request& next) const;
+};
+
+/// Whether the axis does it at once, whatever it is doing.
+bool is_administrative(Command command);
+
+/// Whether the axis follows others by it; whether it shifts the master that the axis follows.
+bool is_synchronous(Command command);
+bool is_phasing(Command command);
+
+/// From 0 up to `period`.
+double within_period(double position, double period);
+
+}  // namespace lineshaft

@@ -1,0 +1,309 @@
+#include <algorithm>
+#include <cmath>
+
+#include "blocks/axis/axis.hpp"
+#include "blocks/inputs.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+MotionError error_of(PlanResult result) {
+    if (result == PlanResult::ok) return MotionError::none;
+    return result == PlanResult::not_finite ? MotionError::not_finite
+                                            : MotionError::limit_not_positive;
+}
+
+bool is_continuous(Command command) {
+    return command == Command::move_continuous_absolute ||
+           command == Command::move_continuous_relative;
+}
+
+double sign_of(double x) {
+    return x < 0 ? -1 : 1;
+}
+
+}  // namespace
+
+bool is_administrative(Command command) {
+    using enum Command;
+    return command == power_on || command == power_off || command == reset ||
+           command == set_position || command == set_override || command == write_parameter ||
+           command == abort_trigger;
+}
+
+Dynamics Axis::defaults() const {
+    return {default_velocity, default_acceleration, default_deceleration,
+            effective_jerk(default_jerk, default_acceleration, default_deceleration)};
+}
+
+Dynamics Axis::dynamics_of(const Request& request) const {
+    const auto chosen = [](double asked, double otherwise) {
+        return asked < 0 ? otherwise : asked;
+    };
+    Dynamics d;
+    d.velocity = chosen(request.velocity, default_velocity) * velocity_factor;
+    d.acceleration = chosen(request.acceleration, default_acceleration) * acceleration_factor;
+    d.deceleration = chosen(request.deceleration, default_deceleration) * acceleration_factor;
+    d.jerk = effective_jerk(chosen(request.jerk, default_jerk) * jerk_factor, d.acceleration,
+                            d.deceleration);
+    return d;
+}
+
+// Administrative commands.
+
+MotionError Axis::administer(const Context& context, const Moment& at, const Request& request) {
+    switch (request.command) {
+        case Command::power_on:
+        case Command::power_off:
+            switch_power(context, at, request.command == Command::power_on);
+            return MotionError::none;
+        case Command::reset:
+            if (state == AxisState::error_stop) leave_error();
+            return MotionError::none;
+        case Command::set_position:
+            return set_position(request);
+        case Command::set_override:
+            return set_override(context, at, request);
+        case Command::abort_trigger:
+            ++trigger_aborts;
+            return MotionError::none;
+        default:
+            return write_parameter(request.option, request.position);
+    }
+}
+
+void Axis::switch_power(const Context& context, const Moment& at, bool on) {
+    powered = on ? 1 : 0;
+    if (state == AxisState::error_stop) return;
+    if (!on) {
+        brake(at);
+        abort_all(context);
+        state = AxisState::disabled;
+    } else if (doing == Doing::holding) {
+        come_to_rest(context);
+    }
+}
+
+/// Without power, or with an error: once it stands it may be wanted again.
+void Axis::come_to_rest(const Context& context) {
+    if (state == AxisState::disabled && powered != 0) state = AxisState::standstill;
+    if (state != AxisState::error_stop || queue.first == nowhere) return;
+    while (queue.first != nowhere) {
+        Job& reset = front(context);
+        unlink(context, reset, queue);
+        tell(reset, Progress::done);
+    }
+    leave_error();
+}
+
+void Axis::leave_error() {
+    error = false;
+    error_id = MotionError::none;
+    state = powered != 0 ? AxisState::standstill : AxisState::disabled;
+}
+
+MotionError Axis::set_position(const Request& request) {
+    const bool relative = request.option != 0;
+    if (modulo && !relative && (request.position < 0 || request.position >= period))
+        return MotionError::out_of_range;
+    const double by = relative ? request.position : request.position - position;
+    ++renamed;
+    offset += by;
+    relocated += by;
+    goal += by;
+    origin += by;
+    return MotionError::none;
+}
+
+MotionError Axis::set_override(const Context& context, const Moment& at, const Request& request) {
+    if (!(request.velocity_factor >= 0) || !(request.acceleration_factor > 0) ||
+        !(request.jerk_factor > 0))
+        return MotionError::out_of_range;
+    velocity_factor = request.velocity_factor;
+    acceleration_factor = request.acceleration_factor;
+    jerk_factor = request.jerk_factor;
+    if (active.exists()) replan(at);
+    if (queue.first != nowhere && active.exists()) blend(context, at);
+    return MotionError::none;
+}
+
+void Axis::fail(const Context& context, const Moment& at, MotionError why) {
+    if (state == AxisState::error_stop) return;
+    brake(at);
+    abort_all(context, why);
+    error = true;
+    error_id = why;
+    state = AxisState::error_stop;
+}
+
+// Motions.
+
+void Axis::hold(const MotionState& as, const Moment& at) {
+    velocity_motion.hold(as, at);
+    doing = Doing::holding;
+    leg.exists = paused = 0;
+    base = {as.position, as.velocity, 0, 0};
+}
+
+void Axis::brake(const Moment& at) {
+    const MotionState from = total();
+    offset = 0;
+    extra = {};
+    leg.exists = paused = 0;
+    base = from;
+    if (from.velocity == 0 && from.acceleration == 0) return hold(from, at);
+    velocity_motion.begin(from, 0, defaults(), at);
+    doing = Doing::following_velocity;
+}
+
+Axis::Start Axis::start_of(const Request& request, bool keeps_added) const {
+    Start from;
+    from.state = base;
+    from.state.position += offset;
+    if (!keeps_added) from.state = total();
+    if (keeps_added && added.exists()) from.to_come = added_motion.plan.end.position;
+    const bool from_goal =
+        request.command == Command::move_additive && state == AxisState::discrete_motion;
+    from.origin = from_goal ? goal : from.state.position;
+    return from;
+}
+
+MotionError Axis::plan(const Request& request, const Moment& at, const Start& from) {
+    const Dynamics d = dynamics_of(request);
+    if (!(d.acceleration > 0) || !(d.deceleration > 0) || !(d.jerk > 0))
+        return MotionError::limit_not_positive;
+    using enum Command;
+    MotionError why = MotionError::none;
+    if (request.command == stop || request.command == halt || request.command == move_velocity ||
+        request.command == gear_out || request.command == cam_out) {
+        why = plan_velocity(request, at, from);
+    } else if (request.command == home) {
+        why = plan_homing(request, at, from);
+    } else {
+        why = plan_point(request, target_of(request, from), at, from);
+    }
+    if (why != MotionError::none) return why;
+    origin = from.origin;
+    offset = 0;
+    base = from.state;
+    return why;
+}
+
+MotionError Axis::plan_velocity(const Request& request, const Moment& at, const Start& from) {
+    double wanted = 0;
+    const MotionState& now = from.state;
+    if (request.command == Command::gear_out || request.command == Command::cam_out)
+        wanted = now.velocity +
+                 now.acceleration * std::abs(now.acceleration) / (2 * dynamics_of(request).jerk);
+    if (request.command == Command::move_velocity) {
+        wanted = request.velocity * velocity_factor;
+        if (request.direction == MoveDirection::negative) wanted = -wanted;
+        if (request.direction == MoveDirection::current)
+            wanted = std::copysign(wanted, sign_of(from.state.velocity));
+    }
+    const MotionError why =
+        error_of(velocity_motion.begin(from.state, wanted, dynamics_of(request), at));
+    if (why != MotionError::none) return why;
+    doing = Doing::following_velocity;
+    leg.exists = paused = 0;
+    goal = velocity_motion.end_state().position;
+    return why;
+}
+
+MotionError Axis::plan_point(const Request& request, double to, const Moment& at,
+                             const Start& from) {
+    const Dynamics d = dynamics_of(request);
+    if (velocity_factor == 0) return pause(to, d, at, from);
+    if (!d.valid()) return MotionError::limit_not_positive;
+    if (software_limits && (to < lowest_position || to > highest_position))
+        return MotionError::software_limit;
+    const double way = to - from.state.position;
+    const double end_velocity =
+        is_continuous(request.command) ? sign_of(way) * request.end_velocity : 0;
+    const MotionError why =
+        error_of(point_motion.begin(from.state, to - from.to_come, end_velocity, d, at));
+    if (why != MotionError::none) return why;
+    doing = Doing::moving_to_point;
+    leg.exists = paused = 0;
+    goal = to;
+    return why;
+}
+
+/// An override of 0: the way to the goal is left for later.
+MotionError Axis::pause(double to, const Dynamics& d, const Moment& at, const Start& from) {
+    const MotionError why = error_of(velocity_motion.begin(from.state, 0, d, at));
+    if (why != MotionError::none) return why;
+    doing = Doing::following_velocity;
+    leg.exists = 0;
+    paused = 1;
+    goal = to;
+    return why;
+}
+
+double Axis::target_of(const Request& request, const Start& from) const {
+    const bool is_absolute = request.command == Command::move_absolute ||
+                             request.command == Command::move_continuous_absolute ||
+                             request.command == Command::home;
+    if (!is_absolute) return from.origin + request.position;
+    return modulo ? modulo_target(request, from) : request.position;
+}
+
+/// Of the places that show the position one that the axis can reach without turning round.
+double Axis::modulo_target(const Request& request, const Start& from) const {
+    constexpr double tolerance = 1e-9;
+    const double stop = stopping_position(from.state, dynamics_of(request));
+    const double turns = (stop - request.position) / period;
+    MoveDirection direction = request.direction;
+    if (direction == MoveDirection::current)
+        direction = from.state.velocity < 0 ? MoveDirection::negative : MoveDirection::positive;
+    if (direction == MoveDirection::positive)
+        return request.position + period * std::ceil(turns - tolerance);
+    if (direction == MoveDirection::negative)
+        return request.position + period * std::floor(turns + tolerance);
+    return request.position + period * std::floor(turns + 0.5);
+}
+
+/// The position is known at once, at the end of the move, or where the signal came: from there the
+/// axis stops.
+MotionError Axis::plan_homing(const Request& request, const Moment& at, const Start& from) {
+    if (modulo && (request.position < 0 || request.position >= period))
+        return MotionError::out_of_range;
+    if (request.option == homing_to_position)
+        return plan_point(request, target_of(request, from), at, from);
+    Request search = request;
+    search.command = request.option == homing_on_signal ? Command::move_velocity : Command::stop;
+    search.velocity = dynamics_of(request).velocity;
+    Start known = from;
+    if (request.option != homing_on_signal) {
+        known.state.position = request.position;
+        ++renamed;
+    }
+    return plan_velocity(search, at, known);
+}
+
+/// Other limits for the motion under way.
+void Axis::replan(const Moment& at) {
+    Start from = start_of(active.request, true);
+    from.to_come = 0;
+    if (doing == Doing::moving_to_point || paused != 0) {
+        if (plan_point(active.request, goal, at, from) != MotionError::none) return;
+    } else if (active.request.command == Command::move_velocity) {
+        if (plan_velocity(active.request, at, from) != MotionError::none) return;
+    } else {
+        return;
+    }
+    base = from.state;
+    offset = 0;
+}
+
+MotionError Axis::plan_added(const Request& request, const Moment& at) {
+    Dynamics d = dynamics_of(request);
+    if (!d.valid()) return MotionError::limit_not_positive;
+    const bool halts = request.command == Command::halt_superimposed;
+    const double to = halts ? stopping_position(extra, d) : request.position;
+    if (!added.exists()) extra = {};
+    return error_of(added_motion.begin(extra, to, 0, d, at));
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,224 @@
+#include "blocks/axis/axis.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+bool is_moving(AxisState state) {
+    return state >= AxisState::discrete_motion && state <= AxisState::synchronized_motion;
+}
+
+}  // namespace
+
+void Axis::send(const Context& context, const Scan& now, Job& job) {
+    if (job.in == JobPlace::queue) unlink(context, job, queue);
+    job.task = context.task;
+    job.scan = now.index;
+    if (job.in != JobPlace::inbox) link(context, job, inbox, JobPlace::inbox);
+}
+
+void Axis::link(const Context& context, Job& job, JobList& list, JobPlace in) const {
+    const std::int64_t place = context.place_of(job);
+    job.in = in;
+    job.next = nowhere;
+    (list.first == nowhere ? list.first : context.at<Job>(list.last).next) = place;
+    list.last = place;
+}
+
+void Axis::unlink(const Context& context, Job& job, JobList& list) const {
+    const std::int64_t place = context.place_of(job);
+    std::int64_t before = nowhere;
+    for (std::int64_t at = list.first; at != place; at = context.at<Job>(at).next) before = at;
+    (before == nowhere ? list.first : context.at<Job>(before).next) = job.next;
+    if (list.last == place) list.last = before;
+    job.in = JobPlace::no_list;
+    job.next = nowhere;
+}
+
+Job& Axis::front(const Context& context) const {
+    return context.at<Job>(queue.first);
+}
+
+/// What has been published, in the order of the tasks, and of each in that of sending.
+Axis::JobList Axis::due_jobs(const Context& context) {
+    JobList due;
+    std::int64_t next = nowhere;
+    for (std::int64_t place = inbox.first; place != nowhere; place = next) {
+        Job& job = context.at<Job>(place);
+        next = job.next;
+        if (!context.is_published(job.task, job.scan)) continue;
+        unlink(context, job, inbox);
+        std::int64_t* link = &due.first;
+        while (*link != nowhere && context.at<Job>(*link).task <= job.task)
+            link = &context.at<Job>(*link).next;
+        job.next = *link;
+        *link = place;
+    }
+    return due;
+}
+
+void Axis::take_up(const Context& context, const Scan& now) {
+    std::int64_t next = due_jobs(context).first;
+    while (next != nowhere) {
+        Job& job = context.at<Job>(next);
+        next = job.next;
+        job.next = nowhere;
+        take(context, {now.time}, job);
+    }
+}
+
+void Axis::take(const Context& context, const Moment& at, Job& job) {
+    const std::int64_t place = context.place_of(job);
+    for (Running* running : {&active, &added, &phased})
+        if (running->place == place && running->ticket == job.ticket)
+            return change(context, at, *running, job);
+    if (is_end(job.progress)) return;
+    const Request& request = job.request;
+    const bool waits = request.mode != BufferMode::aborting && active.exists() && is_moving(state);
+    if (!waits && !next_state(request.command, state))
+        return tell(job, Progress::failed, refusal());
+    if (request.command == Command::reset && state == AxisState::error_stop &&
+        doing != Doing::holding)
+        return wait(context, at, job);
+    if (is_administrative(request.command)) {
+        const MotionError why = administer(context, at, request);
+        return tell(job, why == MotionError::none ? Progress::done : Progress::failed, why);
+    }
+    if (request.command == Command::move_superimposed ||
+        request.command == Command::halt_superimposed)
+        return begin_added(context, at, job);
+    if (is_phasing(request.command)) return begin_phasing(context, job);
+    if (waits) return wait(context, at, job);
+    begin(context, at, job);
+}
+
+/// Continuous update, or the end of MC_Stop's Execute.
+void Axis::change(const Context& context, const Moment& at, Running& running, const Job& job) {
+    running.request = job.request;
+    if (job.request.command == Command::stop) {
+        if (running.told_end == 0 || job.request.option != 0) return;
+        active = {};
+        return settle();
+    }
+    if (&running == &phased) return begin_phasing(context, context.at<Job>(running.place));
+    if (&running == &added) {
+        plan_added(job.request, at);
+    } else {
+        Start from = start_of(job.request, true);
+        from.origin = origin;
+        from.to_come = 0;
+        const MotionError why = is_synchronous(job.request.command)
+                                    ? plan_sync(context, job.request, at, from)
+                                    : plan(job.request, at, from);
+        if (why != MotionError::none) return;
+        if (queue.first != nowhere) blend(context, at);
+    }
+    tell(context, running, Progress::active);
+}
+
+void Axis::wait(const Context& context, const Moment& at, Job& job) {
+    link(context, job, queue, JobPlace::queue);
+    tell(job, Progress::waiting);
+    if (&front(context) != &job || job.request.command == Command::reset) return;
+    const bool holds = (state == AxisState::continuous_motion && doing == Doing::holding) ||
+                       (doing == Doing::following_axes && sync.holds());
+    if (holds) return begin_next(context, at);
+    blend(context, at);
+}
+
+/// From the state in which the axis is at that moment.
+void Axis::begin(const Context& context, const Moment& at, Job& job) {
+    const Request request = job.request;
+    const bool aborts = request.mode == BufferMode::aborting;
+    const bool stands = base.velocity == 0 && base.acceleration == 0;
+    const auto next =
+        next_state(request.command, stands && !aborts ? AxisState::standstill : state);
+    if (!next) return tell(job, Progress::failed, refusal());
+    const Start from = start_of(request, !aborts);
+    const MotionError why = is_synchronous(request.command) ? plan_sync(context, request, at, from)
+                                                            : plan(request, at, from);
+    if (why != MotionError::none) return tell(job, Progress::failed, why);
+    if (aborts) {
+        extra = {};
+        abort_all(context);
+    }
+    end(context, active, Progress::aborted);
+    active = {context.place_of(job), job.ticket, request, 0};
+    state = *next;
+    tell(job, Progress::active);
+}
+
+/// The first of the queue that can be begun.
+void Axis::begin_next(const Context& context, const Moment& at) {
+    while (queue.first != nowhere) {
+        Job& job = front(context);
+        unlink(context, job, queue);
+        begin(context, at, job);
+        if (job.progress != Progress::active) continue;
+        if (queue.first != nowhere) blend(context, at);
+        return;
+    }
+    settle();
+}
+
+void Axis::begin_added(const Context& context, const Moment& at, Job& job) {
+    if (job.request.command == Command::halt_superimposed && !added.exists())
+        return tell(job, Progress::done);
+    if (const MotionError why = plan_added(job.request, at); why != MotionError::none)
+        return tell(job, Progress::failed, why);
+    end(context, added, Progress::aborted);
+    added = {context.place_of(job), job.ticket, job.request, 0};
+    state = *next_state(job.request.command, state);
+    if (!active.exists() && state == AxisState::standstill) state = AxisState::discrete_motion;
+    tell(job, Progress::active);
+}
+
+/// What waits is aborted, and what is at work, or else it fails.
+void Axis::abort_all(const Context& context, MotionError why) {
+    const Progress how = why == MotionError::none ? Progress::aborted : Progress::failed;
+    end(context, active, how, why);
+    end(context, added, how, why);
+    end(context, phased, how, why);
+    while (queue.first != nowhere) {
+        Job& job = front(context);
+        unlink(context, job, queue);
+        tell(job, Progress::aborted);
+    }
+}
+
+void Axis::end(const Context& context, Running& running, Progress how, MotionError why) {
+    if (running.exists() && running.told_end == 0) tell(context, running, how, why);
+    running = {};
+}
+
+/// Nothing to a command that has been started anew.
+void Axis::tell(const Context& context, const Running& running, Progress how,
+                MotionError why) const {
+    Job& job = context.at<Job>(running.place);
+    if (job.ticket == running.ticket) tell(job, how, why);
+}
+
+void Axis::tell(Job& job, Progress how, MotionError why) const {
+    if (job.told_by != task || job.told_in != scan_index) job.before = job.progress;
+    job.progress = how;
+    job.error = why;
+    job.told_by = task;
+    job.told_in = scan_index;
+}
+
+MotionError Axis::refusal() const {
+    switch (state) {
+        case AxisState::disabled:
+            return MotionError::axis_disabled;
+        case AxisState::stopping:
+            return MotionError::axis_stopping;
+        case AxisState::homing:
+            return MotionError::axis_homing;
+        case AxisState::error_stop:
+            return MotionError::axis_in_error;
+        default:
+            return MotionError::wrong_state;
+    }
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+
+#include "blocks/profile/any_state.hpp"
+#include "blocks/profile/velocity_ramp.hpp"
+#include "runtime/model/scan.hpp"
+
+namespace lineshaft {
+
+/// A moment in virtual time, which may lie between two nanoseconds.
+struct Moment {
+    std::int64_t time = 0;  ///< [ns]
+    double later = 0;       ///< [s], 0 <= later < 1 ns, or a little more
+
+    double until(std::int64_t now) const { return seconds(now - time) - later; }  ///< [s]
+    Moment after(double duration) const;                                          ///< [s], >= 0
+};
+
+/// How fast an axis may be in a motion: all above 0. `acceleration` where the speed grows,
+/// `deceleration` where it falls, whichever the direction; through standstill the lesser of both.
+struct Dynamics {
+    double velocity = 0, acceleration = 0, deceleration = 0, jerk = 0;
+
+    bool valid() const;
+};
+
+/// The lesser of acceleration and deceleration for both: of a motion that turns round.
+Dynamics symmetric(Dynamics dynamics);
+
+/// A jerk of 0 is a trapezoid: acceleration that comes in a nanosecond.
+double effective_jerk(double jerk, double acceleration, double deceleration);
+
+/// To a position, and with the velocity that it has there on. In the least time from any state.
+struct PointMotion {
+    Moment start;
+    MotionPlan plan;
+    std::size_t phase = 0;  ///< of the plan, where the last look found it
+
+    /// The sign of end_velocity says in which direction the goal is passed. not_finite when the
+    /// numbers leave what doubles can hold; *this is then unchanged.
+    PlanResult begin(const MotionState& from, double goal, double end_velocity,
+                     const Dynamics& dynamics, const Moment& at);
+
+    /// Whether it runs against the direction (its sign) at some time.
+    bool turns(double direction) const;
+
+    MotionState at(std::int64_t now) { return plan.at(start.until(now), phase); }
+    bool has_ended(std::int64_t now) const { return start.until(now) >= plan.duration; }
+    Moment end() const { return start.after(plan.duration); }
+};
+
+/// To a velocity, and on with it. In the least time from any state.
+struct VelocityMotion {
+    Moment start;
+    double start_position = 0;
+    VelocityRamp ramp;
+
+    PlanResult begin(const MotionState& from, double velocity, const Dynamics& dynamics,
+                     const Moment& at);
+    /// Stands, or goes on as it is.
+    void hold(const MotionState& state, const Moment& at);
+
+    MotionState at(std::int64_t now) const;
+    bool has_ended(std::int64_t now) const { return start.until(now) >= ramp.duration; }
+    Moment end() const { return start.after(ramp.duration); }
+    /// When the ramp ends.
+    MotionState end_state() const;
+};
+
+/// The way of a ramp between two velocities of one sign, both at acceleration 0.
+double ramp_way(double from, double to, const Dynamics& dynamics);
+
+/// Where an axis would stand that brakes at once from the state.
+double stopping_position(const MotionState& from, const Dynamics& dynamics);
+
+}  // namespace lineshaft

@@ -1,0 +1,50 @@
+#include "blocks/axis/axis.hpp"
+
+namespace lineshaft {
+
+/// Of those that may be written; null: of no such.
+double* Axis::limit_of(std::int64_t number) {
+    switch (number) {
+        case 2:
+            return &highest_position;
+        case 3:
+            return &lowest_position;
+        case 9:
+            return &default_velocity;
+        case 13:
+            return &default_acceleration;
+        case 15:
+            return &default_deceleration;
+        case 17:
+            return &default_jerk;
+        default:
+            return nullptr;
+    }
+}
+
+std::optional<double> Axis::read_parameter(std::int64_t number) const {
+    if (number == 1) return position;
+    if (number == 4 || number == 5) return software_limits ? 1 : 0;
+    if (number == 10) return actual().velocity;
+    if (number == 11) return velocity;
+    const double* limit = const_cast<Axis*>(this)->limit_of(number);
+    if (!limit) return {};
+    return *limit;
+}
+
+/// What an axis needs to be able to stop stays above 0.
+MotionError Axis::write_parameter(std::int64_t number, double value) {
+    if (number == 4 || number == 5) {
+        software_limits = value != 0 && !modulo && lowest_position < highest_position;
+        return software_limits == (value != 0) ? MotionError::none : MotionError::out_of_range;
+    }
+    double* limit = limit_of(number);
+    if (!limit) return MotionError::no_such_parameter;
+    const bool is_position = number == 2 || number == 3;
+    const bool good = is_position || value > 0 || (number == 17 && value == 0);
+    if (!good) return MotionError::out_of_range;
+    *limit = value;
+    return MotionError::none;
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "blocks/axis/axis_states.hpp"
+#include "blocks/axis/coupling.hpp"
+
+namespace lineshaft {
+
+/// When a command takes effect that finds another one at work (PLCopen Part 1 v2.0, 2.4.2). All but
+/// `aborting` wait for the end of the one before; blending passes its end position with the lowest,
+/// the previous, the next or the highest velocity of the two.
+enum class BufferMode : std::int64_t {
+    aborting,
+    buffered,
+    blending_low,
+    blending_previous,
+    blending_next,
+    blending_high,
+};
+
+inline constexpr std::string_view buffer_mode_names[] = {"mcAborting",     "mcBuffered",
+                                                         "mcBlendingLow",  "mcBlendingPrevious",
+                                                         "mcBlendingNext", "mcBlendingHigh"};
+
+/// The way to a position of a modulo axis.
+enum class MoveDirection : std::int64_t { shortest_way, positive, negative, current };
+
+inline constexpr std::string_view move_direction_names[] = {
+    "mcShortestWay", "mcPositiveDirection", "mcNegativeDirection", "mcCurrentDirection"};
+
+/// Why an axis or a command set its error.
+enum class MotionError : std::int64_t {
+    none,
+    no_axis,             ///< the command refers to no axis
+    not_finite,          ///< a pin is NaN or infinite, or what it asks for is
+    limit_not_positive,  ///< velocity, acceleration, deceleration or jerk is not above 0
+    out_of_range,        ///< a pin is outside of what it may be
+    axis_disabled,       ///< the command needs power
+    axis_stopping,       ///< MC_Stop holds the axis
+    axis_homing,         ///< the axis is homing
+    axis_in_error,       ///< the axis is in ErrorStop
+    wrong_state,         ///< the command does not go with what the axis is doing
+    software_limit,      ///< beyond the axis' software limits
+    no_master,           ///< the command refers to no master
+    master_loop,         ///< the master follows the slave, over however many others
+    master_stands,       ///< a slave in motion cannot get in sync with a master that stands
+    sync_passed,         ///< the master is beyond the position where it was to be met
+    sync_limits,         ///< in sync not within velocity, acceleration, jerk
+    no_cam,              ///< CamTableID is not that of a cam table
+    no_such_parameter,   ///< MC_ReadParameter, MC_WriteParameter
+};
+
+inline constexpr std::string_view motion_error_names[] = {
+    "none",           "no_axis",       "not_finite",       "limit_not_positive", "out_of_range",
+    "axis_disabled",  "axis_stopping", "axis_homing",      "axis_in_error",      "wrong_state",
+    "software_limit", "no_master",     "master_loop",      "master_stands",      "sync_passed",
+    "sync_limits",    "no_cam",        "no_such_parameter"};
+
+/// `option` of MC_Home.
+inline constexpr std::int64_t homing_direct = 0, homing_to_position = 1, homing_on_signal = 2,
+                              homing_signalled = 3;
+
+/// What a command asks of its axis, in the axis' unit. Dynamics below 0 are the axis' own.
+struct Request {
+    Command command = Command::none;
+    BufferMode mode = BufferMode::aborting;
+    MoveDirection direction = MoveDirection::shortest_way;
+    double position = 0;      ///< target or distance [u]
+    double velocity = -1;     ///< [u/s]
+    double end_velocity = 0;  ///< of a continuous move [u/s]
+    double acceleration = -1, deceleration = -1, jerk = -1;
+    std::int64_t option = 0;  ///< what else a command has: Execute of MC_Stop, Mode, a number
+    double velocity_factor = 1, acceleration_factor = 1, jerk_factor = 1;  ///< MC_SetOverride
+    Coupling coupling;
+
+    bool operator==(const Request&) const = default;
+};
+
+/// How far an axis is with a job.
+enum class Progress : std::int64_t {
+    sent,     ///< not taken up yet
+    waiting,  ///< buffered
+    active,
+    approaching,  ///< StartSync: on the way to where the master is met
+    reached,      ///< what it holds from there on: InVelocity, InEndVelocity, InGear, InSync
+    done,
+    aborted,
+    failed,
+};
+
+constexpr bool is_end(Progress progress) {
+    return progress >= Progress::done;
+}
+
+inline constexpr std::int64_t nowhere = -1;
+
+/// The list of the axis that a job is in.
+enum class JobPlace : std::int64_t { no_list, inbox, queue };
+
+/// What a command has told its axis, and the axis the command; it stands in the command's memory,
+/// and the axis links it into its lists. Of both sides each sees what the other's task has
+/// published: `task` and `scan` say when the request was written, `told_by` and `told_in` when
+/// `progress` was.
+struct Job {
+    Request request;
+    std::int64_t ticket = 0;          ///< a number for each start of the command
+    std::int64_t task = 0, scan = 0;  ///< of the request
+    std::int64_t next = nowhere;      ///< place of the job behind it in a list of the axis
+    JobPlace in = JobPlace::no_list;
+    Progress progress = Progress::sent, before = Progress::sent;
+    std::int64_t told_by = nowhere, told_in = 0;
+    MotionError error = MotionError::none;  ///< of `failed`
+    double told_value = 0;                  ///< what the axis answers beside the progress
+};
+
+}  // namespace lineshaft

@@ -1,0 +1,152 @@
+#include "blocks/motion/command.hpp"
+
+#include "blocks/inputs.hpp"
+
+namespace lineshaft {
+
+using B = CommandBlock;
+
+void CommandBlock::run(const Scan& now, const Context& context) {
+    send(now, context);
+    show(context);
+}
+
+void CommandBlock::send(const Scan& now, const Context& context) {
+    if (rising_edge(execute, last_execute)) return start(now, context);
+    if (!continuous_update || !execute || !started || refusal != MotionError::none) return;
+    const Progress now_at = progress(context);
+    const bool at_work = now_at >= Progress::active && now_at <= Progress::reached;
+    if (at_work && job.in == JobPlace::no_list && pins != job.request) update(now, context);
+}
+
+void CommandBlock::start(const Scan& now, const Context& context) {
+    started = true;
+    told = false;
+    refusal = check();
+    if (refusal != MotionError::none) return;
+    ++job.ticket;
+    job.progress = job.before = Progress::sent;
+    job.told_by = nowhere;
+    job.request = pins;
+    context.instance<Axis>(axis).send(context, now, job);
+}
+
+/// Pins that are no numbers change nothing.
+void CommandBlock::update(const Scan& now, const Context& context) {
+    if (check() != MotionError::none) return;
+    job.request = pins;
+    context.instance<Axis>(axis).send(context, now, job);
+}
+
+void CommandBlock::show(const Context& context) {
+    const Progress now_at = progress(context);
+    const bool refused = refusal != MotionError::none;
+    const bool ended = started && (refused || is_end(now_at));
+    const bool shown = ended && (execute || !told);
+    told = ended;
+    busy = started && !ended;
+    reached = busy && now_at == Progress::reached;
+    active = busy && now_at >= Progress::active;
+    error = shown && (refused || now_at == Progress::failed);
+    done = shown && !error && now_at == Progress::done;
+    command_aborted = shown && !error && now_at == Progress::aborted;
+    error_id = !error ? MotionError::none : refused ? refusal : job.error;
+}
+
+Progress CommandBlock::progress(const Context& context) const {
+    if (job.told_by == nowhere) return Progress::sent;
+    const bool seen = job.told_by == context.task || context.is_published(job.told_by, job.told_in);
+    return seen ? job.progress : job.before;
+}
+
+MotionError CommandBlock::check() const {
+    if (axis == nowhere) return MotionError::no_axis;
+    if (!pins.coupling.is_finite()) return MotionError::not_finite;
+    return all_finite(pins.position, pins.velocity, pins.end_velocity, pins.acceleration,
+                      pins.deceleration, pins.jerk, pins.velocity_factor, pins.acceleration_factor,
+                      pins.jerk_factor)
+               ? MotionError::none
+               : MotionError::not_finite;
+}
+
+namespace pin {
+
+Field axis() {
+    return in_out("Axis", &B::axis, Axis::type, "that is commanded").one_of(axis_unit_names);
+}
+
+Field execute() {
+    return input("Execute", &B::execute, "", "rising edge: the command begins");
+}
+
+Field continuous_update() {
+    return input("ContinuousUpdate", &B::continuous_update, "",
+                 "pins that change while Execute is true count at once");
+}
+
+Field position(std::string_view doc) {
+    return input("Position", &B::pins, &Request::position, "{Axis}", doc);
+}
+
+Field distance() {
+    return input("Distance", &B::pins, &Request::position, "{Axis}", "way, with its sign");
+}
+
+Field velocity(std::string_view doc) {
+    return input("Velocity", &B::pins, &Request::velocity, "{Axis}/s", doc);
+}
+
+Field end_velocity() {
+    return input("EndVelocity", &B::pins, &Request::end_velocity, "{Axis}/s",
+                 "at the end, and from there on; above 0 in the direction of the move");
+}
+
+Field acceleration() {
+    return input("Acceleration", &B::pins, &Request::acceleration, "{Axis}/s^2",
+                 "limit where the speed grows; below 0: the axis' own");
+}
+
+Field deceleration() {
+    return input("Deceleration", &B::pins, &Request::deceleration, "{Axis}/s^2",
+                 "limit where the speed falls; below 0: the axis' own");
+}
+
+Field jerk() {
+    return input("Jerk", &B::pins, &Request::jerk, "{Axis}/s^3",
+                 "limit; 0: a trapezoid; below 0: the axis' own");
+}
+
+Field direction() {
+    return input("Direction", &B::pins, &Request::direction, "", "of a modulo axis")
+        .one_of(move_direction_names);
+}
+
+Field buffer_mode() {
+    return input("BufferMode", &B::pins, &Request::mode, "", "what becomes of the command at work")
+        .one_of(buffer_mode_names);
+}
+
+Field done(std::string_view doc) {
+    return output("Done", &B::done, "", doc);
+}
+
+Field reached(std::string_view name, std::string_view doc) {
+    return output(name, &B::reached, "", doc);
+}
+
+std::vector<Field> table(std::initializer_list<Field> inputs, const Field& first_output) {
+    std::vector<Field> fields{axis(), execute()};
+    fields.insert(fields.end(), inputs);
+    fields.insert(
+        fields.end(),
+        {first_output, output("Busy", &B::busy, "", "the command has not ended yet"),
+         output("Active", &B::active, "", "it controls the axis"),
+         output("CommandAborted", &B::command_aborted, "", "another command has taken over"),
+         output("Error", &B::error, "", "the command is refused, or the axis has failed"),
+         output("ErrorID", &B::error_id, "", "why").one_of(motion_error_names)});
+    return fields;
+}
+
+}  // namespace pin
+
+}  // namespace lineshaft

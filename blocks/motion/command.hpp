@@ -1,0 +1,91 @@
+#pragma once
+
+#include <initializer_list>
+#include <span>
+#include <vector>
+
+#include "blocks/axis/axis.hpp"
+#include "blocks/axis/job.hpp"
+#include "runtime/model/field.hpp"
+#include "runtime/model/scan.hpp"
+
+namespace lineshaft {
+
+/// What all command blocks with an Execute have in common: its edge, the pins, the job that goes to
+/// the axis, and the outputs by the rules of PLCopen Part 1 v2.0, 2.4.1: Busy, Done, CommandAborted
+/// and Error exclude each other; Busy comes with the edge; what ends it stays while Execute is
+/// true, one scan at least. A block that is started anew while it is at work shows the new job
+/// alone.
+struct CommandBlock {
+    std::int64_t axis = nowhere;
+    bool execute = false, continuous_update = false;
+    Request pins;
+
+    bool done = false, busy = false, active = false, command_aborted = false, error = false;
+    bool reached = false;  ///< InVelocity, InGear, ...
+    MotionError error_id = MotionError::none;
+
+    bool last_execute = false;
+    bool told = false;                        ///< the end has been shown
+    bool started = false;                     ///< at least once
+    MotionError refusal = MotionError::none;  ///< of the pins: the axis has not got them
+    Job job;
+
+    /// One scan: send(), then show().
+    void run(const Scan& now, const Context& context);
+
+    /// Sends the pins at a rising edge of Execute, and with ContinuousUpdate what has changed.
+    void send(const Scan& now, const Context& context);
+    /// Sets the outputs by what the axis has told.
+    void show(const Context& context);
+
+    /// Puts the pins into the job and the job into the axis' inbox: as a new one, or as a change.
+    void start(const Scan& now, const Context& context);
+    void update(const Scan& now, const Context& context);
+
+    /// As far as the axis' task has published it.
+    Progress progress(const Context& context) const;
+    MotionError check() const;
+};
+
+/// A block with a table of pins and nothing else of its own.
+struct CommandKind {
+    Command command;
+    std::string_view type, doc;
+    std::span<const Field> (*fields)();
+};
+
+template <const CommandKind& kind>
+struct PlainCommand : CommandBlock {
+    static constexpr std::string_view type = kind.type;
+    static constexpr std::string_view doc = kind.doc;
+    static std::span<const Field> fields() { return kind.fields(); }
+
+    constexpr PlainCommand() { pins.command = kind.command; }
+    void scan(const Scan& now, const Context& context) { run(now, context); }
+};
+
+/// Pins of command blocks, to make a table of. Quantities are in the unit of `Axis`.
+namespace pin {
+
+Field axis();
+Field execute();
+Field continuous_update();
+Field position(std::string_view doc);
+Field distance();
+Field velocity(std::string_view doc = "greatest; below 0: the axis' own");
+Field end_velocity();
+Field acceleration();
+Field deceleration();
+Field jerk();
+Field direction();
+Field buffer_mode();
+Field done(std::string_view doc = "the command has been carried out");
+Field reached(std::string_view name, std::string_view doc);
+
+/// Axis and Execute, `inputs`, what comes first of the outputs, and the other outputs of all.
+std::vector<Field> table(std::initializer_list<Field> inputs, const Field& first_output);
+
+}  // namespace pin
+
+}  // namespace lineshaft

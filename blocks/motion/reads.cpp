@@ -1,0 +1,126 @@
+#include "blocks/motion/reads.hpp"
+
+#include <cmath>
+
+namespace lineshaft {
+
+std::vector<Field> read_table(std::initializer_list<Field> own) {
+    std::vector<Field> fields{
+        in_out("Axis", &ReadBlock::axis, Axis::type, "that is looked at").one_of(axis_unit_names),
+        input("Enable", &ReadBlock::enable, "", "the outputs follow the axis"),
+        output("Valid", &ReadBlock::valid, "", "the outputs can be relied on"),
+        output("Busy", &ReadBlock::busy, "", "the block looks at the axis"),
+        output("Error", &ReadBlock::error, "", "there is nothing to tell"),
+        output("ErrorID", &ReadBlock::error_id, "", "why").one_of(motion_error_names)};
+    fields.insert(fields.end(), own);
+    return fields;
+}
+
+const Axis* ReadBlock::look(const Context& context) {
+    error = enable && axis == nowhere;
+    error_id = error ? MotionError::no_axis : MotionError::none;
+    valid = busy = enable && !error;
+    return valid ? &context.seen_instance<Axis>(axis) : nullptr;
+}
+
+std::span<const Field> ReadStatus::fields() {
+    static const auto table = [] {
+        constexpr std::string_view names[] = {
+            "Disabled",         "Standstill",         "Homing",   "Stopping", "DiscreteMotion",
+            "ContinuousMotion", "SynchronizedMotion", "ErrorStop"};
+        auto fields = read_table({});
+        const std::size_t first = detail::offset_of(&ReadStatus::states);
+        for (std::size_t i = 0; i < axis_state_count; ++i) {
+            Field state;
+            state.name = names[i];
+            state.doc = "the axis is in that state";
+            state.direction = Direction::output;
+            state.type = Type::boolean;
+            state.offset = first + i;
+            fields.push_back(state);
+        }
+        return fields;
+    }();
+    return table;
+}
+
+void ReadStatus::scan(const Scan&, const Context& context) {
+    const Axis* seen = look(context);
+    for (std::size_t i = 0; i < axis_state_count; ++i)
+        states[i] = seen && static_cast<std::size_t>(seen->state) == i;
+}
+
+std::span<const Field> ReadMotionState::fields() {
+    using B = ReadMotionState;
+    static const auto table = read_table({
+        output("ConstantVelocity", &B::constant_velocity, "", "0 too"),
+        output("Accelerating", &B::accelerating, "", "the speed grows"),
+        output("Decelerating", &B::decelerating, "", "the speed falls"),
+        output("DirectionPositive", &B::direction_positive, "", "the position grows"),
+        output("DirectionNegative", &B::direction_negative, "", "the position falls"),
+    });
+    return table;
+}
+
+void ReadMotionState::scan(const Scan&, const Context& context) {
+    const Axis* seen = look(context);
+    const double v = seen ? seen->velocity : 0, a = seen ? seen->acceleration : 0;
+    const bool starts = v == 0 && a != 0;
+    constant_velocity = seen && a == 0;
+    accelerating = v * a > 0 || starts;
+    decelerating = v * a < 0;
+    direction_positive = v > 0;
+    direction_negative = v < 0;
+}
+
+std::span<const Field> ReadAxisError::fields() {
+    static const auto table =
+        read_table({output("AxisErrorID", &ReadAxisError::axis_error, "", "of the axis")
+                        .one_of(motion_error_names)});
+    return table;
+}
+
+void ReadAxisError::scan(const Scan&, const Context& context) {
+    const Axis* seen = look(context);
+    axis_error = seen ? seen->error_id : MotionError::none;
+}
+
+std::span<const Field> ReadActualPosition::fields() {
+    static const auto table =
+        read_table({output("Position", &ReadActualPosition::position, "{Axis}", "of the axis")});
+    return table;
+}
+
+void ReadActualPosition::scan(const Scan&, const Context& context) {
+    if (const Axis* seen = look(context)) position = seen->actual().position;
+}
+
+std::span<const Field> ReadActualVelocity::fields() {
+    static const auto table =
+        read_table({output("Velocity", &ReadActualVelocity::velocity, "{Axis}/s", "of the axis")});
+    return table;
+}
+
+void ReadActualVelocity::scan(const Scan&, const Context& context) {
+    if (const Axis* seen = look(context)) velocity = seen->actual().velocity;
+}
+
+std::span<const Field> ReadParameter::fields() {
+    static const auto table = read_table({
+        input("ParameterNumber", &ReadParameter::number, "", "1..17, see blocks/motion/README.md"),
+        output("Value", &ReadParameter::value, "", "in the unit of the axis, and seconds"),
+    });
+    return table;
+}
+
+void ReadParameter::scan(const Scan&, const Context& context) {
+    const Axis* seen = look(context);
+    if (!seen) return;
+    const auto found = seen->read_parameter(number);
+    value = found.value_or(0);
+    valid = found.has_value();
+    error = !found;
+    error_id = error ? MotionError::no_such_parameter : MotionError::none;
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,83 @@
+#include "blocks/motion/settings.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+constexpr std::string_view home_mode_names[] = {"mcDirect", "mcToPosition", "mcOnSignal"};
+
+}  // namespace
+
+std::span<const Field> SetPosition::fields() {
+    static const auto table =
+        pin::table({pin::position("of the place where the axis is"),
+                    input("Relative", &SetPosition::relative, "", "Position is added")},
+                   pin::done("the position is set"));
+    return table;
+}
+
+void SetPosition::scan(const Scan& now, const Context& context) {
+    pins.option = relative ? 1 : 0;
+    run(now, context);
+}
+
+std::span<const Field> WriteParameter::fields() {
+    using B = WriteParameter;
+    static const auto table = pin::table(
+        {input("ParameterNumber", &B::pins, &Request::option, "",
+               "1..17, see blocks/motion/README.md"),
+         input("Value", &B::pins, &Request::position, "", "in the unit of the axis, and seconds")},
+        pin::done("the parameter is set"));
+    return table;
+}
+
+std::span<const Field> SetOverride::fields() {
+    using B = SetOverride;
+    static const Field table[] = {
+        pin::axis(),
+        input("Enable", &B::execute, "", "the factors count"),
+        input("VelFactor", &B::pins, &Request::velocity_factor, "", "of velocities; 0: standstill")
+            .at_least(0),
+        input("AccFactor", &B::pins, &Request::acceleration_factor, "",
+              "of accelerations and decelerations")
+            .above(0),
+        input("JerkFactor", &B::pins, &Request::jerk_factor, "", "of jerks").above(0),
+        output("Enabled", &B::done, "", "the axis has taken the factors"),
+        output("Busy", &B::busy, "", "the axis has not taken them yet"),
+        output("Error", &B::error, "", "the factors are refused"),
+        output("ErrorID", &B::error_id, "", "why").one_of(motion_error_names),
+    };
+    return table;
+}
+
+void SetOverride::scan(const Scan& now, const Context& context) {
+    const bool changed = started && refusal == MotionError::none && pins != job.request;
+    if (execute && last_execute && changed)
+        start(now, context);
+    else
+        send(now, context);
+    show(context);
+    done = done && execute;
+}
+
+std::span<const Field> Home::fields() {
+    static const auto table = pin::table(
+        {pin::position("that is known then"),
+         input("HomingMode", &Home::mode, "", "how").one_of(home_mode_names),
+         input("Signal", &Home::signal, "", "of a switch, for mcOnSignal"), pin::velocity(),
+         pin::direction(), pin::acceleration(), pin::deceleration(), pin::jerk()},
+        pin::done("the position is known"));
+    return table;
+}
+
+void Home::scan(const Scan& now, const Context& context) {
+    pins.option = static_cast<std::int64_t>(mode);
+    if (execute && !last_execute) signalled = false;
+    run(now, context);
+    if (!active || signalled || !signal || mode != Mode::on_signal) return;
+    signalled = true;
+    pins.option = homing_signalled;
+    update(now, context);
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "blocks/motion/command.hpp"
+
+namespace lineshaft {
+
+/// MC_SetPosition (3.13): the axis does not move, its position gets another name.
+struct SetPosition : CommandBlock {
+    bool relative = false;
+
+    static constexpr std::string_view type = "MC_SetPosition";
+    static constexpr std::string_view doc = "gives the place of an axis another position";
+    static std::span<const Field> fields();
+    constexpr SetPosition() { pins.command = Command::set_position; }
+    void scan(const Scan& now, const Context& context);
+};
+
+/// MC_WriteParameter (3.15).
+struct WriteParameter : CommandBlock {
+    static constexpr std::string_view type = "MC_WriteParameter";
+    static constexpr std::string_view doc = "sets a parameter of an axis, by PLCopen's number";
+    static std::span<const Field> fields();
+    constexpr WriteParameter() { pins.command = Command::write_parameter; }
+    void scan(const Scan& now, const Context& context) { run(now, context); }
+};
+
+/// MC_SetOverride (3.12): sent when Enable comes, and at each change of a factor while it is true.
+/// The factors stay when it falls.
+struct SetOverride : CommandBlock {
+    static constexpr std::string_view type = "MC_SetOverride";
+    static constexpr std::string_view doc =
+        "makes all motions of an axis slower or faster, also those under way";
+    static std::span<const Field> fields();
+    constexpr SetOverride() { pins.command = Command::set_override; }
+    void scan(const Scan& now, const Context& context);
+};
+
+/// MC_Home (3.2). `mcDirect`: the position is Position at once. `mcToPosition`: the axis moves to
+/// Position. `mcOnSignal`: it moves in Direction until Signal is true; there Position is, and it
+/// stops.
+struct Home : CommandBlock {
+    enum class Mode : std::int64_t { direct, to_position, on_signal };
+    Mode mode = Mode::direct;
+    bool signal = false, signalled = false;
+
+    static constexpr std::string_view type = "MC_Home";
+    static constexpr std::string_view doc = "makes the position of an axis known";
+    static std::span<const Field> fields();
+    constexpr Home() { pins.command = Command::home; }
+    void scan(const Scan& now, const Context& context);
+};
+
+}  // namespace lineshaft

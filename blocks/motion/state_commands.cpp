@@ -1,0 +1,46 @@
+#include "blocks/motion/state_commands.hpp"
+
+namespace lineshaft {
+
+std::span<const Field> Power::fields() {
+    static const Field table[] = {
+        pin::axis(),
+        input("Enable", &Power::execute, "", "the power is on"),
+        output("Status", &Power::status, "", "the power is on, as the axis has it"),
+        output("Valid", &Power::active, "", "Status can be relied on"),
+        output("Error", &Power::error, "", "there is no axis"),
+        output("ErrorID", &Power::error_id, "", "why").one_of(motion_error_names),
+    };
+    return table;
+}
+
+void Power::scan(const Scan& now, const Context& context) {
+    const bool changed = !started || execute != last_execute;
+    last_execute = execute;
+    pins.command = execute ? Command::power_on : Command::power_off;
+    if (changed) start(now, context);
+    error = refusal != MotionError::none;
+    error_id = refusal;
+    active = !error;
+    status = !error && context.seen_instance<Axis>(axis).state != AxisState::disabled;
+}
+
+std::span<const Field> Stop::fields() {
+    static const auto fields =
+        pin::table({pin::deceleration(), pin::jerk()}, pin::done("the axis stands"));
+    return fields;
+}
+
+void Stop::scan(const Scan& now, const Context& context) {
+    pins.option = execute ? 1 : 0;
+    const bool released = last_execute && !execute && refusal == MotionError::none;
+    run(now, context);
+    if (released) update(now, context);
+}
+
+std::span<const Field> command_kinds::reset_fields() {
+    static const auto fields = pin::table({}, pin::done("the axis has no error"));
+    return fields;
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "blocks/profile/curve.hpp"
+
+namespace lineshaft {
+
+/// How a cam goes from one point to the next.
+enum class CamCurve : std::int64_t {
+    linear,   ///< a line
+    cubic,    ///< position and velocity of both points
+    quintic,  ///< position, velocity and acceleration of both points
+};
+
+inline constexpr std::string_view cam_curve_names[] = {"linear", "cubic", "quintic"};
+
+/// A point of a cam. Where a velocity y' is not given (NaN) it is the slope of a line beside the
+/// point, else that of the spline whose acceleration does not jump; an acceleration y'' that of the
+/// curves through the points, the mean of both sides. At the ends of a cam that is not periodic the
+/// spline has acceleration 0.
+struct CamPoint {
+    double x = 0, y = 0;                 ///< master [m], slave [u]
+    double slope = NAN, bend = NAN;      ///< y' [u/m], y'' [u/m^2]; may be NaN
+    CamCurve curve = CamCurve::quintic;  ///< to the next point
+};
+
+enum class CamFault : std::int64_t {
+    none,
+    too_few_points,  ///< fewer than 2
+    not_finite,      ///< a position is NaN, or a number is infinite
+    not_monotonic,   ///< the master does not rise from the point before
+};
+
+struct CamProblem {
+    CamFault fault = CamFault::none;
+    std::size_t point = 0;  ///< first one that it is true of
+};
+
+inline constexpr std::size_t most_cam_points = 1024;
+
+/// Puts in what is not given. On failure the points are unchanged. At most most_cam_points.
+CamProblem complete_cam(std::span<CamPoint> points, bool periodic);
+
+/// Slave over master, of points that are complete. A periodic cam goes on beyond its ends, each
+/// period by `lift` further; another one stands there.
+struct Cam {
+    std::span<const CamPoint> points;
+    bool periodic = false;
+
+    double begin() const { return points.front().x; }
+    double length() const { return points.back().x - points.front().x; }
+    double lift() const { return points.back().y - points.front().y; }
+
+    /// How often the cam has been run through at x; 0 within it.
+    double periods(double x) const;
+    CurvePoint at(double x) const;
+};
+
+}  // namespace lineshaft

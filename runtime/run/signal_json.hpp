@@ -1,0 +1,12 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "runtime/net/machine.hpp"
+
+namespace lineshaft {
+
+/// A signal's value: true or false, an enumeration's name, a number; null if it is not finite.
+nlohmann::ordered_json to_json(const Signal& signal, const Value& value);
+
+}  // namespace lineshaft

@@ -1,0 +1,396 @@
+#include "runtime/serve/api.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "runtime/run/signal_json.hpp"
+#include "runtime/version.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+ApiReply too_much() {
+    return failure(503, "the machine has too much to do", "try again");
+}
+
+double seconds_of(std::int64_t time) {
+    return static_cast<double>(time) / 1e9;
+}
+
+ApiReply mistake(const Diagnostics& out) {
+    const Diagnostic& first = out.list().front();
+    return failure(400, first.message, first.help, first.code);
+}
+
+Json state_json(const LiveState& state, const Loaded& loaded) {
+    Json forced = Json::object();
+    for (const auto& [name, value] : state.forced) forced[name] = value;
+    return {{"program", loaded.program.title},
+            {"time_s", seconds_of(state.time)},
+            {"time_ns", state.time},
+            {"speed", state.speed == Pacer::unpaced ? Json("max") : Json(state.speed)},
+            {"paused", state.paused},
+            {"forced", forced},
+            {"pace", to_json(state.pace)}};
+}
+
+/// Of an object of signals and values; empty for anything else.
+std::vector<Wanted> wanted_of(const Json& values) {
+    std::vector<Wanted> wanted;
+    if (!values.is_object()) return wanted;
+    for (const auto& [name, value] : values.items()) {
+        if (value.is_structured()) return {};
+        wanted.push_back(
+            {name, value.is_string() ? value.get<std::string>() : value.dump(), value.is_number()});
+    }
+    return wanted;
+}
+
+std::vector<std::string> split(const std::string& text) {
+    std::vector<std::string> parts;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find(',', at), text.size());
+        if (end > at) parts.push_back(text.substr(at, end - at));
+        at = end + 1;
+    }
+    return parts;
+}
+
+bool is_traced(const Linked& linked, const Signal& signal) {
+    return std::ranges::any_of(linked.traces, [&](const TraceSetup& trace) {
+        return std::ranges::count(trace.signals, signal.name, &Signal::name) > 0;
+    });
+}
+
+std::optional<std::int64_t> time_of(const std::string& text, Diagnostics& out) {
+    Node node;
+    node.text = text;
+    return Reader(out).time(node);
+}
+
+// What a request and its reply are, for the table
+
+Json described(Json schema, const char* doc) {
+    schema["description"] = doc;
+    return schema;
+}
+Json of_type(const char* type, const char* doc = "") {
+    return described({{"type", type}}, doc);
+}
+Json list_of(Json items) {
+    return {{"type", "array"}, {"items", std::move(items)}};
+}
+Json object(Json properties, Json required = Json::array()) {
+    Json schema{{"type", "object"}, {"properties", std::move(properties)}};
+    if (!required.empty()) schema["required"] = std::move(required);
+    return schema;
+}
+
+const Json any_value{{"description", "true, an enumeration's name, a number, null if not finite"}};
+
+Json values_schema(const char* doc) {
+    return {{"type", "object"}, {"description", doc}, {"additionalProperties", any_value}};
+}
+
+Json state_schema() {
+    return object({{"program", of_type("string")},
+                   {"time_s", of_type("number", "virtual time that has been reached")},
+                   {"time_ns", of_type("integer", "the same, exact")},
+                   {"speed", described(Json::object(), "a number, or max")},
+                   {"paused", of_type("boolean")},
+                   {"forced", values_schema("signals that are forced, and their values")},
+                   {"pace", of_type("object", "tasks, their scans, overruns and lateness")}});
+}
+
+const Json stamp_schema =
+    object({{"time_s", of_type("number", "the value counts before every scan of this time")},
+            {"time_ns", of_type("integer", "the same, exact")}});
+
+const char* const wanted_doc =
+    "signals and values: a number in the signal's unit, or text as in a program, such as '2 cm'";
+
+// clang-format off
+std::vector<Route> make_routes() {
+    const Json names{{"signals", "names, with commas between; all unless given"}};
+    return {
+        {"GET", "/api/state", "How the machine goes: time, tasks, lateness, forces",
+         false, {}, {}, state_schema(), &Api::state},
+        {"GET", "/api/signals", "All signals: name, type, unit, what they can be", false, {}, {},
+         list_of(object({{"name", of_type("string")},
+                         {"type", of_type("string", "boolean, integer, real or enumeration")},
+                         {"unit", of_type("string")},
+                         {"names", list_of(of_type("string", "of an enumeration"))},
+                         {"settable", of_type("boolean", "an input that no wire feeds")},
+                         {"traced", of_type("boolean", "the program records it")}})),
+         &Api::signals},
+        {"GET", "/api/values", "Values of signals, all of one moment", false, names, {},
+         object({{"time_s", of_type("number")}, {"time_ns", of_type("integer")},
+                 {"values", values_schema("by name")}}),
+         &Api::values},
+        {"GET", "/api/stream",
+         "Samples of signals as server-sent events, each with rows since the last one: 'time' in "
+         "seconds, 'values' a list a signal, 'lost' the rows that came too fast so far; and the "
+         "events 'signals', first, and 'state'",
+         false,
+         Json{{"signals", "names, with commas between"},
+              {"every", "virtual time between two rows, such as 10 ms; each step unless given"}},
+         {}, nullptr, &Api::stream},
+        {"POST", "/api/set", "Sets inputs, all at once",
+         true, {}, values_schema(wanted_doc), stamp_schema, &Api::set},
+        {"POST", "/api/force", "Keeps signals at values, whatever the program writes",
+         true, {}, values_schema(wanted_doc), stamp_schema, &Api::force},
+        {"POST", "/api/release", "Forces signals no more",
+         true, {}, object({{"signals", list_of(of_type("string"))}}, {"signals"}), stamp_schema,
+         &Api::release},
+        {"POST", "/api/pause", "Stands still between two scans",
+         true, {}, {}, state_schema(), &Api::pause},
+        {"POST", "/api/resume", "Goes on", true, {}, {}, state_schema(), &Api::resume},
+        {"POST", "/api/step",
+         "Runs scans as fast as it can, then pauses; answers when that is done, or after some seconds",
+         true, {},
+         object({{"scans", of_type("integer", "1 unless given")},
+                 {"task", of_type("string", "whose scans; all tasks' unless given")}}),
+         state_schema(), &Api::step},
+        {"POST", "/api/run_until", "Goes on until a time, then pauses", true, {},
+         object({{"time", of_type("string", "virtual time from the start, such as 2 s")}}, {"time"}),
+         state_schema(), &Api::run_until},
+        {"POST", "/api/speed", "Changes how many virtual seconds a second has", true, {},
+         object({{"speed", described(Json::object(), "a number from 1e-6 to 1e6, or max")}}, {"speed"}),
+         state_schema(), &Api::speed},
+        {"GET", "/api/openapi.json", "This document",
+         false, {}, {}, of_type("object"), &Api::document},
+    };
+}
+// clang-format on
+
+Json operation(const Route& route) {
+    const auto content = [](const Json& schema) {
+        return Json{{"application/json", {{"schema", schema}}}};
+    };
+    Json out{{"summary", route.doc},
+             {"operationId", std::string(route.path.substr(route.path.rfind('/') + 1))}};
+    for (const auto& [name, doc] : route.parameters.items())
+        out["parameters"].push_back({{"name", name},
+                                     {"in", "query"},
+                                     {"description", doc},
+                                     {"schema", {{"type", "string"}}}});
+    if (!route.body.is_null()) out["requestBody"]["content"] = content(route.body);
+    Json fine{{"description", "done"}};
+    fine["content"] =
+        route.reply.is_null() ? Json{{"text/event-stream", Json::object()}} : content(route.reply);
+    out["responses"]["200"] = fine;
+    for (const auto& [status, doc] :
+         {std::pair{"400", "the request is wrong: 'error' says how"},
+          std::pair{"403", "not allowed: writing without --allow-write, another origin"},
+          std::pair{"503", "too many clients or requests"}})
+        out["responses"][status] = {{"description", doc}};
+    return out;
+}
+
+}  // namespace
+
+ApiReply failure(int status, std::string message, std::string help, std::string code) {
+    Json body{{"error", std::move(message)}};
+    if (!help.empty()) body["help"] = std::move(help);
+    if (!code.empty()) body["code"] = std::move(code);
+    return {status, std::move(body)};
+}
+
+std::string ApiRequest::parameter(const std::string& name) const {
+    const auto it = query.find(name);
+    return it == query.end() ? "" : it->second;
+}
+
+std::span<const Route> routes() {
+    static const std::vector<Route> table = make_routes();
+    return table;
+}
+
+Json openapi() {
+    Json paths;
+    for (const Route& route : routes()) {
+        std::string method(route.method);
+        std::ranges::transform(method, method.begin(), [](char c) { return c | ' '; });
+        paths[std::string(route.path)][method] = operation(route);
+    }
+    return {{"openapi", "3.0.3"},
+            {"info", {{"title", "lineshaft serve"}, {"version", version()}}},
+            {"paths", paths}};
+}
+
+/// `job` in the machine's thread.
+template <class Job>
+ApiReply Api::ask(Job job) {
+    auto reply = live_.mailbox().ask(std::move(job));
+    return reply ? *reply : too_much();
+}
+
+/// `job` in the machine's thread, and how the machine goes then.
+template <class Job>
+ApiReply Api::after(Job job) {
+    const auto state = live_.mailbox().ask([this, job = std::move(job)] {
+        job();
+        return live_.state();
+    });
+    return state ? ApiReply{200, state_json(*state, loaded_)} : too_much();
+}
+
+ApiReply Api::state(const ApiRequest&) {
+    return after([] {});
+}
+
+ApiReply Api::signals(const ApiRequest&) {
+    Json list = Json::array();
+    for (const Signal& signal : loaded_.linked.machine.signals) {
+        list.push_back({{"name", signal.name},
+                        {"type", name_of(signal.type)},
+                        {"unit", signal.unit},
+                        {"settable", desk_.is_settable(signal.name)},
+                        {"traced", is_traced(loaded_.linked, signal)}});
+        if (!signal.names.empty()) list.back()["names"] = signal.names;
+    }
+    return {200, std::move(list)};
+}
+
+std::vector<const Signal*> Api::named(const ApiRequest& request, Diagnostics& out) {
+    return desk_.signals(split(request.parameter("signals")), out);
+}
+
+ApiReply Api::values(const ApiRequest& request) {
+    Diagnostics out;
+    const auto signals = named(request, out);
+    if (!out.empty()) return mistake(out);
+    struct Moment {
+        std::int64_t time;
+        std::vector<Value> values;
+    };
+    const auto moment = live_.mailbox().ask([this, signals] {
+        Moment now{live_.time(), {}};
+        for (const Signal* signal : signals) now.values.push_back(signal->value());
+        return now;
+    });
+    if (!moment) return too_much();
+    Json values = Json::object();
+    for (std::size_t i = 0; i < signals.size(); ++i)
+        values[signals[i]->name] = to_json(*signals[i], moment->values[i]);
+    return {200,
+            {{"time_s", seconds_of(moment->time)}, {"time_ns", moment->time}, {"values", values}}};
+}
+
+ApiReply Api::stream(const ApiRequest& request) {
+    constexpr std::size_t most_signals = 1000;
+    Diagnostics out;
+    const std::string every = request.parameter("every");
+    const auto interval = every.empty() ? 1 : time_of(every, out);
+    auto signals = named(request, out);
+    if (!out.empty()) return mistake(out);
+    if (signals.size() > most_signals || request.parameter("signals").empty())
+        return failure(400, "a stream has 1 to 1000 signals", "name them: ?signals=a.b,c.d");
+    const auto stream =
+        std::make_shared<Stream>(std::move(signals), std::max<std::int64_t>(*interval, 1));
+    return ask([this, stream] {
+        live_.add(stream);
+        return ApiReply{.status = 200, .body = {}, .stream = stream};
+    });
+}
+
+ApiReply Api::change(Change::Kind kind, const std::vector<Wanted>& wanted) {
+    Diagnostics out;
+    auto changes = desk_.changes(kind, wanted, out);
+    if (!out.empty()) return mistake(out);
+    return ask([this, changes = std::move(changes)] {
+        const std::int64_t at = live_.apply(changes);
+        return ApiReply{200, {{"time_s", seconds_of(at)}, {"time_ns", at}}};
+    });
+}
+
+ApiReply Api::set(const ApiRequest& request) {
+    const auto wanted = wanted_of(request.body);
+    if (wanted.empty()) return failure(400, "expected inputs and values", "{\"inputs.go\": true}");
+    return change(Change::Kind::set, wanted);
+}
+
+ApiReply Api::force(const ApiRequest& request) {
+    const auto wanted = wanted_of(request.body);
+    if (wanted.empty()) return failure(400, "expected signals and values", "{\"slave.ratio\": 2}");
+    return change(Change::Kind::force, wanted);
+}
+
+ApiReply Api::release(const ApiRequest& request) {
+    const Json& body = request.body;
+    std::vector<Wanted> wanted;
+    if (body.is_object() && body.contains("signals") && body["signals"].is_array())
+        for (const Json& name : body["signals"])
+            if (name.is_string()) wanted.push_back({name.get<std::string>(), {}});
+    if (wanted.empty())
+        return failure(400, "expected names of signals", "{\"signals\": [\"slave.ratio\"]}");
+    return change(Change::Kind::release, wanted);
+}
+
+ApiReply Api::pause(const ApiRequest&) {
+    return after([this] { live_.pause(); });
+}
+
+ApiReply Api::resume(const ApiRequest&) {
+    return after([this] { live_.resume(); });
+}
+
+ApiReply Api::step(const ApiRequest& request) {
+    constexpr std::int64_t most = 1'000'000;
+    constexpr int most_waits = 5000;
+    const Json& body = request.body;
+    std::int64_t scans = 1;
+    int task = -1;
+    if (body.is_object() && body.contains("scans"))
+        scans = body["scans"].is_number_integer() ? body["scans"].get<std::int64_t>() : 0;
+    if (scans < 1 || scans > most)
+        return failure(400, "'scans' is a whole number from 1 to 1000000");
+    if (body.is_object() && body.contains("task")) {
+        const std::string name = body["task"].is_string() ? body["task"].get<std::string>() : "";
+        const auto& tasks = loaded_.linked.machine.tasks;
+        const auto it = std::ranges::find(tasks, name, &Task::name);
+        if (it == tasks.end()) return failure(400, "the program has no such task");
+        task = static_cast<int>(it - tasks.begin());
+    }
+    ApiReply stepping = ask([this, task, scans] {
+        live_.step(task, scans);
+        return ApiReply{200, true};
+    });
+    for (int i = 0; i < most_waits && stepping.body == true; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        stepping = ask([this] { return ApiReply{200, live_.is_stepping()}; });
+    }
+    return stepping.status == 200 ? state(request) : stepping;
+}
+
+ApiReply Api::run_until(const ApiRequest& request) {
+    const Json& body = request.body;
+    if (!body.is_object() || !body.contains("time") || !body["time"].is_string())
+        return failure(400, "expected a time", "{\"time\": \"2 s\"}");
+    Diagnostics out;
+    const auto time = time_of(body["time"].get<std::string>(), out);
+    if (!time) return mistake(out);
+    return after([this, goal = *time] { live_.run_until(goal); });
+}
+
+ApiReply Api::speed(const ApiRequest& request) {
+    const Json& body = request.body;
+    const Json wanted = body.is_object() && body.contains("speed") ? body["speed"] : Json();
+    const bool is_max = wanted == "max";
+    if (!is_max && !(wanted.is_number() && wanted.get<double>() >= Pacer::least &&
+                     wanted.get<double>() <= Pacer::most))
+        return failure(400, "a speed is a number from 1e-6 to 1e6, or max", "{\"speed\": 1}");
+    const double speed = is_max ? Pacer::unpaced : wanted.get<double>();
+    return after([this, speed] { live_.set_speed(speed); });
+}
+
+ApiReply Api::document(const ApiRequest&) {
+    return {200, openapi()};
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,206 @@
+#include "runtime/serve/live.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+namespace lineshaft {
+
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+
+/// How long the mail waits at most, on the clock, while nothing is due or too much [ns].
+constexpr std::int64_t patience = 2 * ms;
+
+}  // namespace
+
+std::int64_t Pace::overruns() const {
+    return std::accumulate(tasks.begin(), tasks.end(), std::int64_t{0},
+                           [](std::int64_t sum, const TaskPace& t) { return sum + t.overruns; });
+}
+
+nlohmann::ordered_json to_json(const Pace& pace) {
+    const auto us = [](std::int64_t time) { return static_cast<double>(time) / 1e3; };
+    auto tasks = nlohmann::ordered_json::array();
+    for (const TaskPace& task : pace.tasks) {
+        auto histogram = nlohmann::ordered_json::array();
+        for (const auto& [below, count] : task.lateness.histogram())
+            histogram.push_back({{"below_us", us(below)}, {"scans", count}});
+        tasks.push_back({{"name", task.name},
+                         {"scans", task.scans},
+                         {"paced_scans", task.lateness.count()},
+                         {"overruns", task.overruns},
+                         {"lateness_us",
+                          {{"p50", us(task.lateness.quantile(0.5))},
+                           {"p99", us(task.lateness.quantile(0.99))},
+                           {"p99.9", us(task.lateness.quantile(0.999))},
+                           {"greatest", us(task.lateness.greatest())}}},
+                         {"histogram", histogram}});
+    }
+    return {{"tasks", tasks},
+            {"overruns", pace.overruns()},
+            {"skipped_s", static_cast<double>(pace.skipped) / 1e9}};
+}
+
+Live::Live(Loaded& loaded, const LiveOptions& options, RecordingWriter* recording)
+    : machine_(loaded.linked.machine),
+      options_(options),
+      pacer_(options.speed),
+      recording_(recording) {
+    for (const Task& task : machine_.tasks) {
+        pace_.tasks.push_back({.name = task.name, .every = task.every, .lateness = {}});
+        if (task.every > 0 && (shortest_ == 0 || task.every < shortest_)) shortest_ = task.every;
+    }
+}
+
+void Live::drive(Executive& executive) {
+    executive_ = &executive;
+    executive.add(*this);
+    Pacer::take_sleep_at_its_word();
+    pacer_.anchor(time_);
+    while (goes_on_ && time_ < options_.end && !*options_.interrupt) turn();
+    mailbox_.close();
+    executive.remove(*this);
+}
+
+void Live::turn() {
+    if (paused_) return rest();
+    const std::int64_t limit = std::min({options_.end, goal_, machine_.duration});
+    const std::int64_t next = std::min(executive_->next_time(), limit);
+    if (stepping_)
+        run_step(next);
+    else if (pacer_.is_paced())
+        run_paced(next);
+    else
+        run_freely(next, limit);
+    if (time_ >= goal_) {
+        goal_ = never;
+        paused_ = true;
+    }
+}
+
+void Live::rest() {
+    if (mailbox_.waits())
+        mailbox_.deliver();
+    else
+        Pacer::sleep_until(Pacer::now() + patience);
+}
+
+void Live::run_paced(std::int64_t next) {
+    const std::int64_t now = Pacer::now(), due = pacer_.due(next);
+    if (now < due) {
+        if (mailbox_.waits()) {
+            advance(std::clamp(pacer_.time_at(now), time_, next - 1));
+            deliver();
+        } else {
+            Pacer::sleep_until(std::min(due, now + patience));
+        }
+        return;
+    }
+    late_ = now - due;
+    if (options_.late == WhenLate::skip && shortest_ > 0 &&
+        late_ >= pacer_.due(shortest_) - pacer_.due(0)) {
+        pacer_.put_off(late_);
+        pace_.skipped += late_;
+    }
+    advance(next);
+    if (now - delivered_ > patience) deliver();
+}
+
+void Live::run_freely(std::int64_t next, std::int64_t limit) {
+    if (next == machine_.duration) return rest();
+    const std::int64_t begun = Pacer::now();
+    advance(std::min(limit, std::max(next, later(time_, chunk_))));
+    const std::int64_t took = std::max<std::int64_t>(Pacer::now() - begun, 1);
+    chunk_ = std::clamp<std::int64_t>(took > ms ? chunk_ / 2 : chunk_ * 2, 1000, never / 4);
+    deliver();
+}
+
+void Live::run_step(std::int64_t next) {
+    if (next == machine_.duration) return rest();
+    advance(next);
+    if (mailbox_.waits()) deliver();
+    if (stepping_ && steps_ <= 0) pause();
+}
+
+void Live::deliver() {
+    delivered_ = Pacer::now();
+    if (mailbox_.waits()) mailbox_.deliver();
+}
+
+void Live::advance(std::int64_t time) {
+    goes_on_ = executive_->run_until(time);
+    time_ = std::max(time_, time);
+    sample();
+}
+
+void Live::sample() {
+    if (streams_.empty()) return;
+    for (const auto& stream : streams_) stream->sample(time_);
+    std::erase_if(streams_, [](const auto& stream) { return stream->is_closed(); });
+}
+
+void Live::scanned(int task, const Scan& scan) {
+    TaskPace& pace = pace_.tasks[static_cast<std::size_t>(task)];
+    ++pace.scans;
+    if (stepping_ && (step_task_ < 0 || step_task_ == task)) --steps_;
+    if (!pacer_.is_paced() || stepping_) return;
+    pace.lateness.add(late_);
+    if (scan.interval > 0 && late_ >= pacer_.due(scan.interval) - pacer_.due(0)) ++pace.overruns;
+}
+
+std::int64_t Live::apply(const std::vector<Change>& changes) {
+    std::int64_t at = 0;
+    for (const Change& change : changes) {
+        if (change.kind == Change::Kind::set)
+            at = executive_->post(change.stimulus);
+        else if (change.kind == Change::Kind::force)
+            at = executive_->force(change.force);
+        else
+            at = executive_->release(change.live);
+    }
+    if (recording_) recording_->append(recorded(at, changes));
+    return at;
+}
+
+void Live::pause() {
+    paused_ = true;
+    stepping_ = false;
+}
+
+void Live::resume() {
+    paused_ = false;
+    stepping_ = false;
+    pacer_.anchor(time_);
+}
+
+void Live::step(int task, std::int64_t scans) {
+    resume();
+    stepping_ = true;
+    step_task_ = task;
+    steps_ = scans;
+}
+
+void Live::run_until(std::int64_t time) {
+    if (time <= time_) return pause();
+    resume();
+    goal_ = time;
+}
+
+void Live::set_speed(double speed) {
+    pacer_.set_speed(speed);
+    pacer_.anchor(time_);
+}
+
+LiveState Live::state() const {
+    LiveState state{
+        .time = time_, .speed = pacer_.speed(), .paused = paused_, .forced = {}, .pace = pace_};
+    for (const Force& force : machine_.forces)
+        if (force.from <= time_ + 1 && time_ + 1 < force.until)
+            state.forced.push_back(
+                {force.name, force.text.substr(std::strlen("force  = ") + force.name.size())});
+    return state;
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "runtime/run/single_run.hpp"
+#include "runtime/serve/lateness.hpp"
+#include "runtime/serve/mailbox.hpp"
+#include "runtime/serve/pacer.hpp"
+#include "runtime/serve/recording_writer.hpp"
+#include "runtime/serve/stream.hpp"
+
+namespace lineshaft {
+
+/// What happens when a scan is a whole interval late.
+enum class WhenLate : std::uint8_t {
+    catch_up,  ///< those that are due follow at once, until the clock is reached
+    skip,      ///< the clock is put off: the next scan comes an interval later
+};
+
+struct LiveOptions {
+    double speed = 1;  ///< see Pacer
+    WhenLate late = WhenLate::catch_up;
+    std::int64_t end = never;  ///< virtual time at which the machine stops by itself [ns]
+    const std::atomic<bool>* interrupt = nullptr;
+};
+
+/// How a task has kept its times.
+struct TaskPace {
+    std::string name;
+    std::int64_t every = 0;  ///< [ns]; 0: at events
+    std::int64_t scans = 0;
+    std::int64_t overruns = 0;  ///< scans that were a whole interval late
+    Lateness lateness;          ///< of all that were paced
+};
+
+/// How the machine has kept up with the clock.
+struct Pace {
+    std::vector<TaskPace> tasks;
+    std::int64_t skipped = 0;  ///< what the clock was put off by [ns]
+
+    std::int64_t overruns() const;
+};
+
+/// Per task: scans, overruns, quantiles and histogram of its lateness [us].
+nlohmann::ordered_json to_json(const Pace& pace);
+
+struct Forced {
+    std::string name, value;  ///< as a person reads it
+};
+
+struct LiveState {
+    std::int64_t time = 0;  ///< virtual [ns]
+    double speed = 1;
+    bool paused = false;
+    std::vector<Forced> forced;
+    Pace pace;
+};
+
+/// A machine that runs by the clock, with an executive that drive() steps. Its other functions are
+/// for jobs of its mailbox: they are called in its thread, between two instants.
+class Live : public Observer {
+  public:
+    /// `recording` takes what changes; may be null.
+    Live(Loaded& loaded, const LiveOptions& options, RecordingWriter* recording);
+
+    Mailbox& mailbox() { return mailbox_; }
+
+    /// Runs until the end, an interrupt, or what ends a run.
+    void drive(Executive& executive);
+
+    /// All at once; returns the virtual time from which they count [ns].
+    std::int64_t apply(const std::vector<Change>& changes);
+
+    void pause();
+    void resume();
+    /// So many scans of a task, then pauses; any task's for -1.
+    void step(int task, std::int64_t scans);
+    /// Goes on until `time` [ns], then pauses.
+    void run_until(std::int64_t time);
+    void set_speed(double speed);
+
+    void add(std::shared_ptr<Stream> stream) { streams_.push_back(std::move(stream)); }
+
+    std::int64_t time() const { return time_; }
+    bool is_stepping() const { return stepping_; }
+    LiveState state() const;
+
+    /// After drive().
+    const Pace& pace() const { return pace_; }
+
+    void scanned(int task, const Scan& scan) override;
+    void settled(std::int64_t, std::int64_t) override {}
+
+  private:
+    void turn();
+    void rest();
+    void run_paced(std::int64_t next);
+    void run_freely(std::int64_t next, std::int64_t limit);
+    void run_step(std::int64_t next);
+    void deliver();
+    void advance(std::int64_t time);
+    void sample();
+
+    Machine& machine_;
+    const LiveOptions options_;
+    Mailbox mailbox_;
+    Pacer pacer_;
+    Pace pace_;
+    Executive* executive_ = nullptr;
+    RecordingWriter* recording_;
+    std::vector<std::shared_ptr<Stream>> streams_;
+    std::int64_t shortest_ = 0;       ///< interval of a task; 0: none has one [ns]
+    std::int64_t time_ = 0;           ///< up to which everything has run [ns]
+    std::int64_t goal_ = never;       ///< where it pauses [ns]
+    std::int64_t late_ = 0;           ///< the instant under way, on the clock [ns]
+    std::int64_t chunk_ = 1'000'000;  ///< virtual time at once when there is no pace [ns]
+    std::int64_t delivered_ = 0;      ///< when the mail was last looked at, on the clock [ns]
+    int step_task_ = -1;
+    std::int64_t steps_ = 0;  ///< scans still to come while stepping
+    bool stepping_ = false, paused_ = false, goes_on_ = true;
+};
+
+}  // namespace lineshaft

@@ -1,0 +1,115 @@
+#include "runtime/serve/recording_writer.hpp"
+
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "runtime/source/units.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+/// Exact when it is read again: decimals of up to 15 digits are.
+std::string time_text(std::int64_t time) {
+    constexpr std::int64_t short_enough = 1'000'000'000'000'000;
+    return time < short_enough ? format_time(time) : fmt::format("{} ns", time);
+}
+
+std::string quoted(const std::string& text) {
+    std::string out = "'";
+    for (const char c : text) out.append(c == '\'' ? 2 : 1, c);
+    return out + "'";
+}
+
+}  // namespace
+
+std::string recorded(std::int64_t time, std::span<const Change> changes) {
+    const bool releases = changes.front().kind == Change::Kind::release;
+    const char* const key = releases                                      ? "release"
+                            : changes.front().kind == Change::Kind::force ? "force"
+                                                                          : "set";
+    std::string list;
+    for (const Change& change : changes) {
+        if (!list.empty()) list += ", ";
+        list += releases ? change.name : fmt::format("{}: {}", change.name, change.text);
+    }
+    return fmt::format("- {{at: {}, {}: {}}}\n", time_text(time), key,
+                       releases ? "[" + list + "]" : "{" + list + "}");
+}
+
+RecordingWriter::RecordingWriter(std::string path, const std::string& program,
+                                 const std::string& meaning)
+    : path_(std::move(path)) {
+    file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (file_ < 0) {
+        error_ = fmt::format("cannot write '{}': {}", path_, std::strerror(errno));
+        return;
+    }
+    if (::flock(file_, LOCK_EX | LOCK_NB) != 0 || ::ftruncate(file_, 0) != 0) {
+        error_ = fmt::format("another lineshaft writes '{}'", path_);
+        return;
+    }
+    write(fmt::format("lineshaft_recording: 1\nprogram: {}\nmeaning: '{}'\nentries:\n",
+                      quoted(program), meaning));
+    thread_ = std::thread([this] { work(); });
+}
+
+RecordingWriter::~RecordingWriter() {
+    {
+        const std::lock_guard lock(mutex_);
+        ended_ = true;
+    }
+    filled_.notify_one();
+    if (thread_.joinable()) thread_.join();
+    if (file_ >= 0) ::close(file_);
+}
+
+void RecordingWriter::append(std::string line) {
+    {
+        const std::lock_guard lock(mutex_);
+        text_ += line;
+    }
+    filled_.notify_one();
+}
+
+void RecordingWriter::finish(std::int64_t time) {
+    append(fmt::format("- {{at: {}, end: true}}\n", time_text(time)));
+    {
+        const std::lock_guard lock(mutex_);
+        ended_ = true;
+    }
+    filled_.notify_one();
+    if (thread_.joinable()) thread_.join();
+}
+
+void RecordingWriter::work() {
+    std::string text;
+    std::unique_lock lock(mutex_);
+    while (true) {
+        filled_.wait(lock, [this] { return ended_ || !text_.empty(); });
+        if (text_.empty()) return;
+        text.swap(text_);
+        lock.unlock();
+        write(text);
+        text.clear();
+        lock.lock();
+    }
+}
+
+void RecordingWriter::write(const std::string& text) {
+    for (std::size_t done = 0; done < text.size() && error_.empty();) {
+        const ssize_t written = ::write(file_, text.data() + done, text.size() - done);
+        if (written >= 0)
+            done += static_cast<std::size_t>(written);
+        else if (errno != EINTR)
+            error_ = fmt::format("cannot write '{}': {}", path_, std::strerror(errno));
+    }
+    ::fdatasync(file_);
+}
+
+}  // namespace lineshaft

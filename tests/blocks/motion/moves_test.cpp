@@ -1,0 +1,106 @@
+#include "blocks/motion/moves.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/blocks/motion/bench.hpp"
+
+using namespace lineshaft;
+using namespace lineshaft::test;
+
+namespace {
+
+/// A trapezoid of 100 mm/s and 1000 mm/s^2; all in one task, the commands behind the axis.
+constexpr const char* one_axis = R"(
+tasks: {main: {every: 1 ms}}
+blocks:
+  x: {type: axis, task: main, default_velocity: 100 mm/s, default_acceleration: 1000 mm/s^2, default_deceleration: 1000 mm/s^2, default_jerk: 0 mm/s^3}
+  power: {type: MC_Power, task: main, Axis: x, Enable: true}
+  one: {type: MC_MoveAbsolute, task: main, Axis: x, Position: 50 mm}
+  two: {type: MC_MoveAbsolute, task: main, Axis: x, Position: 80 mm, Velocity: 50 mm/s}
+  velocity: {type: MC_MoveVelocity, task: main, Axis: x, Velocity: 20 mm/s}
+  stop: {type: MC_Stop, task: main, Axis: x}
+  halt: {type: MC_Halt, task: main, Axis: x}
+  added: {type: MC_MoveSuperimposed, task: main, Axis: x, Distance: 10 mm, VelocityDiff: 50 mm/s}
+  reset: {type: MC_Reset, task: main, Axis: x}
+)";
+
+}  // namespace
+
+TEST_CASE("MC_MoveAbsolute in sequence: the second begins at the Done of the first") {
+    MotionBench bench(one_axis);
+    bench.check(R"(
+    ms    one.Execute two.Execute | one.Busy one.Active one.Done one.CommandAborted two.Busy two.Done x.state         x.position
+    0     0           0           | 0        0          0        0                  0        0        standstill      0
+    1     1           0           | 1        0          0        0                  0        0        standstill      0
+    2     .           .           | 1        1          0        0                  0        0        discrete_motion 0
+    102   .           .           | 1        1          0        0                  0        0        discrete_motion 5
+    502   .           .           | 1        1          0        0                  0        0        discrete_motion 45
+    602   .           .           | 1        1          0        0                  0        0        discrete_motion 50
+    603   .           .           | 0        0          1        0                  0        0        standstill      50
+    604   .           1           | 0        0          1        0                  1        0        standstill      50
+    605   0           .           | 0        0          0        0                  1        0        discrete_motion 50
+    1260  .           0           | 0        0          0        0                  0        0        standstill      80 )");
+}
+
+TEST_CASE("MC_MoveAbsolute in sequence: the second aborts the first") {
+    MotionBench bench(one_axis);
+    bench.check(R"(
+    ms    one.Execute two.Execute | one.Busy one.Done one.CommandAborted two.Busy two.Active two.Done x.velocity x.position
+    1     1           0           | 1        0        0                  0        0          0        0          0
+    202   .           0           | 1        0        0                  0        0          0        100        15
+    203   .           1           | 1        0        0                  1        0          0        100        15.1
+    204   .           .           | 0        0        1                  1        1          0        100        15.2
+    205   0           .           | 0        0        0                  1        1          0        99         15.2995
+    254   .           .           | 0        0        0                  1        1          0        50         18.95
+    1450  .           .           | 0        0        0                  1        1          0        50         78.75
+    1475  .           .           | 0        0        0                  1        1          0        25         79.6875
+    1500  .           .           | 0        0        0                  1        1          0        0          80
+    1501  .           .           | 0        0        0                  0        0          1        0          80
+    1502  .           0           | 0        0        0                  0        0          0        0          80 )");
+}
+
+TEST_CASE("MC_Stop holds the axis as long as Execute is true, and is done when it stands") {
+    MotionBench bench(one_axis);
+    bench.check(R"(
+    ms    velocity.Execute stop.Execute one.Execute | velocity.InVelocity velocity.CommandAborted stop.Busy stop.Done one.Error one.ErrorID   x.state           x.velocity
+    1     1                0            0           | 0                   0                       0         0         0         none          standstill        0
+    21    .                .            .           | 0                   0                       0         0         0         none          continuous_motion 19
+    23    .                .            .           | 1                   0                       0         0         0         none          continuous_motion 20
+    30    .                1            .           | 1                   0                       1         0         0         none          continuous_motion 20
+    31    .                .            .           | 0                   1                       1         0         0         none          stopping          20
+    40    .                .            1           | 0                   1                       1         0         0         none          stopping          11
+    41    .                .            .           | 0                   1                       1         0         1         axis_stopping stopping          10
+    51    .                .            .           | 0                   1                       1         0         1         axis_stopping stopping          0
+    52    .                .            0           | 0                   1                       0         1         0         none          stopping          0
+    60    0                .            .           | 0                   0                       0         1         0         none          stopping          0
+    61    .                0            .           | 0                   0                       0         0         0         none          stopping          0
+    62    .                .            .           | 0                   0                       0         0         0         none          standstill        0 )");
+}
+
+TEST_CASE("MC_MoveSuperimposed adds its distance to the motion beneath") {
+    MotionBench bench(one_axis);
+    bench.check(R"(
+    ms    velocity.Execute added.Execute | velocity.InVelocity added.Busy added.Active added.Done x.state           x.velocity x.position
+    1     1                0             | 0                   0          0            0          standstill        0          0
+    101   .                .             | 1                   0          0            0          continuous_motion 20         1.78
+    102   .                1             | 1                   1          0            0          continuous_motion 20         1.8
+    103   .                .             | 1                   1          1            0          continuous_motion 20         1.82
+    153   .                .             | 1                   1          1            0          continuous_motion 70         4.07
+    303   .                .             | 1                   1          1            0          continuous_motion 70         14.57
+    353   .                .             | 1                   1          1            0          continuous_motion 20         16.82
+    354   .                .             | 1                   0          0            1          continuous_motion 20         16.84
+    355   .                0             | 1                   0          0            0          continuous_motion 20         16.86 )");
+}
+
+TEST_CASE("without power an axis ramps down, and refuses") {
+    MotionBench bench(one_axis);
+    bench.check(R"(
+    ms    power.Enable velocity.Execute one.Execute | power.Status velocity.CommandAborted velocity.Busy one.Error one.ErrorID   x.state           x.velocity
+    1     .            1                0           | 1            0                       1             0         none          standstill        0
+    52    .            .                .           | 1            0                       1             0         none          continuous_motion 20
+    53    0            .                .           | 1            0                       1             0         none          continuous_motion 20
+    54    .            .                1           | 0            1                       0             0         none          disabled          20
+    55    .            .                .           | 0            1                       0             1         axis_disabled disabled          19
+    80    1            .                0           | 0            1                       0             0         none          disabled          0
+    81    .            0                .           | 1            0                       0             0         none          standstill        0 )");
+}

@@ -1,0 +1,125 @@
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include "blocks/motion/synchronous.hpp"
+#include "tests/blocks/motion/bench.hpp"
+#include "tests/blocks/profile/oracle.hpp"
+
+using namespace lineshaft;
+using namespace lineshaft::test;
+
+namespace {
+
+/// A knife over a web, and a slave that moves before it is to get in gear.
+constexpr const char* positions = R"(
+tasks: {{main: {{every: 1 ms}}}}
+blocks:
+  m: {{type: axis, task: main, default_jerk: 0 mm/s^3}}
+  s: {{type: axis, task: main, default_velocity: 10 m/s, default_acceleration: 1e6 mm/s^2, default_deceleration: 1e6 mm/s^2, default_jerk: 1e9 mm/s^3}}
+  knife: {{type: cam_table, task: main, periodic: true, points: [[0 mm, 0 mm], [100 mm, 60 mm], [250 mm, 20 mm], [400 mm, 0 mm]]}}
+  run: {{type: MC_MoveVelocity, task: main, Axis: m, Velocity: {} mm/s}}
+  slow: {{type: MC_MoveVelocity, task: main, Axis: m, Velocity: {} mm/s, Acceleration: 400 mm/s^2}}
+  move: {{type: MC_MoveVelocity, task: main, Axis: s, Velocity: {} mm/s}}
+  gear: {{type: MC_GearInPos, task: main, Master: m, Slave: s, RatioNumerator: {}, MasterSyncPosition: {} mm, SlaveSyncPosition: {} mm, MasterStartDistance: {} mm}}
+  select: {{type: MC_CamTableSelect, task: main, Master: m, Slave: s, CamTable: knife, Periodic: true}}
+  cam: {{type: MC_CamIn, task: main, Master: m, Slave: s, CamTableID: select.CamTableID, MasterSyncPosition: {} mm, SlaveScaling: {}, MasterStartDistance: {} mm}}
+)";
+
+struct Found {
+    bool in_sync = false;
+    double most_position = 0, most_velocity = 0;
+};
+
+/// Steps until the slave is in sync, and some more, and compares it with what it is to be.
+template <class Wanted>
+Found follow(MotionBench& bench, std::string_view in_sync, const Wanted& wanted) {
+    Found found;
+    double last = bench.number("s.position"), velocity = bench.number("s.velocity");
+    for (int i = 0; i < 6000; ++i) {
+        if (i == 700) bench.set("slow.Execute", true);
+        bench.step();
+        const double jump = bench.number("s.position") - last;
+        const double mean = 0.5 * (velocity + bench.number("s.velocity")) * 1e-3;
+        CHECK(std::abs(jump - mean) <= 0.01 + 0.02 * std::abs(mean));
+        last = bench.number("s.position");
+        velocity = bench.number("s.velocity");
+        if (!bench.is(in_sync)) continue;
+        found.in_sync = true;
+        const MotionState is = bench.axis("s").total(), due = wanted(bench.axis("m").total());
+        found.most_position = std::max(found.most_position, std::abs(is.position - due.position));
+        found.most_velocity = std::max(found.most_velocity, std::abs(is.velocity - due.velocity));
+    }
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("MC_GearInPos meets its positions, wherever the slave comes from") {
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        oracle::Random random{seed};
+        const double speed = random.between(200, 600), ratio = random.between(0.5, 2);
+        const double at = random.between(600, 900), slave = random.between(200, 500);
+        const double before = random.between(-100, 100), start = random.between(300, 500);
+        MotionBench bench(fmt::format(positions, speed, random.between(150, 700), before, ratio, at,
+                                      slave, start, 0, 1, 0));
+        INFO("seed " << seed);
+        for (const char* command : {"run.Execute", "move.Execute"}) bench.set(command, true);
+        bench.step(50);
+        bench.set("gear.Execute", true);
+        const Found found = follow(bench, "gear.InSync", [&](const MotionState& m) {
+            return MotionState{slave + ratio * (m.position - at), ratio * m.velocity};
+        });
+        CHECK(found.in_sync);
+        CHECK(found.most_position <= 1e-9);
+        CHECK(found.most_velocity <= 1e-9);
+    }
+}
+
+TEST_CASE("MC_CamIn meets the cam, and keeps it over its end") {
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        oracle::Random random{seed};
+        const double speed = random.between(200, 600), scale = random.between(0.5, 2);
+        const double at = random.between(0, 400), start = random.between(200, 300);
+        MotionBench bench(fmt::format(positions, speed, random.between(150, 700), 20, 1, 0, 0, 0,
+                                      at, scale, start));
+        INFO("seed " << seed);
+        for (const char* command : {"run.Execute", "move.Execute", "select.Execute"})
+            bench.set(command, true);
+        bench.step(50);
+        bench.set("cam.Execute", true);
+        std::vector<CamPoint> points{{0, 0}, {100, 60}, {250, 20}, {400, 0}};
+        REQUIRE(complete_cam(points, true).fault == CamFault::none);
+        const Cam cam{points, true};
+        const Found found = follow(bench, "cam.InSync", [&](const MotionState& m) {
+            MotionState due = cam.at(m.position).led_by(m);
+            due.position *= scale;
+            due.velocity *= scale;
+            return due;
+        });
+        CHECK(found.in_sync);
+        CHECK(found.most_position <= 1e-9);
+        CHECK(found.most_velocity <= 1e-9);
+    }
+}
+
+TEST_CASE("a sync position that cannot be met within the limits is refused") {
+    MotionBench bench(fmt::format(positions, 500, 500, 0, 1, 100, 900, 0, 0, 1, 0));
+    bench.set("run.Execute", true);
+    bench.step(600);
+    bench.set("gear.Execute", true);
+    bench.step(3);
+    CHECK(bench.is("gear.Error"));
+    CHECK(std::get<std::int64_t>(bench.get("gear.ErrorID")) ==
+          static_cast<std::int64_t>(MotionError::sync_passed));
+    CHECK(bench.axis("s").state == AxisState::standstill);
+    MotionBench fast(fmt::format(positions, 500, 500, 0, 1, 250, 9000, 0, 0, 1, 0));
+    fast.set("run.Execute", true);
+    fast.step(600);
+    fast.set("gear.Execute", true);
+    fast.step(3);
+    CHECK(fast.is("gear.Error"));
+}

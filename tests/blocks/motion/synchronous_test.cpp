@@ -1,0 +1,173 @@
+#include "blocks/motion/synchronous.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include "tests/blocks/motion/bench.hpp"
+#include "tests/blocks/profile/oracle.hpp"
+
+using namespace lineshaft;
+using namespace lineshaft::test;
+
+namespace {
+
+/// A master and two slaves, all in one task, the commands behind the axes. With trapezoids of 1000
+/// mm/s^2 the times are round.
+constexpr const char* line_shaft = R"(
+tasks: {main: {every: 1 ms}}
+blocks:
+  m: {type: axis, task: main, default_velocity: 1 m/s, default_acceleration: 1000 mm/s^2, default_deceleration: 1000 mm/s^2, default_jerk: 0 mm/s^3}
+  s: {type: axis, task: main, default_velocity: 1 m/s, default_acceleration: 1000 mm/s^2, default_deceleration: 1000 mm/s^2, default_jerk: 0 mm/s^3}
+  t: {type: axis, task: main}
+  run: {type: MC_MoveVelocity, task: main, Axis: m, Velocity: 100 mm/s}
+  halt: {type: MC_Halt, task: main, Axis: m}
+  gear: {type: MC_GearIn, task: main, Master: m, Slave: s}
+  gear2: {type: MC_GearIn, task: main, Master: m, Slave: s, RatioNumerator: 2}
+  third: {type: MC_GearIn, task: main, Master: s, Slave: t}
+  back: {type: MC_GearIn, task: main, Master: t, Slave: m}
+  out: {type: MC_GearOut, task: main, Slave: s}
+  stop: {type: MC_Stop, task: main, Axis: s}
+  phase: {type: MC_PhasingAbsolute, task: main, Master: m, Slave: s, PhaseShift: 10 mm, Velocity: 100 mm/s, Acceleration: 1000 mm/s^2, Deceleration: 1000 mm/s^2, Jerk: 0 mm/s^3}
+  more: {type: MC_PhasingRelative, task: main, Master: m, Slave: s, PhaseShift: 10 mm, Velocity: 100 mm/s, Acceleration: 1000 mm/s^2, Deceleration: 1000 mm/s^2, Jerk: 0 mm/s^3}
+  set: {type: MC_SetPosition, task: main, Axis: m, Position: 5000 mm}
+)";
+
+double relative(const MotionBench& bench) {
+    return bench.number("s.position") - bench.number("m.position");
+}
+
+}  // namespace
+
+TEST_CASE("MC_GearIn with a ratio change: a new command takes over") {
+    MotionBench bench(line_shaft);
+    bench.check(R"(
+    ms    run.Execute gear.Execute gear2.Execute | gear.Busy gear.InGear gear.CommandAborted gear2.Busy gear2.InGear s.state             s.velocity
+    0     0           0            0             | 0         0           0                   0          0            standstill          0
+    1     1           0            0             | 0         0           0                   0          0            standstill          0
+    200   .           1            .             | 1         0           0                   0          0            standstill          0
+    201   .           .            .             | 1         0           0                   0          0            synchronized_motion 0
+    202   .           .            .             | 1         0           0                   0          0            synchronized_motion 1
+    300   .           .            .             | 1         0           0                   0          0            synchronized_motion 99
+    302   .           .            .             | 1         1           0                   0          0            synchronized_motion 100
+    400   .           .            1             | 1         1           0                   1          0            synchronized_motion 100
+    401   .           .            .             | 0         0           1                   1          0            synchronized_motion 100
+    402   .           .            .             | 0         0           1                   1          0            synchronized_motion 101
+    403   .           0            .             | 0         0           0                   1          0            synchronized_motion 102
+    501   .           .            .             | 0         0           0                   1          0            synchronized_motion 200
+    503   .           .            .             | 0         0           0                   1          1            synchronized_motion 200 )");
+}
+
+TEST_CASE("MC_GearOut leaves the slave with its velocity, and MC_Stop stops it") {
+    MotionBench bench(line_shaft);
+    bench.set("run.Execute", true);
+    bench.set("gear.Execute", true);
+    bench.step(400);
+    CHECK(bench.is("gear.InGear"));
+    bench.set("out.Execute", true);
+    bench.set("halt.Execute", true);
+    bench.step(3);
+    CHECK(bench.is("out.Done"));
+    CHECK(bench.is("gear.CommandAborted"));
+    CHECK(bench.axis("s").state == AxisState::continuous_motion);
+    bench.step(300);
+    CHECK(bench.number("m.velocity") == 0);
+    CHECK(bench.number("s.velocity") == 100);
+    bench.set("stop.Execute", true);
+    bench.step(103);
+    CHECK(bench.number("s.velocity") == 0);
+    CHECK(bench.axis("s").state == AxisState::stopping);
+}
+
+TEST_CASE("MC_PhasingAbsolute and MC_PhasingRelative shift the master that the slave sees") {
+    MotionBench bench(line_shaft);
+    bench.set("run.Execute", true);
+    bench.set("gear.Execute", true);
+    bench.step(400);
+    const double before = relative(bench);
+    bench.check(R"(
+    ms    phase.Execute more.Execute | phase.Busy phase.Done more.Busy more.Done phase.AbsolutePhaseShift s.velocity s.state
+    400   1             0            | 1          0          0         0         0                        100        synchronized_motion
+    451   .             .            | 1          0          0         0         1.25                        150           synchronized_motion
+    501   .             .            | 1          0          0         0         5                           . synchronized_motion
+    601   .             .            | 1          0          0         0         10                       100           synchronized_motion
+    603   0             1            | 0          0          1         0         10                       100        synchronized_motion
+    806   .             0            | 0          0          0         0         20                       100        synchronized_motion )");
+    CHECK(relative(bench) - before == Approx(20).margin(1e-9));
+    CHECK(bench.is("gear.InGear"));
+}
+
+TEST_CASE("a master in a loop is refused") {
+    MotionBench bench(line_shaft);
+    for (const char* gear : {"gear.Execute", "third.Execute"}) bench.set(gear, true);
+    bench.step(3);
+    bench.set("back.Execute", true);
+    bench.step(3);
+    CHECK(bench.is("back.Error"));
+    CHECK(std::get<std::int64_t>(bench.get("back.ErrorID")) ==
+          static_cast<std::int64_t>(MotionError::master_loop));
+    CHECK(bench.axis("m").state == AxisState::standstill);
+    CHECK(bench.is("gear.InGear"));
+}
+
+TEST_CASE("a master whose position is set anew does not move its slave") {
+    MotionBench bench(line_shaft);
+    bench.set("run.Execute", true);
+    bench.set("gear.Execute", true);
+    bench.step(400);
+    const double before = bench.number("s.position");
+    bench.set("set.Execute", true);
+    bench.step(10);
+    CHECK(bench.number("m.position") > 4000);
+    CHECK(bench.number("s.position") == Approx(before + 1).margin(1e-9));
+    CHECK(bench.number("s.velocity") == 100);
+}
+
+namespace {
+
+/// A master that accelerates with 50 mm/s^2, default limits, ratio 1 and then 1.1.
+constexpr const char* accelerating = R"(
+tasks: {main: {every: 1 ms}}
+blocks:
+  m: {type: axis, task: main, default_jerk: 0 mm/s^3}
+  s: {type: axis, task: main}
+  run: {type: MC_MoveVelocity, task: main, Axis: m, Velocity: 1 m/s, Acceleration: 50 mm/s^2}
+  gear: {type: MC_GearIn, task: main, Master: m, Slave: s}
+  gear2: {type: MC_GearIn, task: main, Master: m, Slave: s, RatioNumerator: 11, RatioDenominator: 10}
+)";
+
+}  // namespace
+
+TEST_CASE("a slave gets in gear with a master that accelerates, two scans from the optimum") {
+    MotionBench bench(accelerating);
+    bench.set("run.Execute", true);
+    bench.set("gear.Execute", true);
+    bench.step(2000);
+    REQUIRE(bench.is("gear.InGear"));
+    bench.set("gear2.Execute", true);
+    bench.step(2);  // sent, and taken up in the scan after that
+    const MotionState master = bench.axis("m").total(), slave = bench.axis("s").total();
+    REQUIRE(master.acceleration == 50);
+    int scans = 0;
+    for (; !bench.is("gear2.InGear") && scans < 1000; ++scans) bench.step();
+    // By bisection: what the slave can gain in a time, against what it has to.
+    const double A = 1000, J = 5e4, a0 = slave.acceleration, end = 1.1 * 50;
+    const auto gain = [&](double t) {
+        const double peak = std::min(A, 0.5 * (J * t + a0 + end));
+        const double up = (peak - a0) / J, down = (peak - end) / J;
+        return 0.5 * (a0 + peak) * up + peak * (t - up - down) + 0.5 * (peak + end) * down;
+    };
+    double low = std::abs(end - a0) / J, high = 10;
+    for (int i = 0; i < 100; ++i) {
+        const double t = 0.5 * (low + high);
+        const double needed = 1.1 * master.after(t).velocity - slave.velocity;
+        (gain(t) < needed ? low : high) = t;
+    }
+    INFO("optimum " << high * 1e3 << " ms, in gear after " << scans << " scans");
+    CHECK(scans >= high * 1e3);
+    CHECK(scans <= high * 1e3 + 2);
+}

@@ -1,0 +1,90 @@
+#include "runtime/serve/registers.hpp"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+using namespace lineshaft;
+
+namespace {
+
+using enum RegisterType;
+using Words = std::array<std::uint16_t, 4>;
+
+MappedSignal mapped(RegisterType type, int count, Type of, double scale = 1) {
+    MappedSignal signal{.count = count, .type = type, .scale = scale, .signal = {}};
+    signal.signal.type = of;
+    return signal;
+}
+
+Words written(const MappedSignal& signal, const Value& value) {
+    Words words{};
+    to_registers(signal, value, words);
+    return words;
+}
+
+}  // namespace
+
+TEST_CASE("registers have the words and bytes that are said") {
+    MappedSignal signal = mapped(int32, 2, Type::integer);
+    CHECK(written(signal, std::int64_t{0x12345678}) == Words{0x1234, 0x5678});
+    signal.low_first = true;
+    CHECK(written(signal, std::int64_t{0x12345678}) == Words{0x5678, 0x1234});
+    signal.little = true;
+    CHECK(written(signal, std::int64_t{0x12345678}) == Words{0x7856, 0x3412});
+    CHECK(written(mapped(real32, 2, Type::real), 1.5) == Words{0x3FC0, 0});
+    CHECK(written(mapped(uint16, 1, Type::boolean), true) == Words{1});
+    CHECK(written(mapped(int16, 1, Type::real, 0.001), -0.5) == Words{0xFE0C});
+}
+
+TEST_CASE("what a type does not have is the nearest that it has") {
+    CHECK(written(mapped(int16, 1, Type::integer), std::int64_t{40000}) == Words{0x7FFF});
+    CHECK(written(mapped(int16, 1, Type::integer), std::int64_t{-40000}) == Words{0x8000});
+    CHECK(written(mapped(uint16, 1, Type::real), -1.0) == Words{0});
+    CHECK(written(mapped(uint16, 1, Type::real), std::nan("")) == Words{0});
+    CHECK(written(mapped(int64, 4, Type::real), 1e300) == Words{0x7FFF, 0xFFFF, 0xFFFF, 0xFFFF});
+    CHECK(written(mapped(uint64, 4, Type::integer), std::numeric_limits<std::int64_t>::min()) ==
+          Words{});
+}
+
+TEST_CASE("a value that its registers have comes back from them") {
+    std::mt19937_64 random(7);
+    struct Kind {
+        RegisterType type;
+        int count;
+    };
+    for (int n = 0; n < 20'000; ++n) {
+        const Kind kind = std::array<Kind, 5>{
+            {{int16, 1}, {int32, 2}, {int64, 4}, {uint32, 2}, {uint16, 1}}}[random() % 5];
+        MappedSignal signal = mapped(kind.type, kind.count, Type::integer);
+        signal.little = random() % 2;
+        signal.low_first = random() % 2;
+        Words words{};
+        for (int i = 0; i < kind.count; ++i)
+            words[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(random());
+        const auto value = from_registers(signal, words);
+        REQUIRE(value);
+        REQUIRE(written(signal, *value) == words);
+        signal = mapped(real64, 4, Type::real);
+        const double real = std::bit_cast<double>(random());
+        const auto again = from_registers(signal, written(signal, real));
+        REQUIRE(again.has_value() == std::isfinite(real));
+        if (again) REQUIRE(std::get<double>(*again) == real);
+    }
+}
+
+TEST_CASE("registers without a value of the signal's have none") {
+    static constexpr std::string_view names[] = {"idle", "runs"};
+    MappedSignal choice = mapped(uint16, 1, Type::enumeration);
+    choice.signal.names = names;
+    CHECK(from_registers(choice, Words{1}) == Value{std::int64_t{1}});
+    CHECK_FALSE(from_registers(choice, Words{2}));
+    CHECK_FALSE(from_registers(mapped(uint16, 1, Type::boolean), Words{2}));
+    CHECK_FALSE(from_registers(mapped(real32, 2, Type::integer), Words{0x3FC0, 0}));
+    CHECK_FALSE(from_registers(mapped(uint64, 4, Type::integer), Words{0x8000}));
+    CHECK_FALSE(from_registers(mapped(real32, 2, Type::real), Words{0x7F80, 0}));
+}

@@ -1,0 +1,377 @@
+#!/usr/bin/python3
+"""`lineshaft serve` and real clients: urllib, curl, pymodbus, bare sockets. Nothing here is a matter of time: how well
+the clock is kept is measured by tools/bench/serve.py.
+
+usage: serve.py LINESHAFT SOURCE_DIR [RECORDINGS [SEED]]        so many random recordings are played back
+"""
+
+import http.client
+import json
+import pathlib
+import random
+import re
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import urllib.error
+import urllib.request
+
+from pymodbus.client import ModbusTcpClient
+from pymodbus.constants import Endian
+from pymodbus.payload import BinaryPayloadDecoder
+
+PROGRAM = """lineshaft: 1
+title: A random line
+tasks:
+  servo: {every: 2 ms, priority: 26, jitter: 0.3 ms}
+  main: {every: 5 ms, priority: 1, cost: 1 ms, cost_jitter: 50 %}
+  event: {on: [inputs.go], priority: 30}
+blocks:
+  shaft: {type: virtual_axis, task: servo, velocity: 100 mm/s, acceleration: 1000 mm/s^2, enable: inputs.go}
+  slave:
+    type: gear_axis
+    task: servo
+    master_position: shaft.position
+    master_velocity: shaft.velocity
+    ratio: inputs.ratio
+    acceleration: 5000 mm/s^2
+  late: {type: ton, task: main, in: inputs.go, pt: 20 ms}
+  counter: {type: ctu, task: event, cu: inputs.count, pv: 5}
+  channel: {type: pto, task: main, start_rate: 1 kHz, count: 40, execute: late.q}
+inputs: {go: false, count: false, ratio: 1.5}
+stimulus: [{at: 30 ms, set: {inputs.count: true}}]
+force: [{from: 100 ms, until: 150 ms, set: {slave.ratio: 3}}]
+modbus:
+  coils: {5: {signal: inputs.go, write: true}, 6: {signal: inputs.count, write: true}}
+  discrete_inputs: {0: late.q}
+  holding_registers:
+    10: {signal: inputs.ratio, type: real32, write: true}
+    12: {signal: shaft.position, type: real64, words: low_first}
+    20: {signal: inputs.ratio, type: int16, scale: 0.01}
+  input_registers: {0: counter.cv}
+run: {for: 1 s}
+trace: {task: servo, signals: [shaft.position, slave.position, slave.velocity, late.q, counter.cv, inputs.ratio]}
+"""
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Machine:
+    """A served program; its clients' answers are checked to be JSON."""
+
+    def __init__(self, *options, program="program.yaml", write=True):
+        self.port, self.modbus_port = free_port(), free_port()
+        self.process = subprocess.Popen(
+            [COMMAND, "serve", program, "--http", f"127.0.0.1:{self.port}", "--modbus",
+             f"127.0.0.1:{self.modbus_port}", *(["--allow-write"] if write else []), *options],
+            cwd=FOLDER, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        said = self.process.stderr.readline()
+        assert said.startswith("serving "), said + self.process.stderr.read()
+
+    def ask(self, path, body=None, headers=None, method=None):
+        data = None if body is None else json.dumps(body).encode()
+        request = urllib.request.Request(f"http://127.0.0.1:{self.port}{path}", data, headers or {}, method=method)
+        try:
+            with urllib.request.urlopen(request, timeout=20) as response:
+                return response.status, json.loads(response.read())
+        except urllib.error.HTTPError as error:
+            return error.code, json.loads(error.read())
+
+    def get(self, path):
+        status, answer = self.ask(f"/api/{path}")
+        assert status == 200, answer
+        return answer
+
+    def post(self, path, body=None):
+        status, answer = self.ask(f"/api/{path}", {} if body is None else body)
+        assert status == 200, answer
+        return answer
+
+    def value(self, name):
+        return self.get(f"values?signals={name}")["values"][name]
+
+    def modbus(self):
+        client = ModbusTcpClient("127.0.0.1", port=self.modbus_port, timeout=20)
+        assert client.connect()
+        return client
+
+    def end(self, how=signal.SIGINT):
+        self.process.send_signal(how)
+        out, errors = self.process.communicate(timeout=30)
+        return self.process.returncode, out, errors
+
+
+def run(*arguments):
+    return subprocess.run([COMMAND, *arguments], cwd=FOLDER, capture_output=True, text=True, timeout=120)
+
+
+def eventually(holds):
+    for _ in range(2000):
+        if holds():
+            return
+        time.sleep(0.005)
+    raise AssertionError("did not come")
+
+
+def scans_of(state, task):
+    return next(each["scans"] for each in state["pace"]["tasks"] if each["name"] == task)
+
+
+def check_api():
+    machine = Machine()
+    assert not machine.get("state")["paused"]
+    signals = {each["name"]: each for each in machine.get("signals")}
+    assert signals["shaft.position"] == {"name": "shaft.position", "type": "real", "unit": "mm", "settable": False,
+                                         "traced": True}
+    assert signals["inputs.go"]["settable"]
+    machine.post("pause")
+    before = machine.get("state")
+    assert before["paused"]
+    after = machine.post("step", {"scans": 7, "task": "servo"})
+    assert after["paused"] and scans_of(after, "servo") == scans_of(before, "servo") + 7, (before, after)
+    goal = after["time_ns"] + 40_000_000
+    machine.post("run_until", {"time": f"{goal} ns"})
+    eventually(lambda: machine.get("state")["paused"])
+    assert machine.get("state")["time_ns"] == goal
+    assert machine.post("set", {"inputs.go": True, "inputs.ratio": 2})["time_ns"] == goal + 1
+    machine.post("resume")
+    eventually(lambda: machine.value("inputs.go") is True)
+    eventually(lambda: machine.value("shaft.velocity") > 0)
+    machine.post("force", {"slave.ratio": 0.5, "shaft.velocity": "1 cm/s"})
+    eventually(lambda: machine.value("shaft.velocity") == 10)
+    forced = machine.get("state")["forced"]
+    assert forced == {"slave.ratio": "0.5 mm/mm", "shaft.velocity": "10 mm/s"}, forced
+    machine.post("release", {"signals": ["slave.ratio", "shaft.velocity"]})
+    eventually(lambda: machine.get("state")["forced"] == {} and machine.value("shaft.velocity") != 10)
+    machine.post("speed", {"speed": "max"})
+    eventually(lambda: machine.get("state")["time_s"] > 10)
+    code, _, errors = machine.end()
+    assert code == 0, errors
+
+
+def check_refusals():
+    machine = Machine()
+    for path, body, words in [
+        ("set", {"inputs.gp": True}, "no input 'gp'"),
+        ("set", {"inputs.go": 2}, "2"),
+        ("set", {"shaft.position": 2}, "is an output"),
+        ("set", {"slave.ratio": 2}, "is wired"),
+        ("set", {"inputs.go": [[]]}, "expected"),
+        ("set", [], "expected"),
+        ("force", {"shaft.velocity": "1 kg"}, "kg"),
+        ("release", {"signals": "x"}, "expected"),
+        ("step", {"scans": 0}, "'scans'"),
+        ("step", {"task": "none"}, "task"),
+        ("speed", {"speed": -1}, "speed"),
+        ("run_until", {"time": "soon"}, "soon"),
+    ]:
+        status, answer = machine.ask(f"/api/{path}", body)
+        assert status == 400 and words in json.dumps(answer), (path, body, answer)
+    assert machine.ask("/api/values?signals=shaft.positon")[0] == 400
+    assert machine.ask("/api/nothing")[0] == 404
+    assert machine.ask("/etc/passwd")[0] == machine.ask("/../../etc/passwd")[0] == 404
+    assert machine.ask("/api/state", {})[0] == 405
+    for headers in ({"Host": "evil.example"}, {"Origin": "http://evil.example"}):
+        assert machine.ask("/api/state", headers=headers)[0] == 403
+        assert machine.ask("/api/set", {"inputs.go": True}, headers=headers)[0] == 403
+    document = machine.get("openapi.json")
+    assert document == json.loads(run("serve", "--openapi", "program.yaml").stdout)
+    for path, methods in document["paths"].items():
+        for method in methods:
+            if path != "/api/stream":
+                assert machine.ask(path, {} if method == "post" else None)[0] in (200, 400), path
+    connection = http.client.HTTPConnection("127.0.0.1", machine.port, timeout=20)
+    connection.request("POST", "/api/set", b"x" * 100_000)
+    assert connection.getresponse().status == 413
+    curl = subprocess.run(["curl", "-s", "-d", "{", f"http://127.0.0.1:{machine.port}/api/set"], capture_output=True,
+                          text=True, timeout=20)
+    assert "not JSON" in curl.stdout
+    second = run("serve", "program.yaml", "--http", f"127.0.0.1:{machine.port}")
+    assert second.returncode == 2 and "L0510" in second.stderr and "another port" in second.stderr, second.stderr
+    third = run("serve", "program.yaml", "--http", "off", "--allow-write")
+    assert third.returncode == 2 and "L0512" in third.stderr, third.stderr
+    for address in ("127.0.0.1", "nowhere:80", "127.0.0.1:0", "127.0.0.1:70000"):
+        assert run("serve", "program.yaml", "--http", address).returncode == 2
+    assert machine.end()[0] == 0
+    reader = Machine(write=False)
+    status, answer = reader.ask("/api/set", {"inputs.go": True})
+    assert status == 403 and "--allow-write" in answer["help"]
+    assert reader.modbus().write_coil(5, True).exception_code == 1
+    assert reader.value("inputs.go") is False
+    assert reader.end()[0] == 0
+
+
+def check_modbus():
+    machine = Machine()
+    client = machine.modbus()
+    eventually(lambda: client.read_coils(5, 2).bits[:2] == [False, True])  # the program sets it at 30 ms
+    assert not client.write_coil(5, True).isError()
+    eventually(lambda: client.read_coils(5, 1).bits[0])
+    assert machine.value("inputs.go") is True
+    assert not client.write_registers(10, [0x4020, 0]).isError()  # 2.5
+    eventually(lambda: machine.value("inputs.ratio") == 2.5)
+    assert client.read_holding_registers(20, 1).registers == [250]
+    machine.post("pause")
+    registers = client.read_holding_registers(12, 4).registers
+    decoder = BinaryPayloadDecoder.fromRegisters(registers, byteorder=Endian.Big, wordorder=Endian.Little)
+    assert decoder.decode_64bit_float() == machine.value("shaft.position") > 0
+    machine.post("resume")
+    eventually(lambda: client.read_discrete_inputs(0, 1).bits[0])
+    exceptions = [
+        (client.read_coils(0, 1), 2), (client.read_coils(5, 3), 2), (client.read_holding_registers(10, 7), 2),
+        (client.write_register(10, 1), 2),  # half of a value
+        (client.write_registers(12, [0] * 4), 2), (client.write_register(20, 1), 2),  # only read
+        (client.write_registers(10, [0x7FC0, 0]), 3),  # not a number
+        (client.write_coils(5, [True] * 3), 2)]
+    for answer, code in exceptions:
+        assert answer.isError() and answer.exception_code == code, (answer, code)
+    others = [machine.modbus() for _ in range(8)]
+    half = socket.create_connection(("127.0.0.1", machine.modbus_port))
+    half.sendall(b"\x00\x01\x00\x00\x00\x06\x01\x03\x00")  # and no more
+    for other in others:
+        assert other.read_holding_registers(10, 2).registers == [0x4020, 0]
+    wrong = socket.create_connection(("127.0.0.1", machine.modbus_port), timeout=20)
+    wrong.sendall(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n")
+    try:
+        while wrong.recv(100):
+            pass
+    except ConnectionResetError:
+        pass
+    for request, answer in [
+        (struct.pack(">BHHBH", 16, 10, 2, 2, 0), b"\x90\x03"),  # two registers, bytes of one
+        (struct.pack(">BHH", 3, 10, 126), b"\x83\x03"), (struct.pack(">BHH", 1, 5, 0), b"\x81\x03"),
+        (struct.pack(">BHH", 5, 5, 1), b"\x85\x03"), (b"\x2b\x0e\x01\x00\x00", b"\xab\x01"), (b"\x07", b"\x87\x01"),
+        (b"\x11", b"\x91\x01"), (struct.pack(">BHHH", 22, 20, 0, 1), b"\x96\x02"),
+        (struct.pack(">BHHHHB", 23, 10, 2, 10, 2, 4) + b"\x3f\xc0\0\0", b"\x17\x04\x3f\xc0\0\0"),  # 1.5
+    ]:
+        raw = socket.create_connection(("127.0.0.1", machine.modbus_port), timeout=20)
+        raw.sendall(struct.pack(">HHHB", 7, 0, 1 + len(request), 1) + request)
+        assert (got := raw.recv(100)) == struct.pack(">HHHB", 7, 0, 1 + len(answer), 1) + answer, (request, got)
+        raw.close()
+    assert machine.end()[0] == 0
+
+
+def check_stream():
+    machine = Machine("--speed", "10")
+    connection = http.client.HTTPConnection("127.0.0.1", machine.port, timeout=20)
+    connection.request("GET", "/api/stream?signals=shaft.position,late.q&every=4ms")
+    response = connection.getresponse()
+    seen = {}
+    while seen.get("rows", 0) < 200:
+        event = response.readline().decode().strip().removeprefix("event: ")
+        data = json.loads(response.readline().decode().removeprefix("data: "))
+        response.readline()
+        if event == "rows":
+            times = data["time"]
+            assert all(len(column) == len(times) for column in data["values"])
+            assert times == sorted(set(times)) and (not times or times[0] > seen.get("last", -1))
+            seen["rows"] = seen.get("rows", 0) + len(times)
+            seen["last"] = times[-1] if times else seen.get("last", -1)
+        elif event == "signals":
+            assert [each["name"] for each in data] == ["shaft.position", "late.q"]
+        else:
+            assert event == "state" and data["speed"] == 10
+    slow = [http.client.HTTPConnection("127.0.0.1", machine.port, timeout=20) for _ in range(3)]
+    for each in slow:
+        each.request("GET", "/api/stream?signals=shaft.position")  # and it reads nothing
+    scans = scans_of(machine.get("state"), "servo")
+    eventually(lambda: scans_of(machine.get("state"), "servo") > scans + 100)
+    page = urllib.request.urlopen(f"http://127.0.0.1:{machine.port}/", timeout=20).read().decode()
+    assert "uPlot" in page and not re.search(r"(src|href)=.https?:", page)
+    assert machine.end()[0] == 0
+
+
+def write_at_random(machine, rng, until):
+    """A client that does what it likes."""
+    client = machine.modbus()
+    while time.monotonic() < until:
+        ratio, flag = round(rng.uniform(0.1, 3), 3), rng.random() < 0.5
+        rng.choice([
+            lambda: machine.post("set", {"inputs.go": flag, "inputs.ratio": ratio}),
+            lambda: machine.post("set", {"inputs.count": flag}),
+            lambda: machine.post("force", {"slave.ratio": ratio}),
+            lambda: machine.post("force", {"shaft.velocity": f"{ratio} cm/s", "late.q": flag}),
+            lambda: machine.post("release", {"signals": ["slave.ratio"]}),
+            lambda: machine.post("release", {"signals": ["shaft.velocity", "late.q"]}),
+            lambda: machine.post("pause"), lambda: machine.post("resume"), lambda: machine.post("resume"),
+            lambda: machine.post("step", {"scans": rng.randrange(1, 20)}),
+            lambda: machine.post("speed", {"speed": rng.choice([0.3, 1, 5, 30])}),
+            lambda: client.write_coil(5, flag), lambda: client.write_coil(6, flag),
+            lambda: client.write_registers(10, list(struct.unpack(">HH", struct.pack(">f", ratio)))),
+        ])()
+        time.sleep(rng.random() * 0.01)
+    client.close()
+
+
+def check_recordings(count, seed):
+    rng = random.Random(seed)
+    entries = 0
+    for number in range(count):
+        machine = Machine("--trace", "live.csv", "--record", "live.yaml", "--speed", rng.choice(["0.5", "1", "10"]),
+                          "--late", rng.choice(["skip", "catch_up"]))
+        until = time.monotonic() + 0.7
+        writers = [threading.Thread(target=write_at_random, args=(machine, random.Random(rng.random()), until))
+                   for _ in range(3)]
+        for writer in writers:
+            writer.start()
+        for writer in writers:
+            writer.join()
+        code, out, errors = machine.end()
+        assert code == 0, (seed, number, errors)
+        again = run("run", "program.yaml", "--recording", "live.yaml", "--trace", "again.csv")
+        assert again.returncode == 0, (seed, number, again.stderr)
+        for live, played in (("live.csv", "again.csv"), ("live.events.csv", "again.events.csv")):
+            lines, others = ((FOLDER / name).read_text().splitlines() for name in (live, played))
+            assert lines == others, (seed, number, live, len(lines), len(others), set(lines) ^ set(others))
+        entries += (FOLDER / "live.yaml").read_text().count("\n- ")
+    print(f"{count} recordings of {entries} entries played back to the same bytes, seed {seed}")
+
+
+def check_kills(count, seed):
+    rng = random.Random(seed)
+    for number in range(count):
+        machine = Machine("--record", "killed.yaml", "--trace", "killed.csv")
+        writer = threading.Thread(target=lambda: [machine.ask("/api/set", {"inputs.ratio": k}) for k in range(1, 300)])
+        threading.excepthook = lambda _: None  # its connection is refused then
+        writer.start()
+        time.sleep(rng.random() * 0.3)
+        machine.end(signal.SIGKILL)
+        writer.join()
+        threading.excepthook = threading.__excepthook__
+        again = run("run", "program.yaml", "--recording", "killed.yaml", "--json")
+        assert again.returncode == 0, (seed, number, again.stderr)
+        whole = (FOLDER / "killed.yaml").read_text().rsplit("\n", 1)[0].split("entries:", 1)
+        last = re.findall(r"at: ([0-9.]+) s", whole[1] if len(whole) > 1 else "") or ["0"]
+        assert abs(json.loads(again.stdout)["machine_time_s"] - float(last[-1])) < 1e-12, (seed, number)
+
+
+def main():
+    global COMMAND, FOLDER
+    COMMAND, source = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
+    recordings = int(sys.argv[3]) if len(sys.argv) > 3 else 4
+    seed = int(sys.argv[4]) if len(sys.argv) > 4 else random.randrange(10**9)
+    with tempfile.TemporaryDirectory() as folder:
+        FOLDER = pathlib.Path(folder)
+        (FOLDER / "program.yaml").write_text(PROGRAM, encoding="utf-8")
+        check_api()
+        check_refusals()
+        check_modbus()
+        check_stream()
+        check_recordings(recordings, seed)
+        check_kills(max(2, recordings // 2), seed)
+        served = Machine("--speed", "max", "--for", "1 h", program=source / "programs" / "13_served_line.yaml")
+        assert served.process.wait(60) == 0
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,86 @@
+#include <filesystem>
+
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include "runtime/trace/output_file.hpp"
+#include "tools/lineshaft/command.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+/// {0} is the file's name without its ending.
+constexpr const char* program_text =
+    R"(# {0}: one axis, and one command to it. Try, and then change:
+#   lineshaft run {0}.yaml --trace {0}.csv       expectations, and the trace below
+#   lineshaft report {0}.csv -o {0}.html         a page to look at
+#   lineshaft test {0}.yaml                      the same as a regression test
+#   lineshaft blocks MC_MoveAbsolute             a block's pins; lineshaft form: all that a program may say
+lineshaft: 1
+title: One axis, one move
+parameters:                      # --set target=80mm
+  target: 50 mm
+tasks:                           # the larger priority runs first
+  servo: {{every: 1 ms, priority: 26}}
+  main: {{every: 10 ms}}
+blocks:
+  x:
+    type: axis                   # the technology object; commands refer to it
+    task: servo
+    default_velocity: 100 mm/s
+    default_acceleration: 1000 mm/s^2
+    default_deceleration: 1000 mm/s^2
+    default_jerk: 5e4 mm/s^3
+  move:
+    type: MC_MoveAbsolute
+    task: main                   # what it commands counts when this task has published it
+    Axis: x
+    Position: $target
+    Execute: inputs.start        # a wire; a rising edge starts the move
+inputs: {{start: false}}           # from outside
+stimulus:
+  - {{at: 20 ms, set: {{inputs.start: true}}}}
+run: {{for: 1.5 s}}
+trace: {{task: servo, signals: [x.position, x.velocity, x.acceleration, x.state, move.Done]}}
+expect:
+  - {{within 1 s of inputs.start: move.Done}}
+  - {{at: end, x.position: $target, within: 1e-9 mm}}
+  - {{always: x.velocity, at_most: 100.000001 mm/s}}
+)";
+
+struct NewCommand {
+    std::string name;
+    bool quiet = false;
+};
+
+Exit execute(const NewCommand& command) {
+    std::filesystem::path path = command.name;
+    if (path.extension() != ".yaml") path += ".yaml";
+    std::error_code unknown;
+    if (std::filesystem::exists(path, unknown)) {
+        spdlog::error("'{}' is there already; name another file", path.string());
+        return Exit::wrong;
+    }
+    OutputFile file(path.string());
+    file.write(fmt::format(program_text, path.stem().string()));
+    if (!file.commit()) {
+        spdlog::error("{}", file.error());
+        return Exit::fault;
+    }
+    if (!command.quiet)
+        fmt::print("{0}: a program that runs; try: lineshaft run {0}\n", path.string());
+    return Exit::fine;
+}
+
+}  // namespace
+
+void add_new(CLI::App& app, Exit& result) {
+    auto command = std::make_shared<NewCommand>();
+    CLI::App* sub = app.add_subcommand("new", "Write a commented program to begin with");
+    sub->add_option("name", command->name, "The program's file; .yaml may be left out")->required();
+    sub->add_flag("--quiet", command->quiet, "Print messages only");
+    sub->callback([command, &result] { result = execute(*command); });
+}
+
+}  // namespace lineshaft

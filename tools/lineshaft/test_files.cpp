@@ -1,0 +1,260 @@
+#include "tools/lineshaft/test_files.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/core.h>
+
+#include "blocks/catalog.hpp"
+#include "runtime/fit/fit.hpp"
+#include "runtime/run/single_run.hpp"
+#include "runtime/st/test_suite.hpp"
+#include "runtime/study/report.hpp"
+#include "runtime/study/study_reader.hpp"
+#include "tools/lineshaft/command.hpp"
+#include "tools/lineshaft/fit_table.hpp"
+#include "tools/lineshaft/study_table.hpp"
+
+namespace lineshaft {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_yaml(const fs::path& path) {
+    return path.extension() == ".yaml";
+}
+
+/// All files below a folder, or in it, of which `wanted` is true, sorted; of a file that file.
+template <class Wanted>
+std::vector<std::string> files_of(const std::string& path, bool below, Wanted wanted) {
+    if (!fs::is_directory(path)) return {path};
+    std::vector<std::string> files;
+    const auto take = [&](const fs::directory_entry& entry) {
+        if (entry.is_regular_file() && wanted(entry.path()))
+            files.push_back(entry.path().lexically_normal().string());
+    };
+    constexpr auto options = fs::directory_options::skip_permission_denied;
+    if (below)
+        for (const auto& entry : fs::recursive_directory_iterator(path, options)) take(entry);
+    else
+        for (const auto& entry : fs::directory_iterator(path, options)) take(entry);
+    std::ranges::sort(files);
+    return files;
+}
+
+bool can_be_tested(const fs::path& path) {
+    const bool yaml = is_yaml(path);
+    if (!yaml && !is_structured_text(path)) return false;
+    Diagnostics unread;
+    const auto file = read_source(path.string(), unread);
+    if (!file) return false;
+    return yaml ? is_study(*file) || is_fit(*file) || is_program(*file) : st::is_test_file(file);
+}
+
+void add_sources(st::SourcePool& pool, const std::string& path, bool below) {
+    Diagnostics unread;
+    for (const std::string& file : files_of(path, below, is_structured_text))
+        if (const auto source = read_source(file, unread)) pool.add(source);
+}
+
+std::shared_ptr<const st::SourcePool> sources_for(const std::string& path,
+                                                  const std::vector<std::string>& more) {
+    auto pool = std::make_shared<st::SourcePool>();
+    for (const std::string& source : more) add_sources(*pool, source, true);
+    if (fs::is_directory(path)) {
+        add_sources(*pool, path, true);
+    } else if (is_structured_text(path)) {
+        const fs::path folder = fs::path(path).parent_path();
+        const std::string name = folder.filename().string();
+        add_sources(*pool, folder.empty() ? "." : folder.string(), false);
+        if (name == "tests" || name == "test")
+            add_sources(*pool, (folder / "..").lexically_normal().string(), false);
+    }
+    return pool;
+}
+
+SuiteEntry wrong(const std::string& name, const std::string& messages) {
+    return {.name = name, .failures = {messages}, .error = true};
+}
+
+SuiteEntry test_study(const std::shared_ptr<const SourceFile>& file, const TestOptions& options) {
+    Diagnostics out;
+    const Catalog catalog = standard_blocks();
+    const Study study =
+        read_study(file, {.settings = {}, .include_dirs = options.include_dirs}, catalog, out);
+    if (!out.empty()) return wrong(file->path, out.render());
+    const StudyReport report = run(
+        study, catalog, {.jobs = options.jobs, .interrupt = &interrupt_requested, .progress = {}});
+    SuiteEntry entry{.name = file->path,
+                     .wall_seconds = report.wall_seconds,
+                     .failures = {},
+                     .error = !report.faults.empty(),
+                     .repeat = "lineshaft study " + file->path};
+    if (entry.error)
+        entry.failures.push_back(report.faults.front());
+    else if (!report.deviations.empty())
+        entry.failures = report.deviations;
+    else if (!report.ok())
+        entry.failures.push_back(first_failure(report));
+    return entry;
+}
+
+SuiteEntry test_fit(const std::shared_ptr<const SourceFile>& file, const TestOptions& options) {
+    Diagnostics out;
+    const Catalog catalog = standard_blocks();
+    const FitPlan plan =
+        read_fit(file, {.settings = {}, .include_dirs = options.include_dirs}, catalog, out);
+    if (!out.empty()) return wrong(file->path, out.render());
+    const FitReport report =
+        run(plan, catalog, {.jobs = options.jobs, .interrupt = &interrupt_requested});
+    SuiteEntry entry{.name = file->path,
+                     .wall_seconds = report.wall_seconds,
+                     .failures = report.faults,
+                     .error = !report.faults.empty() || report.values.empty(),
+                     .repeat = "lineshaft fit " + file->path};
+    if (entry.error && entry.failures.empty()) entry.failures = {"no start could begin"};
+    if (!entry.error && !report.ok())
+        entry.failures = {"a value is outside of its 'within'\n" + fit_table(plan, report)};
+    return entry;
+}
+
+/// A run is the same each time: so a program that has failed runs once more, traced.
+void trace_failed(const std::string& path, const TestOptions& options, SuiteEntry& entry) {
+    Diagnostics out;
+    auto loaded = load_program(path, {.settings = {}, .include_dirs = options.include_dirs},
+                               standard_blocks(), out);
+    if (!loaded) return;
+    if (loaded->program.traces.empty()) {
+        entry.warnings += fmt::format("warning: {} has no 'trace:', so it is not traced\n", path);
+        return;
+    }
+    std::string name = path;
+    std::ranges::replace(name, '/', '_');
+    const std::string trace =
+        (fs::path(options.traces_folder) / fs::path(name).replace_extension(".csv")).string();
+    const RunReport report =
+        run(*loaded, {.trace_path = trace, .interrupt = &interrupt_requested, .progress = {}});
+    if (report.output_error.empty())
+        entry.repeat += " --trace " + trace;
+    else
+        entry.failures.push_back(report.output_error);
+}
+
+SuiteEntry test_program(const std::string& path, const TestOptions& options) {
+    Diagnostics out;
+    auto loaded = load_program(path, {.settings = {}, .include_dirs = options.include_dirs},
+                               standard_blocks(), out);
+    if (loaded && loaded->program.expectations.empty())
+        out.warn("L0804", {loaded->program.file, 0, 0, 1},
+                 "the program expects nothing, so it always passes",
+                 "say under 'expect:' what must hold");
+    if (options.strict) out.be_strict();
+    if (!out.empty()) return wrong(path, out.render());
+    const RunReport report =
+        run(*loaded, {.trace_path = {}, .interrupt = &interrupt_requested, .progress = {}});
+    SuiteEntry entry{.name = path,
+                     .wall_seconds = report.wall_seconds,
+                     .failures = {},
+                     .error = report.faulted(),
+                     .warnings = out.render(),
+                     .repeat = "lineshaft run " + path};
+    if (entry.error) entry.failures.push_back(report.result.message);
+    for (const Verdict& verdict : report.verdicts)
+        if (!verdict.ok) entry.failures.push_back(verdict.deviation);
+    for (const std::string& text : report.never_looked_at) {
+        const std::string unseen =
+            fmt::format("'{}' is never looked at: its task never scans", text);
+        if (options.strict) entry.failures.push_back(unseen);
+        if (!options.strict) entry.warnings += fmt::format("warning: {}\n", unseen);
+    }
+    if (!entry.failures.empty() && !options.traces_folder.empty() && !interrupt_requested)
+        trace_failed(path, options, entry);
+    return entry;
+}
+
+std::string failure_text(const st::TestResult& result) {
+    std::string text =
+        fmt::format("{}:{}: {}", result.mark.file->path, result.mark.line, result.failure);
+    for (std::size_t i = 0; i < result.calls.size(); ++i)
+        text += (i == 0 ? " in " : ", called by ") + result.calls[i];
+    return text;
+}
+
+std::optional<st::TestSuite> compile(const TestFile& tests,
+                                     const std::shared_ptr<const SourceFile>& file,
+                                     Diagnostics& out) {
+    if (!st::is_test_file(file))
+        out.add("L0904", {file, 0, 0, 1}, "there is no TEST in this file",
+                "write TEST 'text' ... END_TEST");
+    if (!out.empty()) return {};
+    return st::compile_tests(file, tests.sources->needed_by(file), standard_blocks(), out);
+}
+
+std::string full_name(const TestFile& file, const st::Test& test) {
+    return file.path + ": " + test.name;
+}
+
+bool passes(const std::string& name, const TestOptions& options) {
+    return !options.filter || std::regex_search(name, *options.filter);
+}
+
+std::vector<SuiteEntry> test_structured_text(const TestFile& tests,
+                                             const std::shared_ptr<const SourceFile>& file,
+                                             const TestOptions& options) {
+    Diagnostics out;
+    const auto suite = compile(tests, file, out);
+    if (!suite) return {wrong(file->path, out.render())};
+    std::vector<SuiteEntry> entries;
+    for (std::size_t i = 0; i < suite->tests().size() && !interrupt_requested; ++i) {
+        const st::Test& test = suite->tests()[i];
+        if (!passes(full_name(tests, test), options)) continue;
+        const double start = wall_seconds();
+        const st::TestResult result = suite->run(i);
+        SuiteEntry entry{.name = test.name,
+                         .wall_seconds = wall_seconds() - start,
+                         .failures = {},
+                         .error = result.is_fault,
+                         .file = file->path,
+                         .line = static_cast<int>(test.mark.line)};
+        if (!result.failure.empty()) entry.failures.push_back(failure_text(result));
+        entries.push_back(std::move(entry));
+    }
+    return entries;
+}
+
+}  // namespace
+
+std::vector<TestFile> find_tests(const std::string& path, const std::vector<std::string>& sources) {
+    const auto pool = sources_for(path, sources);
+    std::vector<TestFile> tests;
+    for (const std::string& file : files_of(path, true, can_be_tested))
+        tests.push_back({file, pool});
+    return tests;
+}
+
+std::vector<std::string> test_names(const TestFile& file, const TestOptions& options) {
+    std::vector<std::string> names;
+    Diagnostics out;
+    const auto source = is_structured_text(file.path) ? read_source(file.path, out) : nullptr;
+    const auto suite = source ? compile(file, source, out) : std::nullopt;
+    if (suite)
+        for (const st::Test& test : suite->tests()) names.push_back(full_name(file, test));
+    else
+        names.push_back(file.path);
+    std::erase_if(names, [&](const std::string& name) { return !passes(name, options); });
+    return names;
+}
+
+std::vector<SuiteEntry> run_tests(const TestFile& file, const TestOptions& options) {
+    Diagnostics out;
+    const auto source = read_source(file.path, out);
+    if (!source) return {wrong(file.path, out.render())};
+    if (is_structured_text(file.path)) return test_structured_text(file, source, options);
+    if (!passes(file.path, options)) return {};
+    if (is_study(*source)) return {test_study(source, options)};
+    if (is_fit(*source)) return {test_fit(source, options)};
+    return {test_program(file.path, options)};
+}
+
+}  // namespace lineshaft

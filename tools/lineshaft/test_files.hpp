@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "runtime/st/test_sources.hpp"
+#include "runtime/study/junit.hpp"
+
+namespace lineshaft {
+
+/// A file that `lineshaft test` runs: a program, a study, a fit, or TESTs of Structured Text.
+struct TestFile {
+    std::string path;
+    std::shared_ptr<const st::SourcePool> sources;  ///< among which its TESTs find what they test
+};
+
+struct TestOptions {
+    std::vector<std::string> include_dirs;
+    std::optional<std::regex> filter;  ///< searched in `path` or `path: name of a TEST`
+    bool strict = false;
+    unsigned jobs = 1;          ///< of a study's or fit's runs
+    std::string traces_folder;  ///< where failed programs are traced; empty: nowhere
+};
+
+/// The file itself, or all that can be tested below a folder, sorted; with what its TESTs see: of a
+/// folder all below it, of a file its folder, and the one around that if it is `tests`.
+std::vector<TestFile> find_tests(const std::string& path, const std::vector<std::string>& sources);
+
+/// The names of what a file has under the filter: its path, or `path: name` of its TESTs.
+std::vector<std::string> test_names(const TestFile& file, const TestOptions& options);
+
+/// Runs it. Empty: the filter leaves nothing of it.
+std::vector<SuiteEntry> run_tests(const TestFile& file, const TestOptions& options);
+
+}  // namespace lineshaft

@@ -1,0 +1,145 @@
+import { get, post } from "#live/api";
+import { download, Scope } from "#live/scope";
+import { element, row } from "#page/dom";
+import { duration, number } from "#page/format";
+import { followTheme } from "#page/theme";
+
+const byId = (id) => document.getElementById(id);
+const retry = 1000; // ms
+const scope = new Scope(byId("plots"));
+let chosen = new Set();
+let stream = null;
+let state = null;
+let rows = new Map(); // of the table of signals
+
+function tell(text) {
+  byId("message").textContent = text;
+  byId("message").hidden = !text;
+}
+
+/** Does what a click asks for, and says why not. */
+const attempt = (task) => async (event) => {
+  event?.preventDefault();
+  try {
+    tell("");
+    const answer = await task(event);
+    if (answer?.pace) show(answer);
+  } catch (error) {
+    tell(error.message);
+  }
+};
+
+function show(now) {
+  state = now;
+  document.title = `${now.program} – lineshaft`;
+  document.querySelector("h1").textContent = now.program;
+  byId("time").textContent = `${now.time_s.toFixed(3)} s`;
+  byId("pause").textContent = now.paused ? "Go on" : "Pause";
+  const late = now.pace.overruns > 0 ? `, ${now.pace.overruns} overruns` : "";
+  byId("status").textContent = `${now.paused ? "paused" : `speed ${now.speed}`}${late}`;
+  const head = ["task", "scans", "p50", "p99", "greatest", "overruns"];
+  const us = (time) => duration(time / 1e6);
+  byId("tasks").replaceChildren(
+    element("tr", {}, ...head.map((title) => element("th", {}, title))),
+    ...now.pace.tasks.map(({ name, scans, overruns, lateness_us: late_us }) =>
+      row(name, String(scans), us(late_us.p50), us(late_us.p99), us(late_us.greatest), String(overruns))));
+  for (const [name, { force }] of rows) {
+    const is = name in now.forced;
+    force.textContent = is ? `release ${now.forced[name]}` : "force";
+    force.classList.toggle("forced", is);
+  }
+}
+
+/** Begins again by itself when the machine, or the way to it, is gone. */
+function connect() {
+  stream?.close();
+  location.replace(`#${[...chosen].join()}`);
+  if (chosen.size === 0) return;
+  stream = new EventSource(`/api/stream?signals=${encodeURIComponent([...chosen].join())}`);
+  const mine = stream;
+  const listen = (name, task) => mine.addEventListener(name, ({ data }) => task(JSON.parse(data)));
+  listen("signals", (signals) => scope.begin(signals));
+  listen("state", show);
+  listen("rows", (samples) => {
+    scope.add(samples);
+    if (samples.lost > 0) byId("status").title = `${samples.lost} rows came too fast for this page`;
+  });
+  mine.onerror = () => {
+    byId("status").textContent = "not connected, trying again …";
+    if (mine.readyState === EventSource.CLOSED && mine === stream) setTimeout(connect, retry);
+  };
+}
+
+function choose(name, is) {
+  if (is) chosen.add(name);
+  else chosen.delete(name);
+  connect();
+}
+
+function signalRow(signal) {
+  const { name, unit, settable } = signal;
+  const field = element("input", { type: "text", ariaLabel: `value of ${name}`,
+                                   placeholder: signal.names?.join(" | ") ?? unit });
+  const value = () => {
+    const text = field.value.trim();
+    if (text === "true" || text === "false") return text === "true";
+    return text !== "" && Number.isFinite(Number(text)) ? Number(text) : text;
+  };
+  const set = element("button", { hidden: !settable }, "set");
+  set.onclick = attempt(() => post("set", { [name]: value() }));
+  const force = element("button", {}, "force");
+  force.onclick = attempt(async () => {
+    const isForced = name in (state?.forced ?? {});
+    await (isForced ? post("release", { signals: [name] }) : post("force", { [name]: value() }));
+    return get("state");
+  });
+  const drawn = element("input", { type: "checkbox", checked: chosen.has(name), id: `draw ${name}` });
+  drawn.onchange = () => choose(name, drawn.checked);
+  const made = row(drawn, element("label", { htmlFor: drawn.id }, name), field, set, force);
+  made.dataset.name = name;
+  return [name, { made, force, drawn }];
+}
+
+/** Those of the address, else the program's trace, else a few. */
+function firstChoice(signals) {
+  const wanted = decodeURIComponent(location.hash.slice(1)).split(",");
+  const named = signals.filter(({ name }) => wanted.includes(name));
+  const traced = signals.filter((signal) => signal.traced);
+  const some = signals.filter(({ type }) => type === "real").slice(0, 3);
+  return new Set([named, traced, some].find((list) => list.length > 0)?.map(({ name }) => name));
+}
+
+function connectToolbar() {
+  byId("pause").onclick = attempt(() => post(state?.paused ? "resume" : "pause"));
+  byId("step").onclick = attempt(() => post("step"));
+  byId("until").onsubmit = attempt((event) => post("run_until", { time: event.target.time.value }));
+  byId("speed").onsubmit = attempt((event) => {
+    const text = event.target.speed.value.trim();
+    return post("speed", { speed: text === "max" ? text : Number(text) });
+  });
+  byId("hold").onclick = () => {
+    scope.hold(!scope.held);
+    byId("hold").textContent = scope.held ? "Follow" : "Hold";
+  };
+  byId("save").onclick = () => download("lineshaft.csv", scope.csv());
+  byId("filter").oninput = ({ target }) => {
+    for (const [name, { made }] of rows) made.hidden = !name.includes(target.value);
+  };
+}
+
+async function start() {
+  try {
+    const signals = await get("signals");
+    chosen = firstChoice(signals);
+    rows = new Map(signals.map(signalRow));
+    byId("signals").replaceChildren(...[...rows.values()].map(({ made }) => made));
+    connect();
+  } catch {
+    byId("status").textContent = "not connected, trying again …";
+    setTimeout(start, retry);
+  }
+}
+
+followTheme(byId("theme"), () => scope.changeTheme());
+connectToolbar();
+start();
