@@ -3,7 +3,7 @@
 set -uo pipefail
 lineshaft=$1
 cd "$2" || exit 1
-. tools/completion.bash
+. tools/install/completion.bash
 failed=0
 
 # offers WANTED LINE...: the completion of the last word of LINE holds WANTED (not, with a leading !).
@@ -13,7 +13,7 @@ offers() {
     COMP_WORDS=(lineshaft "$@")
     COMP_CWORD=$#
     _lineshaft "$lineshaft" "${COMP_WORDS[$COMP_CWORD]}" "${COMP_WORDS[$((COMP_CWORD - 1))]}"
-    printf '%s\n' "${COMPREPLY[@]}" | grep -qxF -- "${wanted#!}" && found=yes
+    grep -qxF -- "${wanted#!}" < <(printf '%s\n' "${COMPREPLY[@]}") && found=yes
     [[ $wanted == !* ]] && expected=no || expected=yes
     [ "$found" = "$expected" ] && return
     echo "lineshaft $*: '${wanted#!}' offered: $found; offers: ${COMPREPLY[*]}"
