@@ -10,6 +10,9 @@ namespace {
 using Law = SyncMotion::Law;
 using Stage = SyncMotion::Stage;
 
+/// Virtual time counts whole nanoseconds: a transition that ends within one has ended.
+constexpr double one_nanosecond = 1e-9;
+
 Law law_of(Command command) {
     if (command == Command::gear_in_pos) return Law::positioned;
     return command == Command::cam_in ? Law::cammed : Law::geared;
@@ -203,20 +206,21 @@ void Axis::follow(const Context& context) {
         follow_law(context);
 }
 
-/// What is measured never moves as foreseen: then a transition may end with a scan.
+/// In gear it follows whatever its master has done since. What is measured never moves as foreseen:
+/// then a transition may end with a scan.
 void Axis::follow_guide(const Context& context) {
     const MotionState guide = sync.guide(master(context), led_by(context, sync.coupling.second));
     if (sync.stage == Stage::in_transition) {
         const double t = sync.start.until(scan_time);
         base = sync.transition.at(t);
         double left = sync.transition.plan.duration - t;
-        if (!sync.transition.foresees(guide, t)) {
+        if (left > one_nanosecond && !sync.transition.foresees(guide, t)) {
             const MotionError why = error_of(sync.get_onto(base, guide, {scan_time}));
             if (why != MotionError::none) return fail(context, {scan_time}, why);
             left = sync.transition.plan.duration -
                    (is_measured(sync.coupling) ? seconds(scan_interval) : 0);
         }
-        if (left > 0) return;
+        if (left > one_nanosecond) return;
         sync.offset = sync.transition.plan.end.position;
         reach(context);
         if (doing != Doing::following_axes || sync.stage != Stage::in_sync) return;

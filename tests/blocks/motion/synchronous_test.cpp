@@ -58,8 +58,27 @@ TEST_CASE("MC_GearIn with a ratio change: a new command takes over") {
     401   .           .            .             | 0         0           1                   1          0            synchronized_motion 100
     402   .           .            .             | 0         0           1                   1          0            synchronized_motion 101
     403   .           0            .             | 0         0           0                   1          0            synchronized_motion 102
-    501   .           .            .             | 0         0           0                   1          0            synchronized_motion 200
+    501   .           .            .             | 0         0           0                   1          1            synchronized_motion 200
     503   .           .            .             | 0         0           0                   1          1            synchronized_motion 200 )");
+}
+
+TEST_CASE("a slave that got in gear between two scans follows a master that stopped behind that") {
+    MotionBench bench(R"(
+tasks: {main: {every: 1 ms}}
+blocks:
+  m: {type: axis, task: main}
+  s: {type: axis, task: main, default_acceleration: 1000 mm/s^2, default_deceleration: 1000 mm/s^2, default_jerk: 0 mm/s^3}
+  move: {type: MC_MoveAbsolute, task: main, Axis: m, Position: 30.065025 mm, Velocity: 100.05 mm/s, Acceleration: 1e9 mm/s^2, Deceleration: 1e9 mm/s^2, Jerk: 0 mm/s^3}
+  gear: {type: MC_GearIn, task: main, Master: m, Slave: s}
+)");
+    bench.check(R"(
+    ms    move.Execute gear.Execute | m.velocity s.velocity gear.InGear
+    0     1            0            | 0          0          0
+    200   .            1            | 100.05     0          0
+    301   .            .            | 100.05     100        0
+    302   .            .            | 0          0          1
+    303   .            .            | 0          0          1 )");
+    CHECK(bench.number("s.position") == Approx(100.05 * (0.10005 / 2 + 0.00045)).margin(1e-6));
 }
 
 TEST_CASE("MC_GearOut leaves the slave with its velocity, and MC_Stop stops it") {
