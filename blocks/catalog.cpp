@@ -1,12 +1,10 @@
 #include "blocks/catalog.hpp"
 
 #include "blocks/axis/axis.hpp"
-#include "blocks/axis/gear_axis.hpp"
-#include "blocks/axis/move.hpp"
 #include "blocks/axis/servo_drive.hpp"
-#include "blocks/axis/virtual_axis.hpp"
 #include "blocks/circle/circle_fit.hpp"
 #include "blocks/circle/path_circle.hpp"
+#include "blocks/circle/path_move.hpp"
 #include "blocks/contour/contour_comparison.hpp"
 #include "blocks/contour/contour_error.hpp"
 #include "blocks/contour/cross_coupling.hpp"
@@ -36,9 +34,6 @@ namespace {
 
 Catalog make_catalog() {
     Catalog blocks;
-    blocks.add<VirtualAxis>();
-    blocks.add<GearAxis>();
-    blocks.add<Move>();
     blocks.add<ServoDrive>();
     blocks.add<Axis>();
     blocks.add<Power>();
@@ -78,6 +73,7 @@ Catalog make_catalog() {
     blocks.add<DigitalCamSwitch>();
     blocks.add<CircleFit>();
     blocks.add<PathCircle>();
+    blocks.add<PathMove>();
     blocks.add<PathRectangle>();
     blocks.add<ContourError>();
     blocks.add<ContourComparison>();

@@ -26,7 +26,7 @@ offers --version --
 offers --trace run --tr
 offers --dot show --
 offers !--dot run --
-offers gear_axis blocks ge
+offers servo_drive blocks se
 offers trigger form tr
 offers programs/03_ratio_change.yaml run programs/03
 offers programs/paper run programs/p

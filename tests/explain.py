@@ -20,18 +20,25 @@ PROGRAM = """
 lineshaft: 1
 tasks: {servo: {every: 2 ms, priority: 26}, main: {every: 10 ms}}
 blocks:
-  shaft: {type: virtual_axis, task: servo, velocity: 10 mm/s, acceleration: 1e5 mm/s^2, jerk: 1e9 mm/s^3}
+  shaft: {type: axis, task: servo, default_acceleration: 1e5 mm/s^2, default_jerk: 1e9 mm/s^3}
   slave:
-    type: gear_axis
+    type: axis
     task: servo
-    master_position: shaft.position
-    master_velocity: shaft.velocity
-    acceleration: 1e5 mm/s^2
-    jerk: 1e9 mm/s^3
-    ratio: 1.5
+    default_velocity: 50 mm/s
+    default_acceleration: 1e5 mm/s^2
+    default_jerk: 1e9 mm/s^3
+  feed: {type: MC_MoveVelocity, task: servo, Axis: shaft, Velocity: 10 mm/s, Execute: true}
+  gear:
+    type: MC_GearIn
+    task: servo
+    Master: shaft
+    Slave: slave
+    RatioNumerator: 1.5
+    Execute: true
+  move: {type: MC_MoveAbsolute, task: servo, Axis: shaft, Execute: inputs.start}
   x: {type: pto, task: main, multi_segment: true, execute: inputs.go}
   counter: {type: ctu, task: main, cu: inputs.go, pv: 3}
-inputs: {go: false, recipe: 1}
+inputs: {go: false, start: false, recipe: 1}
 retain: [counter]
 run: {for: 2 s}
 trace: {task: servo, signals: [shaft.position, slave.position]}
@@ -89,7 +96,7 @@ def write(path, tree):
 
 def program_with_parameters():
     program = merged(read(PROGRAM), PARAMETERS)
-    program["blocks"]["slave"]["ratio"] = "$ratio"
+    program["blocks"]["gear"]["RatioNumerator"] = "$ratio"
     return program
 
 

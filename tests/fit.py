@@ -21,16 +21,11 @@ lineshaft: 1
 parameters: {ratio: 1.5, acceleration: 60 mm/s^2, jerk: 2000 mm/s^3}
 tasks: {servo: {every: 2 ms}}
 blocks:
-  shaft: {type: virtual_axis, task: servo, immediate: true, velocity: 20 mm/s}
-  slave:
-    type: gear_axis
-    task: servo
-    master_position: shaft.position
-    master_velocity: shaft.velocity
-    ratio: 0
-    acceleration: $acceleration
-    jerk: $jerk
-stimulus: [{at: 0.1 s, set: {slave.ratio: $ratio}}]
+  shaft: {type: axis, task: servo}
+  slave: {type: axis, task: servo, default_acceleration: $acceleration, default_jerk: $jerk}
+  feed: {type: MC_MoveVelocity, task: servo, Axis: shaft, Velocity: 20 mm/s, Execute: true}
+  gear: {type: MC_GearIn, task: servo, Master: shaft, Slave: slave, RatioNumerator: $ratio}
+stimulus: [{at: 0.1 s, set: {gear.Execute: true}}]
 run: {for: 0.8 s}
 trace: {task: servo, signals: [slave.position]}
 """

@@ -16,7 +16,9 @@ PROGRAM = """\
 lineshaft: 1
 parameters: {count: 0}
 tasks: {main: {every: 1 ms}}
-blocks: {shaft: {type: virtual_axis, task: main, velocity: 1 mm/s}}
+blocks:
+  shaft: {type: axis, task: main}
+  feed: {type: MC_MoveVelocity, task: main, Axis: shaft, Velocity: 1 mm/s, Execute: true}
 inputs: {a: $count, b: $count}
 retain: [inputs.a, inputs.b, shaft]
 run: {for: 2 s}

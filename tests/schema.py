@@ -19,13 +19,13 @@ PROGRAM = """
 lineshaft: 1
 tasks: {servo: {every: 2 ms}}
 blocks:
-  shaft: {type: virtual_axis, task: servo, velocity: 10 mm/s}
-  slave:
-    type: gear_axis
+  shaft: {type: axis, task: servo, default_velocity: 10 mm/s}
+  drive:
+    type: servo_drive
     task: servo
-    master_position: shaft.position
-    master_velocity: shaft.velocity
-    ratio: 1.5
+    set_position: shaft.position
+    set_velocity: shaft.velocity
+    kv: 20 1/s
 run: {for: 1 s}
 """
 
@@ -33,19 +33,19 @@ run: {for: 1 s}
 BROKEN = [
     ("run:", "runs:", "an unknown key of the program"),
     ("every:", "evry:", "an unknown key of a task"),
-    ("ratio:", "ration:", "an unknown key of a block"),
-    ("virtual_axis", "virtual_axes", "an unknown type of block"),
+    ("kv:", "kw:", "an unknown key of a block"),
+    ("servo_drive", "servo_drives", "an unknown type of block"),
     ("velocity: 10 mm/s", "velocity: 10", "a number without its unit"),
-    ("velocity: 10 mm/s", "position: 10 mm", "an output that is set"),
-    ("velocity: 10 mm/s", "immediate: shaft.moving, velocity: 10 mm/s", "a wire into a parameter"),
-    ("velocity: 10 mm/s", "motion: sideways, velocity: 10 mm/s", "an unknown name of an enumeration"),
-    ("    master_velocity: shaft.velocity\n", "", "a required input that is not set"),
+    ("default_velocity: 10 mm/s", "position: 10 mm", "an output that is set"),
+    ("default_velocity: 10 mm/s", "modulo: shaft.error", "a wire into a parameter"),
+    ("default_velocity: 10 mm/s", "unit: sideways", "an unknown name of an enumeration"),
+    ("    set_position: shaft.position\n", "", "a required input that is not set"),
     ("    task: servo\n", "", "a block in no task"),
-    ("{for: 1 s}", "{until: shaft.done}", "a run without an end"),
+    ("{for: 1 s}", "{until: shaft.error}", "a run without an end"),
     ("{for: 1 s}", "[1 s]", "a list instead of a map"),
     ("lineshaft: 1", "lineshaft: 2", "an unknown version"),
     ("lineshaft: 1", "", "no version"),
-    ("  slave:", "  2nd slave:", "a name with a blank"),
+    ("  drive:", "  2nd drive:", "a name with a blank"),
     ("run:", "expect: [{at: end, always: shaft.velocity}]\nrun:", "an expectation of two kinds"),
     ("run:", "trace: {task: servo}\nrun:", "a trace without signals"),
 ]

@@ -32,20 +32,23 @@ tasks:
   main: {every: 5 ms, priority: 1, cost: 1 ms, cost_jitter: 50 %}
   event: {on: [inputs.go], priority: 30}
 blocks:
-  shaft: {type: virtual_axis, task: servo, velocity: 100 mm/s, acceleration: 1000 mm/s^2, enable: inputs.go}
-  slave:
-    type: gear_axis
+  shaft: {type: axis, task: servo}
+  slave: {type: axis, task: servo, default_acceleration: 5000 mm/s^2}
+  feed: {type: MC_MoveVelocity, task: servo, Axis: shaft, Velocity: 100 mm/s, Execute: inputs.go}
+  gear:
+    type: MC_GearIn
     task: servo
-    master_position: shaft.position
-    master_velocity: shaft.velocity
-    ratio: inputs.ratio
-    acceleration: 5000 mm/s^2
+    Master: shaft
+    Slave: slave
+    RatioNumerator: inputs.ratio
+    ContinuousUpdate: true
+    Execute: true
   late: {type: ton, task: main, in: inputs.go, pt: 20 ms}
   counter: {type: ctu, task: event, cu: inputs.count, pv: 5}
   channel: {type: pto, task: main, start_rate: 1 kHz, count: 40, execute: late.q}
 inputs: {go: false, count: false, ratio: 1.5}
 stimulus: [{at: 30 ms, set: {inputs.count: true}}]
-force: [{from: 100 ms, until: 150 ms, set: {slave.ratio: 3}}]
+force: [{from: 100 ms, until: 150 ms, set: {gear.RatioNumerator: 3}}]
 modbus:
   coils: {5: {signal: inputs.go, write: true}, 6: {signal: inputs.count, write: true}}
   discrete_inputs: {0: late.q}
@@ -146,11 +149,11 @@ def check_api():
     machine.post("resume")
     eventually(lambda: machine.value("inputs.go") is True)
     eventually(lambda: machine.value("shaft.velocity") > 0)
-    machine.post("force", {"slave.ratio": 0.5, "shaft.velocity": "1 cm/s"})
+    machine.post("force", {"gear.RatioNumerator": 0.5, "shaft.velocity": "1 cm/s"})
     eventually(lambda: machine.value("shaft.velocity") == 10)
     forced = machine.get("state")["forced"]
-    assert forced == {"slave.ratio": "0.5 mm/mm", "shaft.velocity": "10 mm/s"}, forced
-    machine.post("release", {"signals": ["slave.ratio", "shaft.velocity"]})
+    assert forced == {"gear.RatioNumerator": "0.5", "shaft.velocity": "10 mm/s"}, forced
+    machine.post("release", {"signals": ["gear.RatioNumerator", "shaft.velocity"]})
     eventually(lambda: machine.get("state")["forced"] == {} and machine.value("shaft.velocity") != 10)
     machine.post("speed", {"speed": "max"})
     eventually(lambda: machine.get("state")["time_s"] > 10)
@@ -164,7 +167,7 @@ def check_refusals():
         ("set", {"inputs.gp": True}, "no input 'gp'"),
         ("set", {"inputs.go": 2}, "2"),
         ("set", {"shaft.position": 2}, "is an output"),
-        ("set", {"slave.ratio": 2}, "is wired"),
+        ("set", {"gear.RatioNumerator": 2}, "is wired"),
         ("set", {"inputs.go": [[]]}, "expected"),
         ("set", [], "expected"),
         ("force", {"shaft.velocity": "1 kg"}, "kg"),
@@ -298,9 +301,9 @@ def write_at_random(machine, rng, until):
         rng.choice([
             lambda: machine.post("set", {"inputs.go": flag, "inputs.ratio": ratio}),
             lambda: machine.post("set", {"inputs.count": flag}),
-            lambda: machine.post("force", {"slave.ratio": ratio}),
+            lambda: machine.post("force", {"gear.RatioNumerator": ratio}),
             lambda: machine.post("force", {"shaft.velocity": f"{ratio} cm/s", "late.q": flag}),
-            lambda: machine.post("release", {"signals": ["slave.ratio"]}),
+            lambda: machine.post("release", {"signals": ["gear.RatioNumerator"]}),
             lambda: machine.post("release", {"signals": ["shaft.velocity", "late.q"]}),
             lambda: machine.post("pause"), lambda: machine.post("resume"), lambda: machine.post("resume"),
             lambda: machine.post("step", {"scans": rng.randrange(1, 20)}),

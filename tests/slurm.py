@@ -20,7 +20,8 @@ PROGRAM = """lineshaft: 1
 parameters: {speed: 10 mm/s, jitter: 4 ms}
 tasks: {main: {every: 10 ms, jitter: $jitter}}
 blocks:
-  axis: {type: virtual_axis, task: main, immediate: true, velocity: $speed}
+  axis: {type: axis, task: main, default_acceleration: 1e9 mm/s^2, default_jerk: 0 mm/s^3}
+  feed: {type: MC_MoveVelocity, task: main, Axis: axis, Velocity: $speed, Execute: true}
 run: {for: 600 s}
 """
 PLAN = """lineshaft_study: 1

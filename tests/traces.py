@@ -19,22 +19,26 @@ PROGRAM = """lineshaft: 1
 title: A gear
 tasks: {servo: {every: 2 ms}}
 blocks:
-  shaft: {type: virtual_axis, task: servo, velocity: 10 mm/s}
-  slave:
-    type: gear_axis
+  shaft: {type: axis, task: servo, default_acceleration: 100 mm/s^2}
+  slave: {type: axis, task: servo, default_acceleration: 100 mm/s^2}
+  feed: {type: MC_MoveVelocity, task: servo, Axis: shaft, Velocity: 10 mm/s, Execute: true}
+  gear:
+    type: MC_GearIn
     task: servo
-    master_position: shaft.position
-    master_velocity: shaft.velocity
-    ratio: inputs.ratio
+    Master: shaft
+    Slave: slave
+    RatioNumerator: inputs.ratio
+    ContinuousUpdate: true
+    Execute: true
 inputs: {ratio: 1.5}
 stimulus: [{at: 1 s, set: {inputs.ratio: 2.0}}]
 run: {for: 2 s}
-trace: {task: servo, signals: [shaft.position, slave.velocity, slave.in_gear, inputs.ratio]}
+trace: {task: servo, signals: [shaft.position, slave.velocity, gear.InGear, inputs.ratio]}
 traces:
   change:
     task: servo
     signals: [slave.velocity]
-    trigger: {signal: slave.in_gear, edge: falling}
+    trigger: {signal: gear.InGear, edge: falling}
     pre_trigger: 3
     samples: 4
   late: {task: servo, signals: [slave.velocity], trigger: {signal: slave.velocity, above: 99 mm/s}}
@@ -109,9 +113,9 @@ def check_conditions():
 
 def check_styles():
     headers = {
-        ("--names", "slash"): "time,scan,shaft/position,slave/velocity,slave/in_gear,inputs/ratio",
-        ("--names", "snake"): "time,scan,shaft_position,slave_velocity,slave_in_gear,inputs_ratio",
-        ("--units",): "time [s],scan,shaft.position [mm],slave.velocity [mm/s],slave.in_gear,inputs.ratio",
+        ("--names", "slash"): "time,scan,shaft/position,slave/velocity,gear/InGear,inputs/ratio",
+        ("--names", "snake"): "time,scan,shaft_position,slave_velocity,gear_InGear,inputs_ratio",
+        ("--units",): "time [s],scan,shaft.position [mm],slave.velocity [mm/s],gear.InGear,inputs.ratio",
     }
     plain = rows_of("run.csv")[1:]
     for options, header in headers.items():
@@ -198,7 +202,9 @@ METHOD = """lineshaft: 1
 title: Two ways
 parameters: {speed: 0.1 mm/s, seed: 1}
 tasks: {main: {every: 1 ms}}
-blocks: {axis: {type: virtual_axis, task: main, velocity: $speed}}
+blocks:
+  axis: {type: axis, task: main}
+  feed: {type: MC_MoveVelocity, task: main, Axis: axis, Velocity: $speed, Execute: true}
 run: {for: 10 ms, seed: $seed}
 trace: {task: main, signals: [axis.position]}
 """

@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "blocks/axis/axis_error.hpp"
+#include "blocks/axis/axis_unit.hpp"
 #include "blocks/axis/axis_motion.hpp"
 #include "blocks/axis/axis_states.hpp"
 #include "blocks/axis/job.hpp"

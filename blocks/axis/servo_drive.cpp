@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "blocks/inputs.hpp"
+
 namespace lineshaft {
 
 namespace {

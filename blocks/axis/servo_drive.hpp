@@ -3,7 +3,7 @@
 #include <array>
 #include <span>
 
-#include "blocks/axis/axis_error.hpp"
+#include "blocks/axis/axis_unit.hpp"
 #include "blocks/axis/transmission.hpp"
 #include "blocks/axis/velocity_loop.hpp"
 #include "runtime/model/field.hpp"

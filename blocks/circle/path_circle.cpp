@@ -1,7 +1,7 @@
 #include "blocks/circle/path_circle.hpp"
 
-#include "blocks/axis/axis_error.hpp"
 #include "blocks/circle/arc.hpp"
+#include "blocks/inputs.hpp"
 
 namespace lineshaft {
 

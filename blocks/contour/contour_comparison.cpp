@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "blocks/axis/axis_error.hpp"
 #include "blocks/contour/baseline.hpp"
 
 namespace lineshaft {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "blocks/axis/axis_error.hpp"
+#include "blocks/inputs.hpp"
 
 namespace lineshaft {
 

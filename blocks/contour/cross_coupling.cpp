@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "blocks/axis/axis_error.hpp"
+#include "blocks/inputs.hpp"
 
 namespace lineshaft {
 

@@ -6,7 +6,7 @@
 
 #include <sleef.h>
 
-#include "blocks/axis/axis_error.hpp"
+#include "blocks/inputs.hpp"
 #include "blocks/circle/arc.hpp"
 
 namespace lineshaft {

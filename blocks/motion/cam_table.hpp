@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "blocks/axis/axis_error.hpp"
+#include "blocks/axis/axis_unit.hpp"
 #include "blocks/profile/cam.hpp"
 #include "runtime/model/catalog.hpp"
 #include "runtime/model/field.hpp"

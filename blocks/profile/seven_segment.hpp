@@ -88,7 +88,7 @@ enum class MoveKind : std::int64_t {
     peak_falling_both,
     peak_falling_second,
     peak_falling_neither,
-    from_any_state,  ///< no move of seven segments: see any_state.hpp
+
 };
 
 inline constexpr std::string_view move_kind_names[] = {
@@ -97,13 +97,13 @@ inline constexpr std::string_view move_kind_names[] = {
     "cruise_rising_neither",  "cruise_falling_both",   "cruise_falling_second",
     "cruise_falling_neither", "peak_rising_both",      "peak_rising_first",
     "peak_rising_neither",    "peak_falling_both",     "peak_falling_second",
-    "peak_falling_neither",   "from_any_state"};
+    "peak_falling_neither"};
 
 inline constexpr int move_kinds = 16;  ///< of seven segments
 
 std::string_view name(MoveKind kind);
 
-/// Number of the equation that gives the kind its times, 1 to 11; 0: from any state.
+/// Number of the equation that gives the kind its times, 1 to 11.
 int equation(MoveKind kind);
 
 struct SevenSegmentPlan {

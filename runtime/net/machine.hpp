@@ -74,7 +74,7 @@ struct ErrorFlag {
     const bool* error = nullptr;
     const std::int64_t* error_id = nullptr;   ///< may be null
     std::span<const std::string_view> names;  ///< of error_id
-    std::string block;                        ///< `'slave' (gear_axis)`
+    std::string block;                        ///< `'drive' (servo_drive)`
     const BlockType* type = nullptr;          ///< may be null
     const std::byte* memory = nullptr;        ///< of the block
 };
@@ -122,7 +122,7 @@ struct CostStimulus {
 
 /// What messages say of a block in a task.
 struct BlockInfo {
-    std::string block;      ///< `'slave' (gear_axis)`
+    std::string block;      ///< `'drive' (servo_drive)`
     std::int64_t cost = 0;  ///< the block's own share of its task's cost [ns]
 };
 

@@ -53,7 +53,7 @@ struct Instance {
     std::vector<bool> wired = {};       ///< by field
 
     bool known() const { return type && task >= 0; }
-    std::string described() const;  ///< `'slave' (gear_axis)`
+    std::string described() const;  ///< `'drive' (servo_drive)`
 };
 
 struct InputNode {

@@ -179,7 +179,7 @@ void read_instruction_time(const Reader& read, const Node& node, Program& progra
 // Blocks
 
 constexpr const char* block_help =
-    "add blocks such as shaft: {type: virtual_axis, task: servo, ...}";
+    "add blocks such as shaft: {type: axis, task: servo, ...}";
 
 void read_block(const Reader& read, const Node& name, const Node& body, Program& program) {
     if (!read.identifier(name, "a block")) return;
@@ -565,7 +565,7 @@ void read_between(const Reader& read, const Node& node, ExpectPlan& plan) {
         read.fail("L0213", node.items[1], "'between' ends before it begins");
 }
 
-/// `within 2 s of inputs.start: shaft.moving`
+/// `within 2 s of inputs.start: move.Done`
 void read_answer(const Reader& read, const Node& name, const Node& value, ExpectPlan& plan) {
     constexpr std::string_view begin = "within ", middle = " of ";
     const auto of = name.text.find(middle);
@@ -580,7 +580,7 @@ void read_answer(const Reader& read, const Node& name, const Node& value, Expect
     plan.signal = value;
     if (of == name.text.npos)
         return read.fail("L0201", name, fmt::format("'{}' names no signal", name.text),
-                         "write within 2 s of inputs.start: shaft.moving");
+                         "write within 2 s of inputs.start: move.Done");
     plan.cause = part(of + middle.size(), name.text.npos);
     const auto limit = read.time(part(begin.size(), of));
     if (accept(read, a_signal, value, "what answers") && limit) plan.until = *limit;

@@ -73,7 +73,7 @@ void Executive::time_error(int index, std::string what) {
     state(task.on_overrun).released = now_;
 }
 
-/// `; block 'slave' (gear_axis) was running`: a scan's time is spread over its blocks in the
+/// `; block 'drive' (servo_drive) was running`: a scan's time is spread over its blocks in the
 /// proportions of their costs, the task's own cost evenly.
 std::string Executive::running_block(int index) const {
     if (!state(index).active) {

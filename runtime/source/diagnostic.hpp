@@ -59,7 +59,7 @@ class Diagnostics {
 };
 
 /// One diagnostic as a compiler prints it:
-///   FILE:9:22: error[L0203]: unknown port 'velocty' on 'shaft' (virtual_axis)
+///   FILE:9:22: error[L0203]: unknown port 'velocty' on 'shaft' (axis)
 ///      9 |     master_velocity: shaft.velocty
 ///        |                      ^~~~~~~~~~~~~ did you mean 'shaft.velocity'?
 /// Long lines are shown as a window around the mark; control characters, and those that reorder or

@@ -220,76 +220,6 @@ void check_zeros(const Instance& block, std::int64_t scan, const BlockType& type
     }
 }
 
-/// A scan's length in the tests of axes [s].
-constexpr double scan_interval = 1e-3;
-
-/// What bounds the set-point of an axis that is commanded as it is now [u/s].
-double commanded_velocity(const Instance& axis, const BlockType& type) {
-    const auto value = [&](std::string_view name) {
-        const Field* field = type.find_settable(name);
-        return field ? std::abs(as_real(axis.get(*field))) : 0;
-    };
-    return std::max({value("velocity"), value("start_velocity"), value("move_velocity"),
-                     value("ratio") * value("master_velocity")});
-}
-
-double any_command(Random& random) {
-    constexpr double values[] = {0, -0.0, 0.001, -0.1, 1, -1, 3, -10, 20, 40, -100};
-    return values[random.next() % std::size(values)];
-}
-
-/// The limits of acceleration and jerk stay, and the master has constant velocities.
-constexpr std::string_view not_commanded[] = {"acceleration", "jerk", "home", "master_position",
-                                              "master_acceleration"};
-
-/// Other commands now and then. Returns the greatest of the velocities commanded one input after
-/// the other: a master that changes with the ratio has moved the axis by the old one.
-double command_axis(Instance& axis, const BlockType& type, Random& random) {
-    double most = commanded_velocity(axis, type);
-    for (const Field& f : type.fields) {
-        const bool given = std::ranges::count(not_commanded, f.name) > 0;
-        if (f.direction != Direction::input || given || random.next() % 50 != 0) continue;
-        const Value value =
-            f.type == Type::boolean ? Value(random.next() % 2 == 0) : Value(any_command(random));
-        if (f.admits(as_real(value))) axis.set(f, value);
-        most = std::max(most, commanded_velocity(axis, type));
-    }
-    return most;
-}
-
-void follow_master(Instance& axis, const BlockType& type) {
-    const Field* position = type.find_settable("master_position");
-    const Field* velocity = type.find_settable("master_velocity");
-    if (!position || !velocity) return;
-    const double moved = as_real(axis.get(*velocity)) * scan_interval;
-    axis.set(*position, as_real(axis.get(*position)) + moved);
-}
-
-/// An axis holds its outputs while it is in error and catches up afterwards.
-void check_velocity_limit(const BlockType& type, std::uint64_t seed) {
-    Instance axis(type);
-    Random random(seed, type.name);
-    set_parameters(axis, type, random);
-    for (const std::string_view name : {"acceleration", "jerk"})
-        axis.set(*type.find_settable(name),
-                 std::pow(10.0, 1 + static_cast<double>(random.next() % 4)));
-    const Field& position = *type.find_readable("position");
-    double most = 0, held = 0;
-    std::int64_t held_at = -1;
-    for (std::int64_t i = 0; i < 3000; ++i) {
-        most = std::max(most, command_axis(axis, type, random));
-        follow_master(axis, type);
-        axis.scan(i);
-        if (axis.is_in_error()) continue;
-        const double now = as_real(axis.get(position));
-        const double way = most * scan_interval * static_cast<double>(i - held_at);
-        INFO("scan " << i << ": from " << held << " to " << now << ", at most " << most << " u/s");
-        if (held_at >= 0) REQUIRE(std::abs(now - held) <= way * (1 + 1e-9) + 1e-9);
-        held = now;
-        held_at = i;
-    }
-}
-
 std::string replaced(std::string text, std::string_view parameter, std::string_view value) {
     const std::string place = fmt::format("{{{}}}", parameter);
     for (auto at = text.find(place); at != std::string::npos; at = text.find(place))
@@ -310,11 +240,6 @@ std::vector<std::string> units(const BlockType& type, const Field& field) {
         texts = std::move(next);
     }
     return texts;
-}
-
-/// The axes have one name for what is wanted and what is.
-bool names_twice(std::string_view type) {
-    return type == "virtual_axis" || type == "gear_axis" || type == "move";
 }
 
 bool is_snake_case(std::string_view name) {
@@ -350,13 +275,12 @@ TEST_CASE("every block and field has its name and a doc string") {
         CHECK((is_of_plcopen(type) || is_snake_case(type.name)));
         CHECK(types.insert(type.name).second);
         CHECK_FALSE(type.doc.empty());
-        std::set<std::string_view> names{"type", "task"}, outputs;  // keys of every block
+        std::set<std::string_view> names{"type", "task"};  // keys of every block
         for (const Field& f : type.fields) {
             INFO("field " << f.name);
             CHECK((is_of_plcopen(type) ? is_in_camel_case(f.name) : is_snake_case(f.name)));
             CHECK_FALSE(f.doc.empty());
-            const bool apart = names_twice(type.name) && f.direction == Direction::output;
-            CHECK((apart ? outputs : names).insert(f.name).second);
+            CHECK(names.insert(f.name).second);
         }
     }
 }
@@ -551,18 +475,6 @@ TEST_CASE("a block whose moments are shifted goes on in shifted time as before")
                 shifted.scan(i, by);
                 REQUIRE(agree(block, shifted, type));
             }
-        }
-    }
-}
-
-TEST_CASE("no set-point of an axis moves further in one scan than its velocity limit allows") {
-    const Catalog catalog = standard_blocks();
-    for (const std::string_view name : {"virtual_axis", "gear_axis", "move"}) {
-        const BlockType* type = catalog.find(name);
-        REQUIRE(type);
-        for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-            INFO(name << ", seed " << seed);
-            check_velocity_limit(*type, seed);
         }
     }
 }

@@ -167,9 +167,7 @@ void Generator::add_block(std::size_t index) {
 
 /// A limit of the motion stays as it is, so that the outputs can be held against it.
 bool Generator::is_limit(const Field& field) const {
-    constexpr std::string_view limits[] = {"velocity", "acceleration", "jerk"};
-    return (type_->name == "virtual_axis" || type_->name == "move") &&
-           std::ranges::find(limits, field.name) != std::end(limits);
+    return type_->name == "path_move" && field.name.ends_with("_limit");
 }
 
 /// It would ask for other parameters.
@@ -272,16 +270,10 @@ void Generator::add_stimuli() {
 }
 
 void Generator::add_bounds(const BlockType& type, const std::string& name) {
-    const double velocity = std::abs(numbers_["velocity"]);
-    if (type.name == "virtual_axis" && numbers_["immediate"] == 0) {
-        program_.bounds.push_back({name + ".velocity", velocity});
-        program_.bounds.push_back({name + ".acceleration", numbers_["acceleration"]});
-        program_.bounds.push_back({name + ".acceleration", numbers_["jerk"], true});
-    }
-    if (type.name == "move") {
-        program_.bounds.push_back({name + ".acceleration", numbers_["acceleration"]});
-        program_.bounds.push_back({name + ".jerk", numbers_["jerk"]});
-    }
+    if (type.name != "path_move") return;
+    for (const char* quantity : {"velocity", "acceleration", "jerk"})
+        program_.bounds.push_back(
+            {fmt::format("{}.{}", name, quantity), numbers_[fmt::format("{}_limit", quantity)]});
 }
 
 }  // namespace

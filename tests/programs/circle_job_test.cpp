@@ -2,11 +2,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "blocks/axis/gear_axis.hpp"
-#include "blocks/axis/virtual_axis.hpp"
 #include "blocks/circle/circle_fit.hpp"
 #include "tests/blocks/scanning.hpp"
 #include "tests/programs/twin.hpp"
+#include "tools/bench/hand_circle_axes.hpp"
 #include "tools/bench/hand_circle_job.hpp"
 
 using namespace lineshaft;
@@ -59,14 +58,12 @@ void poll_at(CircleJob& c, Clock& clock, double master_position) {
 /// The whole method in a loop: MC_Servo, then the user program, then MC_Interpolator.
 struct Loop {
     CircleJob circle;
-    VirtualAxis g;
-    GearAxis x, y;
+    HandCircleAxes axes;
+    Axis &g = axes.g, &x = axes.x, &y = axes.y;
     CircleFit fit;
     Clock clock;
 
     explicit Loop(const CircleJob& c) : circle(c) {
-        g.motion = VirtualAxis::Motion::absolute;
-        g.immediate = true;
         fit.radius = c.radius;
         circle.start = true;
         clock.interval = std::llround(c.motion_clock * 1e9);
@@ -80,34 +77,14 @@ struct Loop {
         circle.y_position = y.position;
         circle.y_velocity = y.velocity;
         circle.scan(now);
-        interpolate(now);
-        ++clock.index;
-        REQUIRE_FALSE((circle.error || g.error || x.error || y.error));
-    }
-
-    void interpolate(const Scan& now) {
-        g.wanted_velocity = circle.master_velocity;
-        g.target = circle.master_target;
-        g.execute = circle.execute;
-        g.home = circle.home;
-        g.scan(now);
-        gear(x, circle.ratio_x, circle.acceleration_x, circle.start_x, now);
-        gear(y, circle.ratio_y, circle.acceleration_y, circle.start_y, now);
-        fit.enable = g.moving;
+        axes.command(circle, now.time, now.interval);
+        axes.interpolate(now.time, now.interval);
+        fit.enable = axes.g_moves();
         fit.x = x.position;
         fit.y = y.position;
         fit.scan(now);
-    }
-
-    void gear(GearAxis& axis, double ratio, double acceleration, double start, const Scan& now) {
-        axis.master_position = g.position;
-        axis.master_velocity = g.velocity;
-        axis.ratio = ratio;
-        axis.acceleration_limit = acceleration;
-        axis.move = circle.approach;
-        axis.home = circle.home;
-        axis.target = axis.home_position = start;
-        axis.scan(now);
+        ++clock.index;
+        REQUIRE_FALSE((circle.error || axes.error()));
     }
 
     void run() {

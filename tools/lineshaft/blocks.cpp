@@ -84,7 +84,7 @@ void add_blocks(CLI::App& app, Exit& result) {
     CLI::App* sub = app.add_subcommand(
         "blocks", "List the function blocks, or describe one, or those of Structured Text");
     sub->add_option("names", command->names,
-                    "A block type, such as gear_axis, and files of Structured Text that have it");
+                    "A block type, such as MC_GearIn, and files of Structured Text that have it");
     sub->add_flag("--json", command->json, "Print JSON for machines");
     sub->callback([command, &result] { result = execute(*command); });
 }

@@ -39,7 +39,7 @@ line, or put the second program into a file of its own.)"},
 read. For a value that is needed in several places use a parameter:
     parameters: {speed: 10 mm/s}
     blocks:
-      shaft: {type: virtual_axis, task: servo, velocity: $speed}
+      shaft: {type: axis, task: servo, default_velocity: $speed}
 If you mean the character itself, put the text in quotes.)"},
     {"L0105", "the file is not a map",
      R"(A program, a study and a controller are maps: 'key: value' at the left margin,
@@ -76,7 +76,7 @@ you did not want. The line below the mark has the nearest known key, or all of t
 'cases' of a study. The smallest program that runs:
     lineshaft: 1
     tasks: {servo: {every: 2 ms}}
-    blocks: {shaft: {type: virtual_axis, task: servo, velocity: 10 mm/s}}
+    blocks: {shaft: {type: axis, task: servo}}
     run: {for: 1 s})"},
     {"L0203", "an unknown port, input or signal",
      R"(The block exists, but its type does not have this parameter, input or output. 'lineshaft
@@ -89,14 +89,13 @@ with the name of its type. No block of this program is called so. The program's 
 inputs are called 'inputs.name'.)"},
     {"L0205", "an unknown type of block",
      R"(The catalogue of function blocks does not have this type. 'lineshaft blocks' lists all types
-with one sentence each. Types are written in lower case with underscores:
-virtual_axis, gear_axis.)"},
+with one sentence each. Types are written as listed: servo_drive, MC_MoveAbsolute.)"},
     {"L0206", "an unknown task",
      R"(A block, a trace or every(...) names a task that neither 'tasks:' nor the controller
 file declares. A block must say which task scans it, since the task gives it its
 interval:
     tasks:  {servo: {every: 2 ms, priority: 26}}
-    blocks: {shaft: {type: virtual_axis, task: servo, velocity: 10 mm/s}})"},
+    blocks: {shaft: {type: axis, task: servo}})"},
     {"L0207", "an unknown parameter",
      R"('$name' stands for a value from 'parameters:', and there is none of that name. Declare
 it with its default; --set and the cases of a study may then change it:
@@ -138,7 +137,7 @@ its cases would share it. Write one expectation for each thing that must hold:
     expect:
       - {at: end, slave.velocity: 15 mm/s, within: 1e-9 mm/s}
       - {always: slave.velocity, at_least: 0 mm/s, at_most: 15.001 mm/s}
-      - {within 2 s of shaft.moving: slave.in_gear}
+      - {within 2 s of feed.InVelocity: gear.InGear}
 A task is cyclic ('every', 'offset', 'jitter') or started by the rising edges of boolean
 signals ('on'), and then has no interval that every(...) could name:
     tasks:
@@ -198,7 +197,7 @@ and lower case matter: mm, not MM. 'lineshaft units' lists them. A claim of a st
 scan, a jitter not below the task's interval, a share above 100 %. 'lineshaft blocks
 TYPE' shows the limits.)"},
     {"L0306", "not one of the allowed names",
-     R"(The port takes one name out of a fixed list, such as the motion of virtual_axis. Names
+     R"(The port takes one name out of a fixed list, such as the unit of an axis. Names
 are written exactly as listed, without quotes and in lower case. 'lineshaft blocks
 TYPE' shows each list.)"},
     {"L0307", "not a boolean",
@@ -228,11 +227,10 @@ wrongly.)"},
     {"L0403", "a required parameter or input is not set",
      R"(The block cannot work without this value, so it has no default. Give it a constant, a
 wire or a parameter of the program:
-    slave:
-      type: gear_axis
+    drive:
+      type: servo_drive
       task: servo
-      master_position: shaft.position
-      master_velocity: shaft.velocity)"},
+      set_position: shaft.position)"},
     {"L0404", "feedback without previous()",
      R"(Blocks of a task are scanned in the order of the file. The wire reads a block that is
 scanned later in the same task (or the block itself), so this scan's value is not
@@ -311,7 +309,7 @@ blanks need quotes in the shell:
      R"(A force keeps a signal at a value for an interval, whatever the program writes; after
 it the program's own value is back. Without a time it begins at the start, or does not
 end; without @ it is for the whole run:
-    lineshaft run program.yaml --force slave.ratio=2@1s..2s --force inputs.go=true@..5s)"},
+    lineshaft run program.yaml --force gear.RatioNumerator=2@1s..2s --force inputs.go=true@..5s)"},
     {"L0506", "a checkpoint that cannot be resumed",
      R"(A checkpoint holds the memory of a run of one program with certain parameters and forces,
 by one version of lineshaft, and the place in its trace. It is refused if any of these
@@ -472,14 +470,14 @@ give the stimulus, the replay or the force a sooner time:
 hold always, after every scan of a task that never scanned. 'at: end' is the end of the run,
 whenever that is:
     expect:
-      - {at: end, slave.in_gear: true})"},
+      - {at: end, gear.InGear: true})"},
     {"L0803", "a parameter or an input that nothing uses",
      R"(A warning. What is declared is changed by --set, by a study or by a stimulus, but no block
 sees it. Often the place where it is meant still has a constant:
     inputs: {ratio: 1.5}
     blocks:
-      slave: {type: gear_axis, task: servo, ratio: inputs.ratio,
-              master_position: shaft.position, master_velocity: shaft.velocity})"},
+      gear: {type: MC_GearIn, task: servo, Master: shaft, Slave: slave, Execute: true,
+             RatioNumerator: inputs.ratio})"},
     {"L0804", "a test that expects nothing",
      R"(A warning. 'lineshaft test' runs the program, and it passes whatever it does, since it has
 no 'expect:'. Say what must hold:

@@ -228,7 +228,7 @@ void RunCommand::add_to(CLI::App& sub) {
            "output")
         ->type_name("FILE");
     sub.add_option("--force", forces,
-                   "Keep a signal at a value, whatever the program writes: slave.ratio=2@1s..2s")
+                   "Keep a signal at a value, whatever the program writes: gear.RatioNumerator=2@1s..2s")
         ->type_name("SIGNAL=VALUE@FROM..UNTIL")
         ->take_all()
         ->expected(1, -1)

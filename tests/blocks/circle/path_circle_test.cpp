@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "blocks/axis/move.hpp"
+#include "blocks/circle/path_move.hpp"
 #include "tests/blocks/scanning.hpp"
 
 using namespace lineshaft;
@@ -107,8 +107,8 @@ TEST_CASE("velocities and accelerations are the derivatives of the positions") {
 }
 
 TEST_CASE("along a seven-segment move the axes' velocities and accelerations are continuous") {
-    Move move;
-    move.target = 120 * pi;
+    PathMove move;
+    move.length = 120 * pi;
     move.velocity_limit = 200;
     move.acceleration_limit = 500;
     move.jerk_limit = 2000;

@@ -127,7 +127,8 @@ TEST_CASE("a recorded trace replayed and recorded again has the same bytes", "[r
     const std::string first = recorded(folder, "first", R"(lineshaft: 1
 tasks: {main: {every: 2 ms}}
 blocks:
-  shaft: {type: virtual_axis, task: main, velocity: 10 mm/s, jerk: 333 mm/s^3}
+  shaft: {type: axis, task: main, default_acceleration: 100 mm/s^2, default_jerk: 333 mm/s^3}
+  run: {type: MC_MoveVelocity, task: main, Axis: shaft, Velocity: 10 mm/s, Execute: true}
   x: {type: move_value, task: main, unit: mm, in: shaft.position}
   high: {type: gt, task: main, unit: mm, in1: shaft.position, in2: 3 mm}
   flag: {type: xor, task: main, in1: high.out, in2: inputs.go}

@@ -21,7 +21,7 @@ tasks:
   main: {every: 2 ms, cost: 0.5 ms}
 inputs: {limit: 100 mm/s^2, go: true}
 blocks:
-  axis: {type: virtual_axis, task: main, velocity: $speed, acceleration: inputs.limit}
+  axis: {type: path_move, task: main, execute: true, length: 1 m, velocity_limit: $speed, acceleration_limit: inputs.limit}
   after: {type: not, task: main, input: inputs.go}
 stimulus: [{at: 1 s, set: {inputs.limit: 50 mm/s^2}}]
 run: {for: 2 s, seed: $seed}
@@ -64,7 +64,7 @@ TEST_CASE("comments, titles, the order of keys and the spelling of quantities me
     check_same("tasks:", "# one more line\n\ntasks:");
     check_same("An axis", "Another title");
     check_same("{every: 2 ms, cost: 0.5 ms}", "{cost: 500 us, every: 0.002 s}");
-    check_same("{type: virtual_axis, task: main,", "{task: main, 'type': \"virtual_axis\",");
+    check_same("{type: path_move, task: main,", "{task: main, 'type': \"path_move\",");
     check_same("at: 1 s", "at: 1000ms");
     check_same("50 mm/s^2", "5 cm/s^2");
     check_same(
@@ -81,10 +81,10 @@ TEST_CASE("what a program does, it means") {
     check_other("{for: 2 s", "{for: 3 s");
     check_other("[axis.position]", "[axis.velocity]");
     check_other(
-        "  axis: {type: virtual_axis, task: main, velocity: $speed, acceleration: inputs.limit}\n"
+        "  axis: {type: path_move, task: main, execute: true, length: 1 m, velocity_limit: $speed, acceleration_limit: inputs.limit}\n"
         "  after: {type: not, task: main, input: inputs.go}\n",
         "  after: {type: not, task: main, input: inputs.go}\n"
-        "  axis: {type: virtual_axis, task: main, velocity: $speed, acceleration: inputs.limit}\n");
+        "  axis: {type: path_move, task: main, execute: true, length: 1 m, velocity_limit: $speed, acceleration_limit: inputs.limit}\n");
 }
 
 TEST_CASE("parameters in force change what runs, not the form") {
@@ -96,7 +96,7 @@ TEST_CASE("parameters in force change what runs, not the form") {
     }
     CHECK(meaning(plain, {.settings = {{"speed", "1 cm/s"}}, .include_dirs = {}}).in_force ==
           a.in_force);
-    const Meaning fixed = meaning(replaced(plain, "velocity: $speed", "velocity: 10 mm/s"));
+    const Meaning fixed = meaning(replaced(plain, "velocity_limit: $speed", "velocity_limit: 10 mm/s"));
     CHECK(fixed.in_force == a.in_force);
     CHECK(fixed.form != a.form);
     CHECK(meaning(replaced(plain, "speed: 10 mm/s", "speed: 20 mm/s")).form == a.form);
@@ -135,7 +135,7 @@ title: Replayed
 controller: config/plc.yaml
 parameters: {speed: 10 mm/s}
 inputs: {x: 0.0}
-blocks: {axis: {type: virtual_axis, task: main, velocity: $speed}}
+blocks: {axis: {type: axis, task: main, default_velocity: $speed}}
 stimulus: [{file: in.csv, set: {inputs.x: x}}]
 run: {for: 1 s, seed: 3}
 )";

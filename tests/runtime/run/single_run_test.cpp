@@ -19,12 +19,20 @@ title: One axis
 parameters: {speed: 10 mm/s, acceleration: 100 mm/s^2}
 tasks: {main: {every: 10 ms}}
 blocks:
-  axis: {type: virtual_axis, task: main, velocity: $speed, acceleration: inputs.limit}
+  axis: {type: axis, task: main}
+  feed:
+    type: MC_MoveVelocity
+    task: main
+    Axis: axis
+    Velocity: $speed
+    Acceleration: inputs.limit
+    ContinuousUpdate: true
+    Execute: true
 inputs: {limit: 100 mm/s^2}
 stimulus:
   - {at: 0.5 s, set: {inputs.limit: $acceleration}}
 run: {for: 1 s}
-trace: {task: main, every: 50, signals: [axis.velocity, axis.moving]}
+trace: {task: main, every: 50, signals: [axis.velocity, feed.Busy]}
 expect:
   - {at: end, axis.velocity: 10 mm/s}
 )";
@@ -78,7 +86,7 @@ TEST_CASE("a trace is written while the program runs") {
     const RunReport report = run(*loaded, {.trace_path = trace, .interrupt = {}, .progress = {}});
     CHECK(report.output_error.empty());
     CHECK(read(trace) ==
-          "time,scan,axis.velocity,axis.moving\n"
+          "time,scan,axis.velocity,feed.Busy\n"
           "0,0,0,0\n"
           "0.5,50,10,1\n"
           "1,100,10,1\n");
@@ -105,9 +113,9 @@ TEST_CASE("a block's error is a fault, and what was traced until then is kept") 
     CHECK(report.result.outcome == Outcome::block_error);
     CHECK(report.faulted());
     CHECK(report.result.message ==
-          "block 'axis' (virtual_axis) reports error 2 (limit_not_positive) in scan 50 of task "
-          "'main' at 0.5 s");
-    CHECK(read(trace) == "time,scan,axis.velocity,axis.moving\n0,0,0,0\n0.5,50,10,1\n");
+          "block 'feed' (MC_MoveVelocity) reports error 3 (limit_not_positive) in scan 51 of task "
+          "'main' at 0.51 s");
+    CHECK(read(trace) == "time,scan,axis.velocity,feed.Busy\n0,0,0,0\n0.5,50,10,1\n");
 }
 
 TEST_CASE("an interrupted run stops before its end, and its trace says so") {
@@ -120,7 +128,7 @@ TEST_CASE("an interrupted run stops before its end, and its trace says so") {
         run(*loaded, {.trace_path = trace, .interrupt = &interrupt, .progress = {}});
     CHECK(report.result.outcome == Outcome::interrupted);
     CHECK(report.result.time < 1'000'000'000);
-    CHECK(read(trace) == "time,scan,axis.velocity,axis.moving\n0,0,0,0\n");
+    CHECK(read(trace) == "time,scan,axis.velocity,feed.Busy\n0,0,0,0\n");
     CHECK_THAT(read(trace + "-metadata.json"),
                Catch::Contains(R"("lineshaft:stopped": "interrupted at 0 s")"));
 }

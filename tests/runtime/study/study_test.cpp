@@ -23,13 +23,14 @@ constexpr const char* program = R"(lineshaft: 1
 parameters: {speed: 10 mm/s, time: 1 s, jitter: 0 ms, top: 1000 mm}
 tasks: {main: {every: 10 ms, jitter: $jitter}}
 blocks:
-  axis: {type: virtual_axis, task: main, immediate: true, velocity: $speed}
-  move:
-    type: virtual_axis
+  axis:
+    type: path_move
     task: main
-    motion: absolute
-    immediate: true
-    velocity: 1 mm/s
+    execute: true
+    length: 1e6 mm
+    start_velocity: $speed
+    velocity_limit: $speed
+    end_velocity: $speed
 run: {for: $time}
 expect:
   - {always: axis.position, at_most: $top}
@@ -238,7 +239,7 @@ claims:
 
 TEST_CASE("a case that does not run to its end is a fault, and its claims fail") {
     std::string stuck = program;
-    stuck.replace(stuck.find("run: {for: $time}"), 17, "run: {for: $time, until: move.done}");
+    stuck.replace(stuck.find("run: {for: $time}"), 17, "run: {for: $time, until: axis.done}");
     StudyFile file(R"(
 compare: [axis.position]
 cases: [{name: only}]
@@ -248,7 +249,7 @@ claims:
                    stuck);
     const StudyReport report = file.report();
     REQUIRE(report.faults.size() == 1);
-    CHECK(report.faults[0] == "only: 'move.done' did not become true within 1 s");
+    CHECK(report.faults[0] == "only: 'axis.done' did not become true within 1 s");
     CHECK_FALSE(report.ok());
     REQUIRE(report.claims.size() == 1);
     CHECK_FALSE(report.claims[0].ok);

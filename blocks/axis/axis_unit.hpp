@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace lineshaft {
+
+/// Units an axis can be configured for, as on the controller.
+enum class AxisUnit : std::int64_t { mm, rad, deg, m, rev };
+
+inline constexpr std::string_view axis_unit_names[] = {"mm", "rad", "deg", "m", "rev"};
+
+}  // namespace lineshaft
