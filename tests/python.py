@@ -28,14 +28,14 @@ trace = run.trace
 assert len(trace) == len(trace.time) == 1501 and trace.time[1] == 0.002
 assert trace["slave.position"][-1] == run["slave.position"] and trace.units["slave.velocity"] == "mm/s"
 assert run.units["slave.velocity"] == "mm/s" and list(trace)[:2] == ["time", "scan"] and "scan" in trace
-assert all(isinstance(bool(v), bool) for v in trace["gear.InGear"]) and not all(trace["gear.InGear"])
+assert all(isinstance(bool(v), bool) for v in trace["change.InGear"]) and not all(trace["change.InGear"])
 
 machine = lineshaft.run(source / "programs/08_state_machine.yaml")
 assert set(machine.trace["cutter.state"]) >= {"idle", "sync", "cut", "back"}, set(machine.trace["cutter.state"])
-forced = lineshaft.run(source / "programs/03_ratio_change.yaml", force=["gear.RatioNumerator=3@1s..3s"])
+forced = lineshaft.run(source / "programs/03_ratio_change.yaml", force=["change.RatioNumerator=3@1s..3s"])
 assert not forced.ok and forced.trace["slave.velocity"][-1] != run.trace["slave.velocity"][-1]
 try:
-    lineshaft.run(source / "programs/03_ratio_change.yaml", force=["gear.RatioNumerator=3@1s..3s"], check=True)
+    lineshaft.run(source / "programs/03_ratio_change.yaml", force=["change.RatioNumerator=3@1s..3s"], check=True)
     assert False
 except lineshaft.ExpectationError as error:
     assert "expected 9.47 mm" in str(error), error
@@ -62,6 +62,6 @@ assert without.ok and without.trace is None
 if lineshaft.numpy is None:
     assert isinstance(trace["slave.position"], list) and sys.argv[3], "numpy is not there"
 else:
-    assert trace["slave.position"].dtype == float and trace["gear.InGear"].dtype == bool
+    assert trace["slave.position"].dtype == float and trace["change.InGear"].dtype == bool
     frame = trace.frame()
     assert frame["slave.velocity"].loc[0.002] == trace["slave.velocity"][1] and frame.attrs["units"]["slave.velocity"] == "mm/s"

@@ -8,8 +8,8 @@ namespace lineshaft {
 
 namespace {
 
-constexpr std::string_view path_move_error_names[] = {
-    "none", "not_finite", "negative_length", "limit_not_positive", "velocity_above_limit"};
+constexpr std::string_view path_move_error_names[] = {"none", "not_finite", "negative_length",
+                                                      "limit_not_positive", "velocity_above_limit"};
 
 PathMoveError error_of(PlanResult result) {
     switch (result) {
@@ -64,8 +64,13 @@ std::span<const Field> PathMove::fields() {
 }
 
 void PathMove::scan(const Scan& now) {
-    if (!execute) error_id = PathMoveError::none;
-    if (rising_edge(execute, last_execute)) error_id = begin(now.time);
+    if (!all_finite(length, velocity_limit, acceleration_limit, jerk_limit, end_velocity)) {
+        error_id = PathMoveError::not_finite;
+    } else {
+        if (!execute || error_id == PathMoveError::not_finite) error_id = PathMoveError::none;
+        if (rising_edge(execute, last_execute)) error_id = begin(now.time);
+        publish_motion(now.time);
+    }
     publish_state(now.time);
 }
 
@@ -94,17 +99,21 @@ void PathMove::publish_plan() {
     greatest_acceleration = std::max(plan.start[1].acceleration, -plan.start[5].acceleration);
 }
 
-void PathMove::publish_state(std::int64_t time) {
-    error = error_id != PathMoveError::none;
+void PathMove::publish_motion(std::int64_t time) {
     if (!started) return;
     const double t = seconds(time - start_time);
     const bool ended = t >= plan.duration;
-    const MotionState s = plan.at(t);
-    position = ended ? plan.end.position + plan.end.velocity * (t - plan.duration) : s.position;
+    const MotionState s = ended ? plan.end : plan.at(t);
+    position = ended ? s.position + s.velocity * (t - plan.duration) : s.position;
     velocity = s.velocity;
     acceleration = s.acceleration;
     jerk = ended ? 0 : s.jerk;
-    busy = !ended;
+}
+
+void PathMove::publish_state(std::int64_t time) {
+    error = error_id != PathMoveError::none;
+    const bool ended = started && seconds(time - start_time) >= plan.duration;
+    busy = started && !ended && !error;
     done = ended && !error && (execute || !told);
     told = ended && (told || done);
 }

@@ -23,7 +23,8 @@ enum class PathMoveError : std::int64_t {
 /// (profile/seven_segment.hpp), for path_circle and path_rectangle.
 ///
 /// A rising edge of `execute` takes the inputs and begins the move at position 0. `busy` until its
-/// end, then `done` as long as `execute` is true, one scan at least. After the end the velocity
+/// end, then `done` as long as `execute` is true, one scan at least. While an input is no number
+/// the outputs are held. After the end the velocity
 /// stays: 0, or `end_velocity`, or what the length sufficed for.
 ///
 /// What the planner found is on the outputs from the start of the move: its case, the number of the
@@ -59,6 +60,7 @@ struct PathMove {
   private:
     PathMoveError begin(std::int64_t time);
     void publish_plan();
+    void publish_motion(std::int64_t time);
     void publish_state(std::int64_t time);
 };
 

@@ -23,7 +23,7 @@ namespace lineshaft {
 struct Expectation {
     using When = ExpectPlan::When;
 
-    std::string text;  ///< as `run` prints it: `at 1 s: slave.in_gear = true`
+    std::string text;  ///< as `run` prints it: `at 1 s: gear.InGear = true`
     Signal signal;
     When when = When::at_end;
     std::int64_t from = 0, until = never;  ///< [ns], see ExpectPlan

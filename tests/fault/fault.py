@@ -22,7 +22,8 @@ tasks: {main: {every: 1 ms}}
 inputs: {go: false}
 stimulus: [{at: 1 ms, set: {inputs.go: true}}]
 blocks:
-  axis: {type: virtual_axis, task: main, velocity: $speed}
+  axis: {type: axis, task: main}
+  feed: {type: MC_MoveVelocity, task: main, Axis: axis, Velocity: $speed, Execute: true}
   x: {type: pto, task: main, start_rate: 1 kHz, count: 1000, execute: inputs.go}
 run: {for: 20 ms}
 trace: {task: main, signals: [axis.position, axis.velocity]}

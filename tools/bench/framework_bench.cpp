@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <bit>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <numeric>
 #include <stdexcept>
@@ -29,6 +31,13 @@ Linked linked(const std::string& text) {
     Linked result = link(program, standard_blocks(), problems);
     if (!problems.empty()) throw std::runtime_error(problems.render());
     return result;
+}
+
+Loaded loaded(const std::filesystem::path& file) {
+    Diagnostics problems;
+    auto program = load_program(file, {}, standard_blocks(), problems);
+    if (!program) throw std::runtime_error(problems.render());
+    return std::move(*program);
 }
 
 std::string head(const std::string& jitter = {}) {
@@ -75,15 +84,32 @@ std::string filter_chain(bool own, const std::string& jitter) {
     return text;
 }
 
-/// One of the axes is the shaft. 8,000 is what the loader's 100,000 values admit.
-std::string gear_axes(std::size_t axes) {
-    std::string text = head() + "  a: {type: virtual_axis, task: m, velocity: 10 mm/s}\n";
-    for (std::size_t i = 0; i < axes - 1; ++i)
-        text += fmt::format(
-            "  s{}: {{type: gear_axis, task: m, master_position: a.position, "
-            "master_velocity: a.velocity, ratio: {}}}\n",
-            i, 1 + i % 5);
-    return text;
+/// Axes that move through the whole run, each by a command of its own, which is given once by one
+/// of the blocks that have a thousand axes each, at most. 8,000 is what the loader's 100,000 values
+/// admit.
+void write_moving_axes(const std::filesystem::path& folder, std::size_t axes) {
+    const std::size_t together = std::min<std::size_t>(axes, 1000);
+    std::ofstream(folder / "start.st") << fmt::format(
+        "FUNCTION_BLOCK Start\n"
+        "VAR_IN_OUT axes : ARRAY[0..{0}] OF AXIS_REF; END_VAR\n"
+        "VAR moves : ARRAY[0..{0}] OF MC_MoveRelative; i : DINT; END_VAR\n"
+        "FOR i := 0 TO {0} DO\n"
+        "  moves[i](Axis := axes[i], Execute := TRUE, Distance := 1000.0 + DINT_TO_LREAL(i));\n"
+        "END_FOR;\n"
+        "END_FUNCTION_BLOCK\n",
+        together - 1);
+    std::string text = fmt::format(
+        "lineshaft: 1\nsources: start.st\ntasks: {{m: {{every: 1 ms}}, once: {{every: 1 h}}}}\n"
+        "run: {{for: {} ms}}\nblocks:\n",
+        scans - 1);
+    for (std::size_t i = 0; i < axes; ++i)
+        text += fmt::format("  s{}: {{type: axis, task: m}}\n", i);
+    for (std::size_t i = 0; i < axes; ++i) {
+        if (i % together == 0)
+            text += fmt::format("  start{}:\n    type: Start\n    task: once\n", i);
+        text += fmt::format("    axes[{}]: s{}\n", i % together, i);
+    }
+    std::ofstream(folder / "axes.yaml") << text;
 }
 
 /// Time of a task's scan, from the first on.
@@ -136,18 +162,20 @@ void filters(benchmark::State& state, bool own, const char* with_jitter) {
 /// The course's machine, whose logic is serial; or its tasks alone, with nothing to call: the fixed
 /// cost of a scan.
 void machine_logic(benchmark::State& state, bool empty) {
-    Diagnostics problems;
-    auto loaded = load_program(LINESHAFT_SOURCE_DIR "/programs/06_machine_logic.yaml", {},
-                               standard_blocks(), problems);
-    if (!loaded) throw std::runtime_error(problems.render());
-    Machine& machine = loaded->linked.machine;
+    Loaded program = loaded(LINESHAFT_SOURCE_DIR "/programs/06_machine_logic.yaml");
+    Machine& machine = program.linked.machine;
     if (empty)
         for (Task& task : machine.tasks) task.calls.clear();
     run(state, machine);
 }
 
 void axes(benchmark::State& state) {
-    run(state, gear_axes(static_cast<std::size_t>(state.range(0))));
+    const auto folder = std::filesystem::temp_directory_path() / "lineshaft_framework_bench";
+    std::filesystem::create_directories(folder);
+    write_moving_axes(folder, static_cast<std::size_t>(state.range(0)));
+    Loaded program = loaded(folder / "axes.yaml");
+    run(state, program.linked.machine);
+    std::filesystem::remove_all(folder);
 }
 
 /// Reading, checking and wiring a program: time of a block.

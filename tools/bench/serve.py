@@ -22,7 +22,8 @@ SIGNALS, REGISTERS = 1000, 125
 
 
 def program():
-    blocks = "\n".join(f"  x{i}: {{type: virtual_axis, task: servo, velocity: {1 + i} mm/s}}" for i in range(SIGNALS // 4))
+    blocks = "\n".join(f"  x{i}: {{type: axis, task: servo}}\n  feed{i}: {{type: MC_MoveVelocity, task: servo, Axis: x{i}, "
+                       f"Velocity: {1 + i} mm/s, Execute: true}}" for i in range(SIGNALS // 4))
     registers = ", ".join(f"{2 * i}: x{i}.position" for i in range(REGISTERS // 2))
     return f"""lineshaft: 1
 tasks: {{servo: {{every: 1 ms}}}}

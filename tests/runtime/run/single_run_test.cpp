@@ -25,12 +25,17 @@ blocks:
     task: main
     Axis: axis
     Velocity: $speed
-    Acceleration: inputs.limit
-    ContinuousUpdate: true
     Execute: true
-inputs: {limit: 100 mm/s^2}
+  again:
+    type: MC_MoveVelocity
+    task: main
+    Axis: axis
+    Velocity: $speed
+    Acceleration: inputs.limit
+    Execute: inputs.again
+inputs: {limit: 100 mm/s^2, again: false}
 stimulus:
-  - {at: 0.5 s, set: {inputs.limit: $acceleration}}
+  - {at: 0.5 s, set: {inputs.limit: $acceleration, inputs.again: true}}
 run: {for: 1 s}
 trace: {task: main, every: 50, signals: [axis.velocity, feed.Busy]}
 expect:
@@ -87,9 +92,9 @@ TEST_CASE("a trace is written while the program runs") {
     CHECK(report.output_error.empty());
     CHECK(read(trace) ==
           "time,scan,axis.velocity,feed.Busy\n"
-          "0,0,0,0\n"
+          "0,0,0,1\n"
           "0.5,50,10,1\n"
-          "1,100,10,1\n");
+          "1,100,10,0\n");
     CHECK(std::filesystem::exists(trace + "-metadata.json"));
 }
 
@@ -113,9 +118,9 @@ TEST_CASE("a block's error is a fault, and what was traced until then is kept") 
     CHECK(report.result.outcome == Outcome::block_error);
     CHECK(report.faulted());
     CHECK(report.result.message ==
-          "block 'feed' (MC_MoveVelocity) reports error 3 (limit_not_positive) in scan 51 of task "
+          "block 'again' (MC_MoveVelocity) reports error 3 (limit_not_positive) in scan 51 of task "
           "'main' at 0.51 s");
-    CHECK(read(trace) == "time,scan,axis.velocity,feed.Busy\n0,0,0,0\n0.5,50,10,1\n");
+    CHECK(read(trace) == "time,scan,axis.velocity,feed.Busy\n0,0,0,1\n0.5,50,10,1\n");
 }
 
 TEST_CASE("an interrupted run stops before its end, and its trace says so") {
@@ -128,7 +133,7 @@ TEST_CASE("an interrupted run stops before its end, and its trace says so") {
         run(*loaded, {.trace_path = trace, .interrupt = &interrupt, .progress = {}});
     CHECK(report.result.outcome == Outcome::interrupted);
     CHECK(report.result.time < 1'000'000'000);
-    CHECK(read(trace) == "time,scan,axis.velocity,feed.Busy\n0,0,0,0\n");
+    CHECK(read(trace) == "time,scan,axis.velocity,feed.Busy\n0,0,0,1\n");
     CHECK_THAT(read(trace + "-metadata.json"),
                Catch::Contains(R"("lineshaft:stopped": "interrupted at 0 s")"));
 }

@@ -25,11 +25,10 @@ TEST_CASE("a diagnostic reads like a compiler's") {
     for (int i = 1; i < 9; ++i) text += "# line\n";
     text += "    master_velocity: shaft.velocty\nlast: 1\n";
     const Mark mark{file_of(text, "programs/02_gear.yaml"), 9, 22, 13};
-    const Diagnostic diagnostic{"L0203", mark, "unknown port 'velocty' on 'shaft' (virtual_axis)",
+    const Diagnostic diagnostic{"L0203", mark, "unknown port 'velocty' on 'shaft' (axis)",
                                 "did you mean 'shaft.velocity'?"};
     CHECK(render(diagnostic) ==
-          "programs/02_gear.yaml:9:22: error[L0203]: unknown port 'velocty' on 'shaft' "
-          "(virtual_axis)\n"
+          "programs/02_gear.yaml:9:22: error[L0203]: unknown port 'velocty' on 'shaft' (axis)\n"
           "   9 |     master_velocity: shaft.velocty\n"
           "     |                      ^~~~~~~~~~~~~ did you mean 'shaft.velocity'?\n");
 }

@@ -86,11 +86,11 @@ tasks:
   main:  {every: 1 ms, priority: 1}
 blocks:
   shaft:
-    type: virtual_axis
+    type: axis
     task: servo
     velocity: $speed
   slave:
-    type: gear_axis
+    type: servo_drive
     task: servo
     master_velocity: shaft.velocity
     ratio: 1.5
@@ -99,7 +99,7 @@ blocks:
   counter:
     type: ctu
     task: main
-    cu: NOT slave.in_gear
+    cu: NOT slave.error
     reset:
 run: {for: 2 s}
 inputs: {start: false}
@@ -112,7 +112,7 @@ trace:
   task: servo
   every: 1
   signals: [shaft.position, slave.velocity,
-            slave.in_gear]
+            slave.error]
 notes: |
   Several lines
     of text.
@@ -121,7 +121,7 @@ folded: >-
   folded
   text
 expect:
-  - {at: 1 s, slave.in_gear: true}
+  - {at: 1 s, slave.error: true}
   - {at: end, slave.velocity: 15 mm/s, within: 1e-9 mm/s}
   - {always: slave.velocity, at_most: 15.001 mm/s}
 plain: text over

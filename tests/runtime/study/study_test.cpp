@@ -101,7 +101,7 @@ cases:
     compare: {axis.position: {paper: 5.4 mm, within: 10 %}}
   - set: {speed: 2 cm/s}
     compare: {axis.position: {paper: 0.02 m, within: 0.1 mm, at_most: 19 mm}}
-  - compare: [axis.position, axis.moving]
+  - compare: [axis.position, axis.busy]
 )");
     const StudyReport report = file.report();
     CHECK(values(report) == std::vector<double>{5, 20, 10, 1});
