@@ -76,7 +76,7 @@ struct Axis {
     MotionState base;          ///< of the motion without what is added
     MotionState extra;         ///< of added_motion
     double offset = 0;         ///< what the position is further than both
-    double relocated = 0;      ///< by all MC_SetPosition: followers do not see it
+    double relocated = 0;      ///< by MC_SetPosition and MC_Home: followers do not see it
     double goal = 0;           ///< of `active`, as a position; where it ended
     double origin = 0;         ///< from where the distance of `active` counts
     double velocity_factor = 1, acceleration_factor = 1, jerk_factor = 1;  ///< MC_SetOverride

@@ -276,6 +276,7 @@ MotionError Axis::plan_homing(const Request& request, const Moment& at, const St
     search.velocity = dynamics_of(request).velocity;
     Start known = from;
     if (request.option != homing_on_signal) {
+        relocated += request.position - known.state.position;
         known.state.position = request.position;
         ++renamed;
     }

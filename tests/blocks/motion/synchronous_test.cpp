@@ -35,6 +35,7 @@ blocks:
   phase: {type: MC_PhasingAbsolute, task: main, Master: m, Slave: s, PhaseShift: 10 mm, Velocity: 100 mm/s, Acceleration: 1000 mm/s^2, Deceleration: 1000 mm/s^2, Jerk: 0 mm/s^3}
   more: {type: MC_PhasingRelative, task: main, Master: m, Slave: s, PhaseShift: 10 mm, Velocity: 100 mm/s, Acceleration: 1000 mm/s^2, Deceleration: 1000 mm/s^2, Jerk: 0 mm/s^3}
   set: {type: MC_SetPosition, task: main, Axis: m, Position: 5000 mm}
+  home: {type: MC_Home, task: main, Axis: m, Position: 500 mm}
 )";
 
 double relative(const MotionBench& bench) {
@@ -79,6 +80,29 @@ blocks:
     302   .            .            | 0          0          1
     303   .            .            | 0          0          1 )");
     CHECK(bench.number("s.position") == Approx(100.05 * (0.10005 / 2 + 0.00045)).margin(1e-6));
+}
+
+TEST_CASE("a master that is homed does not move its slave") {
+    MotionBench bench(line_shaft);
+    bench.set("run.Execute", true);
+    bench.set("gear2.Execute", true);
+    bench.step(300);
+    bench.set("halt.Execute", true);
+    bench.step(300);
+    REQUIRE(bench.axis("m").state == AxisState::standstill);
+    const double slave = bench.number("s.position"), master = bench.number("m.position");
+    bench.set("home.Execute", true);
+    bench.step(5);
+    CHECK(bench.is("home.Done"));
+    CHECK(bench.number("m.position") == 500);
+    CHECK(bench.number("s.position") == slave);
+    bench.set("halt.Execute", false);
+    bench.set("run.Execute", false);
+    bench.step(1);
+    bench.set("run.Execute", true);
+    bench.step(300);
+    CHECK(bench.number("s.position") - slave == Approx(2 * (bench.number("m.position") - 500)));
+    CHECK(master != 500);
 }
 
 TEST_CASE("MC_GearOut leaves the slave with its velocity, and MC_Stop stops it") {
