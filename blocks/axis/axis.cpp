@@ -10,6 +10,8 @@ std::span<const Field> Axis::fields() {
     using A = Axis;
     static const Field table[] = {
         parameter("unit", &A::unit, "", "unit of the axis").one_of(axis_unit_names),
+        parameter("profile", &A::profile, "", "whose rules count where vendors differ")
+            .one_of(axis_profile_names),
         parameter("modulo", &A::modulo, "", "the position is shown in 0..`period`"),
         parameter("period", &A::period, "{unit}", "of a modulo axis").at_least(0),
         parameter("default_velocity", &A::default_velocity, "{unit}/s",

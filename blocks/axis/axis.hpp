@@ -23,6 +23,7 @@ namespace lineshaft {
 struct Axis {
     // Parameters.
     AxisUnit unit = AxisUnit::mm;
+    AxisProfile profile = AxisProfile::plcopen;
     bool modulo = false, software_limits = false, has_drive = false;
     double period = 0, lowest_position = 0, highest_position = 0;
     double default_velocity = 100, default_acceleration = 1000, default_deceleration = 1000,
@@ -138,6 +139,7 @@ struct Axis {
     MotionState led_by(const Context& context, const MasterLink& link) const;
     MotionState master(const Context& context) const;
     bool follows(const Context& context, const Axis& leader) const;
+    bool admits(const MasterLink& link) const;
     MotionError check_masters(const Context& context, const Coupling& c) const;
     MotionError plan_sync(const Context& context, const Request& request, const Moment& at,
                           const Start& from);

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 
 #include "blocks/axis/axis.hpp"
 #include "blocks/motion/cam_table.hpp"
@@ -79,10 +80,19 @@ bool Axis::follows(const Context& context, const Axis& leader) const {
     return false;
 }
 
+/// Siemens' ratios are two DINT, the denominator above 0.
+bool Axis::admits(const MasterLink& link) const {
+    if (profile == AxisProfile::plcopen) return link.denominator != 0;
+    const auto is_dint = [](double x) {
+        return std::trunc(x) == x && std::abs(x) <= std::numeric_limits<std::int32_t>::max();
+    };
+    return is_dint(link.numerator) && is_dint(link.denominator) && link.numerator != 0 &&
+           link.denominator > 0;
+}
+
 MotionError Axis::check_masters(const Context& context, const Coupling& c) const {
     if (c.master.axis < 0) return MotionError::no_master;
-    if (c.master.denominator == 0 || c.second.denominator == 0 || c.master_scaling == 0 ||
-        c.start_distance < 0)
+    if (!admits(c.master) || !admits(c.second) || c.master_scaling == 0 || c.start_distance < 0)
         return MotionError::out_of_range;
     for (const MasterLink* link : {&c.master, &c.second})
         if (link->axis >= 0 && (&context.instance<Axis>(link->axis) == this ||
