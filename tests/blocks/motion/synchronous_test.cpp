@@ -287,3 +287,39 @@ TEST_CASE("a slave gets in gear with a master that accelerates, two scans from t
     CHECK(scans >= high * 1e3);
     CHECK(scans <= high * 1e3 + 2);
 }
+
+TEST_CASE("a checkpoint in mid-coupling goes on to the same bytes") {
+    constexpr const char* program = R"(
+tasks: {main: {every: 1 ms}}
+blocks:
+  m: {type: axis, task: main}
+  s: {type: axis, task: main, default_acceleration: 5000 mm/s^2, default_deceleration: 5000 mm/s^2}
+  run: {type: MC_MoveVelocity, task: main, Axis: m, Velocity: 100 mm/s, Execute: true}
+  gear: {type: MC_GearIn, task: main, Master: m, Slave: s}
+  pos: {type: MC_GearInPos, task: main, Master: m, Slave: s, MasterSyncPosition: 60 mm, SlaveSyncPosition: 50 mm, MasterStartDistance: 20 mm}
+  phase: {type: MC_PhasingRelative, task: main, Master: m, Slave: s, PhaseShift: 5 mm, Velocity: 50 mm/s}
+  points: {type: cam_table, task: main, periodic: true, points: [[0 mm, 0 mm], [50 mm, 30 mm], [100 mm, 0 mm]]}
+  select: {type: MC_CamTableSelect, task: main, Master: m, Slave: s, CamTable: points, Periodic: true, Execute: true}
+  cam: {type: MC_CamIn, task: main, Master: m, Slave: s, CamTableID: select.CamTableID, MasterSyncPosition: 50 mm, MasterStartDistance: 40 mm, StartMode: mcRelative}
+)";
+    const auto drive = [](MotionBench& bench, std::int64_t ms) {
+        if (ms == 100) bench.set("gear.Execute", true);
+        if (ms == 300) bench.set("pos.Execute", true);
+        if (ms == 750) bench.set("phase.Execute", true);
+        if (ms == 1000) bench.set("cam.Execute", true);
+        bench.step();
+    };
+    for (const std::int64_t split : {101, 110, 305, 500, 620, 760, 900, 1001, 1100, 1500, 2200}) {
+        INFO("checkpoint after " << split << " ms");
+        MotionBench whole(program), resumed(program);
+        for (std::int64_t ms = 0; ms < split; ++ms) drive(whole, ms);
+        resumed.resume(whole.checkpoint(), split);
+        for (std::int64_t ms = split; ms < 2500; ++ms) {
+            drive(whole, ms);
+            drive(resumed, ms);
+        }
+        CHECK(whole.checkpoint() == resumed.checkpoint());
+        CHECK(whole.block<CamIn>("cam").error_id == MotionError::none);
+        CHECK(whole.is("cam.InSync"));
+    }
+}
