@@ -1,7 +1,6 @@
 #include "runtime/serve/api.hpp"
 
 #include <algorithm>
-#include <thread>
 
 #include <fmt/format.h>
 
@@ -151,7 +150,7 @@ std::vector<Route> make_routes() {
          true, {}, {}, state_schema(), &Api::pause},
         {"POST", "/api/resume", "Goes on", true, {}, {}, state_schema(), &Api::resume},
         {"POST", "/api/step",
-         "Runs scans as fast as it can, then pauses; answers when that is done, or after some seconds",
+         "Runs scans as fast as it can, for some seconds at most, then pauses and answers",
          true, {},
          object({{"scans", of_type("integer", "1 unless given")},
                  {"task", of_type("string", "whose scans; all tasks' unless given")}}),
@@ -342,7 +341,7 @@ ApiReply Api::resume(const ApiRequest&) {
 
 ApiReply Api::step(const ApiRequest& request) {
     constexpr std::int64_t most = 1'000'000;
-    constexpr int most_waits = 5000;
+    constexpr int most_turns = 2500;
     const Json& body = request.body;
     std::int64_t scans = 1;
     int task = -1;
@@ -357,15 +356,13 @@ ApiReply Api::step(const ApiRequest& request) {
         if (it == tasks.end()) return failure(400, "the program has no such task");
         task = static_cast<int>(it - tasks.begin());
     }
-    ApiReply stepping = ask([this, task, scans] {
-        live_.step(task, scans);
-        return ApiReply{200, true};
-    });
-    for (int i = 0; i < most_waits && stepping.body == true; ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        stepping = ask([this] { return ApiReply{200, live_.is_stepping()}; });
+    for (int i = 0; i < most_turns && scans > 0; ++i) {
+        const auto left =
+            live_.mailbox().ask([this, task, scans] { return live_.step(task, scans); });
+        if (!left) return too_much();
+        scans = *left;
     }
-    return stepping.status == 200 ? state(request) : stepping;
+    return state(request);
 }
 
 ApiReply Api::run_until(const ApiRequest& request) {

@@ -48,24 +48,24 @@ ServeReport serve(Loaded& loaded, RunOptions how, const ServeOptions& options,
             refused.add("L0511", {}, error, realtime_help);
     if (!refused.empty()) return report;
 
-    Live live(loaded, options.live, recording ? &*recording : nullptr);
-    Desk desk(loaded);
-    Api api(live, desk, loaded);
-    ModbusDesk modbus_desk(live, desk, loaded.linked.modbus, options.http.allow_write);
-    std::optional<HttpServer> http;
-    std::optional<ModbusServer> modbus;
+    std::int64_t end = 0;
     how.drive = [&](Executive& executive) {
+        Live live(loaded, executive, options.live, recording ? &*recording : nullptr);
+        Desk desk(loaded);
+        Api api(live, desk, loaded);
+        ModbusDesk modbus_desk(live, desk, loaded.linked.modbus, options.http.allow_write);
+        std::optional<HttpServer> http;
+        std::optional<ModbusServer> modbus;
         if (options.http.address.port > 0) http.emplace(api, options.http);
         if (options.modbus.port > 0) modbus.emplace(modbus_desk, options.modbus);
         ready();
-        live.drive(executive);
-        http.reset();
-        modbus.reset();
+        live.drive();
+        report.pace = live.pace();
+        end = live.time();
     };
     report.run = run(loaded, how);
-    report.pace = live.pace();
     if (recording) {
-        recording->finish(live.time());
+        recording->finish(end);
         report.recording_error = recording->error();
     }
     return report;
