@@ -162,10 +162,11 @@ struct HttpServer::Server : httplib::Server {
 };
 
 bool HttpServer::Server::process_and_close_socket(int socket) {
+    const auto answer_whole = [](httplib::Request& request) { request.ranges.clear(); };
     Connection connection(socket);
     bool closed = Threads::sends_away;
     while (!closed && !ends && connection.begin())
-        if (!process_request(connection, false, closed, {})) break;
+        if (!process_request(connection, false, closed, answer_whole)) break;
     ::shutdown(socket, SHUT_RDWR);
     ::close(socket);
     return true;
@@ -191,7 +192,8 @@ void HttpServer::Server::reply(const httplib::Request& request, httplib::Respons
     }
     response.status = got.status;
     if (got.stream) return send(std::move(got.stream), response);
-    response.set_content(got.body.dump() + "\n", "application/json");
+    response.set_content(got.body.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",
+                         "application/json");
 }
 
 void HttpServer::Server::send(std::shared_ptr<Stream> stream, httplib::Response& response) {

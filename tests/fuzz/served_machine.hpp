@@ -1,36 +1,51 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
+#include <memory>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "runtime/serve/modbus.hpp"
 
 namespace lineshaft::test {
 
-/// A small program that is served without a port, in this thread: paused, so that its time moves
-/// by steps only. What `inputs.fixed` is and what its map has for reading only, nobody may set.
+/// A small program that is served in this thread, without a port. It is paused: its time moves by
+/// steps only.
 class ServedMachine {
   public:
     ServedMachine();
 
-    Api api() { return {live, desk, loaded}; }
-    ModbusDesk modbus(bool allow_write) { return {live, desk, loaded.linked.modbus, allow_write}; }
-
-    /// Everything that a client could change.
+    /// All that a client could change.
     std::string state() const;
 
-    /// One instant further, without forces: what came counts now, and nothing piles up.
+    /// One scan further, without forces: what was written counts now, and nothing piles up.
     void go_on();
 
-    std::atomic<bool> interrupt = false;
-    Loaded loaded;
-    Executive executive;
+    /// Values of the program's inputs.
+    std::string inputs() const;
+
+    /// `inputs.fixed`, which may be forced, but not set by Modbus, is what it was.
+    bool is_fixed() const;
+
+    /// Answers the bytes of a client that then sends no more, by what answers a socket.
+    static std::string answer(std::string_view bytes, const std::function<void(int)>& converse);
+
+    /// The only one. A new one when the time of the last one has ended.
+    static ServedMachine& get();
+
+  private:
+    std::atomic<bool> interrupt_ = false;
+    Loaded loaded_;
+    Executive executive_;
+
+  public:
     Live live;
     Desk desk;
+    Api api;
+    HttpOptions options{.address = {}, .page = "<!doctype html>", .most_requests = never};
+    HttpServer http{api, options};
+    const ModbusMap& map;
 };
-
-/// Sends bytes to what answers a socket, and then no more. Returns what is answered.
-std::string answer_of(const std::uint8_t* data, std::size_t size, auto&& converse);
 
 }  // namespace lineshaft::test
