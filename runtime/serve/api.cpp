@@ -138,7 +138,7 @@ std::vector<Route> make_routes() {
          false,
          Json{{"signals", "names, with commas between"},
               {"every", "virtual time between two rows, such as 10 ms; each step unless given"}},
-         {}, nullptr, &Api::stream},
+         {}, nullptr, &Api::stream, "text/event-stream"},
         {"POST", "/api/set", "Sets inputs, all at once",
          true, {}, values_schema(wanted_doc), stamp_schema, &Api::set},
         {"POST", "/api/force", "Keeps signals at values, whatever the program writes",
@@ -161,6 +161,9 @@ std::vector<Route> make_routes() {
         {"POST", "/api/speed", "Changes how many virtual seconds a second has", true, {},
          object({{"speed", described(Json::object(), "a number from 1e-6 to 1e6, or max")}}, {"speed"}),
          state_schema(), &Api::speed},
+        {"POST", "/api/checkpoint",
+         "All that the machine is, as a file: 'serve --resume --checkpoint FILE' goes on from it",
+         true, {}, {}, nullptr, &Api::checkpoint, "application/octet-stream"},
         {"GET", "/api/openapi.json", "This document",
          false, {}, {}, of_type("object"), &Api::document},
     };
@@ -168,9 +171,6 @@ std::vector<Route> make_routes() {
 // clang-format on
 
 Json operation(const Route& route) {
-    const auto content = [](const Json& schema) {
-        return Json{{"application/json", {{"schema", schema}}}};
-    };
     Json out{{"summary", route.doc},
              {"operationId", std::string(route.path.substr(route.path.rfind('/') + 1))}};
     for (const auto& [name, doc] : route.parameters.items())
@@ -178,11 +178,11 @@ Json operation(const Route& route) {
                                      {"in", "query"},
                                      {"description", doc},
                                      {"schema", {{"type", "string"}}}});
-    if (!route.body.is_null()) out["requestBody"]["content"] = content(route.body);
-    Json fine{{"description", "done"}};
-    fine["content"] =
-        route.reply.is_null() ? Json{{"text/event-stream", Json::object()}} : content(route.reply);
-    out["responses"]["200"] = fine;
+    if (!route.body.is_null())
+        out["requestBody"]["content"]["application/json"]["schema"] = route.body;
+    out["responses"]["200"]["description"] = "done";
+    Json& reply = out["responses"]["200"]["content"][std::string(route.type)] = Json::object();
+    if (!route.reply.is_null()) reply["schema"] = route.reply;
     for (const auto& [status, doc] :
          {std::pair{"400", "the request is wrong: 'error' says how"},
           std::pair{"403", "not allowed: writing without --allow-write, another origin"},
@@ -384,6 +384,10 @@ ApiReply Api::speed(const ApiRequest& request) {
         return failure(400, "a speed is a number from 1e-6 to 1e6, or max", "{\"speed\": 1}");
     const double speed = is_max ? Pacer::unpaced : wanted.get<double>();
     return after([this, speed] { live_.set_speed(speed); });
+}
+
+ApiReply Api::checkpoint(const ApiRequest&) {
+    return ask([this] { return ApiReply{.status = 200, .body = {}, .file = save_()}; });
 }
 
 ApiReply Api::document(const ApiRequest&) {

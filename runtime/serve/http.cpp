@@ -192,6 +192,7 @@ void HttpServer::Server::reply(const httplib::Request& request, httplib::Respons
     }
     response.status = got.status;
     if (got.stream) return send(std::move(got.stream), response);
+    if (!got.file.empty()) return response.set_content(got.file, "application/octet-stream");
     response.set_content(got.body.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",
                          "application/json");
 }

@@ -56,7 +56,7 @@ ServedMachine::ServedMachine()
       executive_(loaded_.linked.machine),
       live(loaded_, executive_, {.end = end, .interrupt = &interrupt_}, nullptr),
       desk(loaded_),
-      api(live, desk, loaded_),
+      api(live, desk, loaded_, [] { return std::string("checkpoint"); }),
       map(loaded_.linked.modbus) {
     executive_.begin();
     live.step(-1, 1);
