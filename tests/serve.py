@@ -71,18 +71,18 @@ def free_port():
 class Machine:
     """A served program; its clients' answers are checked to be JSON."""
 
-    def __init__(self, *options, program="program.yaml", write=True):
-        self.port, self.modbus_port = free_port(), free_port()
+    def __init__(self, *options, program="program.yaml", write=True, host="127.0.0.1"):
+        self.host, self.port, self.modbus_port = host, free_port(), free_port()
         self.process = subprocess.Popen(
-            [COMMAND, "serve", program, "--http", f"127.0.0.1:{self.port}", "--modbus",
-             f"127.0.0.1:{self.modbus_port}", *(["--allow-write"] if write else []), *options],
+            [COMMAND, "serve", program, "--http", f"{host}:{self.port}", "--modbus", f"{host}:{self.modbus_port}",
+             *(["--allow-write"] if write else []), *options],
             cwd=FOLDER, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         said = self.process.stderr.readline()
         assert said.startswith("serving "), said + self.process.stderr.read()
 
     def ask(self, path, body=None, headers=None, method=None):
         data = None if body is None else json.dumps(body).encode()
-        request = urllib.request.Request(f"http://127.0.0.1:{self.port}{path}", data, headers or {}, method=method)
+        request = urllib.request.Request(f"http://{self.host}:{self.port}{path}", data, headers or {}, method=method)
         try:
             with urllib.request.urlopen(request, timeout=20) as response:
                 return response.status, json.loads(response.read())
@@ -103,7 +103,7 @@ class Machine:
         return self.get(f"values?signals={name}")["values"][name]
 
     def modbus(self):
-        client = ModbusTcpClient("127.0.0.1", port=self.modbus_port, timeout=20)
+        client = ModbusTcpClient(self.host, port=self.modbus_port, timeout=20)
         assert client.connect()
         return client
 
@@ -179,10 +179,11 @@ def check_refusals():
     ]:
         status, answer = machine.ask(f"/api/{path}", body)
         assert status == 400 and words in json.dumps(answer), (path, body, answer)
-    assert machine.ask("/api/values?signals=shaft.positon")[0] == 400
+    assert machine.ask("/api/values?signals=shaft.positon")[0] == machine.ask("/api/values?signals=%ff")[0] == 400
     assert machine.ask("/api/nothing")[0] == 404
     assert machine.ask("/etc/passwd")[0] == machine.ask("/../../etc/passwd")[0] == 404
     assert machine.ask("/api/state", {})[0] == 405
+    assert machine.ask("/api/state", headers={"Range": "bytes=0-9"})[0] == 200  # and whole: it is JSON
     for headers in ({"Host": "evil.example"}, {"Origin": "http://evil.example"}):
         assert machine.ask("/api/state", headers=headers)[0] == 403
         assert machine.ask("/api/set", {"inputs.go": True}, headers=headers)[0] == 403
@@ -190,7 +191,7 @@ def check_refusals():
     assert document == json.loads(run("serve", "--openapi", "program.yaml").stdout)
     for path, methods in document["paths"].items():
         for method in methods:
-            if path != "/api/stream":
+            if path not in ("/api/stream", "/api/checkpoint"):
                 assert machine.ask(path, {} if method == "post" else None)[0] in (200, 400), path
     connection = http.client.HTTPConnection("127.0.0.1", machine.port, timeout=20)
     connection.request("POST", "/api/set", b"x" * 100_000)
@@ -293,6 +294,178 @@ def check_stream():
     assert machine.end()[0] == 0
 
 
+class Watch:
+    """Counts a task's scans by a stream, which needs no further connection."""
+
+    def __init__(self, machine, task):
+        self.response = http.client.HTTPConnection("127.0.0.1", machine.port, timeout=20)
+        self.response.request("GET", "/api/stream?signals=late.q&every=1h")
+        self.response, self.task = self.response.getresponse(), task
+
+    def scans(self):
+        while self.response.readline() != b"event: state\n":
+            pass
+        return scans_of(json.loads(self.response.readline().removeprefix(b"data: ")), self.task)
+
+
+def begun_connection(port):
+    """Does not wait until somebody takes it."""
+    client = socket.socket()
+    client.setblocking(False)
+    client.connect_ex(("127.0.0.1", port))
+    return client
+
+
+def send_some(client):
+    """Half a request, and no more."""
+    try:
+        client.sendall(b"\0\1\0\0\0")
+        client.shutdown(socket.SHUT_WR)
+    except OSError:
+        pass  # it was not taken
+
+
+def connected(port):
+    return socket.create_connection(("127.0.0.1", port), timeout=20)
+
+
+def answered(client):
+    """All that comes until the other side ends; empty when it ends by a reset."""
+    got = b""
+    try:
+        while part := client.recv(65536):
+            got += part
+    except ConnectionError:
+        pass
+    return got
+
+
+def head(lines, path="/api/state"):
+    return f"GET {path} HTTP/1.1\r\nHost: localhost\r\n".encode() + b"".join(lines)
+
+
+def status_of(answer):
+    return int(answer[9:12]) if answer.startswith(b"HTTP/1.1 ") else None
+
+
+def ask_raw(port, request):
+    """The status; None when the connection was ended without one."""
+    client = connected(port)
+    try:
+        client.sendall(request)
+        client.shutdown(socket.SHUT_WR)
+    except OSError as error:
+        assert not isinstance(error, TimeoutError)
+        return None
+    return status_of(answered(client))
+
+
+def resident(process):
+    """Memory in MB."""
+    status = pathlib.Path(f"/proc/{process.pid}/status").read_text(encoding="ascii")
+    return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1024
+
+
+def check_hostile():
+    machine = Machine()
+    watch = Watch(machine, "servo")
+    eventually(lambda: watch.scans() > 10)
+    before = resident(machine.process)
+    lines = [f"X-{k}: 1\r\n".encode() for k in range(98)]
+    assert ask_raw(machine.port, head(lines) + b"\r\n") == 200
+    assert ask_raw(machine.port, head(lines + [b"Y: 1\r\n"] * 3) + b"\r\n") in (400, None)
+    assert ask_raw(machine.port, head([b"X: " + b"x" * 7000 + b"\r\n"] * 3) + b"\r\n") in (400, None)
+    assert ask_raw(machine.port, head([b"X: " + b"x" * 10_000_000 + b"\r\n\r\n"])) in (400, None)
+    assert ask_raw(machine.port, head([b"X: x\r\n"] * 1_700_000 + [b"\r\n"])) in (400, None)
+    assert ask_raw(machine.port, head([b"\r\n"], "/" + "x" * 8000)) in (404, 414)
+    assert ask_raw(machine.port, b"x" * 10_000_000) in (400, 414, None)
+    drops = [connected(machine.port) for _ in range(5)] + [connected(machine.modbus_port)]
+    until = time.monotonic() + 6
+    while time.monotonic() < until:
+        scans = watch.scans()
+        for client in drops:
+            try:
+                client.sendall(b"G")
+            except ConnectionError:
+                pass
+    assert all(status_of(answered(client)) in (400, None) for client in drops)  # ended by the machine, not by us
+    flood = [begun_connection(port) for port in [machine.port] * 300 + [machine.modbus_port] * 60]
+    for client in flood[::3]:
+        send_some(client)
+    assert watch.scans() > scans
+    scans = watch.scans()
+    eventually(lambda: watch.scans() > scans + 100)
+    for client in flood:
+        client.close()
+    eventually(lambda: status_of(answered_once(machine.port)) == 200)
+    assert resident(machine.process) < before + 20, (before, resident(machine.process))
+    eventually(lambda: reads_coil(machine.modbus_port))
+    code, _, errors = machine.end()
+    assert code == 0, errors
+
+
+def answered_once(port):
+    with connected(port) as client:
+        client.sendall(head([b"Connection: close\r\n\r\n"]))
+        return answered(client)
+
+
+def reads_coil(port):
+    with connected(port) as client:
+        client.sendall(struct.pack(">HHHBBHH", 7, 0, 6, 1, 1, 5, 1))
+        client.shutdown(socket.SHUT_WR)
+        return answered(client) == struct.pack(">HHHBBBB", 7, 0, 4, 1, 1, 1, 0)
+
+
+def check_limits():
+    machine = Machine()
+    streams = [Watch(machine, "servo") for _ in range(16)]
+    assert machine.ask("/api/stream?signals=late.q")[0] == 503
+    streams.pop().response.close()
+    eventually(lambda: status_of(first_of(machine.port, "/api/stream?signals=late.q")) == 200)
+    client = connected(machine.port)
+    threading.Thread(target=client.sendall, args=(head([b"\r\n"], "/api/nothing") * 3000,), daemon=True).start()
+    eventually(lambda: b"HTTP/1.1 429" in client.recv(65536))
+    assert machine.end()[0] == 0
+
+
+def first_of(port, path):
+    with connected(port) as client:
+        client.sendall(head([b"\r\n"], path))
+        return client.recv(1000)
+
+
+def own_address():
+    """Of this machine, not the loopback's; None where there is none."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("192.0.2.1", 9))
+        except OSError:
+            return None
+        address = probe.getsockname()[0]
+    return None if address.startswith("127.") else address
+
+
+def check_other_addresses():
+    """Who comes by another address than the loopback's counts as another machine."""
+    address = own_address()
+    if not address:
+        print("SKIPPED: writing from another address: this machine has none")
+        return
+    (FOLDER / "token").write_text("0123456789abcdef\n", encoding="ascii")
+    machine = Machine("--token-file", "token", host=address)
+    assert machine.ask("/api/state")[0] == 200
+    for headers, status in (({}, 403), ({"Authorization": "Bearer 0123456789abcdeF"}, 403),
+                            ({"Authorization": "0123456789abcdef"}, 403),
+                            ({"Authorization": "Bearer 0123456789abcdef"}, 200)):
+        assert machine.ask("/api/set", {"inputs.go": True}, headers)[0] == status, headers
+    assert machine.modbus().write_coil(5, True).exception_code == 1
+    assert machine.end()[0] == 0
+    short = FOLDER / "short"
+    short.write_text("0123456789abcde\n", encoding="ascii")
+    assert "L0514" in run("serve", "program.yaml", "--token-file", "short").stderr
+
+
 def write_at_random(machine, rng, until):
     """A client that does what it likes."""
     client = machine.modbus()
@@ -339,6 +512,39 @@ def check_recordings(count, seed):
     print(f"{count} recordings of {entries} entries played back to the same bytes, seed {seed}")
 
 
+def check_checkpoint(seed):
+    """Gone on from a checkpoint, a machine leaves the bytes that it left by going on itself."""
+    rng = random.Random(seed)
+    files = ("--trace", "live.csv", "--record", "live.yaml", "--for", "60 s")
+    machine = Machine(*files)
+    until = time.monotonic() + 0.5
+    write_at_random(machine, rng, until)
+    machine.post("pause")
+    machine.post("set", {"inputs.go": True})
+    machine.post("force", {"slave.ratio": 0.5, "shaft.velocity": "3 cm/s"})
+    request = urllib.request.Request(f"http://127.0.0.1:{machine.port}/api/checkpoint", b"")
+    with urllib.request.urlopen(request, timeout=20) as response:
+        (FOLDER / "at.checkpoint").write_bytes(response.read())
+    machine.post("speed", {"speed": "max"})
+    machine.post("resume")
+    assert machine.process.wait(30) == 0
+    wanted = [(FOLDER / name).read_bytes() for name in ("live.csv", "live.events.csv", "live.yaml")]
+    killed = Machine(*files, "--resume", "--checkpoint", "at.checkpoint")
+    killed.post("set", {"inputs.ratio": 0.25})
+    killed.end(signal.SIGKILL)
+    again = Machine(*files, "--resume", "--checkpoint", "at.checkpoint", "--speed", "max")
+    assert again.process.wait(30) == 0, again.process.stderr.read()
+    for name, bytes_ in zip(("live.csv", "live.events.csv", "live.yaml"), wanted):
+        assert (FOLDER / name).read_bytes() == bytes_, (seed, name)
+    assert run("run", "program.yaml", "--recording", "live.yaml", "--trace", "again.csv").returncode == 0
+    assert (FOLDER / "again.csv").read_bytes() == wanted[0], seed
+    (FOLDER / "live.yaml").unlink()
+    lost = run("serve", "program.yaml", *files, "--resume", "--checkpoint", "at.checkpoint", "--http", "off")
+    assert lost.returncode == 2 and "L0512" in lost.stderr, lost.stderr
+    other = run("serve", "program.yaml", "--resume", "--checkpoint", "at.checkpoint", "--http", "off")
+    assert other.returncode == 2 and "--record" in other.stderr, other.stderr
+
+
 def check_kills(count, seed):
     rng = random.Random(seed)
     for number in range(count):
@@ -369,7 +575,11 @@ def main():
         check_refusals()
         check_modbus()
         check_stream()
+        check_hostile()
+        check_limits()
+        check_other_addresses()
         check_recordings(recordings, seed)
+        check_checkpoint(seed)
         check_kills(max(2, recordings // 2), seed)
         served = Machine("--speed", "max", "--for", "1 h", program=source / "programs" / "13_served_line.yaml")
         assert served.process.wait(60) == 0

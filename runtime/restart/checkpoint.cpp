@@ -61,16 +61,18 @@ std::string fingerprint(const Program& program, const Machine& machine) {
     return text_hash(text);
 }
 
-std::string write_checkpoint(const std::string& path, const std::string& program, std::int64_t time,
-                             const std::string& state) {
+std::string checkpoint_of(const std::string& program, std::int64_t time, const std::string& state) {
     const Json head{{"lineshaft_checkpoint", 1},
                     {"version", version()},
                     {"program", program},
                     {"time_ns", time},
                     {"state", text_hash(state)}};
+    return head.dump() + "\n" + state;
+}
+
+std::string write_checkpoint(const std::string& path, const std::string& checkpoint) {
     OutputFile file(path);
-    file.write(head.dump() + "\n");
-    file.write(state);
+    file.write(checkpoint);
     file.commit();
     return file.error();
 }

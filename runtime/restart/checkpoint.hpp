@@ -13,10 +13,12 @@ namespace lineshaft {
 /// digits.
 std::string fingerprint(const Program& program, const Machine& machine);
 
-/// Writes a state: one line of JSON (version, program, virtual time, size and hash of the state),
-/// then its bytes; whole or not at all. Empty when all is well, else what went wrong.
-std::string write_checkpoint(const std::string& path, const std::string& program, std::int64_t time,
-                             const std::string& state);
+/// A state as a file has it: one line of JSON (version, program, virtual time, hash of the state),
+/// then its bytes.
+std::string checkpoint_of(const std::string& program, std::int64_t time, const std::string& state);
+
+/// Writes a checkpoint, whole or not at all. Empty when all is well, else what went wrong.
+std::string write_checkpoint(const std::string& path, const std::string& checkpoint);
 
 /// The state of a checkpoint of `program` (its fingerprint). L0001 when it cannot be read, L0506
 /// when it is no checkpoint, is not whole, or belongs to another program or version.

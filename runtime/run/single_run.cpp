@@ -79,7 +79,7 @@ class SingleRun {
     void refuse(const std::string& error);
     bool resume();
     void tell_restart();
-    void save(std::int64_t time);
+    std::string checkpoint(std::int64_t time);
     void look(std::int64_t time);
     bool writing_fails() const;
     void warn_of_cut_texts();
@@ -150,8 +150,9 @@ bool SingleRun::begin() {
     if (begun_ && !resume()) return false;
     tell_restart();
     if (options_.checkpoint_every > 0)
-        executive_->checkpoint(options_.checkpoint_every,
-                               [this](std::int64_t time) { save(time); });
+        executive_->checkpoint(options_.checkpoint_every, [this](std::int64_t time) {
+            report_.restart_error = write_checkpoint(options_.checkpoint_path, checkpoint(time));
+        });
     return true;
 }
 
@@ -160,14 +161,14 @@ RunResult SingleRun::step() {
     executive_->look_out(&stop_, [this](std::int64_t time) { look(time); });
     executive_->begin();
     if (options_.drive)
-        options_.drive(*executive_);
+        options_.drive(*executive_, [this] { return checkpoint(executive_->time()); });
     else
         executive_->run_until(machine_.end);
     return executive_->finish();
 }
 
 bool SingleRun::restart() {
-    if (options_.checkpoint_every > 0 || options_.restart == Restart::hot)
+    if (options_.checkpoint_every > 0 || options_.drive || options_.restart == Restart::hot)
         program_ = fingerprint(loaded_.program, machine_);
     if (options_.restart == Restart::warm && !options_.retain_path.empty())
         retained_ = read_retained(options_.retain_path, machine_, report_.refused);
@@ -180,12 +181,14 @@ bool SingleRun::restart() {
 
 /// What a file of the checkpoint holds comes first in it, then the machine and its observers.
 bool SingleRun::open_files() {
-    std::array<bool, 2> files = {has_trace(), !options_.pulses_path.empty()}, before = files;
+    std::array<bool, 3> files = {has_trace(), !options_.pulses_path.empty(),
+                                 options_.observer != nullptr},
+                        before = files;
     if (begun_) begun_->get(before);
     if (files != before) {
         report_.refused.add("L0506", {},
                             "the checkpoint was made with other files than this run has",
-                            "give the same --trace and --pulses as before");
+                            "give the same --trace, --pulses and --record as before");
         return false;
     }
     if (begun_) {
@@ -249,16 +252,16 @@ void SingleRun::tell_restart() {
                                     : "cold restart"});
 }
 
-void SingleRun::save(std::int64_t time) {
+std::string SingleRun::checkpoint(std::int64_t time) {
     StateWriter out;
-    out.put(std::array<bool, 2>{has_trace(), pulses_.has_value()});
+    out.put(std::array<bool, 3>{has_trace(), pulses_.has_value(), options_.observer != nullptr});
     outputs_.save(out);
     if (events_) events_->save(out);
     for (Tracing& trace : traces_) trace.save(out);
     if (pulses_) pulses_->save(out);
     executive_->save(out);
     for (const Observer* observer : observers_) observer->save(out);
-    report_.restart_error = write_checkpoint(options_.checkpoint_path, program_, time, out.bytes());
+    return checkpoint_of(program_, time, out.bytes());
 }
 
 /// Stops the run when the user wants it, and when what it records cannot be written.

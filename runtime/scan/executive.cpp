@@ -232,7 +232,7 @@ std::int64_t Executive::release(const std::byte* live) {
 }
 
 std::int64_t Executive::forces_changed() {
-    forces_.look_ahead(known_until_ - 1);
+    forces_.forget_ended(known_until_ - 1);
     look_ahead();
     return known_until_;
 }

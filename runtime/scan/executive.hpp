@@ -97,6 +97,9 @@ class Executive {
     void add(Observer& observer);
     void remove(Observer& observer);
 
+    /// Up to which everything has run [ns]; below 0 before the first instant.
+    std::int64_t time() const { return known_until_ - 1; }
+
     /// When something is due next [ns].
     std::int64_t next_time() { return next_event(); }
 

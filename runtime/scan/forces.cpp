@@ -5,7 +5,7 @@
 
 namespace lineshaft {
 
-Forces::Forces(const std::vector<Force>& forces) : forces_(forces) {
+Forces::Forces(std::vector<Force>& forces) : forces_(forces) {
     look_ahead(-1);
 }
 
@@ -34,6 +34,17 @@ void Forces::look_ahead(std::int64_t now) {
     for (const Force& force : forces_)
         for (const std::int64_t time : {force.from, force.until})
             if (time > now && force.from < force.until) next_ = std::min(next_, time);
+}
+
+void Forces::forget_ended(std::int64_t now) {
+    own_.resize(forces_.size());
+    for (std::size_t i = forces_.size(); i-- > 0;) {
+        const Force& force = forces_[i];
+        if (own_[i].active || force.until > std::max(now, force.from)) continue;
+        forces_.erase(forces_.begin() + static_cast<std::ptrdiff_t>(i));
+        own_.erase(own_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    look_ahead(now);
 }
 
 void Forces::begin(std::size_t index) {

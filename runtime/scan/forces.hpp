@@ -14,8 +14,9 @@ namespace lineshaft {
 /// in its memory, and all are back when the force has ended.
 class Forces {
   public:
-    /// `forces` may grow, and times of its members change, if look_ahead() is called then.
-    explicit Forces(const std::vector<Force>& forces);
+    /// `forces` may grow, and times of its members change, if look_ahead() or forget_ended() is
+    /// called then.
+    explicit Forces(std::vector<Force>& forces);
 
     /// Next begin or end [ns].
     std::int64_t next_time() const { return next_; }
@@ -44,6 +45,9 @@ class Forces {
     /// Finds the next begin or end after `now`; after restore(), and when the forces have changed.
     void look_ahead(std::int64_t now);
 
+    /// Likewise, without those that will not come any more: their number does not grow with time.
+    void forget_ended(std::int64_t now);
+
   private:
     enum class Way { release, impose };
     struct Own {
@@ -56,7 +60,7 @@ class Forces {
     void begin(std::size_t index);
     void end(std::size_t index);
 
-    const std::vector<Force>& forces_;
+    std::vector<Force>& forces_;
     std::vector<Own> own_;
     std::int64_t next_ = 0;
     bool active_ = false;

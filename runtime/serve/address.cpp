@@ -61,6 +61,16 @@ std::string Address::text() const {
                        host, port);
 }
 
+std::string peer_of(int socket) {
+    sockaddr_storage peer{};
+    socklen_t size = sizeof peer;
+    auto* const address = reinterpret_cast<sockaddr*>(&peer);
+    char text[INET6_ADDRSTRLEN] = {};
+    if (::getpeername(socket, address, &size) == 0 && peer.ss_family != AF_UNIX)
+        ::getnameinfo(address, size, text, sizeof text, nullptr, 0, NI_NUMERICHOST);
+    return text;
+}
+
 bool Address::is_loopback() const {
     return host.starts_with("127.") || host == "::1" || host.starts_with("::ffff:127.");
 }

@@ -1,7 +1,6 @@
 #include "runtime/serve/api.hpp"
 
 #include <algorithm>
-#include <thread>
 
 #include <fmt/format.h>
 
@@ -139,7 +138,7 @@ std::vector<Route> make_routes() {
          false,
          Json{{"signals", "names, with commas between"},
               {"every", "virtual time between two rows, such as 10 ms; each step unless given"}},
-         {}, nullptr, &Api::stream},
+         {}, nullptr, &Api::stream, "text/event-stream"},
         {"POST", "/api/set", "Sets inputs, all at once",
          true, {}, values_schema(wanted_doc), stamp_schema, &Api::set},
         {"POST", "/api/force", "Keeps signals at values, whatever the program writes",
@@ -151,7 +150,7 @@ std::vector<Route> make_routes() {
          true, {}, {}, state_schema(), &Api::pause},
         {"POST", "/api/resume", "Goes on", true, {}, {}, state_schema(), &Api::resume},
         {"POST", "/api/step",
-         "Runs scans as fast as it can, then pauses; answers when that is done, or after some seconds",
+         "Runs scans as fast as it can, for some seconds at most, then pauses and answers",
          true, {},
          object({{"scans", of_type("integer", "1 unless given")},
                  {"task", of_type("string", "whose scans; all tasks' unless given")}}),
@@ -162,6 +161,9 @@ std::vector<Route> make_routes() {
         {"POST", "/api/speed", "Changes how many virtual seconds a second has", true, {},
          object({{"speed", described(Json::object(), "a number from 1e-6 to 1e6, or max")}}, {"speed"}),
          state_schema(), &Api::speed},
+        {"POST", "/api/checkpoint",
+         "All that the machine is, as a file: 'serve --resume --checkpoint FILE' goes on from it",
+         true, {}, {}, nullptr, &Api::checkpoint, "application/octet-stream"},
         {"GET", "/api/openapi.json", "This document",
          false, {}, {}, of_type("object"), &Api::document},
     };
@@ -169,9 +171,6 @@ std::vector<Route> make_routes() {
 // clang-format on
 
 Json operation(const Route& route) {
-    const auto content = [](const Json& schema) {
-        return Json{{"application/json", {{"schema", schema}}}};
-    };
     Json out{{"summary", route.doc},
              {"operationId", std::string(route.path.substr(route.path.rfind('/') + 1))}};
     for (const auto& [name, doc] : route.parameters.items())
@@ -179,11 +178,11 @@ Json operation(const Route& route) {
                                      {"in", "query"},
                                      {"description", doc},
                                      {"schema", {{"type", "string"}}}});
-    if (!route.body.is_null()) out["requestBody"]["content"] = content(route.body);
-    Json fine{{"description", "done"}};
-    fine["content"] =
-        route.reply.is_null() ? Json{{"text/event-stream", Json::object()}} : content(route.reply);
-    out["responses"]["200"] = fine;
+    if (!route.body.is_null())
+        out["requestBody"]["content"]["application/json"]["schema"] = route.body;
+    out["responses"]["200"]["description"] = "done";
+    Json& reply = out["responses"]["200"]["content"][std::string(route.type)] = Json::object();
+    if (!route.reply.is_null()) reply["schema"] = route.reply;
     for (const auto& [status, doc] :
          {std::pair{"400", "the request is wrong: 'error' says how"},
           std::pair{"403", "not allowed: writing without --allow-write, another origin"},
@@ -342,7 +341,7 @@ ApiReply Api::resume(const ApiRequest&) {
 
 ApiReply Api::step(const ApiRequest& request) {
     constexpr std::int64_t most = 1'000'000;
-    constexpr int most_waits = 5000;
+    constexpr int most_turns = 2500;
     const Json& body = request.body;
     std::int64_t scans = 1;
     int task = -1;
@@ -357,15 +356,13 @@ ApiReply Api::step(const ApiRequest& request) {
         if (it == tasks.end()) return failure(400, "the program has no such task");
         task = static_cast<int>(it - tasks.begin());
     }
-    ApiReply stepping = ask([this, task, scans] {
-        live_.step(task, scans);
-        return ApiReply{200, true};
-    });
-    for (int i = 0; i < most_waits && stepping.body == true; ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        stepping = ask([this] { return ApiReply{200, live_.is_stepping()}; });
+    for (int i = 0; i < most_turns && scans > 0; ++i) {
+        const auto left =
+            live_.mailbox().ask([this, task, scans] { return live_.step(task, scans); });
+        if (!left) return too_much();
+        scans = *left;
     }
-    return stepping.status == 200 ? state(request) : stepping;
+    return state(request);
 }
 
 ApiReply Api::run_until(const ApiRequest& request) {
@@ -387,6 +384,10 @@ ApiReply Api::speed(const ApiRequest& request) {
         return failure(400, "a speed is a number from 1e-6 to 1e6, or max", "{\"speed\": 1}");
     const double speed = is_max ? Pacer::unpaced : wanted.get<double>();
     return after([this, speed] { live_.set_speed(speed); });
+}
+
+ApiReply Api::checkpoint(const ApiRequest&) {
+    return ask([this] { return ApiReply{.status = 200, .body = {}, .file = save_()}; });
 }
 
 ApiReply Api::document(const ApiRequest&) {

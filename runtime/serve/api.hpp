@@ -20,10 +20,11 @@ struct ApiRequest {
     std::string parameter(const std::string& name) const;  ///< empty: not given
 };
 
-/// A status of HTTP, and what is told; or a stream of samples.
+/// A status of HTTP, and what is told; or a file, or a stream of samples.
 struct ApiReply {
     int status = 200;
     nlohmann::ordered_json body;
+    std::string file = {};
     std::shared_ptr<Stream> stream = nullptr;
 };
 
@@ -37,6 +38,7 @@ struct Route {
     nlohmann::ordered_json parameters;   ///< of the query: names and what they are
     nlohmann::ordered_json body, reply;  ///< as JSON schemas; null: none
     ApiReply (Api::*call)(const ApiRequest&);
+    std::string_view type = "application/json";  ///< of the reply
 };
 
 std::span<const Route> routes();
@@ -47,7 +49,9 @@ nlohmann::ordered_json openapi();
 /// Answers requests of any thread: asks the machine's thread through its mailbox.
 class Api {
   public:
-    Api(Live& live, Desk& desk, Loaded& loaded) : live_(live), desk_(desk), loaded_(loaded) {}
+    /// `save` makes a checkpoint; in the machine's thread.
+    Api(Live& live, Desk& desk, Loaded& loaded, std::function<std::string()> save)
+        : live_(live), desk_(desk), loaded_(loaded), save_(std::move(save)) {}
 
     ApiReply state(const ApiRequest&);
     ApiReply signals(const ApiRequest&);
@@ -61,6 +65,7 @@ class Api {
     ApiReply step(const ApiRequest&);
     ApiReply run_until(const ApiRequest&);
     ApiReply speed(const ApiRequest&);
+    ApiReply checkpoint(const ApiRequest&);
     ApiReply document(const ApiRequest&);
 
   private:
@@ -74,6 +79,7 @@ class Api {
     Live& live_;
     Desk& desk_;
     Loaded& loaded_;
+    std::function<std::string()> save_;
 };
 
 /// `{"error": message, "help": ..., "code": ...}`

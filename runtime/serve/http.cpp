@@ -5,9 +5,11 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <httplib.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "runtime/run/signal_json.hpp"
+#include "runtime/serve/connection.hpp"
 
 namespace lineshaft {
 
@@ -15,9 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int most_streams = 16, most_clients = 48;
+constexpr int most_streams = 16, most_clients = 48, most_that_wait = 48;
 constexpr std::size_t most_bytes = 64 << 10;  ///< of a request's body
-constexpr std::int64_t most_requests = 1000;  ///< a second
 
 /// Takes as long for a wrong token as for the right one.
 bool is_same(std::string_view a, std::string_view b) {
@@ -66,6 +67,27 @@ std::string rows(Stream& stream, std::int64_t& lost) {
     return event("rows", {{"time", time}, {"values", values}, {"lost", lost}});
 }
 
+/// Threads for clients; when too many clients wait for one, the next ones are sent away.
+class Threads : public httplib::ThreadPool {
+  public:
+    static inline thread_local bool sends_away = false;
+
+    Threads() : ThreadPool(most_clients) {}
+
+    void enqueue(std::function<void()> client) override {
+        sends_away = waiting_ >= most_that_wait;
+        if (sends_away) return client();
+        ++waiting_;
+        ThreadPool::enqueue([this, client = std::move(client)] {
+            --waiting_;
+            client();
+        });
+    }
+
+  private:
+    std::atomic<int> waiting_ = 0;
+};
+
 }  // namespace
 
 bool Guard::is_known(const std::string& host) const {
@@ -79,7 +101,7 @@ bool Guard::is_too_much() {
     const std::lock_guard lock(mutex_);
     if (second != second_) requests_ = 0;
     second_ = second;
-    return ++requests_ > most_requests;
+    return ++requests_ > options_.most_requests;
 }
 
 /// A name in Host that is not this machine's is that of a page that a browser was led astray by.
@@ -123,9 +145,10 @@ ApiReply answer(Api& api, Guard& guard, const Visitor& visitor, const std::strin
     return (api.*route->call)(request);
 }
 
-struct HttpServer::Server {
+struct HttpServer::Server : httplib::Server {
     Server(Api& a, const HttpOptions& o) : api(a), options(o), guard(o) {}
 
+    bool process_and_close_socket(int socket) override;
     void reply(const httplib::Request& request, httplib::Response& response);
     void send(std::shared_ptr<Stream> stream, httplib::Response& response);
     bool feed(Stream& stream, httplib::DataSink& sink);
@@ -133,11 +156,21 @@ struct HttpServer::Server {
     Api& api;
     const HttpOptions& options;
     Guard guard;
-    httplib::Server http;
     std::atomic<int> streams = 0;
     std::atomic<bool> ends = false;
     std::thread thread;
 };
+
+bool HttpServer::Server::process_and_close_socket(int socket) {
+    const auto answer_whole = [](httplib::Request& request) { request.ranges.clear(); };
+    Connection connection(socket);
+    bool closed = Threads::sends_away;
+    while (!closed && !ends && connection.begin())
+        if (!process_request(connection, false, closed, answer_whole)) break;
+    ::shutdown(socket, SHUT_RDWR);
+    ::close(socket);
+    return true;
+}
 
 void HttpServer::Server::reply(const httplib::Request& request, httplib::Response& response) {
     const Visitor visitor{request.remote_addr, request.get_header_value("Host"),
@@ -159,7 +192,9 @@ void HttpServer::Server::reply(const httplib::Request& request, httplib::Respons
     }
     response.status = got.status;
     if (got.stream) return send(std::move(got.stream), response);
-    response.set_content(got.body.dump() + "\n", "application/json");
+    if (!got.file.empty()) return response.set_content(got.file, "application/octet-stream");
+    response.set_content(got.body.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",
+                         "application/json");
 }
 
 void HttpServer::Server::send(std::shared_ptr<Stream> stream, httplib::Response& response) {
@@ -184,7 +219,7 @@ bool HttpServer::Server::feed(Stream& stream, httplib::DataSink& sink) {
     if (!write(event("signals", heading(stream)))) return false;
     for (int i = 0; !ends && !stream.is_closed(); ++i) {
         if (i % rows_a_state == 0 && !write(event("state", api.state({}).body))) return false;
-        if (!write(rows(stream, lost))) return false;
+        if (!sink.is_writable() || !write(rows(stream, lost))) return false;
         std::this_thread::sleep_for(pause);
     }
     sink.done();
@@ -193,30 +228,33 @@ bool HttpServer::Server::feed(Stream& stream, httplib::DataSink& sink) {
 
 HttpServer::HttpServer(Api& api, const HttpOptions& options)
     : server_(std::make_unique<Server>(api, options)) {
-    httplib::Server& http = server_->http;
-    http.new_task_queue = [] { return new httplib::ThreadPool(most_clients); };
+    Server& http = *server_;
+    http.new_task_queue = [] { return new Threads; };
     http.set_socket_options([](int socket) {
         const int yes = 1;
         ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     });
     http.set_payload_max_length(most_bytes);
-    http.set_keep_alive_max_count(1000);
-    http.set_keep_alive_timeout(1);
     http.set_tcp_nodelay(true);
-    const auto reply = [this](const httplib::Request& request, httplib::Response& response) {
-        server_->reply(request, response);
+    const auto reply = [&http](const httplib::Request& request, httplib::Response& response) {
+        http.reply(request, response);
     };
     http.Get(".*", reply).Post(".*", reply);
+    if (options.address.port == 0) return;
     failed_ = !http.bind_to_port(options.address.host, options.address.port);
     if (failed_) return;
-    server_->thread = std::thread([&http] { http.listen_after_bind(); });
+    http.thread = std::thread([&http] { http.listen_after_bind(); });
     while (!http.is_running()) std::this_thread::yield();
 }
 
 HttpServer::~HttpServer() {
     server_->ends = true;
-    server_->http.stop();
+    server_->stop();
     if (server_->thread.joinable()) server_->thread.join();
+}
+
+void HttpServer::converse(int socket) {
+    server_->process_and_close_socket(socket);
 }
 
 }  // namespace lineshaft

@@ -22,11 +22,15 @@ struct Address {
     std::string obstacle(std::string& cure) const;
 };
 
+/// The number of a socket's other end; empty for none.
+std::string peer_of(int socket);
+
 struct HttpOptions {
-    Address address;
+    Address address;  ///< port 0: nobody listens
     bool allow_write = false;
-    std::string token;      ///< that clients of other machines need for writing
-    std::string_view page;  ///< HTML
+    std::string token;                  ///< that clients of other machines need for writing
+    std::string_view page;              ///< HTML
+    std::int64_t most_requests = 1000;  ///< a second, of all clients
 };
 
 /// What of a request tells whether it may come in.
@@ -40,7 +44,7 @@ class Guard {
     explicit Guard(const HttpOptions& options) : options_(options) {}
 
     /// What is answered instead: L0513 of another host or origin, writing that is not allowed; 429
-    /// beyond 1,000 requests a second of all clients. Empty when it may come in.
+    /// for too many requests a second. Empty when it may come in.
     std::optional<ApiReply> refuse(const Visitor& visitor, bool writes);
 
   private:
@@ -60,6 +64,9 @@ class HttpServer {
 
     /// Nobody listens: another one does there, or it is not allowed.
     bool failed() const { return failed_; }
+
+    /// Answers all requests of a client that come to a socket, and closes it.
+    void converse(int socket);
 
   private:
     struct Server;

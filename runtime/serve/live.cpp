@@ -43,8 +43,10 @@ nlohmann::ordered_json to_json(const Pace& pace) {
             {"skipped_s", static_cast<double>(pace.skipped) / 1e9}};
 }
 
-Live::Live(Loaded& loaded, const LiveOptions& options, RecordingWriter* recording)
+Live::Live(Loaded& loaded, Executive& executive, const LiveOptions& options,
+           RecordingWriter* recording)
     : machine_(loaded.linked.machine),
+      executive_(executive),
       options_(options),
       pacer_(options.speed),
       recording_(recording) {
@@ -52,32 +54,28 @@ Live::Live(Loaded& loaded, const LiveOptions& options, RecordingWriter* recordin
         pace_.tasks.push_back({.name = task.name, .every = task.every, .lateness = {}});
         if (task.every > 0 && (shortest_ == 0 || task.every < shortest_)) shortest_ = task.every;
     }
+    executive.add(*this);
 }
 
-void Live::drive(Executive& executive) {
-    executive_ = &executive;
-    executive.add(*this);
+void Live::drive() {
     Pacer::take_sleep_at_its_word();
-    pacer_.anchor(time_);
-    while (goes_on_ && time_ < options_.end && !*options_.interrupt) turn();
+    pacer_.anchor(time());
+    while (goes_on_ && time() < options_.end && !*options_.interrupt) turn();
     mailbox_.close();
-    executive.remove(*this);
 }
 
 void Live::turn() {
-    if (paused_) return rest();
     const std::int64_t limit = std::min({options_.end, goal_, machine_.duration});
-    const std::int64_t next = std::min(executive_->next_time(), limit);
-    if (stepping_)
-        run_step(next);
+    const std::int64_t next = std::min(executive_.next_time(), limit);
+    if (paused_)
+        rest();
     else if (pacer_.is_paced())
         run_paced(next);
     else
         run_freely(next, limit);
-    if (time_ >= goal_) {
-        goal_ = never;
-        paused_ = true;
-    }
+    if (time() < goal_) return;
+    goal_ = never;
+    paused_ = true;
 }
 
 void Live::rest() {
@@ -91,7 +89,7 @@ void Live::run_paced(std::int64_t next) {
     const std::int64_t now = Pacer::now(), due = pacer_.due(next);
     if (now < due) {
         if (mailbox_.waits()) {
-            advance(std::clamp(pacer_.time_at(now), time_, next - 1));
+            advance(std::clamp(pacer_.time_at(now), time(), next - 1));
             deliver();
         } else {
             Pacer::sleep_until(std::min(due, now + patience));
@@ -111,17 +109,10 @@ void Live::run_paced(std::int64_t next) {
 void Live::run_freely(std::int64_t next, std::int64_t limit) {
     if (next == machine_.duration) return rest();
     const std::int64_t begun = Pacer::now();
-    advance(std::min(limit, std::max(next, later(time_, chunk_))));
+    advance(std::min(limit, std::max(next, later(time(), chunk_))));
     const std::int64_t took = std::max<std::int64_t>(Pacer::now() - begun, 1);
     chunk_ = std::clamp<std::int64_t>(took > ms ? chunk_ / 2 : chunk_ * 2, 1000, never / 4);
     deliver();
-}
-
-void Live::run_step(std::int64_t next) {
-    if (next == machine_.duration) return rest();
-    advance(next);
-    if (mailbox_.waits()) deliver();
-    if (stepping_ && steps_ <= 0) pause();
 }
 
 void Live::deliver() {
@@ -130,22 +121,21 @@ void Live::deliver() {
 }
 
 void Live::advance(std::int64_t time) {
-    goes_on_ = executive_->run_until(time);
-    time_ = std::max(time_, time);
+    goes_on_ = executive_.run_until(time);
     sample();
 }
 
 void Live::sample() {
     if (streams_.empty()) return;
-    for (const auto& stream : streams_) stream->sample(time_);
+    for (const auto& stream : streams_) stream->sample(time());
     std::erase_if(streams_, [](const auto& stream) { return stream->is_closed(); });
 }
 
 void Live::scanned(int task, const Scan& scan) {
     TaskPace& pace = pace_.tasks[static_cast<std::size_t>(task)];
     ++pace.scans;
-    if (stepping_ && (step_task_ < 0 || step_task_ == task)) --steps_;
-    if (!pacer_.is_paced() || stepping_) return;
+    if (step_task_ < 0 || step_task_ == task) --steps_;
+    if (!pacer_.is_paced() || paused_) return;
     pace.lateness.add(late_);
     if (scan.interval > 0 && late_ >= pacer_.due(scan.interval) - pacer_.due(0)) ++pace.overruns;
 }
@@ -154,11 +144,11 @@ std::int64_t Live::apply(const std::vector<Change>& changes) {
     std::int64_t at = 0;
     for (const Change& change : changes) {
         if (change.kind == Change::Kind::set)
-            at = executive_->post(change.stimulus);
+            at = executive_.post(change.stimulus);
         else if (change.kind == Change::Kind::force)
-            at = executive_->force(change.force);
+            at = executive_.force(change.force);
         else
-            at = executive_->release(change.live);
+            at = executive_.release(change.live);
     }
     if (recording_) recording_->append(recorded(at, changes));
     return at;
@@ -166,38 +156,40 @@ std::int64_t Live::apply(const std::vector<Change>& changes) {
 
 void Live::pause() {
     paused_ = true;
-    stepping_ = false;
 }
 
 void Live::resume() {
     paused_ = false;
-    stepping_ = false;
-    pacer_.anchor(time_);
+    pacer_.anchor(time());
 }
 
-void Live::step(int task, std::int64_t scans) {
-    resume();
-    stepping_ = true;
+std::int64_t Live::step(int task, std::int64_t scans) {
+    pause();
     step_task_ = task;
     steps_ = scans;
+    const std::int64_t limit = std::min(options_.end, machine_.duration);
+    for (const std::int64_t begun = Pacer::now();
+         steps_ > 0 && goes_on_ && time() < limit && Pacer::now() - begun < patience;)
+        advance(std::min(executive_.next_time(), limit));
+    return time() < limit ? std::max<std::int64_t>(steps_, 0) : 0;
 }
 
 void Live::run_until(std::int64_t time) {
-    if (time <= time_) return pause();
+    if (time <= this->time()) return pause();
     resume();
     goal_ = time;
 }
 
 void Live::set_speed(double speed) {
     pacer_.set_speed(speed);
-    pacer_.anchor(time_);
+    pacer_.anchor(time());
 }
 
 LiveState Live::state() const {
     LiveState state{
-        .time = time_, .speed = pacer_.speed(), .paused = paused_, .forced = {}, .pace = pace_};
+        .time = time(), .speed = pacer_.speed(), .paused = paused_, .forced = {}, .pace = pace_};
     for (const Force& force : machine_.forces)
-        if (force.from <= time_ + 1 && time_ + 1 < force.until)
+        if (force.from <= time() + 1 && time() + 1 < force.until)
             state.forced.push_back(
                 {force.name, force.text.substr(std::strlen("force  = ") + force.name.size())});
     return state;

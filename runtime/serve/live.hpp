@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -60,36 +61,40 @@ struct LiveState {
     Pace pace;
 };
 
-/// A machine that runs by the clock, with an executive that drive() steps. Its other functions are
-/// for jobs of its mailbox: they are called in its thread, between two instants.
+/// A machine that runs by the clock, by stepping an executive that has begun. The thread that makes
+/// it is the machine's: it calls drive(), and the other functions as jobs of the mailbox, between
+/// two instants.
 class Live : public Observer {
   public:
     /// `recording` takes what changes; may be null.
-    Live(Loaded& loaded, const LiveOptions& options, RecordingWriter* recording);
+    Live(Loaded& loaded, Executive& executive, const LiveOptions& options,
+         RecordingWriter* recording);
+    ~Live() override { executive_.remove(*this); }
+    Live(const Live&) = delete;
+    Live& operator=(const Live&) = delete;
 
     Mailbox& mailbox() { return mailbox_; }
 
     /// Runs until the end, an interrupt, or what ends a run.
-    void drive(Executive& executive);
+    void drive();
 
     /// All at once; returns the virtual time from which they count [ns].
     std::int64_t apply(const std::vector<Change>& changes);
 
     void pause();
     void resume();
-    /// So many scans of a task, then pauses; any task's for -1.
-    void step(int task, std::int64_t scans);
+    /// Pauses, and runs so many scans of a task, any task's for -1, but for no longer than a few
+    /// milliseconds of the clock. Returns how many of them are left.
+    std::int64_t step(int task, std::int64_t scans);
     /// Goes on until `time` [ns], then pauses.
     void run_until(std::int64_t time);
     void set_speed(double speed);
 
     void add(std::shared_ptr<Stream> stream) { streams_.push_back(std::move(stream)); }
 
-    std::int64_t time() const { return time_; }
-    bool is_stepping() const { return stepping_; }
+    /// Virtual, up to which everything has run [ns].
+    std::int64_t time() const { return std::max<std::int64_t>(executive_.time(), 0); }
     LiveState state() const;
-
-    /// After drive().
     const Pace& pace() const { return pace_; }
 
     void scanned(int task, const Scan& scan) override;
@@ -100,28 +105,26 @@ class Live : public Observer {
     void rest();
     void run_paced(std::int64_t next);
     void run_freely(std::int64_t next, std::int64_t limit);
-    void run_step(std::int64_t next);
     void deliver();
     void advance(std::int64_t time);
     void sample();
 
     Machine& machine_;
+    Executive& executive_;
     const LiveOptions options_;
     Mailbox mailbox_;
     Pacer pacer_;
     Pace pace_;
-    Executive* executive_ = nullptr;
     RecordingWriter* recording_;
     std::vector<std::shared_ptr<Stream>> streams_;
     std::int64_t shortest_ = 0;       ///< interval of a task; 0: none has one [ns]
-    std::int64_t time_ = 0;           ///< up to which everything has run [ns]
     std::int64_t goal_ = never;       ///< where it pauses [ns]
     std::int64_t late_ = 0;           ///< the instant under way, on the clock [ns]
     std::int64_t chunk_ = 1'000'000;  ///< virtual time at once when there is no pace [ns]
     std::int64_t delivered_ = 0;      ///< when the mail was last looked at, on the clock [ns]
     int step_task_ = -1;
     std::int64_t steps_ = 0;  ///< scans still to come while stepping
-    bool stepping_ = false, paused_ = false, goes_on_ = true;
+    bool paused_ = false, goes_on_ = true;
 };
 
 }  // namespace lineshaft

@@ -8,11 +8,13 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <thread>
 #include <vector>
 
 namespace lineshaft {
 
-/// What clients want of the machine, on its way to the one thread that may touch it. That thread
+/// What clients want of the machine, on its way to the one thread that may touch it: the one that
+/// makes the box. That thread
 /// never waits for them: it takes what is there between two instants, or finds the box in use and
 /// looks again after the next one.
 class Mailbox {
@@ -21,8 +23,9 @@ class Mailbox {
 
     static constexpr std::size_t room = 256;  ///< jobs that wait, at most
 
-    /// Calls `job` in the machine's thread, and waits for its result. Empty when the box is full or
-    /// closed, or nobody has come for it within two seconds: then it is not called any more.
+    /// Calls `job` in the machine's thread, and waits for its result; at once when that thread
+    /// asks. Empty when the box is full or closed, or nobody has come for it within two seconds:
+    /// then it is not called any more.
     template <class Call>
     auto ask(Call job) -> std::optional<decltype(job())>;
 
@@ -36,6 +39,7 @@ class Mailbox {
   private:
     bool put(Job job);
 
+    const std::thread::id owner_ = std::this_thread::get_id();
     std::mutex mutex_;
     std::vector<Job> jobs_, taken_;
     std::atomic<bool> waits_ = false;
@@ -44,6 +48,7 @@ class Mailbox {
 
 template <class Call>
 auto Mailbox::ask(Call job) -> std::optional<decltype(job())> {
+    if (std::this_thread::get_id() == owner_) return job();
     using Result = decltype(job());
     struct Asked {
         explicit Asked(Call c) : call(std::move(c)) {}

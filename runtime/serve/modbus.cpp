@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include <arpa/inet.h>
 #include <modbus/modbus.h>
+#include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -35,18 +35,16 @@ bool is_of_bits(ModbusTable table) {
     return table == ModbusTable::coils || table == ModbusTable::discrete_inputs;
 }
 
-std::vector<std::uint8_t>& bits_of(ModbusTables& tables, ModbusTable table) {
-    return table == ModbusTable::coils ? tables.bits : tables.input_bits;
+std::uint8_t* bits_of(ModbusTables& tables, ModbusTable table) {
+    return table == ModbusTable::coils ? tables.tab_bits : tables.tab_input_bits;
 }
 
-std::vector<std::uint16_t>& registers_of(ModbusTables& tables, ModbusTable table) {
-    return table == ModbusTable::holding_registers ? tables.registers : tables.input_registers;
+std::uint16_t* registers_of(ModbusTables& tables, ModbusTable table) {
+    return table == ModbusTable::holding_registers ? tables.tab_registers
+                                                   : tables.tab_input_registers;
 }
 
 }  // namespace
-
-ModbusTables::ModbusTables()
-    : bits(addresses), input_bits(addresses), registers(addresses), input_registers(addresses) {}
 
 /// Function code and what follows it.
 struct ModbusDesk::Request {
@@ -121,8 +119,9 @@ int ModbusDesk::read(ModbusTable table, int address, int count, ModbusTables& ta
         if (is_of_bits(table))
             bits_of(tables, table)[at] = std::get<bool>((*values)[i]);
         else
-            to_registers(signals[i], (*values)[i],
-                         std::span(registers_of(tables, table)).subspan(at));
+            to_registers(
+                signals[i], (*values)[i],
+                {registers_of(tables, table) + at, static_cast<std::size_t>(signals[i].count)});
     }
     return 0;
 }
@@ -181,9 +180,31 @@ int ModbusDesk::mask(const Request& request, ModbusTables& tables) {
     const int address = request.word(1), kept = request.word(3), set = request.word(5);
     if (const int exception = read(ModbusTable::holding_registers, address, 1, tables))
         return exception;
-    const int now = tables.registers[static_cast<std::size_t>(address)];
+    const int now = tables.tab_registers[address];
     const auto value = static_cast<std::uint16_t>((now & kept) | (set & ~kept));
     return write(ModbusTable::holding_registers, address, {&value, 1});
+}
+
+void ModbusDesk::converse(int socket, bool may_write, ModbusTables& tables) {
+    constexpr std::uint32_t idle_s = 300;
+    modbus_t* const context = modbus_new_tcp("127.0.0.1", MODBUS_TCP_DEFAULT_PORT);
+    modbus_set_socket(context, socket);
+    modbus_set_indication_timeout(context, idle_s, 0);
+    const auto header = static_cast<std::size_t>(modbus_get_header_length(context));
+    std::array<std::uint8_t, MODBUS_TCP_MAX_ADU_LENGTH> query;
+    while (true) {
+        const int size = modbus_receive(context, query.data());
+        const bool is_modbus = size > static_cast<int>(header) && query[2] == 0 && query[3] == 0;
+        if (!is_modbus) break;
+        const auto request = std::span(query).first(static_cast<std::size_t>(size)).subspan(header);
+        const int exception = handle(request, may_write, tables);
+        const int sent = exception == 0 ? modbus_reply(context, query.data(), size, &tables)
+                                        : modbus_reply_exception(context, query.data(),
+                                                                 static_cast<unsigned>(exception));
+        if (sent < 0) break;
+        if (exception == illegal_function) modbus_flush(context);
+    }
+    modbus_free(context);
 }
 
 ModbusServer::ModbusServer(ModbusDesk& desk, const Address& address) : desk_(desk) {
@@ -222,10 +243,7 @@ void ModbusServer::work() {
 }
 
 void ModbusServer::admit() {
-    sockaddr_storage peer{};
-    socklen_t size = sizeof peer;
-    const int socket =
-        ::accept4(listener_, reinterpret_cast<sockaddr*>(&peer), &size, SOCK_CLOEXEC);
+    const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
     if (socket < 0) return;
     if (clients_.size() >= most_clients) {
         ::close(socket);
@@ -234,49 +252,15 @@ void ModbusServer::admit() {
     const int yes = 1;
     ::setsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &yes, sizeof yes);
     ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-    char text[INET6_ADDRSTRLEN] = {};
-    const void* const number =
-        peer.ss_family == AF_INET
-            ? static_cast<void*>(&reinterpret_cast<sockaddr_in&>(peer).sin_addr)
-            : &reinterpret_cast<sockaddr_in6&>(peer).sin6_addr;
-    ::inet_ntop(peer.ss_family, number, text, sizeof text);
-    Client& client = clients_.emplace_back(socket, Address{text}.is_loopback());
+    Client& client = clients_.emplace_back(socket, Address{peer_of(socket)}.is_loopback());
     client.thread = std::thread([this, &client] { serve(client); });
 }
 
 void ModbusServer::serve(Client& client) {
-    constexpr std::uint32_t idle_s = 300;
-    ModbusTables tables;
-    modbus_mapping_t mapping{.nb_bits = ModbusTables::addresses,
-                             .start_bits = 0,
-                             .nb_input_bits = ModbusTables::addresses,
-                             .start_input_bits = 0,
-                             .nb_input_registers = ModbusTables::addresses,
-                             .start_input_registers = 0,
-                             .nb_registers = ModbusTables::addresses,
-                             .start_registers = 0,
-                             .tab_bits = tables.bits.data(),
-                             .tab_input_bits = tables.input_bits.data(),
-                             .tab_input_registers = tables.input_registers.data(),
-                             .tab_registers = tables.registers.data()};
-    modbus_t* const context = modbus_new_tcp("127.0.0.1", MODBUS_TCP_DEFAULT_PORT);
-    modbus_set_socket(context, client.socket);
-    modbus_set_indication_timeout(context, idle_s, 0);
-    const auto header = static_cast<std::size_t>(modbus_get_header_length(context));
-    std::array<std::uint8_t, MODBUS_TCP_MAX_ADU_LENGTH> query;
-    while (!ends_) {
-        const int size = modbus_receive(context, query.data());
-        const bool is_modbus = size > static_cast<int>(header) && query[2] == 0 && query[3] == 0;
-        if (!is_modbus) break;
-        const auto request = std::span(query).first(static_cast<std::size_t>(size)).subspan(header);
-        const int exception = desk_.handle(request, client.is_near, tables);
-        const int sent = exception == 0 ? modbus_reply(context, query.data(), size, &mapping)
-                                        : modbus_reply_exception(context, query.data(),
-                                                                 static_cast<unsigned>(exception));
-        if (sent < 0) break;
-        if (exception == illegal_function) modbus_flush(context);
-    }
-    modbus_free(context);
+    constexpr int addresses = 65536;
+    ModbusTables* const tables = modbus_mapping_new(addresses, addresses, addresses, addresses);
+    if (tables) desk_.converse(client.socket, client.is_near, *tables);
+    modbus_mapping_free(tables);
     client.gone = true;
 }
 

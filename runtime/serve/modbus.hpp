@@ -15,17 +15,13 @@
 #include "runtime/serve/http.hpp"
 #include "runtime/serve/live.hpp"
 
+struct _modbus_mapping_t;
+
 namespace lineshaft {
 
-/// The four tables of one client as libmodbus has them: those that a request is about are filled
-/// before libmodbus answers it.
-struct ModbusTables {
-    static constexpr std::size_t addresses = 65536;
-    std::vector<std::uint8_t> bits, input_bits;
-    std::vector<std::uint16_t> registers, input_registers;
-
-    ModbusTables();
-};
+/// The four tables of one client, of 65536 addresses each, as libmodbus has them: what a request is
+/// about is put there before libmodbus answers it.
+using ModbusTables = ::_modbus_mapping_t;
 
 /// What a program's map makes of requests. For any thread.
 class ModbusDesk {
@@ -38,6 +34,10 @@ class ModbusDesk {
     /// for writing that is not allowed; 2 where the map has a hole, half of a value or what is only
     /// read; 3 for a value or a count that cannot be; 6 when the machine has too much to do.
     int handle(std::span<const std::uint8_t> request, bool may_write, ModbusTables& tables);
+
+    /// Answers all requests of a client that come to a socket, until it goes or sends what cannot
+    /// be understood.
+    void converse(int socket, bool may_write, ModbusTables& tables);
 
   private:
     struct Request;

@@ -43,19 +43,20 @@ std::string recorded(std::int64_t time, std::span<const Change> changes) {
 }
 
 RecordingWriter::RecordingWriter(std::string path, const std::string& program,
-                                 const std::string& meaning)
+                                 const std::string& meaning, bool goes_on)
     : path_(std::move(path)) {
-    file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC | (goes_on ? 0 : O_CREAT), 0666);
     if (file_ < 0) {
         error_ = fmt::format("cannot write '{}': {}", path_, std::strerror(errno));
         return;
     }
-    if (::flock(file_, LOCK_EX | LOCK_NB) != 0 || ::ftruncate(file_, 0) != 0) {
+    if (::flock(file_, LOCK_EX | LOCK_NB) != 0 || (!goes_on && ::ftruncate(file_, 0) != 0)) {
         error_ = fmt::format("another lineshaft writes '{}'", path_);
         return;
     }
-    write(fmt::format("lineshaft_recording: 1\nprogram: {}\nmeaning: '{}'\nentries:\n",
-                      quoted(program), meaning));
+    if (!goes_on)
+        append(fmt::format("lineshaft_recording: 1\nprogram: {}\nmeaning: '{}'\nentries:\n",
+                           quoted(program), meaning));
     thread_ = std::thread([this] { work(); });
 }
 
@@ -73,6 +74,7 @@ void RecordingWriter::append(std::string line) {
     {
         const std::lock_guard lock(mutex_);
         text_ += line;
+        appended_ += std::ssize(line);
     }
     filled_.notify_one();
 }
@@ -87,6 +89,22 @@ void RecordingWriter::finish(std::int64_t time) {
     if (thread_.joinable()) thread_.join();
 }
 
+void RecordingWriter::save(StateWriter& out) const {
+    std::unique_lock lock(mutex_);
+    emptied_.wait(lock, [this] { return written_ == appended_; });
+    out.put(appended_);
+}
+
+void RecordingWriter::restore(StateReader& in) {
+    const std::lock_guard lock(mutex_);
+    in.get(appended_);
+    written_ = appended_;
+    if (::lseek(file_, 0, SEEK_END) < appended_)
+        error_ = fmt::format("'{}' is not the recording of the checkpoint", path_);
+    else if (::ftruncate(file_, appended_) != 0 || ::lseek(file_, appended_, SEEK_SET) < 0)
+        error_ = fmt::format("cannot write '{}': {}", path_, std::strerror(errno));
+}
+
 void RecordingWriter::work() {
     std::string text;
     std::unique_lock lock(mutex_);
@@ -96,8 +114,10 @@ void RecordingWriter::work() {
         text.swap(text_);
         lock.unlock();
         write(text);
-        text.clear();
         lock.lock();
+        written_ += std::ssize(text);
+        text.clear();
+        emptied_.notify_all();
     }
 }
 

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "runtime/net/machine.hpp"
+#include "runtime/scan/executive.hpp"
 
 namespace lineshaft {
 
@@ -27,12 +27,14 @@ std::string recorded(std::int64_t time, std::span<const Change> changes);
 
 /// Writes a recording (see recording_form.hpp) as it comes: a thread of its own hands each entry
 /// to the disk, so that a machine that is killed leaves what it had and the machine's thread waits
-/// for no disk.
-class RecordingWriter {
+/// for no disk, but for a checkpoint: it notes how much of the recording there was.
+class RecordingWriter : public Observer {
   public:
-    /// Replaces the file, unless another one writes it. `meaning`: Meaning::in_force.
-    RecordingWriter(std::string path, const std::string& program, const std::string& meaning);
-    ~RecordingWriter();
+    /// Unless another one writes the file. Replaces it, or `goes_on` where a checkpoint will say.
+    /// `meaning`: Meaning::in_force.
+    RecordingWriter(std::string path, const std::string& program, const std::string& meaning,
+                    bool goes_on);
+    ~RecordingWriter() override;
     RecordingWriter(const RecordingWriter&) = delete;
     RecordingWriter& operator=(const RecordingWriter&) = delete;
 
@@ -44,15 +46,21 @@ class RecordingWriter {
     /// Empty when all is well. After the constructor, and after finish().
     const std::string& error() const { return error_; }
 
+    void scanned(int, const Scan&) override {}
+    void settled(std::int64_t, std::int64_t) override {}
+    void save(StateWriter& out) const override;
+    void restore(StateReader& in) override;
+
   private:
     void work();
     void write(const std::string& text);
 
     std::string path_, error_;
     int file_ = -1;
-    std::mutex mutex_;
-    std::condition_variable filled_;
+    mutable std::mutex mutex_;
+    mutable std::condition_variable filled_, emptied_;
     std::string text_;
+    std::int64_t appended_ = 0, written_ = 0;  ///< bytes
     bool ended_ = false;
     std::thread thread_;
 };

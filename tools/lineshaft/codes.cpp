@@ -315,7 +315,7 @@ end; without @ it is for the whole run:
 by one version of lineshaft, and the place in its trace. It is refused if any of these
 differs, if it is not whole, or if the trace is not the one that was being written then.
 Run the program from its start, or with the same file, --set, --force, --trace and
---pulses as before.)"},
+--pulses as before, for a served machine --record, too.)"},
     {"L0507", "a file of retained values that does not fit",
      R"(A retain file is JSON: {"lineshaft_retain": 1, "values": {"counter.cv": 12}, "blocks": ...}.
 This one is something else, or has a value of another type than the signal. What a block

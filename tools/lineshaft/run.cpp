@@ -236,6 +236,20 @@ void RunCommand::add_to(CLI::App& sub) {
     sub.add_option("--retain-file", retain,
                    "Begin with the retained values of this file, and keep them there at the end")
         ->type_name("FILE");
+    const std::map<std::string, Restart> restarts{
+        {"cold", Restart::cold}, {"warm", Restart::warm}, {"hot", Restart::hot}};
+    sub.add_option("--restart", restart,
+                   "cold: all initial values; warm: retained ones kept; hot: go on from the "
+                   "checkpoint")
+        ->transform(CLI::CheckedTransformer(restarts))
+        ->type_name("cold|warm|hot");
+    sub.add_flag("--resume", resume, "Short for --restart hot");
+    sub.add_option("--checkpoint", checkpoint,
+                   "The checkpoint's file; default: the program's name with .checkpoint, here")
+        ->type_name("FILE");
+    sub.add_option("--checkpoint-every", checkpoint_every,
+                   "Write a checkpoint each time so much virtual time has passed, such as 10s")
+        ->type_name("TIME");
     add_strict(sub, strict);
     common.add_to(sub);
 }
@@ -247,20 +261,6 @@ void add_run(CLI::App& app, Exit& result) {
     sub->add_option("--recording", command->recording,
                     "Play back what 'lineshaft serve' recorded, and end where that ends")
         ->type_name("FILE.yaml");
-    const std::map<std::string, Restart> restarts{
-        {"cold", Restart::cold}, {"warm", Restart::warm}, {"hot", Restart::hot}};
-    sub->add_option("--restart", command->restart,
-                    "cold: all initial values; warm: retained ones kept; hot: go on from the "
-                    "checkpoint")
-        ->transform(CLI::CheckedTransformer(restarts))
-        ->type_name("cold|warm|hot");
-    sub->add_flag("--resume", command->resume, "Short for --restart hot");
-    sub->add_option("--checkpoint", command->checkpoint,
-                    "The checkpoint's file; default: the program's name with .checkpoint, here")
-        ->type_name("FILE");
-    sub->add_option("--checkpoint-every", command->checkpoint_every,
-                    "Write a checkpoint each time so much virtual time has passed, such as 10s")
-        ->type_name("TIME");
     sub->callback([command, &result] { result = execute(*command); });
 }
 

@@ -4,25 +4,14 @@
 // needs a quiet machine. Exit 77: no Chromium, nothing tested.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { unpack } from "#page/decode";
 import { slicedValues, slices } from "#page/samples";
+import { colouredPixels, frame, withBrowser } from "./browser.mjs";
 
 const [lineshaft, project, folder, bars] = process.argv.slice(2);
-const chromium = ["/usr/bin/chromium", "/usr/bin/chromium-browser"].find(existsSync);
-const skipped = 77;
-
-function skip(why) {
-  console.log(`SKIPPED: ${why}; tools/setup --tests installs it`);
-  process.exit(skipped);
-}
-
-if (!chromium) skip("no Chromium");
-const { chromium: browserType } = await import("playwright-core").catch(() => skip("no playwright-core"));
-
 /** Runs lineshaft; its exit code may be 1 where an expectation is meant to fail. */
 function run(...command) {
   try {
@@ -43,19 +32,6 @@ function report(name, ...command) {
   run("report", ...command, "-o", file(name));
   return pathToFileURL(file(name)).href;
 }
-
-const frame = "new Promise((done) => requestAnimationFrame(() => setTimeout(done)))";
-
-/** How many of a plot's pixels bear a colour: neither background, nor grid, nor text. */
-const colouredPixels = (page, selector) => page.$eval(selector, (canvas) => {
-  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-  let count = 0;
-  for (let i = 0; i < data.length; i += 4) {
-    const [r, g, b, alpha] = data.subarray(i, i + 4);
-    if (alpha > 100 && Math.max(r, g, b) - Math.min(r, g, b) > 60) count += 1;
-  }
-  return count;
-});
 
 async function open(browser, address, { colorScheme = "light", before = () => {} } = {}) {
   const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, colorScheme });
@@ -388,26 +364,9 @@ async function testLarge(browser) {
 }
 
 mkdirSync(folder, { recursive: true });
-const profile = mkdtempSync(join(tmpdir(), "lineshaft-browser-"));
-const context = await browserType.launchPersistentContext(profile, {
-  executablePath: chromium,
-  headless: true,
-  args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-         "--disable-background-networking", "--disable-component-update", "--disable-sync"],
-});
-try {
+await withBrowser(async (newPage) => {
   for (const test of [testSamples, testSpike, testSmallNumbers, testCircle, testExpectations, testStudy, testLarge]) {
     await test({ newPage });
     console.log(`ok ${test.name}`);
   }
-} finally {
-  await context.close();
-  rmSync(profile, { recursive: true, force: true });
-}
-
-async function newPage({ viewport, colorScheme }) {
-  const page = await context.newPage();
-  await page.setViewportSize(viewport);
-  await page.emulateMedia({ colorScheme });
-  return page;
-}
+});

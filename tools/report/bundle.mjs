@@ -22,10 +22,13 @@ function modules() {
 
 const { version } = JSON.parse(uplot("package.json"));
 const parts = {
+  which,
+  title: which === "live" ? "lineshaft" : "{{title}}",
+  body: read(`${which}/${which}.html`),
   licence: `Curves are drawn by uPlot ${version}, under its licence:\n\n${uplot("LICENSE")}`,
   style: uplot("dist/uPlot.min.css") + folders.map((part) => read(`${part}/${part}.css`)).join(""),
   uplot: uplot("dist/uPlot.iife.min.js"),
   modules: modules(),
 };
-const page = read(`${which}/${which}.html`).replace(/\{\{(\w+)\}\}/g, (marker, name) => parts[name] ?? marker);
+const page = read("page/frame.html").replace(/\{\{(\w+)\}\}/g, (marker, name) => parts[name] ?? marker);
 writeFileSync(output, `${Buffer.from(page).join(",").replace(/(.{1,95},)/g, "$1\n")}\n`);

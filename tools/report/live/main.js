@@ -1,16 +1,20 @@
 import { get, post } from "#live/api";
+import { Axes } from "#live/axes";
 import { download, Scope } from "#live/scope";
-import { element, row } from "#page/dom";
-import { duration, number } from "#page/format";
+import { conditions } from "#live/trigger";
+import { readout } from "#page/cursors";
+import { element, nextFrame, row } from "#page/dom";
+import { duration } from "#page/format";
 import { followTheme } from "#page/theme";
 
 const byId = (id) => document.getElementById(id);
 const retry = 1000; // ms
-const scope = new Scope(byId("plots"));
+const scope = new Scope(byId("plots"), nextFrame(showScope));
 let chosen = new Set();
 let stream = null;
 let state = null;
 let rows = new Map(); // of the table of signals
+let axes = null;
 
 function tell(text) {
   byId("message").textContent = text;
@@ -43,11 +47,54 @@ function show(now) {
     element("tr", {}, ...head.map((title) => element("th", {}, title))),
     ...now.pace.tasks.map(({ name, scans, overruns, lateness_us: late_us }) =>
       row(name, String(scans), us(late_us.p50), us(late_us.p99), us(late_us.greatest), String(overruns))));
+  axes?.update();
   for (const [name, { force }] of rows) {
     const is = name in now.forced;
     force.textContent = is ? `release ${now.forced[name]}` : "force";
     force.classList.toggle("forced", is);
   }
+}
+
+/** What the scope does, where its cursors are, what it waits for. */
+function showScope() {
+  byId("hold").textContent = scope.held ? "Follow" : "Hold";
+  byId("readout").textContent = scope.held ? readout(scope.cursors) : "";
+  const { state: is, time } = scope.trigger;
+  byId("armed").textContent = is === "off" ? "" : time === null ? is : `${is} at ${duration(time)}`;
+  byId("arm").textContent = is === "armed" ? "Disarm" : "Arm";
+}
+
+/** The signals that are drawn may be waited for. */
+function offerTriggers() {
+  const { signal } = byId("trigger");
+  const before = signal.value;
+  signal.replaceChildren(...scope.signals.map(({ name }) => element("option", {}, name)));
+  if (chosen.has(before)) signal.value = before;
+  offerConditions();
+}
+
+function offerConditions() {
+  const { signal, condition, level } = byId("trigger");
+  const { type } = scope.signals.find(({ name }) => name === signal.value) ?? {};
+  condition.replaceChildren(...conditions(type).map((name) => element("option", {}, name)));
+  level.hidden = type === "boolean";
+}
+
+/** Or lets it be, when it is armed. */
+function arm(form) {
+  if (scope.trigger.state === "armed") {
+    scope.trigger.disarm();
+    return showScope();
+  }
+  const { signal, condition, level, before, after } = form;
+  const { type, names } = scope.signals.find(({ name }) => name === signal.value);
+  const value = names.length > 0 ? names.indexOf(level.value.trim()) : Number(level.value.trim() || NaN);
+  if (names.length > 0 && value < 0) throw new Error(`expected one of ${names.join(", ")}`);
+  if (type !== "boolean" && Number.isNaN(value)) throw new Error("expected a number to compare with");
+  if (![before, after].every((each) => Number(each.value) >= 0)) throw new Error("expected times in seconds");
+  scope.arm({ signal: signal.value, condition: condition.value, level: value,
+              before: Number(before.value), after: Number(after.value) });
+  return showScope();
 }
 
 /** Begins again by itself when the machine, or the way to it, is gone. */
@@ -58,7 +105,10 @@ function connect() {
   stream = new EventSource(`/api/stream?signals=${encodeURIComponent([...chosen].join())}`);
   const mine = stream;
   const listen = (name, task) => mine.addEventListener(name, ({ data }) => task(JSON.parse(data)));
-  listen("signals", (signals) => scope.begin(signals));
+  listen("signals", (signals) => {
+    scope.begin(signals);
+    offerTriggers();
+  });
   listen("state", show);
   listen("rows", (samples) => {
     scope.add(samples);
@@ -117,10 +167,9 @@ function connectToolbar() {
     const text = event.target.speed.value.trim();
     return post("speed", { speed: text === "max" ? text : Number(text) });
   });
-  byId("hold").onclick = () => {
-    scope.hold(!scope.held);
-    byId("hold").textContent = scope.held ? "Follow" : "Hold";
-  };
+  byId("hold").onclick = () => scope.hold(!scope.held);
+  byId("trigger").onsubmit = attempt((event) => arm(event.target));
+  byId("trigger").signal.onchange = offerConditions;
   byId("save").onclick = () => download("lineshaft.csv", scope.csv());
   byId("filter").oninput = ({ target }) => {
     for (const [name, { made }] of rows) made.hidden = !name.includes(target.value);
@@ -131,6 +180,7 @@ async function start() {
   try {
     const signals = await get("signals");
     chosen = firstChoice(signals);
+    axes = new Axes(byId("axes"), signals);
     rows = new Map(signals.map(signalRow));
     byId("signals").replaceChildren(...[...rows.values()].map(({ made }) => made));
     connect();

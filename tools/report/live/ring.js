@@ -15,12 +15,17 @@ export class Ring extends Blocks {
     this.length = Math.min(this.#end, this.#values.length);
   }
 
+  /** As it is now, whatever has been read of its block. */
   at(index) {
     return this.#values[(this.#end - this.length + index) % this.#values.length];
   }
 
   read(first, values) {
-    const end = Math.min(values.length, this.length - first);
-    for (let k = 0; k < end; ++k) values[k] = this.at(first + k);
+    const room = this.#values.length;
+    const begin = (this.#end - this.length + first) % room;
+    const count = Math.min(values.length, this.length - first);
+    const part = Math.min(count, room - begin);
+    values.set(this.#values.subarray(begin, begin + part));
+    values.set(this.#values.subarray(0, count - part), part);
   }
 }

@@ -71,7 +71,7 @@ export class Plot {
   #changed(change) {
     if (change === "range") this.uplot.setData(this.#data());
     if (change === "theme") this.uplot.redraw(false, true);
-    if (change !== "hover") this.cursors.place();
+    if (change === "cursors") this.cursors.place();
     this.legend.update(change);
   }
 
@@ -112,7 +112,7 @@ export class Plot {
       hooks: {
         setSelect: [(u) => this.#zoomTo(u.select)],
         setCursor: [(u) => this.#hover(u)],
-        draw: [(u) => this.#decorate(u)],
+        draw: [(u) => this.#decorate(u), () => this.cursors?.place()], // only now uPlot has the new scale
       },
     };
   }

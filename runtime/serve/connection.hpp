@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+#include <httplib.h>
+
+namespace lineshaft {
+
+/// A client's socket as cpp-httplib reads and writes it, with limits that the library does not
+/// have: a request has at most 100 lines of header, 16 KiB of them and 80 KiB in all, and has come
+/// within five seconds, however slowly its bytes come. Beyond them nothing more is read.
+class Connection final : public httplib::Stream {
+  public:
+    explicit Connection(int socket) : socket_(socket) {}
+
+    /// Before each request: waits a second for one. False when none comes, or the last one was too
+    /// much.
+    bool begin();
+
+    /// False also when the client has gone, or sends no more.
+    bool is_writable() const override;
+    bool is_readable() const override;
+    ssize_t read(char* to, std::size_t size) override;
+    ssize_t write(const char* from, std::size_t size) override;
+    void get_remote_ip_and_port(std::string& host, int& port) const override;
+    void get_local_ip_and_port(std::string&, int&) const override {}
+    int socket() const override { return socket_; }
+
+  private:
+    bool fill();
+    bool is_allowed(char next);
+
+    int socket_;
+    std::array<char, 4096> buffer_{};
+    std::size_t first_ = 0, end_ = 0;               ///< of what is left in the buffer
+    std::size_t bytes_ = 0, lines_ = 0, line_ = 0;  ///< of the request; of its last line
+    bool in_head_ = true, too_much_ = false;
+    std::int64_t deadline_ = 0;  ///< [ns]
+};
+
+}  // namespace lineshaft
