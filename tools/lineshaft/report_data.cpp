@@ -224,7 +224,7 @@ nlohmann::ordered_json to_json(const ReportRun& run) {
     }
     const auto& metadata = run.table.metadata;
     return {
-        {"label", run.path},
+        {"label", run.label},
         {"title", metadata ? metadata->title : ""},
         {"version", metadata ? metadata->version : ""},
         {"program", metadata ? metadata->program : ""},

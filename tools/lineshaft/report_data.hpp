@@ -13,7 +13,7 @@ namespace lineshaft {
 /// A trace that can be drawn: rows, a time that does not fall.
 struct ReportRun {
     CsvTable table;
-    std::string path;
+    std::string path, label = {};
     const CsvColumn* time = nullptr;        ///< [s]
     std::vector<const CsvColumn*> signals;  ///< all columns but `time` and `scan`
     nlohmann::ordered_json expectations = nlohmann::ordered_json::array();  ///< of the sidecar
