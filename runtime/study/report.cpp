@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/study/formula.hpp"
+#include "runtime/source/formula.hpp"
 
 namespace lineshaft {
 

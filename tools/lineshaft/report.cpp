@@ -164,7 +164,14 @@ void require(const std::vector<ReportRun>& runs, const std::string& name, Diagno
     if (!with_signal(runs, name)) runs.front().table.require(name, out);
 }
 
-Json paths_json(const ReportCommand& command, const std::vector<ReportRun>& runs,
+/// What the first program that says anything says under `report:`; the command line goes before.
+Json arrangement(const std::vector<ReportRun>& runs) {
+    const auto it = std::ranges::find_if(
+        runs, [](const ReportRun& run) { return run.arrangement.is_object(); });
+    return it == runs.end() ? Json::object() : it->arrangement;
+}
+
+Json paths_json(const ReportCommand& command, const std::vector<ReportRun>& runs, const Json& said,
                 Diagnostics& out) {
     Json list = Json::array();
     const auto add = [&](const std::string& x, const std::string& y) {
@@ -176,6 +183,7 @@ Json paths_json(const ReportCommand& command, const std::vector<ReportRun>& runs
         add(command.path[0], command.path[1]);
         return list;
     }
+    if (said.contains("paths") && command.signals.empty()) return said["paths"];
     for (const ReportRun& run : runs)
         for (const PathPair& pair : find_paths(run)) add(pair.x, pair.y);
     return list;
@@ -183,8 +191,8 @@ Json paths_json(const ReportCommand& command, const std::vector<ReportRun>& runs
 
 /// What `--while` names.
 Json condition_json(const ReportCommand& command, const std::vector<ReportRun>& runs,
-                    Diagnostics& out) {
-    if (command.condition.empty() || runs.empty()) return nullptr;
+                    const Json& said, Diagnostics& out) {
+    if (command.condition.empty() || runs.empty()) return said.value("while", Json());
     require(runs, command.condition, out);
     return command.condition;
 }
@@ -227,12 +235,14 @@ Json make_report(const ReportCommand& command, Json studies, const std::vector<s
     const auto cases = choose_cases(command, studies, paths, out);
     const std::vector<ReportRun> runs = read_runs(command, cases, out);
     if (!out.empty()) return {};
+    Json said = arrangement(runs);
     Json report{{"title", ""},
                 {"runs", Json::array()},
                 {"studies", std::move(studies)},
-                {"paths", paths_json(command, runs, out)},
-                {"while", condition_json(command, runs, out)},
-                {"circle", nullptr}};
+                {"paths", paths_json(command, runs, said, out)},
+                {"while", condition_json(command, runs, said, out)},
+                {"circle", said.value("circle", Json())},
+                {"arrangement", said}};
     ProgressLine line(command.quiet);
     for (const ReportRun& run : runs) {
         line.show([&](double) { return fmt::format("packing {}", run.path); });
@@ -304,6 +314,7 @@ Exit report_study(const nlohmann::ordered_json& study, const std::string& output
     if (!can_draw()) return Exit::wrong;
     ReportCommand command;
     command.output = output;
+    command.title = study.value("title", "");
     command.quiet = quiet;
     Diagnostics out;
     return write(command, Json::array({study}), {""}, out);

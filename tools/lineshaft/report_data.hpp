@@ -19,6 +19,8 @@ struct ReportRun {
     nlohmann::ordered_json expectations = nlohmann::ordered_json::array();  ///< of the sidecar
     nlohmann::ordered_json events =
         nlohmann::ordered_json::array();  ///< the first 1,000, see EventWriter
+    nlohmann::ordered_json notes = nlohmann::ordered_json::array();  ///< of the program
+    nlohmann::ordered_json arrangement = {};  ///< see connect_report(); null: not said
 };
 
 /// The trace at `path`, and of its signals those named in `wanted`, or all. Empty when it cannot be

@@ -171,7 +171,8 @@ nlohmann::ordered_json study_json(const Study& study, const StudyReport& report)
                           {"ok", row.ok},
                           {"formula", row.claim->formula}});
     }
-    nlohmann::ordered_json object{{"title", study.title}, {"rows", rows}, {"claims", claims}};
+    nlohmann::ordered_json object{
+        {"title", study.title}, {"notes", study.notes}, {"rows", rows}, {"claims", claims}};
     if (!report.faults.empty()) object["faults"] = report.faults;
     if (!report.deviations.empty()) object["deviations"] = report.deviations;
     object["ok"] = report.ok();

@@ -21,9 +21,9 @@ std::string study_table(const Study& study, const StudyReport& report,
 /// The first row or claim that does not hold, in one line; empty when all do.
 std::string first_failure(const StudyReport& report);
 
-/// `{"title", "rows": [{"case", "name", "set", "signal", "unit", "paper", "ours", "ok"}...],
-/// "claims": [...], "ok"}`; paper is null where there is none. A case of repeats has `repeats`,
-/// `least` and `greatest`, one that was traced the files `traces`.
+/// `{"title", "notes", "rows": [{"case", "name", "set", "signal", "unit", "paper", "ours",
+/// "ok"}...], "claims": [...], "ok"}`; paper is null where there is none. A case of repeats has
+/// `repeats`, `least` and `greatest`, one that was traced the files `traces`.
 nlohmann::ordered_json study_json(const Study& study, const StudyReport& report);
 
 }  // namespace lineshaft
