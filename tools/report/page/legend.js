@@ -6,7 +6,7 @@ const heads = ["", "here", "A", "B", "B − A"];
 
 /**
  * Names of a plot's curves, and their values under the mouse, at both cursors, and the difference. A
- * name is a button that hides its curve, and is dragged to another plot.
+ * name hides its curve, and is dragged to another plot; a <button> could not be dragged in all browsers.
  */
 export class Legend {
   constructor(parent, plot) {
@@ -31,8 +31,8 @@ export class Legend {
   #row(curve) {
     const { signal, run } = curve;
     const made = row("", "", "", "", "");
-    const name = element("button", { className: "curve", draggable: this.canMove,
-                                     title: `Show or hide ${signal.name} of ${run.label}` },
+    const name = element("span", { className: "curve", role: "button", tabIndex: 0, draggable: this.canMove,
+                                   title: `Show or hide ${signal.name} of ${run.label}` },
                          stroke(curve.stroke, curve.dash), this.#nameOf(curve));
     const show = () => {
       name.ariaPressed = String(!curve.hidden);
@@ -41,6 +41,11 @@ export class Legend {
     name.onclick = () => {
       this.plot.toggle(curve);
       show();
+    };
+    name.onkeydown = (event) => {
+      if (event.key !== "Enter" && event.key !== " ") return;
+      event.preventDefault();
+      name.click();
     };
     name.ondragstart = (event) => event.dataTransfer.setData("text/plain", signal.name);
     show();

@@ -95,9 +95,10 @@ class Board {
     if (signal) parent.querySelector(`select[data-signal="${CSS.escape(signal)}"]`)?.focus();
   }
 
-  /** All curves stand one below the other, whatever their axes take. */
+  /** All curves stand one below the other, whatever their axes take, where there is room for that. */
   #draw() {
     const width = this.plots[0]?.chart.clientWidth;
+    if (width < 600) return this.plots.forEach((plot) => plot.draw(width));
     const margins = this.plots.map((plot) => plot.margins);
     const widest = [0, 1].map((side) => Math.max(...margins.map((each) => each[side])));
     for (const plot of this.plots) plot.draw(width, widest);

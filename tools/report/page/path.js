@@ -22,7 +22,7 @@ function ticks(from, to, count) {
   const decade = 10 ** Math.floor(Math.log10(rough));
   const step = decade * [1, 2, 5, 10].find((factor) => factor * decade >= rough);
   const result = [];
-  for (let k = Math.ceil(from / step); k * step <= to; ++k) result.push(k * step);
+  for (let k = Math.ceil(from / step); k * step <= to; ++k) result.push(k * step + 0); // no -0
   return result;
 }
 

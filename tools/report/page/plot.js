@@ -170,7 +170,7 @@ export class Plot {
     return {
       width: Math.max(width, 200),
       height: this.#height(),
-      padding: [8, right, 0, this.outer[0] - this.margins[0]],
+      padding: [18, right, 0, this.outer[0] - this.margins[0]],
       legend: { show: false },
       scales: { x: { time: false, range: () => [this.view.range.from, this.view.range.to] }, ...scales },
       axes: [this.#timeAxis(), ...this.scales.map((scale, k) => this.#valueAxis(scale, k))],
