@@ -182,6 +182,57 @@ def replayed_files(c):
     assert "L0612" in study("--merge", "replay_parts", "-o", "replay.csv", expect=2).stderr
 
 
+TRACED = """lineshaft: 1
+parameters: {speed: 10 mm/s, jitter: 0 ms}
+tasks: {main: {every: 10 ms, jitter: $jitter}}
+blocks:
+  axis: {type: virtual_axis, task: main, immediate: true, velocity: $speed}
+run: {for: 1 s}
+trace: {task: main, signals: [axis.position]}
+"""
+TRACED_PLAN = """lineshaft_study: 1
+program: traced.yaml
+compare: {axis.position: {at_most: 50 mm}}
+cases:
+  - {name: slow, set: {speed: 1 mm/s}}
+  - grid: {speed: [10 mm/s, 90 mm/s]}
+    repeat: 2
+    set: {jitter: 1 ms}
+"""
+
+
+def traces(c):
+    """A trace is named by its case, and is what a run of its own records; of failed cases only those."""
+    (c.folder / "traced.yaml").write_text(TRACED)
+    (c.folder / "traced_plan.yaml").write_text(TRACED_PLAN)
+
+    def call(*arguments, expect):
+        result = subprocess.run([c.lineshaft, *arguments], cwd=c.folder, capture_output=True, text=True, timeout=300)
+        assert result.returncode == expect, (arguments, result.stdout, result.stderr)
+        return result
+
+    def files(folder):
+        return sorted(path.name for path in (c.folder / folder).glob("*.csv") if ".events." not in path.name)
+
+    call("study", "traced_plan.yaml", "--quiet", "--traces", "all", "-o", "with.csv", "-j", "2", expect=1)
+    repeated = [f"{case}_jitter=1_ms_speed={speed}_mm_s.{repeat}.csv" for case, speed in ((2, 10), (3, 90)) for repeat in (1, 2)]
+    assert files("all") == repeated + ["slow.csv"], files("all")
+    call("run", "traced.yaml", "--quiet", "--set", "speed=1 mm/s", "--trace", "slow.csv", expect=0)
+    assert c.bytes("all/slow.csv") == c.bytes("slow.csv")
+    first, second = c.bytes(f"all/{repeated[0]}"), c.bytes(f"all/{repeated[1]}")
+    assert first != second, "repeats have one seed"
+    answer = call("study", "traced_plan.yaml", "--json", "--traces", "failed", "--traces-of", "failed", expect=1)
+    assert files("failed") == repeated[2:], files("failed")
+    assert c.bytes(f"failed/{repeated[2]}") == c.bytes(f"all/{repeated[2]}")
+    rows = json.loads(answer.stdout)["rows"]
+    assert [row.get("traces") for row in rows] == [None, None, [f"failed/{name}" for name in repeated[2:]]], rows
+    call("study", "traced_plan.yaml", "--quiet", "-o", "without.csv", expect=1)
+    assert c.bytes("with.csv") == c.bytes("without.csv")
+    assert "L0503" in call("study", "plan.yaml", "--traces", "none", expect=2).stderr
+    (c.folder / "file").write_text("")
+    assert "cannot make 'file/x'" in call("study", "traced_plan.yaml", "--traces", "file/x", expect=2).stderr
+
+
 def size(path):
     """0 when it is not there, which may be so from one moment to the next."""
     try:
@@ -266,7 +317,7 @@ def command_lines(c):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         c = Checks(os.path.abspath(sys.argv[1]), Path(folder))
-        for check in (threads, contents, chunks, broken_merges, replayed_files, kills, torn_rows, full_disks,
+        for check in (threads, contents, traces, chunks, broken_merges, replayed_files, kills, torn_rows, full_disks,
                       command_lines):
             check(c)
             print("ok ", check.__name__, flush=True)

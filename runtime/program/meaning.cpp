@@ -95,9 +95,12 @@ class Canonical {
     Parameters parameters_;
 };
 
+/// Keys of a program that make no other run, or are told beside its meaning.
+const Canonical::Keys without_meaning{"title",      "notes", "parameters",
+                                      "controller", "force", "report"};
+
 std::string hash_of_form(const Program& program) {
-    std::string text = Canonical(Canonical::Parameters::named)
-                           .root(program.root, {"title", "parameters", "controller", "force"});
+    std::string text = Canonical(Canonical::Parameters::named).root(program.root, without_meaning);
     std::vector<std::string> names;
     for (const auto& [name, value] : program.parameters) names.push_back(name);
     std::ranges::sort(names);
@@ -111,7 +114,7 @@ Meaning meaning_of(const Program& program) {
     Meaning meaning{.in_force = {}, .form = hash_of_form(program), .controller = {}};
     if (program.controller)
         meaning.controller = text_hash(canonical.root(*program.controller, {"title"}));
-    std::string text = canonical.root(program.root, {"title", "parameters", "controller", "force"});
+    std::string text = canonical.root(program.root, without_meaning);
     for (const ForcePlan& force : program.forces)
         text += fmt::format("{} {} {} {} ", force.from, force.until, force.signal.text,
                             canonical.scalar(force.value, measured));

@@ -745,6 +745,54 @@ const Form& block_form() {
     return form;
 }
 
+namespace {
+
+/// Nothing is kept here: see connect_report().
+struct ReportPlan {};
+
+Shape drawn() {
+    return list_of(either({a_signal, a_name})).unique("'{}' stands in this list already");
+}
+
+const Form& report_form() {
+    static const Form form = form_of<ReportPlan>(
+        {.name = "report",
+         .what = "'report'",
+         .doc = "the page that 'lineshaft report' makes of the program's traces, as it is when it is "
+                "opened: whoever looks at it may arrange it in another way",
+         .keys = {key("plots", list_of(drawn().filled("a plot has no signal")),
+                      "signals and curves of each plot over time, from the top; what no plot names "
+                      "follows, grouped by units"),
+                  key("own_axis", drawn(), "signals and curves that have an axis of their own"),
+                  key("hide", drawn(), "signals and curves that are not drawn until asked for"),
+                  key("curves", named("a curve", a_value.as("a formula")),
+                      "further curves: + - * /, parentheses, abs, sqrt, min, max, mean and "
+                      "derivative(x), by time, over recorded signals"),
+                  key("paths",
+                      list_of(list_of(a_signal).within(2, 2)).filled("'paths' has no path"),
+                      "pairs of signals, the second drawn over the first"),
+                  key("circle", list_of(a_number).within(3, 3),
+                      "x, y and radius of the circle that the paths are compared with; else one "
+                      "that is found in them"),
+                  key("while", a_signal,
+                      "a boolean signal: a path is compared with the circle while it is true")},
+         .rules = {{only_with,
+                    "circle",
+                    {"paths"},
+                    "'circle' is for paths, and there are none",
+                    "write paths: [[x.position, y.position]] beside it",
+                    the_key},
+                   {only_with,
+                    "while",
+                    {"paths"},
+                    "'while' is for paths, and there are none",
+                    "write paths: [[x.position, y.position]] beside it",
+                    the_key}}});
+    return form;
+}
+
+}  // namespace
+
 const Form& program_form() {
     static const Form form = form_of<Program>(
         {.name = "program",
@@ -756,6 +804,7 @@ const Form& program_form() {
              {key("lineshaft", a_version, "version of this form").must(),
               key<&Program::title>("title", a_value.as("the title"),
                                    "shown in messages and reports"),
+              key("notes", one_or_list(a_value.as("a note")), "said in reports of its traces"),
               key("parameters", named("a parameter", a_value),
                   "names and values; $NAME stands for the value, --set and studies change it"),
               key("controller", a_value, "a file with tasks, relative to this one"),
@@ -794,6 +843,7 @@ const Form& program_form() {
               key<read_traces>("traces",
                                named("a trace", a_form(trace_form)).filled("'traces' has no trace"),
                                "further traces, written to FILE.NAME.csv"),
+              key("report", a_form(report_form), "how 'lineshaft report' arranges its traces"),
               key<read_modbus>("modbus", a_form(modbus_form),
                                "where clients of 'lineshaft serve' find signals"),
               key<&Program::expectations>("expect", list_of(a_form(expectation_form)),

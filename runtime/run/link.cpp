@@ -9,6 +9,7 @@
 #include "runtime/net/resolve.hpp"
 #include "runtime/scan/expectations.hpp"
 #include "runtime/st/library.hpp"
+#include "runtime/trace/report_setup.hpp"
 #include "runtime/trace/trace_setup.hpp"
 
 namespace lineshaft {
@@ -76,6 +77,7 @@ Linked link(const Program& program, const Catalog& catalog, Diagnostics& out,
     Connecting to{program, linked.net, linked.machine, Reader(out)};
     connect_outside(to);
     linked.traces = connect_traces(to);
+    linked.report = connect_report(to, linked.traces);
     linked.expectations = connect_expectations(to);
     linked.modbus = connect_modbus(to);
     warn_of_unused_inputs(program, linked, out);

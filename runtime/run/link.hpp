@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "runtime/model/catalog.hpp"
 #include "runtime/net/modbus_map.hpp"
 #include "runtime/net/net.hpp"
@@ -19,6 +21,7 @@ struct Linked {
     std::vector<TraceSetup> traces;
     std::vector<Expectation> expectations;
     ModbusMap modbus;
+    nlohmann::ordered_json report = {};  ///< see connect_report()
 };
 
 /// Checks every name, type, unit, limit and wire of `program` and lays its blocks out in memory.

@@ -23,6 +23,15 @@ std::string text_of(const ForcePlan& force) {
     return text;
 }
 
+Json notes_of(const Program& program) {
+    const Node* notes = program.root.find("notes");
+    if (!notes) return {};
+    if (notes->is_scalar()) return Json::array({notes->text});
+    Json list = Json::array();
+    for (const Node& note : notes->items) list.push_back(note.text);
+    return list;
+}
+
 }  // namespace
 
 TraceOrigin origin_of(const Loaded& loaded) {
@@ -37,7 +46,11 @@ TraceOrigin origin_of(const Loaded& loaded) {
     for (const ForcePlan& force : program.forces) run["forces"].push_back(text_of(force));
     for (const ReplayedFile& file : linked.machine.replayed)
         run["replays"].push_back({{"file", file_name(file.name)}, {"crc32", file.crc32}});
-    return {program.title, meaning.in_force, std::move(run)};
+    return {.title = program.title,
+            .program = meaning.in_force,
+            .run = std::move(run),
+            .notes = notes_of(program),
+            .report = linked.report};
 }
 
 }  // namespace lineshaft

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/study/formula.hpp"
+#include "runtime/source/formula.hpp"
 
 namespace lineshaft {
 
@@ -35,8 +35,8 @@ void ReportBuilder::add(const CaseResult& result) {
     ++(shown_ < most_shown ? shown_ : shown_failed_);
     for (std::size_t k = 0; k < result.values.size(); ++k) {
         const Measured& m = result.values[k];
-        report_.rows.push_back(
-            {result.of, &result.of->comparisons[k], m.ours, m.least, m.greatest, result.holds(k)});
+        report_.rows.push_back({result.of, &result.of->comparisons[k], m.ours, m.least, m.greatest,
+                                result.holds(k), result.traces});
     }
 }
 

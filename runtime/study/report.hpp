@@ -16,6 +16,7 @@ struct StudyRow {
     double ours = 0;  ///< mean over the repeats, or their spread
     double least = 0, greatest = 0;
     bool ok = true;
+    std::vector<std::string> traces = {};  ///< files of the case
 };
 
 struct ClaimRow {

@@ -1,7 +1,9 @@
 #include "runtime/study/study.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -47,6 +49,22 @@ std::string describe(const StudyCase& c) {
     for (const Setting& s : c.settings)
         text += fmt::format("{}{}={}", text.empty() ? "" : ", ", s.name, s.value);
     return text;
+}
+
+std::string file_stem(const StudyCase& c, std::int64_t cases) {
+    if (!c.name.empty()) return c.name;
+    constexpr std::size_t most = 120;
+    std::string text = fmt::format("{:0{}}", c.number, fmt::format("{}", cases).size());
+    for (const Setting& s : c.settings) text += fmt::format("_{}={}", s.name, s.value);
+    std::ranges::replace_if(
+        text,
+        [](char letter) {
+            constexpr std::string_view kept = "_=.-+";
+            return std::isalnum(static_cast<unsigned char>(letter)) == 0 &&
+                   kept.find(letter) == std::string_view::npos;
+        },
+        '_');
+    return text.substr(0, most);
 }
 
 std::int64_t Study::case_count() const {

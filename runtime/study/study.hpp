@@ -48,6 +48,10 @@ struct StudyCase {
 /// `early_20_5`, or `method=early, radius=20 mm`.
 std::string describe(const StudyCase& c);
 
+/// A file's name without its extension: `early_20_5`, or `0017_method=early_radius=20_mm` with as
+/// many digits as the greatest number of `cases` has.
+std::string file_stem(const StudyCase& c, std::int64_t cases);
+
 /// A parameter of a grid and its values.
 struct GridAxis {
     std::string name;
@@ -88,6 +92,8 @@ struct Study {
     std::vector<std::string> notes;
     std::vector<CaseGroup> groups;
     std::vector<Claim> claims;
+    std::vector<Setting> parameters;  ///< of the program, in force in the first case
+    bool traced = false;              ///< the program has a trace
     std::vector<std::string> include_dirs;
     std::string identity;  ///< hash of all that decides the results: this file, the settings of the
                            ///< command line, the program, its controllers, lineshaft's version

@@ -107,15 +107,22 @@ void StudyFileReader::check(CaseGroup& group, const std::vector<ComparisonPlan>&
     study_.groups.push_back(std::move(group));
     CaseGroup& kept = study_.groups.back();
     const StudyCase first = study_.make_case(kept.first);
-    const auto linked = load(first.settings);
-    if (!linked) {
+    const auto loaded = load(first.settings);
+    if (!loaded) {
         cases_known_ = false;
         return;
     }
+    learn(loaded->program);
     for (const std::vector<ComparisonPlan>* compared : {&std::as_const(plan_.comparisons), &plans})
         for (const ComparisonPlan& comparison : *compared)
-            compare(comparison, linked->machine, kept);
+            compare(comparison, loaded->linked.machine, kept);
     if (check_ == StudyCheck::values) check_values(kept, first.settings);
+}
+
+void StudyFileReader::learn(const Program& program) {
+    study_.traced = !program.traces.empty();
+    if (!study_.parameters.empty()) return;
+    for (const auto& [name, value] : program.parameters) study_.parameters.push_back({name, value});
 }
 
 void StudyFileReader::check_values(const CaseGroup& group, const std::vector<Setting>& base) {
@@ -135,14 +142,15 @@ void StudyFileReader::check_value(std::vector<Setting> settings, const Setting& 
 }
 
 /// Empty when anything was wrong.
-std::optional<Linked> StudyFileReader::load(const std::vector<Setting>& settings) {
+std::optional<Loaded> StudyFileReader::load(const std::vector<Setting>& settings) {
     const LoadOptions options{
         .settings = settings, .include_dirs = options_.include_dirs, .files = &files_};
     const std::size_t before = read_.diagnostics().list().size();
-    const Program program = read_program(program_file_, options, read_.diagnostics());
-    Linked linked = link(program, catalog_, read_.diagnostics());
+    Loaded loaded{.program = read_program(program_file_, options, read_.diagnostics()),
+                  .linked = {}};
+    loaded.linked = link(loaded.program, catalog_, read_.diagnostics());
     if (read_.diagnostics().list().size() > before) return {};
-    return linked;
+    return loaded;
 }
 
 }  // namespace lineshaft

@@ -92,6 +92,7 @@ std::vector<std::string> split_cells(std::string_view line) {
 
 StudyCsv::StudyCsv(const Study& study) : study_(study) {
     for (const CaseGroup& group : study.groups) learn(group);
+    for (const Setting& s : study.parameters) see(s.name, s.value);
 }
 
 void StudyCsv::learn(const CaseGroup& group) {
@@ -140,22 +141,34 @@ std::string StudyCsv::header() const {
     return join_cells(titles()) + "\n";
 }
 
-std::string StudyCsv::cell(const Parameter& p, const StudyCase& of) const {
-    const auto it = std::ranges::find(of.settings, p.name, &Setting::name);
-    if (it == of.settings.end()) return "";
-    if (!p.numeric) return one_line(it->value);
-    const auto parsed = parse_quantity(it->value);
-    const auto& quantity = std::get<Quantity>(parsed);
-    if (quantity.is_integer && quantity.unit.text == p.unit.text)
-        return fmt::format("{}", quantity.integer);
-    return number(convert(quantity.number, quantity.unit, p.unit));
+/// What is in force; of a case that could not be loaded what it sets, or the program.
+std::string StudyCsv::cell(const Parameter& p, const CaseResult& result) const {
+    std::string value;
+    for (const auto* settings : {&study_.parameters, &result.of->settings})
+        if (const auto it = std::ranges::find(*settings, p.name, &Setting::name);
+            it != settings->end())
+            value = it->value;
+    for (const auto& [name, in_force] : result.parameters)
+        if (name == p.name) value = in_force;
+    const auto parsed = parse_quantity(value);
+    const auto* quantity = std::get_if<Quantity>(&parsed);
+    if (!p.numeric || !quantity) return one_line(value);
+    if (quantity->is_integer && quantity->unit.text == p.unit.text)
+        return fmt::format("{}", quantity->integer);
+    return number(convert(quantity->number, quantity->unit, p.unit));
+}
+
+/// The value that stands in a cell.
+std::string StudyCsv::text(const Parameter& p, std::string_view cell) const {
+    return p.numeric && !p.unit.text.empty() ? fmt::format("{} {}", cell, p.unit.text)
+                                             : std::string(cell);
 }
 
 std::string StudyCsv::row(const CaseResult& result) const {
     const StudyCase& of = *result.of;
     std::vector<std::string> cells{fmt::format("{}", of.number)};
     if (named_) cells.push_back(of.name);
-    for (const Parameter& p : parameters_) cells.push_back(cell(p, of));
+    for (const Parameter& p : parameters_) cells.push_back(cell(p, result));
     for (const SignalColumn& s : signals_) {
         const auto it = std::ranges::find(of.comparisons, s.name, &Comparison::name);
         const auto k = static_cast<std::size_t>(it - of.comparisons.begin());
@@ -187,6 +200,9 @@ std::optional<CaseResult> StudyCsv::parse(std::string_view row) const {
     CaseResult result;
     result.of =
         std::make_shared<StudyCase>(study_.make_case(static_cast<std::int64_t>(*index) - 1));
+    for (std::size_t k = 0; k < parameters_.size(); ++k)
+        result.parameters.emplace_back(
+            parameters_[k].name, text(parameters_[k], cells[signals - parameters_.size() + k]));
     const auto seconds = parse_number(cells[time]);
     if (!seconds) return {};
     result.machine_seconds = *seconds;

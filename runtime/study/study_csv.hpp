@@ -14,9 +14,10 @@ namespace lineshaft {
 /// A study's results as a table: a row a case. Its columns are known before the first case runs:
 ///   case          its number in the study, from 1
 ///   name          where a case has one
-///   speed ...     every parameter that a case sets. A number where all values are numbers of one
-///                 dimension, in the unit of the first; else the text. `$name` where a parameter
-///                 has the name of another column
+///   speed ...     every parameter that a case sets, then those that none does: the values in
+///                 force. A number where all values are numbers of one dimension, in the unit of
+///                 the first; else the text. `$name` where a parameter has the name of another
+///                 column
 ///   fit.offset ... every signal that is compared, at the end of the run, the mean of its repeats;
 ///                 with repeats also fit.offset.least and fit.offset.greatest, and where it is
 ///                 compared their standard deviation fit.offset.spread; empty for a case that did
@@ -55,7 +56,8 @@ class StudyCsv {
     void see(const std::string& name, const std::string& value);
     Parameter& parameter(const std::string& name);
     std::vector<std::string> titles() const;
-    std::string cell(const Parameter& parameter, const StudyCase& of) const;
+    std::string cell(const Parameter& parameter, const CaseResult& result) const;
+    std::string text(const Parameter& parameter, std::string_view cell) const;
     std::size_t width(const SignalColumn& s) const {
         return repeats_ && s.statistic == Statistic::mean ? 3 : 1;
     }

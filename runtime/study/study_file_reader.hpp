@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/run/link.hpp"
+#include "runtime/run/single_run.hpp"
 #include "runtime/source/reader.hpp"
 #include "runtime/study/study_reader.hpp"
 
@@ -39,7 +39,8 @@ class StudyFileReader {
     void check(CaseGroup& group, const std::vector<ComparisonPlan>& plans);
     void check_values(const CaseGroup& group, const std::vector<Setting>& base);
     void check_value(std::vector<Setting> settings, const Setting& value);
-    std::optional<Linked> load(const std::vector<Setting>& settings);
+    void learn(const Program& program);
+    std::optional<Loaded> load(const std::vector<Setting>& settings);
     bool enough() const;
 
     void compare(const ComparisonPlan& plan, const Machine& machine, CaseGroup& group);

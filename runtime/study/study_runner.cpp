@@ -21,27 +21,38 @@ constexpr std::int64_t waiting_per_job = 32;
 /// One thread's: the program's files are parsed once.
 class CaseRunner {
   public:
-    CaseRunner(const Study& study, const Catalog& catalog, const std::atomic<bool>* interrupt)
-        : study_(study), catalog_(catalog), interrupt_(interrupt) {}
+    CaseRunner(const Study& study, const Catalog& catalog, const CaseOptions& options)
+        : study_(study), catalog_(catalog), options_(options) {}
 
     /// Empty when interrupted.
     std::optional<CaseResult> run(std::int64_t index);
 
   private:
-    bool run_once(std::int64_t repeat, CaseResult& result);
+    CaseResult run_all(const std::shared_ptr<const StudyCase>& of, bool traced);
+    bool run_once(std::int64_t repeat, bool traced, CaseResult& result);
+    bool judge(const RunReport& report, CaseResult& result);
+    std::string trace_path(const StudyCase& of, std::int64_t repeat) const;
     bool measure(const Machine& machine, CaseResult& result);
 
     const Study& study_;
     const Catalog& catalog_;
-    const std::atomic<bool>* interrupt_;
+    const CaseOptions& options_;
     YamlFiles files_;
     std::vector<Scatter> scatters_;
     bool interrupted_ = false;
 };
 
 std::optional<CaseResult> CaseRunner::run(std::int64_t index) {
+    const auto of = std::make_shared<StudyCase>(study_.make_case(index));
+    const CaseTraces& traces = options_.traces;
+    CaseResult result = run_all(of, !traces.folder.empty() && !traces.of_failed);
+    if (!interrupted_ && !traces.folder.empty() && traces.of_failed && !result.ok())
+        result = run_all(of, true);
+    return interrupted_ ? std::nullopt : std::optional(std::move(result));
+}
+
+CaseResult CaseRunner::run_all(const std::shared_ptr<const StudyCase>& of, bool traced) {
     CaseResult result;
-    auto of = std::make_shared<StudyCase>(study_.make_case(index));
     result.of = of;
     const double infinity = std::numeric_limits<double>::infinity();
     result.values.assign(of->comparisons.size(),
@@ -49,8 +60,7 @@ std::optional<CaseResult> CaseRunner::run(std::int64_t index) {
     scatters_.assign(of->comparisons.size(), {});
     bool whole = true;
     for (std::int64_t repeat = 0; whole && repeat < of->repeat; ++repeat)
-        whole = run_once(repeat, result);
-    if (interrupted_) return {};
+        whole = run_once(repeat, traced, result);
     if (!whole) result.values.clear();
     for (std::size_t k = 0; k < result.values.size(); ++k) {
         const Statistic statistic = of->comparisons[k].statistic;
@@ -61,7 +71,12 @@ std::optional<CaseResult> CaseRunner::run(std::int64_t index) {
     return result;
 }
 
-bool CaseRunner::run_once(std::int64_t repeat, CaseResult& result) {
+std::string CaseRunner::trace_path(const StudyCase& of, std::int64_t repeat) const {
+    return fmt::format("{}/{}{}.csv", options_.traces.folder, file_stem(of, study_.case_count()),
+                       of.repeat > 1 ? fmt::format(".{}", repeat + 1) : "");
+}
+
+bool CaseRunner::run_once(std::int64_t repeat, bool traced, CaseResult& result) {
     Diagnostics out;
     auto loaded = load_program(study_.program, {result.of->settings, study_.include_dirs, &files_},
                                catalog_, out);
@@ -72,15 +87,26 @@ bool CaseRunner::run_once(std::int64_t repeat, CaseResult& result) {
     }
     Machine& machine = loaded->linked.machine;
     machine.seed += static_cast<std::uint64_t>(repeat);
-    const RunReport report =
-        lineshaft::run(*loaded, {.trace_path = {}, .interrupt = interrupt_, .progress = {}});
-    interrupted_ = report.result.outcome == Outcome::interrupted;
+    result.parameters = loaded->program.parameters;
+    const std::string trace = traced ? trace_path(*result.of, repeat) : "";
+    const RunReport report = lineshaft::run(
+        *loaded, {.trace_path = trace, .interrupt = options_.interrupt, .progress = {}});
+    for (const TraceReport& written : report.traces)
+        result.traces.insert(result.traces.end(), written.paths.begin(), written.paths.end());
+    return judge(report, result) && measure(machine, result);
+}
+
+/// Whether the run came to its end.
+bool CaseRunner::judge(const RunReport& report, CaseResult& result) {
+    interrupted_ = report.result.outcome == Outcome::interrupted && report.output_error.empty();
     if (interrupted_) return false;
     result.machine_seconds += seconds(report.result.time);
-    if (report.faulted()) result.faults.push_back(report.result.message);
+    if (report.faulted())
+        result.faults.push_back(report.output_error.empty() ? report.result.message
+                                                            : report.output_error);
     for (const Verdict& verdict : report.verdicts)
         if (!verdict.ok) result.deviations.push_back(verdict.deviation);
-    return !report.faulted() && measure(machine, result);
+    return !report.faulted();
 }
 
 bool CaseRunner::measure(const Machine& machine, CaseResult& result) {
@@ -190,7 +216,7 @@ std::map<std::int64_t, CaseResult> run_cases(const Study& study, const Catalog& 
                                              const std::function<bool(const CaseResult&)>& take) {
     Queue queue(range, options, take);
     const auto work = [&] {
-        CaseRunner runner(study, catalog, options.interrupt);
+        CaseRunner runner(study, catalog, options);
         while (const auto index = queue.next()) queue.put(*index, runner.run(*index));
     };
     side_by_side(std::min<std::int64_t>(options.jobs, range.count()), work, [&] { queue.stop(); });

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/model/catalog.hpp"
@@ -24,7 +25,10 @@ struct CaseResult {
     std::vector<Measured> values;         ///< one a comparison; empty: it did not run to its end
     std::vector<std::string> faults;      ///< why it did not
     std::vector<std::string> deviations;  ///< expectations of the program that failed
-    double machine_seconds = 0;           ///< over all repeats
+    /// The program's parameters in force; none: it could not be loaded.
+    std::vector<std::pair<std::string, std::string>> parameters;
+    std::vector<std::string> traces;  ///< files, one a repeat; none: not traced
+    double machine_seconds = 0;       ///< over all repeats
 
     /// Within its bounds; true for a case that did not run.
     bool holds(std::size_t comparison) const;
@@ -38,9 +42,18 @@ struct CaseRange {
     std::int64_t count() const { return last - first; }
 };
 
+/// Where the cases' traces go, see file_stem(); of a case that is repeated to `STEM.2.csv` and so
+/// on. A case that fails is known by its end only: it runs once more then, traced, which gives the
+/// same values.
+struct CaseTraces {
+    std::string folder;  ///< empty: nothing is traced
+    bool of_failed = false;
+};
+
 struct CaseOptions {
     unsigned jobs = 1;  ///< whole runs side by side
     const std::atomic<bool>* interrupt = nullptr;
+    CaseTraces traces = {};
     /// Cases that need not run again, by index. They are taken out.
     std::map<std::int64_t, CaseResult>* known = nullptr;
 };

@@ -153,6 +153,8 @@ std::string CsvWriter::sidecar(const TraceOrigin& origin, const std::string& sto
                                     {"lineshaft:version", version()},
                                     {"lineshaft:program", origin.program}};
     if (!origin.run.is_null()) metadata["lineshaft:run"] = origin.run;
+    if (!origin.notes.is_null()) metadata["lineshaft:notes"] = origin.notes;
+    if (!origin.report.is_null()) metadata["lineshaft:report"] = origin.report;
     metadata["lineshaft:rows"] = row_count_;
     metadata["lineshaft:crc32"] = checksum_.text();
     if (!stopped.empty()) metadata["lineshaft:stopped"] = stopped;

@@ -28,9 +28,11 @@ struct CsvStyle {
 
 /// What made a trace, for its sidecar.
 struct TraceOrigin {
-    std::string title = {};           ///< of the program
-    std::string program = {};         ///< Meaning::in_force of the program
-    nlohmann::ordered_json run = {};  ///< see origin_of(); null: not told
+    std::string title = {};              ///< of the program
+    std::string program = {};            ///< Meaning::in_force of the program
+    nlohmann::ordered_json run = {};     ///< see origin_of(); null: not told
+    nlohmann::ordered_json notes = {};   ///< of the program, a list; null: none
+    nlohmann::ordered_json report = {};  ///< see connect_report(); null: not said
 };
 
 /// Writes rows as RFC 4180 CSV: one header row, then `time` [s], `scan`, and a column a signal;

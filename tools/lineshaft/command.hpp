@@ -67,6 +67,9 @@ class ProgressLine {
 Exit write_report(std::vector<std::string> inputs, std::vector<std::string> signals,
                   const std::string& output, bool quiet);
 
+/// The same of what study_json() made, and of the traces that it names.
+Exit report_study(const nlohmann::ordered_json& study, const std::string& output, bool quiet);
+
 /// A real number for JSON: null when it is not finite.
 nlohmann::ordered_json json_number(double value);
 

@@ -36,17 +36,24 @@ bool is_expectation(const Json& object) {
            number_or_none("low") && number_or_none("high");
 }
 
-/// What the run's sidecar says of its expectations; read_csv has complained about a bad sidecar.
-Json read_expectations(const std::string& csv_path, Diagnostics& out) {
-    Json list = Json::array();
-    if (!std::filesystem::exists(sidecar_path(csv_path))) return list;
+/// What the run's sidecar says beside what it says of the columns; read_csv has complained about a
+/// bad one.
+void read_sidecar(const std::string& csv_path, ReportRun& run, Diagnostics& out) {
+    if (!std::filesystem::exists(sidecar_path(csv_path))) return;
     const auto file = read_source(sidecar_path(csv_path), out);
-    if (!file) return list;
+    if (!file) return;
     const Json sidecar = Json::parse(file->text, nullptr, false);
-    if (!sidecar.is_object() || !sidecar.contains("lineshaft:expectations")) return list;
-    for (const Json& e : sidecar["lineshaft:expectations"])
-        if (is_expectation(e)) list.push_back(e);
-    return list;
+    if (!sidecar.is_object()) return;
+    const auto list = [&](const char* key, auto is_good, Json& to) {
+        if (const auto it = sidecar.find(key); it != sidecar.end())
+            for (const Json& item : *it)
+                if (is_good(item)) to.push_back(item);
+    };
+    list("lineshaft:expectations", is_expectation, run.expectations);
+    list(
+        "lineshaft:notes", [](const Json& note) { return note.is_string(); }, run.notes);
+    if (const auto it = sidecar.find("lineshaft:report"); it != sidecar.end() && it->is_object())
+        run.arrangement = *it;
 }
 
 /// What the run's list of events has, if there is one beside the trace.
@@ -171,7 +178,7 @@ std::optional<ReportRun> read_run(const std::string& path, const std::vector<std
     if (!run.time || !check_time(run.table, *run.time, out)) return {};
     for (const CsvColumn& column : run.table.columns)
         if (&column != run.time && column.name != "scan") run.signals.push_back(&column);
-    run.expectations = read_expectations(path, out);
+    read_sidecar(path, run, out);
     run.events = read_events(path);
     return run;
 }
@@ -224,7 +231,7 @@ nlohmann::ordered_json to_json(const ReportRun& run) {
     }
     const auto& metadata = run.table.metadata;
     return {
-        {"label", run.path},
+        {"label", run.label},
         {"title", metadata ? metadata->title : ""},
         {"version", metadata ? metadata->version : ""},
         {"program", metadata ? metadata->program : ""},
@@ -234,6 +241,7 @@ nlohmann::ordered_json to_json(const ReportRun& run) {
         {"time", times},
         {"signals", signals},
         {"bytes", base64(deflated(bytes))},
+        {"notes", run.notes},
         {"expectations", run.expectations},
         {"events", run.events}};
 }

@@ -13,12 +13,14 @@ namespace lineshaft {
 /// A trace that can be drawn: rows, a time that does not fall.
 struct ReportRun {
     CsvTable table;
-    std::string path;
+    std::string path, label = {};
     const CsvColumn* time = nullptr;        ///< [s]
     std::vector<const CsvColumn*> signals;  ///< all columns but `time` and `scan`
     nlohmann::ordered_json expectations = nlohmann::ordered_json::array();  ///< of the sidecar
     nlohmann::ordered_json events =
         nlohmann::ordered_json::array();  ///< the first 1,000, see EventWriter
+    nlohmann::ordered_json notes = nlohmann::ordered_json::array();  ///< of the program
+    nlohmann::ordered_json arrangement = {};  ///< see connect_report(); null: not said
 };
 
 /// The trace at `path`, and of its signals those named in `wanted`, or all. Empty when it cannot be

@@ -1,3 +1,5 @@
+#include <filesystem>
+#include <map>
 #include <thread>
 
 #include <fmt/core.h>
@@ -15,8 +17,9 @@ namespace {
 
 struct StudyCommand {
     CommonOptions common;
-    std::string plan, output, chunk, merge;
-    bool resume = false;
+    std::string plan, output, chunk, merge, report;
+    CaseTraces traces;
+    bool resume = false, wide = false;
     unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
 };
 
@@ -39,7 +42,7 @@ class StudyRun {
         : command_(command),
           study_(study),
           range_(chunk.value_or(Chunk{}).range(study.case_count())),
-          builder_(study, command.common.json),
+          builder_(study, command.common.json || !command.report.empty()),
           csv_(study) {
         if (!command.output.empty()) file_.emplace(command.output, study, csv_, chunk);
     }
@@ -100,9 +103,12 @@ Exit StudyRun::simulate(const Catalog& catalog) {
         });
         return take(result);
     };
-    const auto waiting =
-        run_cases(study_, catalog, {range_.first + taken_, range_.last},
-                  {.jobs = command_.jobs, .interrupt = &interrupt_requested, .known = &late}, next);
+    const auto waiting = run_cases(study_, catalog, {range_.first + taken_, range_.last},
+                                   {.jobs = command_.jobs,
+                                    .interrupt = &interrupt_requested,
+                                    .traces = command_.traces,
+                                    .known = &late},
+                                   next);
     if (file_ && !file_->error().empty()) return tell_stopped(Exit::fault);
     const bool interrupted = done < range_.count();
     if (file_ && interrupted) {
@@ -130,6 +136,11 @@ Exit StudyRun::finish(bool interrupted) {
     result.wall_seconds = wall_seconds();
     print(result);
     if (interrupted) return tell_stopped(Exit::interrupted);
+    if (!command_.report.empty()) {
+        const Exit written = report_study(study_json(study_, result), command_.report,
+                                          command_.common.quiet || command_.common.json);
+        if (written != Exit::fine) return written;
+    }
     return result.ok() ? Exit::fine : Exit::failed;
 }
 
@@ -144,8 +155,9 @@ Exit StudyRun::tell_stopped(Exit exit) const {
 
 void StudyRun::print(const StudyReport& result) const {
     if (command_.common.json) return fmt::print("{}\n", study_json(study_, result).dump(2));
-    if (command_.common.quiet && !command_.output.empty()) return;
-    fmt::print("{}", study_table(study_, result));
+    if (command_.common.quiet && !(command_.output.empty() && command_.report.empty())) return;
+    fmt::print("{}",
+               study_table(study_, result, command_.wide ? TableStyle::wide : TableStyle::fitting));
     if (command_.common.quiet) return;
     fmt::print("\n{} cases", result.cases);
     if (result.failed > 0) fmt::print(", {} failed", result.failed);
@@ -164,6 +176,19 @@ std::optional<Chunk> check_options(const StudyCommand& command, Diagnostics& out
     return command.chunk.empty() ? std::nullopt : parse_chunk(command.chunk, out);
 }
 
+/// L0503 for a program that records nothing; the folder is made.
+void prepare_traces(const StudyCommand& command, const Study& study, Diagnostics& out) {
+    const std::string& folder = command.traces.folder;
+    if (folder.empty()) return;
+    if (!study.traced)
+        out.add("L0503", {study.file, 0, 0, 1},
+                fmt::format("'{}' has no 'trace:' to write to {}", study.program, folder),
+                "say under 'trace:' which task and signals to record");
+    std::error_code failed;
+    if (out.empty()) std::filesystem::create_directories(folder, failed);
+    if (failed) out.add("L0001", {}, fmt::format("cannot make '{}': {}", folder, failed.message()));
+}
+
 Exit execute(const StudyCommand& command) {
     Diagnostics out;
     const LoadOptions options = command.common.load_options(out);
@@ -175,7 +200,8 @@ Exit execute(const StudyCommand& command) {
     if (file)
         study =
             read_study(file, options, catalog, out, part ? StudyCheck::groups : StudyCheck::values);
-    check_outputs({command.output}, {command.plan, study.program}, out);
+    check_outputs({command.output, command.report}, {command.plan, study.program}, out);
+    if (out.empty()) prepare_traces(command, study, out);
     if (!out.empty()) return report(out, command.common.json);
     StudyRun run(command, study, chunk);
     return command.merge.empty() ? run.simulate(catalog) : run.merge();
@@ -203,6 +229,18 @@ void add_study(CLI::App& app, Exit& result) {
         ->type_name("DIR")
         ->excludes(chunk)
         ->excludes(resume);
+    auto* traces = sub->add_option("--traces", command->traces.folder,
+                                   "Write each case's trace into this folder, named by the case")
+                       ->type_name("DIR")
+                       ->excludes("--merge");
+    const std::map<std::string, bool> which{{"all", false}, {"failed", true}};
+    sub->add_option("--traces-of", command->traces.of_failed, "all cases, or failed ones only")
+        ->transform(CLI::CheckedTransformer(which).description("all|failed"))
+        ->needs(traces);
+    sub->add_option("--report", command->report,
+                    "Write a page, too: tables, and the traces of --traces laid over each other")
+        ->type_name("FILE.html");
+    sub->add_flag("--wide", command->wide, "Print a row a case, a column a signal");
     command->common.add_to(*sub);
     sub->footer(
         "--chunk I/N -o parts/part_I.csv for every I, anywhere and in any order, then\n"

@@ -2,48 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 
 #include <fmt/format.h>
 
 #include "runtime/study/text_table.hpp"
+#include "tools/lineshaft/study_matrix.hpp"
 
 namespace lineshaft {
 
 namespace {
-
-/// Names of settings that differ between cases, in order of appearance.
-std::vector<std::string> varying(const Study& study) {
-    std::vector<std::string> order;
-    std::map<std::string, std::set<std::string>> values;
-    std::map<std::string, std::size_t> uses;
-    const auto see = [&](const std::string& name, const std::string& value) {
-        if (std::ranges::find(order, name) == order.end()) order.push_back(name);
-        values[name].insert(value);
-    };
-    for (const CaseGroup& group : study.groups) {
-        std::set<std::string> own;
-        for (const GridAxis& axis : group.grid) own.insert(axis.name);
-        for (const RandomParameter& p : group.random) own.insert(p.name);
-        for (const Setting& s : group.settings)
-            if (own.insert(s.name).second) see(s.name, s.value);
-        for (const GridAxis& axis : group.grid)
-            for (const Setting& s : axis.values) see(s.name, s.value);
-        for (const RandomParameter& p : group.random)
-            for (const std::int64_t index : {0, 1}) see(p.name, draw(p, group.seed, index));
-        for (const std::string& name : own) ++uses[name];
-    }
-    std::erase_if(order, [&](const std::string& name) {
-        return values[name].size() == 1 && uses[name] == study.groups.size();
-    });
-    return order;
-}
-
-std::string setting(const StudyCase& c, const std::string& name) {
-    const auto it = std::ranges::find(c.settings, name, &Setting::name);
-    return it == c.settings.end() ? "" : it->value;
-}
 
 std::string difference(double ours, const Bounds& bounds, bool percent) {
     if (!bounds.paper) return "";
@@ -52,16 +19,6 @@ std::string difference(double ours, const Bounds& bounds, bool percent) {
     if (*bounds.paper == 0) return fmt::format("{:+.4g}", d);
     const double share = d / std::abs(*bounds.paper) * 100;
     return fmt::format("{:+.2g} ({:+.{}f} %)", d, share, decimals(share));
-}
-
-std::string limit_text(const Bounds& bounds, bool percent) {
-    std::string text;
-    if (bounds.at_least) text = ">= " + short_number(*bounds.at_least, percent);
-    if (bounds.at_most) {
-        if (!text.empty()) text += ", ";
-        text += "<= " + short_number(*bounds.at_most, percent);
-    }
-    return text;
 }
 
 std::string verdict(const Bounds& bounds, bool ok) {
@@ -77,23 +34,38 @@ bool has_limit(const Bounds& bounds) {
     return bounds.at_least || bounds.at_most;
 }
 
+bool has_range(const StudyRow& row) {
+    return row.of->repeat > 1 && row.comparison->statistic == Statistic::mean;
+}
+
+std::string range_text(const StudyRow& row) {
+    if (!has_range(row)) return "";
+    return fmt::format("{} .. {}", short_number(row.least), short_number(row.greatest));
+}
+
 std::string row_table(const Study& study, const StudyReport& report) {
-    const auto names = varying(study);
-    const bool any_limit = std::ranges::any_of(
-        report.rows, [](const StudyRow& r) { return has_limit(r.comparison->bounds); });
+    const auto names = varying_settings(study);
+    const auto titled = [&](const char* title, auto is_there) {
+        return std::ranges::any_of(report.rows, is_there) ? title : "";
+    };
+    const auto has_paper = [](const StudyRow& r) { return r.comparison->bounds.paper.has_value(); };
     Cells head = names;
-    for (const char* title : {"signal", "paper", "ours", "difference"}) head.emplace_back(title);
-    head.emplace_back(any_limit ? "limit" : "");
+    head.insert(head.end(),
+                {"signal", titled("paper", has_paper), "ours", titled("difference", has_paper),
+                 titled("least .. greatest", has_range), titled("limit", [](const StudyRow& r) {
+                     return has_limit(r.comparison->bounds);
+                 })});
     std::vector<Cells> rows{head};
     for (const StudyRow& row : report.rows) {
         const Bounds& bounds = row.comparison->bounds;
         Cells cells;
-        for (const std::string& name : names) cells.push_back(setting(*row.of, name));
+        for (const std::string& name : names) cells.push_back(setting_of(*row.of, name));
         cells.push_back(row.comparison->name());
         cells.push_back(paper(bounds, false));
         cells.push_back(short_number(row.ours) +
                         (row.comparison->unit.empty() ? "" : " " + row.comparison->unit));
         cells.push_back(difference(row.ours, bounds, false));
+        cells.push_back(range_text(row));
         cells.push_back(limit_text(bounds, false));
         cells.push_back(verdict(bounds, row.ok));
         rows.push_back(std::move(cells));
@@ -128,8 +100,14 @@ nlohmann::ordered_json paper_json(const Bounds& bounds, double scale) {
 
 }  // namespace
 
-std::string study_table(const Study& study, const StudyReport& report) {
-    std::string text = study.title + "\n\n" + row_table(study, report);
+std::string study_table(const Study& study, const StudyReport& report, TableStyle style) {
+    std::string rows;
+    if (style == TableStyle::wide)
+        rows = wide_table(study, report);
+    else
+        rows = matrix_tables(study, report);
+    if (rows.empty()) rows = row_table(study, report);
+    std::string text = study.title + "\n\n" + rows;
     if (!report.claims.empty()) text += "\n" + claim_table(report);
     for (const std::string& note : study.notes) text += "\n" + note + "\n";
     if (report.left_out > 0)
@@ -164,7 +142,9 @@ nlohmann::ordered_json study_json(const Study& study, const StudyReport& report)
     for (const StudyRow& row : report.rows) {
         nlohmann::ordered_json set = nlohmann::ordered_json::object();
         for (const Setting& s : row.of->settings) set[s.name] = s.value;
-        nlohmann::ordered_json object{{"set", set},
+        nlohmann::ordered_json object{{"case", row.of->number},
+                                      {"name", row.of->name},
+                                      {"set", set},
                                       {"signal", row.comparison->name()},
                                       {"unit", row.comparison->unit},
                                       {"paper", paper_json(row.comparison->bounds, 1)},
@@ -175,12 +155,15 @@ nlohmann::ordered_json study_json(const Study& study, const StudyReport& report)
             object["least"] = finite(row.least);
             object["greatest"] = finite(row.greatest);
         }
+        if (!row.traces.empty()) object["traces"] = row.traces;
         rows.push_back(std::move(object));
     }
     auto claims = nlohmann::ordered_json::array();
     for (const ClaimRow& row : report.claims) {
         const double scale = row.claim->percent ? 100 : 1;
-        claims.push_back({{"set", nlohmann::ordered_json::object()},
+        claims.push_back({{"case", nullptr},
+                          {"name", ""},
+                          {"set", nlohmann::ordered_json::object()},
                           {"signal", row.claim->text},
                           {"unit", row.claim->percent ? "%" : ""},
                           {"paper", paper_json(row.claim->bounds, scale)},
@@ -188,7 +171,8 @@ nlohmann::ordered_json study_json(const Study& study, const StudyReport& report)
                           {"ok", row.ok},
                           {"formula", row.claim->formula}});
     }
-    nlohmann::ordered_json object{{"title", study.title}, {"rows", rows}, {"claims", claims}};
+    nlohmann::ordered_json object{
+        {"title", study.title}, {"notes", study.notes}, {"rows", rows}, {"claims", claims}};
     if (!report.faults.empty()) object["faults"] = report.faults;
     if (!report.deviations.empty()) object["deviations"] = report.deviations;
     object["ok"] = report.ok();

@@ -33,8 +33,8 @@ function report(name, ...command) {
   return pathToFileURL(file(name)).href;
 }
 
-async function open(browser, address, { colorScheme = "light", before = () => {} } = {}) {
-  const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, colorScheme });
+async function open(browser, address, { colorScheme = "light", width = 1400, before = () => {} } = {}) {
+  const page = await browser.newPage({ viewport: { width, height: 900 }, colorScheme });
   await page.addInitScript(before);
   page.problems = [];
   page.on("pageerror", (error) => page.problems.push(String(error)));
@@ -135,7 +135,9 @@ async function testTheme(page) {
 }
 
 async function figure(page, title) {
-  const cells = await page.locator(".figures tr", { hasText: title }).locator("td").allTextContents();
+  const heads = await page.locator(".figures th").allTextContents();
+  const column = heads.findIndex((head) => head.includes(title)) + 1;
+  const cells = await page.locator(`.figures td:nth-child(${column})`).allTextContents();
   return cells.map((text) => Number(text.replace("−", "-")));
 }
 
@@ -218,6 +220,265 @@ async function testCircle(browser) {
   assert.deepEqual(dark.problems, []);
 }
 
+/** Keeps what each canvas shows of texts, and where: `window.drawn`, a list of boxes in pixels of the page a canvas. */
+function rememberTexts() {
+  window.drawn = new Map();
+  const { fillText, clearRect } = CanvasRenderingContext2D.prototype;
+  CanvasRenderingContext2D.prototype.clearRect = function (...box) {
+    window.drawn.set(this.canvas, []);
+    clearRect.call(this, ...box);
+  };
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y, ...more) {
+    const { actualBoundingBoxLeft: left, actualBoundingBoxRight: right, actualBoundingBoxAscent: up,
+            actualBoundingBoxDescent: down } = this.measureText(text);
+    const at = this.getTransform();
+    const corners = [[x - left, y - up], [x + right, y - up], [x - left, y + down], [x + right, y + down]]
+      .map(([a, b]) => at.transformPoint(new DOMPoint(a, b)));
+    const [xs, ys] = ["x", "y"].map((axis) => corners.map((corner) => corner[axis] / devicePixelRatio));
+    if (!window.drawn.has(this.canvas)) window.drawn.set(this.canvas, []);
+    window.drawn.get(this.canvas).push({ text, left: Math.min(...xs), right: Math.max(...xs), top: Math.min(...ys), bottom: Math.max(...ys) });
+    fillText.call(this, text, x, y, ...more);
+  };
+}
+
+/** Texts of canvases that reach beyond their canvas, or lie over each other; of the page that reach beyond their box. */
+const badTexts = (page) => page.evaluate(() => {
+  const found = [];
+  for (const [canvas, texts] of window.drawn) {
+    if (!canvas.isConnected) continue;
+    const { clientWidth: width, clientHeight: height } = canvas;
+    texts.forEach((a, k) => {
+      if (a.left < -0.5 || a.top < -0.5 || a.right > width + 0.5 || a.bottom > height + 0.5) found.push(`cut: ${a.text}`);
+      for (const b of texts.slice(0, k))
+        if (a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom) found.push(`${a.text} over ${b.text}`);
+    });
+  }
+  for (const box of document.querySelectorAll("main *, header *, #runs *"))
+    if (box.scrollWidth > box.clientWidth + 1 && box.clientWidth > 0 && !box.closest(".scroll, select, textarea, input, svg, .u-wrap, .uplot"))
+      found.push(`wider than its box: ${box.className || box.tagName} ${box.textContent.slice(0, 40)}`);
+  const width = document.documentElement.scrollWidth;
+  if (width > innerWidth) found.push(`the page is ${width} wide`);
+  return found;
+});
+
+const stateNames = ["disabled", "standstill", "homing", "stopping", "discrete_motion", "continuous_motion",
+                    "synchronized_motion", "error_stop", "no_such_parameter", "limit_not_positive"];
+
+/** Names stand whole, side by side, on a wide page and on a narrow one. */
+async function testNames(page) {
+  assert.deepEqual(await badTexts(page), []);
+  const texts = await page.evaluate(() => [...window.drawn.values()].flat().map(({ text }) => text));
+  for (const name of stateNames) assert.ok(texts.includes(name), `${name} is not drawn whole`);
+  assert.ok(texts.includes("1 s") && !texts.some((text) => /0000000/.test(text)), "a duration in seconds, not in nanoseconds");
+  const legend = await page.locator(".legend .name").allTextContents();
+  assert.ok(legend.includes("carriage_of_the_upper_transfer_unit.position"));
+}
+
+/** What the program says under `report:` is how the page begins. */
+async function testProgramsArrangement(page) {
+  const plots = await page.locator("section.plot:has(.legend)").evaluateAll((sections) =>
+    sections.map((section) => [...section.querySelectorAll(".name")].map(({ textContent }) => textContent)));
+  assert.deepEqual(plots.slice(0, 2), [["twin.position", "carriage_of_the_upper_transfer_unit.position", "lag"],
+                                       ["twin.velocity", "rate", "go.Done"]]);
+  assert.equal(plots.flat().length, 11, "nine signals and two curves");
+  assert.equal(await page.getAttribute(".legend .curve:has-text('go.Busy')", "aria-pressed"), "false");
+  assert.equal(await page.locator(".note").first().textContent(), "The carriage goes to 100 mm.");
+  assert.match(await page.textContent("h2"), /twin\.velocity over twin\.position/);
+  const number = (text) => Number(text.replace("−", "-"));
+  await page.waitForFunction(() => document.querySelector(".legend td:nth-child(3)").textContent !== "");
+  const [twin, carriage, lag, velocity, rate] = await page.locator(".legend tr td:nth-child(4)").allTextContents();
+  assert.equal(number(lag), number(carriage) - number(twin), "a - b");
+  assert.ok(Math.abs(number(rate) - number(velocity)) < 1, `derivative ${rate}, velocity ${velocity}`);
+}
+
+const namesOf = (page, plot) => page.locator(`section.plot:has(.legend) >> nth=${plot} >> .name`).allTextContents();
+const settle = async (page) => { await page.evaluate(frame); await page.evaluate(frame); };
+
+/** Presses Tab until what is in focus matches. */
+async function tabTo(page, selector) {
+  for (let k = 0; k < 200; ++k) {
+    await page.keyboard.press("Tab");
+    if (await page.evaluate((wanted) => document.activeElement.matches(wanted), selector)) return;
+  }
+  assert.fail(`no Tab leads to ${selector}`);
+}
+
+/** Hiding, moving, an axis of its own, a formula, and a path, without a mouse; the address has it all. */
+async function testKeyboard(page) {
+  await page.evaluate(() => document.activeElement.blur());
+  const coloured = () => colouredPixels(page, "section.plot:has(.legend) >> nth=0 >> canvas");
+  const before = await coloured();
+  await tabTo(page, ".legend .curve");
+  await page.keyboard.press("Enter");
+  await settle(page);
+  assert.ok(await coloured() < before, "a hidden curve is not drawn");
+  await page.keyboard.press("Enter");
+  await settle(page);
+  assert.equal(await coloured(), before);
+  await tabTo(page, "select[data-signal='lag']");
+  await page.keyboard.press("ArrowDown");
+  await settle(page);
+  assert.deepEqual(await namesOf(page, 1), ["twin.velocity", "rate", "go.Done", "lag"], "moved by a key");
+  assert.equal(await page.evaluate(() => document.activeElement.dataset.signal), "lag", "and still in focus");
+  await tabTo(page, "input[name='curve']");
+  await page.keyboard.type("half");
+  await page.keyboard.press("Tab");
+  await page.keyboard.type("twin.position / 2 +");
+  await page.keyboard.press("Enter");
+  assert.match(await page.textContent(".bench [role=alert]"), /is expected here/);
+  await page.keyboard.press("Backspace");
+  await page.keyboard.type("+ lagg");
+  await page.keyboard.press("Enter");
+  assert.match(await page.textContent(".bench [role=alert]"), /there is no signal 'lagg'|not expected|is expected/);
+  await page.keyboard.press("Control+A");
+  await page.keyboard.type("max(twin.position, 0) / 2");
+  await page.keyboard.press("Enter");
+  await settle(page);
+  assert.ok((await page.locator(".legend .name").allTextContents()).includes("half"));
+  const shown = await page.locator(".legend .name").allTextContents();
+  const { href } = await page.evaluate(() => ({ href: location.href }));
+  assert.ok(href.includes("#report="), "the address has it");
+  await page.goto("about:blank");
+  await page.goto(href);
+  await page.waitForFunction(() => performance.getEntriesByName("lineshaft:drawn").length > 0);
+  assert.deepEqual(await page.locator(".legend .name").allTextContents(), shown, "the same again from the address");
+  await page.click(".kept summary");
+  assert.match(await page.inputValue(".kept textarea"), /^report:\n  plots: \[/);
+}
+
+/** Drags a signal's name by the mouse; both ends have to be in view, so the page is shown in a high window. */
+async function drag(page, signal, target) {
+  const from = await page.locator(".legend .curve", { hasText: signal }).boundingBox();
+  const to = await page.locator(target).first().boundingBox();
+  await page.mouse.move(from.x + 60, from.y + 8);
+  await page.mouse.down();
+  await page.mouse.move(from.x + 80, from.y + 12, { steps: 5 });
+  await page.mouse.move(to.x + 200, to.y + to.height / 2, { steps: 10 });
+  await page.mouse.up();
+  await settle(page);
+}
+
+async function testDrag(page) {
+  await page.setViewportSize({ width: 1400, height: 4000 });
+  await page.evaluate(() => scrollTo(0, 0));
+  await settle(page);
+  await drag(page, "twin.acceleration", "section.plot:has(.legend)");
+  assert.ok((await namesOf(page, 0)).includes("twin.acceleration"), "dragged to another plot");
+  await drag(page, "twin.acceleration", ".new-plot");
+  assert.ok(!(await namesOf(page, 0)).includes("twin.acceleration"), "and to one of its own");
+  await page.click("text=As it was");
+  await settle(page);
+  await testProgramsArrangement(page);
+}
+
+/** Text has 4.5:1 to what it stands on, curves 3:1 (WCAG 2.2). */
+const contrasts = (page) => page.evaluate(() => {
+  const canvas = document.createElement("canvas").getContext("2d");
+  const luminance = (colour) => {
+    canvas.fillStyle = colour;
+    canvas.fillRect(0, 0, 1, 1);
+    const [r, g, b] = [...canvas.getImageData(0, 0, 1, 1).data].map((c) => (c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const of = (name) => luminance(getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  const ratio = (a, b) => (Math.max(of(a), of(b)) + 0.05) / (Math.min(of(a), of(b)) + 0.05);
+  const low = (names, ground, least) => names.filter((name) => ratio(name, ground) < least).map((name) => `${name} on ${ground}: ${ratio(name, ground).toFixed(2)}`);
+  return [...low(["text", "muted", "good", "bad", "accent"], "page", 4.5), ...low(["text", "muted"], "panel", 4.5),
+          ...low(Array.from({ length: 8 }, (_, k) => `line-${k}`), "page", 3)];
+});
+
+async function testPaper(page) {
+  const pdf = await page.pdf({ format: "A4" });
+  assert.ok(pdf.length > 20000, `${pdf.length} bytes of PDF`);
+  writeFileSync(file("arranged.pdf"), pdf);
+  await page.emulateMedia({ media: "print" });
+  for (const selector of [".toolbar", ".workbench", "footer", ".mover"])
+    assert.equal(await page.locator(selector).first().isVisible(), false, `${selector} is printed`);
+  await page.emulateMedia({ media: null });
+}
+
+async function testArranged(browser) {
+  run("run", "tests/report/arranged.yaml", "--quiet", "--trace", file("arranged.csv"));
+  const address = report("arranged.html", file("arranged.csv"));
+  for (const width of [1400, 400])
+    for (const colorScheme of ["light", "dark"]) {
+      const page = await open(browser, address, { width, colorScheme, before: rememberTexts });
+      await testNames(page);
+      assert.deepEqual(await contrasts(page), []);
+      if (colorScheme === "light") {
+        await testProgramsArrangement(page);
+        await page.screenshot({ path: file(`arranged_${width}.png`), fullPage: true });
+        await testKeyboard(page);
+        assert.deepEqual(await badTexts(page), []);
+        if (width === 1400) await testDrag(page);
+        if (width === 1400) await testPaper(page);
+      }
+      assert.deepEqual(page.problems, []);
+      await page.close();
+    }
+}
+
+/** Runs of different signals share a page, one colour a run. */
+async function testDifferentRuns(browser) {
+  writeFileSync(file("left.csv"), "time [s],a.x [mm],a.y [mm]\n0,1,1\n1,2,1\n2,3,1\n");
+  writeFileSync(file("right.csv"), "time [s],a.x [mm],b.z [mm/s]\n0,1.5,1\n0.1,2.5,1\n0.2,3.5,2\n");
+  const page = await open(browser, report("different.html", file("left.csv"), file("right.csv")));
+  const strokes = await page.locator(".legend tr").evaluateAll((rows) => rows.slice(1).filter((row) => row.cells[0].tagName === "TD").map((row) =>
+    [row.cells[0].textContent, row.querySelector("line").getAttribute("stroke"), row.querySelector("line").getAttribute("stroke-dasharray")]));
+  const left = strokes.filter(([name]) => name.includes("left") || name === "a.y");
+  const of = (name) => strokes.filter(([text]) => text.startsWith(name)).map(([, stroke]) => stroke);
+  assert.deepEqual([of("a.x left.csv"), of("a.x right.csv"), of("a.y"), of("b.z")],
+                   [["var(--line-0)"], ["var(--line-1)"], ["var(--line-0)"], ["var(--line-1)"]], JSON.stringify(strokes));
+  assert.notEqual(strokes[0][2], strokes[1][2], `dashes tell ${left[0][0]} apart, too`);
+  const drawn = await colouredPixels(page, "section.plot:has(.legend) >> nth=0 >> canvas");
+  await page.click("#runs button:has-text('right')");
+  await settle(page);
+  assert.ok(await colouredPixels(page, "section.plot:has(.legend) >> nth=0 >> canvas") < drawn, "a run that is hidden is not drawn");
+  assert.deepEqual(page.problems, []);
+}
+
+/** Five circles from one study: a matrix, and five paths with the deviation magnified. */
+async function testCircles(browser) {
+  run("study", "programs/paper/wei2025_circles.yaml", "--quiet", "--traces", file("circles"), "--report", file("circles.html"));
+  for (const width of [1400, 400]) {
+    const page = await open(browser, pathToFileURL(file("circles.html")).href, { width, before: rememberTexts });
+    await page.waitForSelector(".figures td");
+    assert.deepEqual(await badTexts(page), []);
+    assert.equal(await page.locator(".matrix tbody tr").count(), 5);
+    assert.equal(await page.locator(".matrix tbody td").count(), 20);
+    assert.match(await page.textContent(".matrix caption"), /logarithm/);
+    const runs = await page.locator("#runs b").allTextContents();
+    assert.deepEqual(runs, ["immediate", "early", "centred", "balanced", "ramp"]);
+    assert.equal(await page.inputValue(".controls input"), "100", "the deviation is magnified");
+    assert.equal(await page.locator(".figures tbody tr").count(), 5);
+    const means = await figure(page, "mean");
+    const wanted = await page.locator(".matrix tbody td:nth-child(4)").allTextContents();
+    means.forEach((mean, k) => assert.ok(Math.abs(mean / Number(wanted[k]) - 1) < 0.05, `${runs[k]}: ${mean}, study ${wanted[k]}`));
+    await page.screenshot({ path: file(`circles_${width}.png`), fullPage: true });
+    if (width === 1400) await page.screenshot({ path: file("circles.png") });
+    assert.deepEqual(page.problems, []);
+    await page.close();
+  }
+}
+
+/** A sweep of two settings is a heat map; its colours go by decades where its values do. */
+async function testSweep(browser) {
+  const row = (k, ours) => ({ case: k, name: "", set: { speed: `${k % 3} mm/s`, gain: `${Math.floor(k / 3)}` }, signal: "x.lag",
+                              unit: "mm", paper: null, ours, ok: k !== 4, repeats: 2, least: ours / 2, greatest: 2 * ours });
+  const rows = Array.from({ length: 6 }, (_, k) => row(k, 10 ** -k));
+  writeFileSync(file("sweep.json"), JSON.stringify({ title: "A sweep", rows, claims: [], ok: false }));
+  const page = await open(browser, report("sweep.html", file("sweep.json")));
+  const heats = await page.locator(".matrix td").evaluateAll((cells) => cells.map((cell) => parseFloat(cell.style.getPropertyValue("--heat"))));
+  assert.deepEqual(heats, [45, 36, 27, 18, 9, 0], "even steps of colour for decades");
+  assert.match(await page.locator(".matrix td").first().textContent(), /^10.5 \.\. 2$/, "repeats have their range");
+  const heads = await page.locator(".study th").allTextContents();
+  assert.ok(!heads.includes("paper") && heads.includes("least .. greatest"), heads.join());
+  await page.click("details summary");
+  const widths = await page.locator(".bar.ours").evaluateAll((bars) => bars.slice(1).map((bar) => parseFloat(bar.style.width)));
+  widths.slice(1).forEach((width, k) => assert.ok(Math.abs(widths[k] - width - (widths[0] - widths[1])) < 0.1, `bars by decades: ${widths}`));
+  assert.deepEqual(page.problems, []);
+}
+
 const spike = { rows: 1000001, at: 654321 };
 const oddNumber = (row) => (row * 7919) % 100003;
 
@@ -295,9 +556,9 @@ async function testSmallNumbers(browser) {
   } });
   const drawn = await page.evaluate(() => [...globalThis.texts.values()]);
   assert.equal(drawn.length, 2);
-  assert.ok(drawn[0].includes("4e−5") && drawn[0].includes("0.0001"), drawn[0].join(" "));
+  assert.ok(drawn[0].includes("2.5e−5") && drawn[0].includes("0.0001"), drawn[0].join(" "));
   assert.ok(drawn[1].includes("20.00004"), drawn[1].join(" "));
-  for (const texts of drawn) assert.ok(texts.includes("2e−5"), `the time: ${texts.join(" ")}`);
+  for (const texts of drawn) assert.ok(texts.includes("20 µs"), `the time: ${texts.join(" ")}`);
   assert.deepEqual(page.problems, []);
 }
 
@@ -365,7 +626,8 @@ async function testLarge(browser) {
 
 mkdirSync(folder, { recursive: true });
 await withBrowser(async (newPage) => {
-  for (const test of [testSamples, testSpike, testSmallNumbers, testCircle, testExpectations, testStudy, testLarge]) {
+  for (const test of [testSamples, testSpike, testSmallNumbers, testCircle, testExpectations, testStudy, testArranged,
+                      testDifferentRuns, testCircles, testSweep, testLarge]) {
     await test({ newPage });
     console.log(`ok ${test.name}`);
   }

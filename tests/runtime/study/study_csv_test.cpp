@@ -41,6 +41,21 @@ TEST_CASE("a study's CSV has settings as numbers in one unit, and texts with com
     CHECK(csv.schema()[1]["datatype"] == "string");
 }
 
+TEST_CASE("a row has the values in force, of what no case sets as well") {
+    Study study = example();
+    study.parameters = {{"speed", "5 mm/s"}, {"step", "1 mm"}, {"lag", "2 mm"}};
+    const StudyCsv csv(study);
+    CHECK_THAT(csv.header(), Catch::StartsWith("case,method,$outcome,speed,step,lag,fit.offset,"));
+    CaseResult made = result(study, 1);
+    made.parameters = {{"speed", "2 cm/s"}, {"step", "1 mm"}, {"lag", "0.4 cm"}};
+    const std::string row = csv.row(made);
+    CHECK_THAT(row, Catch::StartsWith("2,\"early, late\",5,20,1,4,"));
+    const auto back = csv.parse(row.substr(0, row.size() - 1));
+    REQUIRE(back);
+    CHECK(csv.row(*back) == row);
+    CHECK_THAT(csv.row(result(study, 1)), Catch::StartsWith("2,\"early, late\",5,20,1,2,"));
+}
+
 TEST_CASE("repeats have their mean, least and greatest value") {
     Study study = example();
     study.groups[0].repeat = 2;

@@ -79,6 +79,99 @@ TEST_CASE("limits have a column when there are any") {
     CHECK_THAT(table, Catch::Contains(">= 0.5  FAILED"));
 }
 
+TEST_CASE("repeats have a column with the least and the greatest value") {
+    Example e;
+    e.cases[0]->repeat = 4;
+    CHECK(
+        study_table(e.study, e.report)
+            .starts_with(
+                "An example\n"
+                "\n"
+                "speed    signal      paper  ours    difference     least .. greatest\n"
+                "5 mm/s   fit.offset  2      2.1 mm  +0.1 (+5.0 %)  1.1 .. 3.1         ok\n"
+                "10 mm/s  fit.offset  4      6 mm    +2 (+50.0 %)                      FAILED\n"));
+}
+
+namespace {
+
+/// Two methods by three radii, two signals without a paper's value.
+struct Grid {
+    Study study;
+    StudyReport report;
+
+    Grid() {
+        study.title = "A grid";
+        CaseGroup group{
+            .mark = {}, .name = {}, .settings = {}, .grid = {}, .random = {}, .comparisons = {}};
+        group.settings = {{"speed", "5 mm/s"}};
+        group.grid = {{"method", {}, {{"method", "early"}, {"method", "late"}}},
+                      {"radius", {}, {{"radius", "1 m"}, {"radius", "2 m"}, {"radius", "3 m"}}}};
+        group.comparisons = {{.signal = "a", .unit = "mm", .bounds = {}},
+                             {.signal = "b", .unit = "", .bounds = {}}};
+        group.comparisons[0].bounds.at_most = 4;
+        group.count = 6;
+        study.groups = {group};
+    }
+
+    void run() {
+        for (std::int64_t index = 0; index < 6; ++index) {
+            const auto of = std::make_shared<StudyCase>(study.make_case(index));
+            const auto value = static_cast<double>(index);
+            report.rows.push_back(
+                {of, &of->comparisons[0], value, value - 1, value + 1, index < 5});
+            report.rows.push_back({of, &of->comparisons[1], 10 * value, 0, 0, true});
+        }
+    }
+};
+
+}  // namespace
+
+TEST_CASE("cases that are every combination of two settings make a matrix a signal") {
+    Grid grid;
+    grid.run();
+    CHECK(study_table(grid.study, grid.report) ==
+          "A grid\n"
+          "\n"
+          "a [mm], limit <= 4\n"
+          "\n"
+          "method \\ radius  1 m  2 m  3 m\n"
+          "early            0    1    2\n"
+          "late             3    4    5 FAILED\n"
+          "\n"
+          "b\n"
+          "\n"
+          "method \\ radius  1 m  2 m  3 m\n"
+          "early            0    10   20\n"
+          "late             30   40   50\n");
+}
+
+TEST_CASE("what is no grid, or has limits of its own, or the paper's values, makes no matrix") {
+    Grid missing, limits, paper;
+    limits.study.groups[0].comparisons[0].bounds.at_most = 3;
+    paper.study.groups[0].comparisons[0].bounds.paper = 3;
+    for (Grid* grid : {&missing, &limits, &paper}) grid->run();
+    missing.report.rows.resize(10);
+    const auto last = std::make_shared<StudyCase>(*limits.report.rows.back().of);
+    last->comparisons[0].bounds.at_most = 2;
+    limits.report.rows[10].of = limits.report.rows[11].of = last;
+    limits.report.rows[10].comparison = &last->comparisons[0];
+    for (const Grid* grid : {&missing, &limits, &paper})
+        CHECK_THAT(study_table(grid->study, grid->report),
+                   Catch::Contains("method  radius  signal"));
+}
+
+TEST_CASE("a wide table has a row a case and a column a signal") {
+    Grid grid;
+    grid.study.groups[0].repeat = 2;
+    grid.run();
+    CHECK(study_table(grid.study, grid.report, TableStyle::wide)
+              .starts_with("A grid\n"
+                           "\n"
+                           "method  radius  a [mm]             b\n"
+                           "early   1 m     0 (-1 .. 1)        0 (0 .. 0)\n"
+                           "early   2 m     1 (0 .. 2)         10 (0 .. 0)\n"));
+}
+
 TEST_CASE("faults and failed expectations stand below the table") {
     Example e;
     e.report.faults = {"a: disk full"};
@@ -115,6 +208,8 @@ TEST_CASE("the JSON object has rows and claims with the same keys") {
     REQUIRE(json["claims"].size() == 2);
     const auto& claim = json["claims"][0];
     for (const auto& [key, value] : row.items()) CHECK(claim.contains(key));
+    CHECK(row["case"] == 1);
+    CHECK_FALSE(row.contains("traces"));
     CHECK(claim["unit"] == "%");
     CHECK(claim["ours"] == 65.0);
     CHECK(claim["paper"] == 50.0);

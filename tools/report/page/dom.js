@@ -43,5 +43,11 @@ export function colour(name) {
 
 export const palette = (index) => colour(`line-${index % 8}`);
 
-/** The dashes that tell the runs of one page apart. */
-export const dashes = (run) => [[], [7, 4], [2, 3], [9, 3, 2, 3]][run % 4];
+/** The dashes that tell curves apart, for those who do not tell colours apart. */
+export const dashes = (index) => [[], [7, 4], [2, 3], [9, 3, 2, 3], [14, 4], [1, 2], [9, 3, 2, 3, 2, 3], [4, 4]][index % 8];
+
+/** A short line in the colour and the dashes of curves; it changes with the theme. */
+export const stroke = (colourIndex, dash) =>
+  element("span", { className: "swatch",
+                    innerHTML: `<svg width="26" height="10" aria-hidden="true"><line x1="0" y1="5" x2="26" y2="5"
+                      stroke="var(--line-${colourIndex % 8})" stroke-width="2" stroke-dasharray="${dashes(dash).join(" ")}"/></svg>` });

@@ -9,14 +9,14 @@ function show(view, run, { time }) {
   view.setCursor(0, near(0));
 }
 
-/** The list of a run's events; a click shows the place in the plots. */
-export function eventList(run, view) {
+/** The list of a run's events; a click shows the place in the plots. `title` is said before their number. */
+export function eventList(run, view, title = "") {
   const lines = run.events.map((event) => {
     const where = event.task ? ` in scan ${event.scan} of ${event.task}` : "";
     const text = `${duration(event.time)} ${event.kind}${where}: ${event.text}`;
     return element("li", {}, element("button", { className: "link", onclick: () => show(view, run, event) }, text));
   });
-  const summary = lines.length === 1 ? "1 event" : `${lines.length} events`;
+  const summary = `${title}${lines.length === 1 ? "1 event" : `${lines.length} events`}`;
   return element("details", { className: "events" }, element("summary", {}, summary),
                  element("ul", {}, ...lines));
 }

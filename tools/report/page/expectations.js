@@ -71,7 +71,7 @@ export function drawExpectations(u, curves, lift) {
     for (const e of curve.run.expectations.filter((each) => each.signal === curve.signal.name)) {
       if (e.low === undefined && e.high === undefined) continue;
       const place = (value) =>
-        value === undefined ? undefined : u.valToPos(lift(curve, value), "y", true);
+        value === undefined ? undefined : u.valToPos(lift(curve, value), curve.scale, true);
       ctx.strokeStyle = colour(e.ok ? "good" : "bad");
       ctx.lineWidth = (e.ok ? 1.25 : 2.5) * pixel;
       if (e.always) drawAlways(ctx, u, e, curve, pixel, place);
@@ -92,8 +92,8 @@ function show(view, run, e) {
   view.setCursor(0, run.times.at(lastAtOrBefore(run.times, near(0))));
 }
 
-/** The list of a run's expectations; a click shows the place in the plots. */
-export function expectationList(run, view) {
+/** The list of a run's expectations; a click shows the place in the plots. `title` is said before their number. */
+export function expectationList(run, view, title = "") {
   const lines = run.expectations.map((e) => {
     const button = element("button", { className: "link", onclick: () => show(view, run, e) }, e.text);
     const line = element("li", { className: e.ok ? "good" : "bad" }, button);
@@ -101,8 +101,8 @@ export function expectationList(run, view) {
     return line;
   });
   const failed = run.expectations.filter((e) => !e.ok).length;
-  const summary = failed === 0 ? `all ${lines.length} expectations hold`
-                               : `${failed} of ${lines.length} expectations failed`;
+  const summary = title + (failed === 0 ? `all ${lines.length} expectations hold`
+                                        : `${failed} of ${lines.length} expectations failed`);
   return element("details", { className: "expectations", open: failed > 0 },
                  element("summary", { className: failed ? "bad" : "good" }, summary),
                  element("ul", {}, ...lines));

@@ -23,11 +23,26 @@ export function tick(value) {
 export function duration(seconds) {
   const size = Math.abs(seconds);
   if (size === 0 || size >= 1) return `${number(seconds, exact)} s`;
-  return size >= 1e-3 ? `${number(seconds * 1e3, exact)} ms` : `${number(seconds * 1e6, exact)} µs`;
+  if (size >= 1e-3) return `${number(seconds * 1e3, exact)} ms`;
+  return size >= 1e-6 ? `${number(seconds * 1e6, exact)} µs` : `${number(seconds * 1e9, exact)} ns`;
+}
+
+const secondsIn = { s: 1, ms: 1e-3, us: 1e-6, µs: 1e-6, ns: 1e-9 };
+
+/** Whether values of this unit are durations. */
+export const isTime = (unit) => unit in secondsIn;
+
+/** Durations beside an axis, all in the unit that suits the greatest: `0 ms`, `500 ms`. */
+export function timeTicks(values, unit) {
+  const greatest = Math.max(...values.map(Math.abs)) * secondsIn[unit];
+  const shown = ["s", "ms", "µs", "ns"].find((each) => greatest >= secondsIn[each] * (1 - 1e-9)) ?? "s";
+  const factor = secondsIn[unit] / secondsIn[shown];
+  return values.map((value) => `${tick(+(value * factor).toPrecision(12))} ${shown}`);
 }
 
 /** What one sample of a signal says. */
 export function sample(signal, value) {
+  if (isTime(signal.unit) && !Number.isNaN(value)) return duration(value * secondsIn[signal.unit]);
   if (signal.type === "boolean" && !Number.isNaN(value)) return value ? "true" : "false";
   return signal.names?.[value] ?? number(value);
 }

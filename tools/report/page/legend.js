@@ -1,23 +1,22 @@
-import { afterwards, dashes, element, nextFrame, palette, row } from "#page/dom";
+import { afterwards, element, nextFrame, row, stroke } from "#page/dom";
 import { number, sample } from "#page/format";
 import { lastAtOrBefore } from "#page/samples";
 
-/** A stroke as the curve has it. */
-function swatch(lane, run) {
-  const line = `<line x1="0" y1="5" x2="22" y2="5" stroke="${palette(lane)}" stroke-width="2"
-    stroke-dasharray="${dashes(run).join(" ")}"/>`;
-  return element("span", { className: "swatch",
-                           innerHTML: `<svg width="22" height="10">${line}</svg>` });
-}
+const heads = ["", "here", "A", "B", "B − A"];
 
-/** Names of a plot's curves, and their values under the mouse, at both cursors, and the difference. */
+/**
+ * Names of a plot's curves, and their values under the mouse, at both cursors, and the difference. A
+ * name hides its curve, and is dragged to another plot; a <button> could not be dragged in all browsers.
+ */
 export class Legend {
-  constructor(parent, curves, view) {
-    this.curves = curves;
-    this.view = view;
-    this.rows = curves.map((curve) => this.#row(curve));
-    const head = element("tr", {}, ...["", "here", "A", "B", "B − A"].map((title) =>
-      element("th", {}, title)));
+  constructor(parent, plot) {
+    this.plot = plot;
+    this.curves = plot.curves;
+    this.view = plot.view;
+    this.several = new Set(this.curves.map(({ run }) => run)).size > 1;
+    this.canMove = Boolean(plot.arranged) && !plot.arranged.isFixed;
+    this.rows = this.curves.map((curve) => this.#row(curve));
+    const head = element("tr", {}, ...[...heads, ...(this.canMove ? [""] : [])].map((title) => element("th", {}, title)));
     parent.append(element("table", { className: "legend" }, element("thead", {}, head),
                           element("tbody", {}, ...this.rows)));
     this.update = this.update.bind(this);
@@ -26,20 +25,57 @@ export class Legend {
   }
 
   update(change) {
-    if (change === "theme") this.#recolour();
     if (change === "cursors" || change === "hover") this.write();
   }
 
-  #row({ run, signal, lane }) {
+  #row(curve) {
+    const { signal, run } = curve;
     const made = row("", "", "", "", "");
-    made.cells[0].append(swatch(lane, run.index), signal.name);
-    made.cells[0].title = `${signal.name} of ${run.label}`;
+    const name = element("span", { className: "curve", role: "button", tabIndex: 0, draggable: this.canMove,
+                                   title: `Show or hide ${signal.name} of ${run.label}` },
+                         stroke(curve.stroke, curve.dash), this.#nameOf(curve));
+    const show = () => {
+      name.ariaPressed = String(!curve.hidden);
+      made.classList.toggle("hidden-curve", curve.hidden);
+    };
+    name.onclick = () => {
+      this.plot.toggle(curve);
+      show();
+    };
+    name.onkeydown = (event) => {
+      if (event.key !== "Enter" && event.key !== " ") return;
+      event.preventDefault();
+      name.click();
+    };
+    name.ondragstart = (event) => event.dataTransfer.setData("text/plain", signal.name);
+    show();
+    made.cells[0].append(name);
+    heads.forEach((head, k) => { if (head) made.cells[k].dataset.head = head; });
+    if (this.canMove) made.append(element("td", {}, this.#mover(signal)));
     return made;
   }
 
-  #recolour() {
-    this.curves.forEach(({ run, lane }, index) =>
-      this.rows[index].querySelector(".swatch").replaceWith(swatch(lane, run.index)));
+  #nameOf({ signal, run }) {
+    const more = [signal.formula && `= ${signal.formula}`, this.several && run.label].filter(Boolean);
+    return element("span", { className: "text" }, element("span", { className: "name" }, signal.name),
+                   ...more.map((text) => element("span", { className: "of" }, ` ${text}`)));
+  }
+
+  /** Where the signal may go, for who does not drag. */
+  #mover({ name, formula }) {
+    const { arranged, index } = this.plot;
+    const own = arranged.hasOwnAxis(name);
+    const plots = arranged.plots.map((_, k) => [`to plot ${k + 1}`, () => arranged.move(name, k)]);
+    const choices = [["⋮", () => {}], ...plots.filter((_, k) => k !== index),
+                     ["to a new plot", () => arranged.move(name, plots.length)],
+                     [own ? "to the shared axis" : "to an axis of its own", () => arranged.setOwnAxis(name, !own)],
+                     ...(formula ? [["remove", () => arranged.removeCurve(name)]] : [])];
+    const select = element("select", { className: "mover", title: `Move ${name}` },
+                           ...choices.map(([text]) => element("option", {}, text)));
+    select.ariaLabel = `Move ${name}`;
+    select.dataset.signal = name;
+    select.onchange = () => choices[select.selectedIndex][1]();
+    return select;
   }
 
   #write() {
@@ -51,7 +87,7 @@ export class Legend {
       const [here, a, b] = [this.view.hover, ...this.view.cursors].map(valueAt);
       const differs = signal.type === "real" || signal.type === "integer";
       const texts = [...[here, a, b].map((value) => sample(signal, value)),
-                     differs ? number(b - a) : ""];
+                     differs ? sample({ unit: signal.unit }, b - a) : ""];
       texts.forEach((text, k) => { this.rows[index].cells[k + 1].textContent = text; });
     });
   }

@@ -1,13 +1,15 @@
+import { Arrangement } from "#page/arrangement";
 import { readout } from "#page/cursors";
 import { unpack } from "#page/decode";
-import { dashes, element, nextFrame } from "#page/dom";
+import { element, nextFrame, stroke } from "#page/dom";
 import { eventList } from "#page/events";
 import { expectationList } from "#page/expectations";
 import { Path } from "#page/path";
-import { groups, Plot } from "#page/plot";
+import { Plot } from "#page/plot";
 import { showStudy } from "#page/study";
 import { followTheme } from "#page/theme";
 import { View } from "#page/view";
+import { droppable, workbench } from "#page/workbench";
 
 const byId = (id) => document.getElementById(id);
 
@@ -31,24 +33,35 @@ function makers(run, runs) {
   return Object.entries(run.made_by).filter(differs).map(([what, value]) => `${what}: ${value}`);
 }
 
-function describeRuns(runs) {
-  return runs.map((run) => {
-    const style = `<svg width="26" height="8"><line x1="0" y1="4" x2="26" y2="4"
-      stroke="currentColor" stroke-width="2" stroke-dasharray="${dashes(run.index)}"/></svg>`;
+/** The name of a run; of several with its stroke, as a button that hides the run. */
+function runName(run, runs, changed) {
+  if (runs.length === 1) return element("b", {}, run.label);
+  const button = element("button", { className: "curve", title: `Show or hide ${run.label}`, ariaPressed: "true" },
+                         stroke(run.index, run.index), element("b", {}, run.label));
+  button.onclick = () => {
+    run.hidden = !run.hidden;
+    button.ariaPressed = String(!run.hidden);
+    changed();
+  };
+  return button;
+}
+
+function describeRuns(runs, changed) {
+  const notes = [...new Set(runs.flatMap((run) => run.notes))];
+  const lines = runs.map((run) => {
     const facts = [`${run.rows} rows`, run.program && `program ${run.program}`,
                    run.version && `lineshaft ${run.version}`, ...makers(run, runs)].filter(Boolean);
-    return element("div", { className: "run" },
-                   element("span", { innerHTML: runs.length > 1 ? style : "" }),
-                   element("b", {}, run.label), ` ${facts.join(", ")}`);
+    return element("div", { className: "run" }, runName(run, runs, changed), ` ${facts.join(", ")}`);
   });
+  return [...lines, ...notes.map((note) => element("p", { className: "note" }, note))];
 }
 
 /** A plot of each path's deviation, which follows its circle. */
-function deviationPlot(parent, path, view) {
+function deviationPlot(parent, path, view, arrangement) {
   if (!path.circle) return [];
   const [{ signal }] = path.deviationCurves();
   const group = { unit: signal.unit, type: "real", curves: path.deviationCurves() };
-  const plot = new Plot(parent, group, view);
+  const plot = new Plot(parent, group, view, { ...deviationPlots, runs: arrangement.runs });
   path.onCircle(() => {
     view.show(view.range.from, view.range.to);
     view.tell("cursors");
@@ -56,19 +69,72 @@ function deviationPlot(parent, path, view) {
   return [plot];
 }
 
+/** Deviations are no part of the arrangement: they stay where their path is. */
+const deviationPlots = { hasOwnAxis: () => false, isHidden: () => false, hide: () => {}, isFixed: true };
+
+/** Paths and plots, made anew when they are arranged in another way. */
+class Board {
+  constructor(parent, view, arrangement, report) {
+    Object.assign(this, { parent, view, arrangement, report, paths: [], plots: [] });
+    this.resize = nextFrame(() => [...this.paths, ...this.plots].forEach((part) => part.resize()));
+    new ResizeObserver(this.resize).observe(parent);
+    arrangement.listen((anew) => anew && this.build());
+  }
+
+  build() {
+    const { signal } = document.activeElement?.dataset ?? {};
+    for (const part of [...this.paths, ...this.plots]) part.remove();
+    const { parent, view, arrangement } = this;
+    const there = ({ x, y }) => [x, y].every((name) => arrangement.names.includes(name));
+    this.paths = arrangement.paths.filter(there).map((pair) => new Path(parent, pair, view, arrangement, this.report));
+    this.plots = this.paths.flatMap((path) => deviationPlot(parent, path, view, arrangement));
+    const arranged = arrangement.plots.map((group, k) => new Plot(parent, group, view, arrangement, k));
+    for (const plot of arranged) droppable(plot.section, arrangement, () => plot.index);
+    this.plots.push(...arranged);
+    this.#draw();
+    if (signal) parent.querySelector(`select[data-signal="${CSS.escape(signal)}"]`)?.focus();
+  }
+
+  /** All curves stand one below the other, whatever their axes take, where there is room for that. */
+  #draw() {
+    const width = this.plots[0]?.chart.clientWidth;
+    if (width < 600) return this.plots.forEach((plot) => plot.draw(width));
+    const margins = this.plots.map((plot) => plot.margins);
+    const widest = [0, 1].map((side) => Math.max(...margins.map((each) => each[side])));
+    for (const plot of this.plots) plot.draw(width, widest);
+  }
+}
+
 function showRuns(parent, report, runs) {
   const ends = runs.map(({ times }) => times.at(times.length - 1));
   const view = new View(Math.min(...runs.map(({ times }) => times.at(0))), Math.max(...ends));
-  for (const run of runs)
-    parent.append(...[run.expectations.length > 0 && expectationList(run, view),
-                      run.events.length > 0 && eventList(run, view)].filter(Boolean));
-  const paths = report.paths.map((pair) => new Path(parent, pair, runs, view, report));
-  const plots = paths.flatMap((path) => deviationPlot(parent, path, view));
-  plots.push(...groups(runs).map((group) => new Plot(parent, group, view)));
-  const width = plots[0]?.chart.clientWidth; // of all of them
-  for (const plot of plots) plot.draw(width);
-  new ResizeObserver(nextFrame(() => [...paths, ...plots].forEach((p) => p.resize()))).observe(parent);
+  for (const run of runs) {
+    const title = runs.length > 1 ? `${run.label}: ` : "";
+    parent.append(...[run.expectations.length > 0 && expectationList(run, view, title),
+                      run.events.length > 0 && eventList(run, view, title)].filter(Boolean));
+  }
+  const arrangement = new Arrangement(runs, report.arrangement, report.paths);
+  const plots = element("div", {});
+  parent.append(plots, workbench(arrangement));
+  const board = new Board(plots, view, arrangement, report);
+  board.build();
+  printOnPaper(view, board);
   return view;
+}
+
+/** Paper is narrow and white. */
+function printOnPaper(view, board) {
+  const { dataset } = document.documentElement;
+  let theme = "light";
+  const change = (printing) => {
+    document.body.classList.toggle("printing", printing);
+    if (printing) theme = dataset.theme;
+    dataset.theme = printing ? "light" : theme;
+    for (const part of [...board.paths, ...board.plots]) part.resize();
+    view.tell("theme");
+  };
+  addEventListener("beforeprint", () => change(true));
+  addEventListener("afterprint", () => change(false));
 }
 
 function connectToolbar(view) {
@@ -95,7 +161,7 @@ async function start() {
   followTheme(byId("theme"), () => view?.tell("theme"));
   const runs = await Promise.all(report.runs.map(unpackRun));
   shortenLabels(runs);
-  byId("runs").append(...describeRuns(runs));
+  byId("runs").append(...describeRuns(runs, () => view?.tell("runs")));
   main.replaceChildren();
   for (const study of report.studies) showStudy(main, study);
   if (runs.length > 0) {

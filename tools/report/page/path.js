@@ -1,5 +1,5 @@
 import { deviation, Deviations, figures, findCircle, isNear, nominal } from "#page/circle";
-import { afterwards, colour, dashes, element, nextFrame, palette } from "#page/dom";
+import { afterwards, colour, dashes, element, nextFrame, palette, stroke } from "#page/dom";
 import { number, withUnit } from "#page/format";
 import { lastAtOrBefore, seen } from "#page/samples";
 
@@ -22,33 +22,40 @@ function ticks(from, to, count) {
   const decade = 10 ** Math.floor(Math.log10(rough));
   const step = decade * [1, 2, 5, 10].find((factor) => factor * decade >= rough);
   const result = [];
-  for (let k = Math.ceil(from / step); k * step <= to; ++k) result.push(k * step);
+  for (let k = Math.ceil(from / step); k * step <= to; ++k) result.push(k * step + 0); // no -0
   return result;
 }
 
 /** Paths of positions in the plane, equal axes, beside a circle and with the deviation magnified. */
 export class Path {
-  constructor(parent, pair, runs, view, { circle: given, while: condition }) {
+  /** Of the runs that have both signals of `pair`. */
+  constructor(parent, pair, view, arrangement, { circle: given, while: condition }) {
     this.view = view;
     this.pair = pair;
-    this.tracks = runs.map((run) => {
-      const values = (name) => run.signals.find((signal) => signal.name === name).values;
-      return { run, x: values(pair.x), y: values(pair.y), condition: condition && values(condition) };
+    this.arrangement = arrangement;
+    this.tracks = arrangement.runs.flatMap((run) => {
+      const find = (name) => arrangement.signalsOf(run).find((signal) => signal.name === name);
+      const [x, y] = [find(pair.x), find(pair.y)];
+      return x && y ? [{ run, x: x.values, y: y.values, units: [x.unit, y.unit], condition: find(condition)?.values }] : [];
     });
-    this.unit = runs[0].signals.find(({ name }) => name === pair.x).unit;
+    [this.unit, this.unitY] = this.tracks[0].units;
+    this.isPlane = this.unit === this.unitY && this.unit !== "" && pair.x !== pair.y;
     this.#choosePoints();
-    this.circle = given ? { ...given } : this.#guess();
+    this.circle = this.isPlane && given ? { ...given } : this.isPlane ? this.#guess() : null;
     for (const track of this.circle ? this.tracks : [])
       track.deviations = new Deviations(this.circle, track);
     this.magnify = this.circle ? magnification(this.circle, this.tracks, view) : 1;
     this.canvas = element("canvas", { className: "path" });
     this.figures = element("table", { className: "figures" });
-    parent.append(element("section", { className: "plot" },
-                          element("div", { className: "chart square" }, this.canvas),
-                          element("div", { className: "side" }, this.#controls(), this.figures)));
+    this.section = element("section", { className: "plot" },
+                           element("div", { className: "chart square" }, this.canvas),
+                           element("div", { className: "side" }, this.#controls(), this.figures));
+    this.canvas.role = "img";
+    this.canvas.ariaLabel = `${pair.y} over ${pair.x}`;
+    parent.append(this.section);
     this.redraw = nextFrame(() => this.#draw());
     this.writeLater = afterwards(() => this.#write());
-    view.listen((change) => this.#changed(change));
+    this.stop = view.listen((change) => this.#changed(change));
     this.refresh();
   }
 
@@ -62,6 +69,11 @@ export class Path {
   /** `listener` is called when the circle has been changed. */
   onCircle(listener) {
     this.circleListener = listener;
+  }
+
+  remove() {
+    this.stop();
+    this.section.remove();
   }
 
   refresh() {
@@ -80,6 +92,7 @@ export class Path {
 
   #changed(change) {
     if (change === "hover") return;
+    if (change === "runs") this.writeLater();
     if (change === "range") {
       this.#choosePoints();
       this.writeLater();
@@ -97,30 +110,42 @@ export class Path {
       } });
       return element("label", {}, label, input);
     };
-    const title = element("h2", {}, `Path of ${this.pair.x}, ${this.pair.y}`);
-    if (!this.circle) return element("div", {}, title, element("p", {}, "The path is not a circle."));
+    const title = element("h2", {}, this.isPlane ? `Path of ${this.pair.x}, ${this.pair.y}` : `${this.pair.y} over ${this.pair.x}`);
+    const remove = element("button", { onclick: () => this.arrangement.removePath(this.pair) }, "Remove");
+    if (!this.circle) return element("div", { className: "controls" }, title, this.#key(), remove);
     const { circle } = this;
-    return element("div", { className: "controls" }, title,
+    return element("div", { className: "controls" }, title, this.#key(),
       field("deviation ×", this.magnify, (value) => { this.magnify = value; }),
       field(`centre x [${this.unit}]`, circle.x, (value) => { circle.x = value; }),
       field(`centre y [${this.unit}]`, circle.y, (value) => { circle.y = value; }),
-      field(`radius [${this.unit}]`, circle.radius, (value) => { if (value > 0) circle.radius = value; }));
+      field(`radius [${this.unit}]`, circle.radius, (value) => { if (value > 0) circle.radius = value; }), remove);
+  }
+
+  /** Which stroke is which run's. */
+  #key() {
+    if (this.tracks.length < 2) return "";
+    return element("p", { className: "key" }, ...this.tracks.map(({ run }) =>
+      element("span", { className: "run-key" }, stroke(run.index, 0), run.label)));
   }
 
   #write() {
     if (!this.circle) return;
-    const rows = this.tracks.map((track) => {
+    const rows = this.#shown.map((track) => {
       const { run } = track;
       const f = figures(this.circle, track, track.deviations, seen(run.times, this.view.range));
       if (!f) return [run.label, "–", "–", "–", "–"];
       const at = `${number(+f.worst.x.toPrecision(4))}, ${number(+f.worst.y.toPrecision(4))}`;
       return [run.label, ...[f.mean, f.worst.value, f.offset].map((v) => number(+v.toPrecision(4))), at];
     });
-    const heads = ["", "mean |δ|", "greatest δ", "centre offset", "greatest at"];
-    const lines = heads.map((head, k) =>
-      element("tr", {}, element("th", {}, k === 0 ? "in view" : withUnit(head, `[${this.unit}]`)),
-              ...rows.map((cells) => element("td", {}, cells[k]))));
-    this.figures.replaceChildren(element("tbody", {}, ...lines));
+    const heads = ["in view", ...["mean |δ|", "greatest δ", "centre offset", "greatest at"].map((head) => withUnit(head, `[${this.unit}]`))];
+    const lines = rows.map((cells) => element("tr", {}, ...cells.map((cell) => element("td", {}, cell))));
+    this.figures.replaceChildren(element("thead", {}, element("tr", {}, ...heads.map((head) => element("th", {}, head)))),
+                                 element("tbody", {}, ...lines));
+  }
+
+  /** Tracks of the runs that are drawn. */
+  get #shown() {
+    return this.tracks.filter(({ run }) => !run.hidden);
   }
 
   get #centre() {
@@ -182,7 +207,8 @@ export class Path {
     this.canvas.height = this.canvas.clientHeight * pixel;
     const ctx = this.canvas.getContext("2d");
     ctx.scale(pixel, pixel);
-    const tracks = this.tracks.map((track) => this.#placed(track));
+    const shown = this.#shown;
+    const tracks = shown.map((track) => this.#placed(track));
     const map = this.#map(width, this.canvas.clientHeight, this.#extent(tracks));
     this.#drawAxes(ctx, map);
     ctx.save();
@@ -190,22 +216,23 @@ export class Path {
     ctx.rect(map.left, map.top, map.width, map.height);
     ctx.clip();
     if (this.circle) this.#drawCircle(ctx, map);
-    tracks.forEach((points, index) => this.#drawTrack(ctx, map, points, index));
+    tracks.forEach((points, index) => this.#drawTrack(ctx, map, points, shown[index].run));
     this.#drawCursors(ctx, map);
     ctx.restore();
   }
 
-  /** Equal axes: one scale for both directions, the path in the middle. */
+  /** Where points are drawn. In a plane one scale for both directions, the path in the middle. */
   #map(width, height, { x, y }) {
-    const box = { left: 64, top: 10, width: width - 74, height: height - 56 };
-    const scale = 0.94 * Math.min(box.width / (x[1] - x[0] || 1), box.height / (y[1] - y[0] || 1));
+    const box = { left: 76, top: 10, width: width - 86, height: height - 56 };
+    const fitting = [0.94 * box.width / (x[1] - x[0] || 1), 0.94 * box.height / (y[1] - y[0] || 1)];
+    const [across, up] = this.isPlane ? fitting.map(() => Math.min(...fitting)) : fitting;
     const middle = [(x[0] + x[1]) / 2, (y[0] + y[1]) / 2];
     return { ...box,
-             x: (value) => box.left + box.width / 2 + (value - middle[0]) * scale,
-             y: (value) => box.top + box.height / 2 - (value - middle[1]) * scale,
-             scale,
-             xs: [middle[0] - box.width / 2 / scale, middle[0] + box.width / 2 / scale],
-             ys: [middle[1] - box.height / 2 / scale, middle[1] + box.height / 2 / scale] };
+             x: (value) => box.left + box.width / 2 + (value - middle[0]) * across,
+             y: (value) => box.top + box.height / 2 - (value - middle[1]) * up,
+             scale: across,
+             xs: [middle[0] - box.width / 2 / across, middle[0] + box.width / 2 / across],
+             ys: [middle[1] - box.height / 2 / up, middle[1] + box.height / 2 / up] };
   }
 
   #drawAxes(ctx, map) {
@@ -220,11 +247,11 @@ export class Path {
       ctx.stroke();
     };
     const bottom = map.top + map.height;
-    for (const tick of ticks(...map.xs, 7)) {
+    for (const tick of ticks(...map.xs, Math.min(7, map.width / 70))) {
       line(map.x(tick), map.top, map.x(tick), bottom);
       ctx.fillText(number(tick), map.x(tick), bottom + 18);
     }
-    ctx.fillText(withUnit(this.pair.x, `[${this.unit}]`), map.left + map.width / 2, bottom + 38);
+    ctx.fillText(withUnit(this.pair.x, this.unit && `[${this.unit}]`), map.left + map.width / 2, bottom + 38);
     ctx.textAlign = "right";
     for (const tick of ticks(...map.ys, 7)) {
       line(map.left, map.y(tick), map.left + map.width, map.y(tick));
@@ -234,7 +261,7 @@ export class Path {
     ctx.translate(14, map.top + map.height / 2);
     ctx.rotate(-Math.PI / 2);
     ctx.textAlign = "center";
-    ctx.fillText(withUnit(this.pair.y, `[${this.unit}]`), 0, 0);
+    ctx.fillText(withUnit(this.pair.y, this.unitY && `[${this.unitY}]`), 0, 0);
     ctx.restore();
   }
 
@@ -248,10 +275,10 @@ export class Path {
     ctx.setLineDash([]);
   }
 
-  #drawTrack(ctx, map, points, index) {
-    ctx.strokeStyle = palette(index);
+  #drawTrack(ctx, map, points, run) {
+    ctx.strokeStyle = palette(run.index);
     ctx.lineWidth = 1.5;
-    ctx.setLineDash(dashes(this.tracks[index].run.index));
+    ctx.setLineDash(dashes(run.index));
     ctx.beginPath();
     let [joined, lastX, lastY] = [false, 0, 0];
     for (let i = 0; i < points.x.length; ++i) {
@@ -269,7 +296,9 @@ export class Path {
 
   #drawCursors(ctx, map) {
     ["A", "B"].forEach((name, index) => {
-      const { run, x, y } = this.tracks[0];
+      const [track] = this.#shown;
+      if (!track) return;
+      const { run, x, y } = track;
       const at = lastAtOrBefore(run.times, this.view.cursors[index]);
       if (at < 0) return;
       const { x: a, y: b } = this.#centre;

@@ -1,23 +1,13 @@
 import { element } from "#page/dom";
-import { exact, number, withUnit } from "#page/format";
+import { number, withUnit } from "#page/format";
+import { matrices, range, short, spansDecades, varying } from "#page/matrix";
 
-/** Four digits; whole numbers as they are. */
-const short = (value) =>
-  value === null ? "" : number(Number.isInteger(value) ? value : +value.toPrecision(4), exact);
-
-/** The settings that differ between the rows of a study. */
-function varying(rows) {
-  const names = [...new Set(rows.flatMap(({ set }) => Object.keys(set)))];
-  return names.filter((name) => new Set(rows.map(({ set }) => set[name])).size > 1);
-}
-
-/** A bar from zero, on the side that its value asks for. */
+/** A bar from zero, on the side that its value asks for; of a logarithmic scale from its least end. */
 function bar(kind, value, extent) {
-  const width = (100 * Math.abs(value)) / (extent.greatest - extent.least);
-  const zero = (-100 * extent.least) / (extent.greatest - extent.least);
-  const left = value < 0 ? zero - width : zero;
-  return element("div", { className: `bar ${kind}`, style: `left: ${left}%; width: ${width}%`,
-                          title: `${kind} ${number(value)}` });
+  const at = (x) => (100 * (extent.place(x) - extent.least)) / (extent.greatest - extent.least);
+  const [from, to] = [extent.isLog ? 0 : at(0), at(value)];
+  return element("div", { className: `bar ${kind}`, title: `${kind} ${number(value)}`,
+                          style: `left: ${Math.min(from, to)}%; width: ${Math.abs(to - from)}%` });
 }
 
 function bars(row, extent) {
@@ -35,44 +25,66 @@ function difference(row) {
   return `${share > 0 ? "+" : ""}${number(+share.toPrecision(2))} %`;
 }
 
-/** One scale for all rows of a signal, zero included. */
+/** One scale for all rows of a signal: zero included, or from half of the least on by decades. */
 function extents(rows) {
   const found = new Map();
-  for (const row of rows) {
-    const extent = found.get(row.signal) ?? { least: 0, greatest: 1e-300 };
-    for (const value of [row.paper, row.ours]) {
-      extent.least = Math.min(extent.least, value ?? 0);
-      extent.greatest = Math.max(extent.greatest, value ?? 0);
-    }
-    found.set(row.signal, extent);
+  for (const signal of new Set(rows.map((row) => row.signal))) {
+    const values = rows.filter((row) => row.signal === signal).flatMap(({ paper, ours }) => [paper, ours]).filter((value) => value !== null);
+    const isLog = spansDecades(values);
+    const ends = isLog ? [Math.min(...values) / 2, Math.max(...values)] : [Math.min(0, ...values), Math.max(1e-300, ...values)];
+    const place = isLog ? Math.log : (value) => value;
+    found.set(signal, { isLog, place, least: place(ends[0]), greatest: place(ends[1]) });
   }
   return found;
 }
 
+/** The columns of a table that have anything in them. */
+function columnsOf(rows, title, scales) {
+  const hasPaper = rows.some(({ paper }) => paper !== null);
+  const signal = (row) => (scales.get(row.signal).isLog ? [row.signal, element("span", { className: "range" }, " log")] : [row.signal]);
+  return [
+    ...varying(rows).map((name) => [name, (row) => [row.set[name] ?? ""]]),
+    [title, signal],
+    ...(hasPaper ? [["paper", (row) => [row.paper === null ? "" : short(row.paper)]]] : []),
+    ["ours", (row) => [withUnit(short(row.ours), row.unit)]],
+    ...(hasPaper ? [["difference", (row) => [difference(row)]]] : []),
+    ...(rows.some(range) ? [["least .. greatest", (row) => [range(row)]]] : []),
+  ];
+}
+
 function table(rows, title) {
-  const names = varying(rows);
   const scales = extents(rows);
-  const heads = [...names, title, "paper", "ours", "difference", "paper and ours", ""];
-  const lines = rows.map((row) => {
-    const cells = [...names.map((name) => row.set[name] ?? ""), row.signal,
-                   short(row.paper), withUnit(short(row.ours), row.unit), difference(row)];
-    return element("tr", { className: row.ok ? "" : "bad" },
-                   ...cells.map((cell) => element("td", {}, cell)), bars(row, scales.get(row.signal)),
-                   element("td", {}, row.ok ? "" : "FAILED"));
-  });
+  const columns = columnsOf(rows, title, scales);
+  const anyFailed = rows.some(({ ok }) => !ok);
+  const lines = rows.map((row) =>
+    element("tr", { className: row.ok ? "" : "bad" }, ...columns.map(([, cell]) => element("td", {}, ...cell(row))),
+            bars(row, scales.get(row.signal)), ...(anyFailed ? [element("td", {}, row.ok ? "" : "FAILED")] : [])));
+  const heads = [...columns.map(([head]) => head), "", ...(anyFailed ? [""] : [])];
   return element("table", { className: "study" },
                  element("thead", {}, element("tr", {}, ...heads.map((head) => element("th", {}, head)))),
                  element("tbody", {}, ...lines));
 }
 
-/** A study's table, the paper's figures beside ours, as numbers and as bars; then its claims. */
+function key(rows) {
+  const parts = [element("span", { className: "bar ours" }), "ours; one scale for each signal"];
+  if (rows.some(({ paper }) => paper !== null)) parts.unshift(element("span", { className: "bar paper" }), "paper");
+  if ([...extents(rows).values()].some(({ isLog }) => isLog)) parts.push("; log: logarithmic, from half of the least");
+  return element("p", { className: "key" }, ...parts);
+}
+
+/** A study's matrices, or its rows with the paper's figures beside ours and as bars; then its claims. */
 export function showStudy(parent, study) {
   const section = element("section", { className: "wide" }, element("h2", {}, study.title),
     element("p", { className: study.ok ? "good" : "bad" },
-            study.ok ? "all bounds hold" : "some bounds do not hold"),
-    element("p", { className: "key" }, element("span", { className: "bar paper" }), "paper",
-            element("span", { className: "bar ours" }), "ours; one scale for each signal"));
-  if (study.rows.length > 0) section.append(table(study.rows, "signal"));
+            study.ok ? "all bounds hold" : "some bounds do not hold"));
+  for (const note of study.notes ?? []) section.append(element("p", { className: "note" }, note));
+  const tables = matrices(study.rows);
+  section.append(...tables);
+  if (study.rows.length > 0) {
+    const rows = [key([...study.rows, ...study.claims]), table(study.rows, "signal")];
+    section.append(...(tables.length > 0
+      ? [element("details", {}, element("summary", {}, "the same as rows"), ...rows)] : rows));
+  }
   if (study.claims.length > 0) section.append(table(study.claims, "claim"));
   for (const text of [...(study.deviations ?? []), ...(study.faults ?? [])])
     section.append(element("p", { className: "bad" }, text));

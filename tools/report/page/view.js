@@ -18,8 +18,10 @@ export class View {
     this.hover = null;
   }
 
+  /** Returns what ends it. */
   listen(listener) {
     this.#listeners.push(listener);
+    return () => { this.#listeners = this.#listeners.filter((each) => each !== listener); };
   }
 
   tell(change) {

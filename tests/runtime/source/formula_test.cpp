@@ -1,4 +1,4 @@
-#include "runtime/study/formula.hpp"
+#include "runtime/source/formula.hpp"
 
 #include <cmath>
 

@@ -19,7 +19,9 @@ struct FormulaResult {
 
 /// Evaluates `1 - early / immediate`, `abs(a.fit.worst_x) / 20`: + - * / with the usual precedence,
 /// unary minus, parentheses, numbers, names (letters, digits, '_' and '.'), abs(x), sqrt(x), min(a,
-/// ...), max(a, ...), mean(a, ...). At most 100 levels deep.
-FormulaResult evaluate(std::string_view formula, const Lookup& lookup);
+/// ...), max(a, ...), mean(a, ...). At most 100 levels deep. `operation` names one more function of
+/// one value, which is taken as that value: for a check of a formula that somebody else evaluates.
+FormulaResult evaluate(std::string_view formula, const Lookup& lookup,
+                       std::string_view operation = {});
 
 }  // namespace lineshaft

@@ -1,4 +1,4 @@
-#include "runtime/study/formula.hpp"
+#include "runtime/source/formula.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -17,7 +17,8 @@ namespace {
 /// Recursive descent. After the first error everything returns at once.
 class Evaluator {
   public:
-    Evaluator(std::string_view text, const Lookup& lookup) : text_(text), lookup_(lookup) {}
+    Evaluator(std::string_view text, const Lookup& lookup, std::string_view operation)
+        : text_(text), lookup_(lookup), operation_(operation) {}
 
     FormulaResult result() {
         result_.value = sum();
@@ -107,6 +108,7 @@ class Evaluator {
         if (failed()) return 0;
         if (function == "abs" && arguments.size() == 1) return std::abs(arguments[0]);
         if (function == "sqrt" && arguments.size() == 1) return std::sqrt(arguments[0]);
+        if (function == operation_ && arguments.size() == 1) return arguments[0];
         if (function == "min") return *std::ranges::min_element(arguments);
         if (function == "max") return *std::ranges::max_element(arguments);
         if (function == "mean")
@@ -114,8 +116,10 @@ class Evaluator {
                    static_cast<double>(arguments.size());
         at_ = start;
         fail(fmt::format(
-            "there is no function '{}' of {}; known: abs(x), sqrt(x), min, max and mean", function,
-            arguments.size() == 1 ? "one value" : fmt::format("{} values", arguments.size())));
+            "there is no function '{}' of {}; known: abs(x), sqrt(x), {}min, max and mean",
+            function,
+            arguments.size() == 1 ? "one value" : fmt::format("{} values", arguments.size()),
+            operation_.empty() ? "" : fmt::format("{}(x), ", operation_)));
         return 0;
     }
 
@@ -140,6 +144,7 @@ class Evaluator {
 
     std::string_view text_;
     const Lookup& lookup_;
+    std::string_view operation_;
     std::size_t at_ = 0;
     int depth_ = 0;
     FormulaResult result_;
@@ -147,8 +152,8 @@ class Evaluator {
 
 }  // namespace
 
-FormulaResult evaluate(std::string_view formula, const Lookup& lookup) {
-    return Evaluator(formula, lookup).result();
+FormulaResult evaluate(std::string_view formula, const Lookup& lookup, std::string_view operation) {
+    return Evaluator(formula, lookup, operation).result();
 }
 
 }  // namespace lineshaft

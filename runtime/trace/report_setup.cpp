@@ -1,0 +1,121 @@
+#include "runtime/trace/report_setup.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "runtime/source/formula.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class ReportSetup {
+  public:
+    ReportSetup(const Connecting& to, const std::vector<TraceSetup>& traces, const Node& report)
+        : to_(to), traces_(traces), report_(report), curves_(report.find("curves")) {}
+
+    Json connect() const {
+        Json made = Json::object();
+        if (const Node* plots = report_.find("plots"))
+            for (const Node& plot : plots->items) made["plots"].push_back(drawn(plot));
+        for (const char* key : {"own_axis", "hide"})
+            if (const Node* names = report_.find(key)) made[key] = drawn(*names);
+        if (curves_)
+            for (const auto& [name, formula] : curves_->entries) {
+                check(formula);
+                made["curves"][name.text] = formula.text;
+            }
+        if (const Node* paths = report_.find("paths"))
+            for (const Node& pair : paths->items) made["paths"].push_back(path(pair));
+        if (const Node* circle = report_.find("circle")) made["circle"] = circle_of(*circle);
+        if (const Node* condition = report_.find("while")) made["while"] = recorded(*condition);
+        return made;
+    }
+
+  private:
+    const Signal* find(std::string_view name) const {
+        for (const TraceSetup& trace : traces_)
+            if (const auto it = std::ranges::find(trace.signals, name, &Signal::name);
+                it != trace.signals.end())
+                return &*it;
+        return nullptr;
+    }
+
+    /// The signal's name as it is declared.
+    std::string recorded(const Node& node) const {
+        const auto signal = to_.net.find(to_.read, node, node.text);
+        if (!signal) return {};
+        if (!find(signal->name))
+            to_.read.fail("L0203", node, fmt::format("no trace records '{}'", signal->name),
+                          "add it to the signals of 'trace'");
+        return signal->name;
+    }
+
+    /// Signals and curves.
+    Json drawn(const Node& names) const {
+        Json list = Json::array();
+        for (const Node& node : names.items)
+            list.push_back(curves_ && curves_->find(node.text) ? node.text : recorded(node));
+        return list;
+    }
+
+    Json path(const Node& pair) const {
+        if (pair.items.size() != 2) return {};
+        return {{"x", recorded(pair.items[0])}, {"y", recorded(pair.items[1])}};
+    }
+
+    Unit unit_of_paths() const {
+        const Node* paths = report_.find("paths");
+        if (!paths || paths->items.empty() || paths->items[0].items.empty()) return {};
+        const Signal* signal = find(paths->items[0].items[0].text);
+        return Unit::parse(signal ? signal->unit : "").value_or(Unit{});
+    }
+
+    Json circle_of(const Node& node) const {
+        constexpr std::array names{"x", "y", "radius"};
+        if (node.items.size() != names.size()) return {};
+        Json made;
+        const Unit unit = unit_of_paths();
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            const auto value = to_.read.real(node.items[i], unit);
+            if (!value) return {};
+            made[names[i]] = *value;
+        }
+        if (made["radius"] <= 0.0)
+            to_.read.fail("L0305", node.items[2],
+                          fmt::format("the radius '{}' is not above 0", node.items[2].text));
+        return made;
+    }
+
+    void check(const Node& formula) const {
+        const auto known = [this](std::string_view name) {
+            return find(name) ? std::optional(1.0) : std::nullopt;
+        };
+        const FormulaResult result = evaluate(formula.text, known, "derivative");
+        if (result.error.empty()) return;
+        if (result.name.empty()) return to_.read.fail("L0602", formula, result.error);
+        std::vector<std::string> names;
+        for (const TraceSetup& trace : traces_)
+            for (const Signal& signal : trace.signals) names.push_back(signal.name);
+        to_.read.fail("L0602", formula, fmt::format("no trace records '{}'", result.name),
+                      suggest(result.name, names));
+    }
+
+    const Connecting& to_;
+    const std::vector<TraceSetup>& traces_;
+    const Node& report_;
+    const Node* curves_;  ///< null: none
+};
+
+}  // namespace
+
+nlohmann::ordered_json connect_report(const Connecting& to, const std::vector<TraceSetup>& traces) {
+    const Node* report = to.program.root.find("report");
+    return report ? ReportSetup(to, traces, *report).connect() : Json();
+}
+
+}  // namespace lineshaft
