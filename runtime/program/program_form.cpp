@@ -167,7 +167,12 @@ const Form& instruction_time_form() {
                   key<read_time<jump>>("jump", a_time, "to another place: IF, CASE, loops, RETURN")
                       .by_default("0 s"),
                   key<read_time<call>>("call", a_time, "of a function or a function block")
-                      .by_default("0 s")}});
+                      .by_default("0 s")},
+         .rules = {{at_least_one,
+                    {},
+                    {"bool", "integer", "real", "text", "move", "jump", "call"},
+                    "'instruction_time' says no time",
+                    "write one, such as {real: 12 ns}, or leave it out"}}});
     return form;
 }
 

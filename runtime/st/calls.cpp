@@ -12,7 +12,7 @@ using Kind = Type::Kind;
 
 bool is_variable(const Expression& e) {
     using E = Expression::Kind;
-    return e.kind == E::name || e.kind == E::member || e.kind == E::index;
+    return e.kind == E::name || e.kind == E::member || (e.kind == E::index && !e.is_character());
 }
 
 /// A structure or an array that came as an input, or in one, is passed on by reference.
@@ -116,6 +116,7 @@ Variable* Checker::find_parameter(Argument& argument, Routine& routine, std::siz
         if (named ? same_name(variable.text, argument.name.text) : i == position) return &variable;
         ++i;
     }
+    if (argument.is_output && same_name(argument.name.text, "eno")) return &eno_of(routine);
     if (argument.name.word == Word::end_of_file)
         return fail("L0907", argument.value->place,
                     fmt::format("'{}' takes {} argument{}", routine.name, i, i == 1 ? "" : "s"));
@@ -162,7 +163,8 @@ void Checker::check_argument(Expression&, Argument& argument, Variable& paramete
     const bool is_set = is_in_test() && !argument.is_output &&
                         argument.name.word != Word::end_of_file &&
                         parameter.section != Section::in_out;
-    if (!is_set && argument.is_output != (parameter.section == Section::output) &&
+    const bool is_eno = argument.is_output && parameter.section == Section::temp;
+    if (!is_set && !is_eno && argument.is_output != (parameter.section == Section::output) &&
         argument.name.word != Word::end_of_file) {
         check(*value);
         fail("L0907", argument.name.place,
@@ -178,6 +180,9 @@ void Checker::check_argument(Expression&, Argument& argument, Variable& paramete
     }
     const Type* given = check(*value);
     if (!given || !type) return;
+    if (type->kind == Kind::handle && given->is_object() && given->standard == type->standard &&
+        value->variable->space == Space::global)
+        return convert(value, *type);
     const bool is_read = parameter.section == Section::in_out && is_own_input(*value);
     if (!is_variable(*value) || (!is_read && !check_target(*value, "given here"))) {
         if (!is_variable(*value))
@@ -230,6 +235,15 @@ void Checker::check_standard_arguments(Expression& call, const Type& type) {
 
 // Standard functions.
 
+bool Checker::check_count(const Expression& call, const StandardFunction& f) {
+    const int count = static_cast<int>(call.arguments.size());
+    if (count >= f.least && count <= f.most) return true;
+    fail("L0907", call.operands[0]->place,
+         fmt::format("{} takes {}{} argument{}", f.name, f.least,
+                     f.most > f.least ? " or more" : "", f.most == 1 ? "" : "s"));
+    return false;
+}
+
 /// Arguments by name may stand in any order.
 bool Checker::put_in_order(Expression& call, const StandardFunction& f) {
     const int count = static_cast<int>(call.arguments.size());
@@ -267,6 +281,10 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
     if (call.standard < 0 && !instead.empty())
         return fail("L0903", name.place, fmt::format("the function {} is not supported", name.text),
                     std::string(instead));
+    if (call.standard >= 0 &&
+        standard_functions()[static_cast<std::size_t>(call.standard)].rule == Rule::statement)
+        return fail("L0905", call.place, fmt::format("{} has no value", name.text),
+                    "write it as a statement of its own");
     for (Argument& argument : call.arguments)
         if (argument.is_output)
             return fail("L0907", argument.name.place,
@@ -287,12 +305,8 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
                     suggest(name.text, nearest(name.text, names)));
     }
     const StandardFunction& f = standard_functions()[static_cast<std::size_t>(call.standard)];
+    if (!check_count(call, f) || !put_in_order(call, f)) return nullptr;
     const int count = static_cast<int>(call.arguments.size());
-    if (count < f.least || count > f.most)
-        return fail("L0907", call.operands[0]->place,
-                    fmt::format("{} takes {}{} argument{}", f.name, f.least,
-                                f.most > f.least ? " or more" : "", f.most == 1 ? "" : "s"));
-    if (!put_in_order(call, f)) return nullptr;
     const bool first_differs = f.rule == Rule::select || f.rule == Rule::multiplex;
     const bool passes = f.rule == Rule::extremum || f.rule == Rule::limit || first_differs ||
                         f.rule == Rule::move ||
@@ -419,11 +433,35 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
             if (first.kind == Kind::bits) return &bool_type;
             return fail("L0905", arguments[0].value->place,
                         fmt::format("{} takes a bit string, not {}", f.name, describe(first)));
+        case Rule::swap:
+        case Rule::encode:
+            if (first.kind == Kind::any_bits && f.rule == Rule::encode)
+                coerce(arguments[0].value, bits_type(64));
+            if (arguments[0].value->type->kind == Kind::bits)
+                return f.rule == Rule::encode ? &int_type : &first;
+            return fail("L0905", arguments[0].value->place,
+                        fmt::format("{} takes a bit string, not {}", f.name, describe(first)),
+                        "write its type, as in WORD#16#FF");
+        case Rule::decode:
+            if (first.is_any() ? !coerce(arguments[0].value, lint_type) : !first.is_integer())
+                return first.is_any() ? nullptr
+                                      : fail("L0905", arguments[0].value->place,
+                                             fmt::format("DECO takes a whole number, not {}",
+                                                         describe(first)));
+            return expected && expected->kind == Kind::bits ? expected : &bits_type(32);
+        case Rule::capacity:
+            if (first.kind != Kind::text)
+                return fail("L0905", arguments[0].value->place,
+                            fmt::format("expected a STRING, found {}", describe(first)));
+            become(call, int_type, {.integer = first.length});
+            return &int_type;
         case Rule::length:
         case Rule::find:
         case Rule::text: {
             const std::size_t texts = f.rule == Rule::text ? static_cast<std::size_t>(f.texts) : 2;
             for (std::size_t i = 0; i < arguments.size(); ++i) {
+                if (i < texts && arguments[i].value->type->is_character)
+                    coerce(arguments[i].value, string_type);
                 const Type& type = *arguments[i].value->type;
                 if (i < texts ? type.kind == Kind::text : type.is_integer()) {
                     if (type.is_any() && !coerce(arguments[i].value, lint_type)) return nullptr;
@@ -436,6 +474,7 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
             return f.rule == Rule::text ? &string_type : &int_type;
         }
         case Rule::time:
+        case Rule::statement:
         case Rule::from_bcd:
         case Rule::to_bcd:
             return nullptr;
@@ -566,7 +605,7 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
         call = copy;
         return target;
     }
-    if (from.kind == Kind::text && !target->is_number())
+    if (from.kind == Kind::text && !target->is_number() && !target->is_character)
         return fail(
             "L0905", call.place,
             fmt::format("there is no conversion of {} to {}", describe(from), describe(*target)));

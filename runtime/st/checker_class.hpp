@@ -45,6 +45,7 @@ class Checker {
     void declare_globals();
     void declare_routines();
     void declare(Routine& routine, const DeclarationBlock& block);
+    void make_object(Variable& variable);
     void make_constant(Variable& variable);
     void declare_result(Routine& routine);
     Variable* add(std::deque<Variable>& to, const Declaration& declared, const Type* type);
@@ -89,7 +90,9 @@ class Checker {
     const Type* check_bit(Expression& expression);
     const Type* check_unary(Expression& expression, const Type* expected);
     const Type* check_binary(Expression& expression, const Type* expected);
+    void reinterpret(Expression& expression, Kind from, const Type* expected = nullptr);
     const Type* check_logic(Expression& expression);
+    void unite_texts(Expression*& a, Expression*& b);
     const Type* check_comparison(Expression& expression);
     const Type* check_arithmetic(Expression& expression, const Type* expected);
     const Type* check_time_arithmetic(Expression& expression);
@@ -122,6 +125,7 @@ class Checker {
     void check_argument(Expression& call, Argument& argument, Variable& parameter);
     void check_standard_arguments(Expression& call, const Type& type);
     Variable* find_parameter(Argument& argument, Routine& routine, std::size_t position);
+    bool check_count(const Expression& call, const StandardFunction& function);
     bool put_in_order(Expression& call, const StandardFunction& function);
     const Type* check_standard_function(Expression& call, const Type* expected);
     const Type* check_conversion(Expression& call, std::string_view name);
@@ -143,12 +147,19 @@ class Checker {
     void add_mock(Routine& function);
     void leave_out(Expression& call, Variable& parameter);
 
+    // rewritten.cpp
+    bool rewrite(Statement& statement);
+    void rewrite_enabled(Statement& statement, bool has_eno);
+    void rewrite_bits(Statement& statement, bool scatters);
+    Variable& eno_of(Routine& routine);
+    void check_special(Statement& statement);
+    void check_timer(Expression& timer, std::string_view function);
+
     // statements.cpp
     void check_body(Routine& routine);
     void check(Block& block);
     void check(Statement& statement);
     void check_assignment(Statement& statement);
-    void declare_eno(const Expression& target);
     void check_case(Statement& statement);
     void check_for(Statement& statement);
     void check_condition(Expression*& condition, std::string_view of);

@@ -1,5 +1,6 @@
 #include "runtime/st/compiled.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -7,6 +8,7 @@
 
 #include "runtime/st/coverage.hpp"
 #include "runtime/st/parser.hpp"
+#include "runtime/st/standard_source.hpp"
 
 namespace lineshaft::st {
 
@@ -14,11 +16,36 @@ Compiled::~Compiled() {
     if (generated.code.hits) record(generated.code);
 }
 
+namespace {
+
+/// What the sources do not declare themselves.
+void add_standard_source(Tree& tree, Diagnostics& out) {
+    NameSet own;
+    for (const Pou* unit : tree.units) own.insert(unit->name.text);
+    for (const TypeDeclaration& type : tree.types) own.insert(type.name.text);
+    const auto units = static_cast<std::ptrdiff_t>(tree.units.size());
+    const auto types = static_cast<std::ptrdiff_t>(tree.types.size());
+    parse(read_tokens(standard_source(), out), tree, out);
+    const auto is_own_unit = [&](const Pou* unit) { return own.contains(unit->name.text); };
+    const auto is_own_type = [&](const TypeDeclaration& t) { return own.contains(t.name.text); };
+    tree.units.erase(std::remove_if(tree.units.begin() + units, tree.units.end(), is_own_unit),
+                     tree.units.end());
+    tree.types.erase(std::remove_if(tree.types.begin() + types, tree.types.end(), is_own_type),
+                     tree.types.end());
+}
+
+}  // namespace
+
 bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOptions options,
              const SourceFile* tests) {
-    for (const auto& source : to.sources)
-        parse(read_tokens(source, out), to.tree, out, source.get() == tests);
+    bool uses_standard = false;
+    for (const auto& source : to.sources) {
+        const Tokens tokens = read_tokens(source, out);
+        parse(tokens, to.tree, out, source.get() == tests);
+        uses_standard = uses_standard || uses_standard_source(tokens);
+    }
     if (!out.empty()) return false;
+    if (uses_standard) add_standard_source(to.tree, out);
     to.checked = check(to.tree, standard, out);
     if (!out.empty()) return false;
     options.covered = is_covered();

@@ -119,6 +119,7 @@ Variable* Checker::add(std::deque<Variable>& to, const Declaration& declared, co
     variable.text = declared.name.text;
     variable.type = type;
     variable.initial = declared.initial;
+    variable.doc = declared.doc;
     check_unit(variable, declared);
     return &variable;
 }
@@ -241,8 +242,20 @@ void Checker::declare(Routine& routine, const DeclarationBlock& block) {
                  "a function keeps nothing from call to call, so it has no instances",
                  "pass the instance as VAR_IN_OUT");
         depend(type, declared->name.place);
+        if (routine.pou->is_tests || routine.is_test()) make_object(*variable);
         if (block.constant && block.section != Section::input) make_constant(*variable);
     }
+}
+
+/// What a test has of a kind that others refer to, such as an axis, is a block of its own.
+void Checker::make_object(Variable& variable) {
+    if (!variable.type || !variable.type->is_object()) return;
+    Type& own = checked_.types.emplace_back(*variable.type);
+    own.initial_value = variable.initial;
+    variable.type = &own;
+    variable.space = Space::global;
+    variable.global = static_cast<int>(checked_.globals.size());
+    checked_.globals.push_back({std::string(variable.text), &own});
 }
 
 /// A constant scalar takes no memory.

@@ -17,6 +17,12 @@ Type elementary(Kind kind, std::string name, int bits = 64, bool is_signed = fal
     return type;
 }
 
+Type character() {
+    Type type = elementary(Kind::bits, "CHAR", 8);
+    type.is_character = true;
+    return type;
+}
+
 Type text_type() {
     Type type = elementary(Kind::text, "STRING");
     type.length = 254;
@@ -52,7 +58,8 @@ const Type table[] = {elementary(Kind::boolean, "BOOL", 1),
                       elementary(Kind::moment, "DT", 64, true),
                       elementary(Kind::moment, "DATE_AND_TIME", 64, true),
                       elementary(Kind::moment, "LDT", 64, true),
-                      elementary(Kind::moment, "LDATE_AND_TIME", 64, true)};
+                      elementary(Kind::moment, "LDATE_AND_TIME", 64, true),
+                      character()};
 
 const Type any_integer = elementary(Kind::any_integer, "a whole number", 64, true);
 const Type any_real = elementary(Kind::any_real, "a real number");
@@ -63,9 +70,7 @@ struct Foreign {
 };
 
 constexpr Foreign foreign[] = {{"wstring", "write STRING; texts are bytes"},
-                               {"wchar", "write STRING[1]"},
-                               {"char", "write STRING[1], or BYTE for its number"},
-                               {"dtl", "write LDT"},
+                               {"wchar", "write CHAR"},
                                {"s5time", "write TIME"},
                                {"any", "write the type; a block for each"},
                                {"variant", "write the type; a block for each"},
@@ -79,7 +84,8 @@ const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &lint_type = table[4], &ulint_type = table[8], &real_type = table[13],
            &lreal_type = table[14], &time_type = table[15], &date_type = table[18],
            &clock_type = table[20], &moment_type = table[24], &any_integer_type = any_integer,
-           &any_real_type = any_real, &any_bits_type = any_bits, &string_type = table[17];
+           &any_real_type = any_real, &any_bits_type = any_bits, &string_type = table[17],
+           &char_type = table[28];
 
 const Type* find_prefix(std::string_view name) {
     static constexpr std::pair<std::string_view, std::string_view> shorter[] = {

@@ -222,6 +222,8 @@ const Type* Checker::check_name(Expression& e, const Type* expected) {
         become(e, *it->second.type, {.integer = static_cast<Wide>(it->second.index)});
         return it->second.type;
     }
+    if (same_name(token.text, "eno") && routine_ && routine_->pou->kind != PouKind::data_block)
+        return use(e, eno_of(*routine_));
     return unknown_name(e);
 }
 
@@ -336,7 +338,8 @@ const Type* Checker::check_index(Expression& e) {
     for (Argument& argument : e.arguments) check(*argument.value);
     for (Argument& argument : e.arguments) {
         if (!type) return nullptr;
-        if (type->kind != Kind::array)
+        const bool of_text = type->kind == Kind::text;
+        if (type->kind != Kind::array && !of_text)
             return fail("L0905", argument.value->place,
                         fmt::format("{} has no elements", describe(*type)),
                         e.arguments.size() > 1 ? "there are more indices than dimensions" : "");
@@ -347,13 +350,16 @@ const Type* Checker::check_index(Expression& e) {
                         fmt::format("an index is a whole number, not {}", describe(*given)));
         const Wide value = argument.value->constant.integer;
         if (is_constant(*argument.value)) {
-            if (value < type->lower || value > type->upper)
+            const Wide lower = of_text ? 1 : type->lower,
+                       upper = of_text ? type->length : type->upper;
+            if (value < lower || value > upper)
                 return fail("L0908", argument.value->place,
                             fmt::format("there is no element {}", to_string(value)),
-                            fmt::format("the index goes from {} to {}", type->lower, type->upper));
+                            fmt::format("the index goes from {} to {}", to_string(lower),
+                                        to_string(upper)));
             argument.value->type = &lint_type;
         }
-        type = type->element;
+        type = of_text ? &char_type : type->element;
     }
     return type;
 }
@@ -494,7 +500,22 @@ const Type* Checker::unite(Expression& e, const Type* expected) {
     return coerce(left, *common) && coerce(right, *common) ? common : nullptr;
 }
 
+/// SCL joins integers as bit strings of their width. It reckons with bit strings as with integers:
+/// with the wanted one, if that is wider.
+void Checker::reinterpret(Expression& e, Kind from, const Type* expected) {
+    for (Expression*& operand : e.operands) {
+        const Type& type = operand->type->plain();
+        if (type.kind != from || !is_scl(e)) continue;
+        const bool wider =
+            expected && expected->kind == Kind::integer && expected->bits > type.bits;
+        convert(operand, from == Kind::integer ? bits_type(type.bits)
+                         : wider               ? expected->plain()
+                                               : integer_type(type.bits, false));
+    }
+}
+
 const Type* Checker::check_logic(Expression& e) {
+    reinterpret(e, Kind::integer);
     const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
     for (const Expression* operand : e.operands) {
         const Type& type = *operand->type;
@@ -513,7 +534,22 @@ const Type* Checker::check_logic(Expression& e) {
     return e.type;
 }
 
+/// Of a CHAR and a STRING one becomes what the other is.
+void Checker::unite_texts(Expression*& a, Expression*& b) {
+    Expression*& character = a->type->is_character ? a : b;
+    Expression*& text = a->type->is_character ? b : a;
+    if (!character->type->is_character || text->type->kind != Kind::text) return;
+    const bool single = is_constant(*text) && text->constant.text.size() == 1;
+    single ? coerce(text, char_type) : coerce(character, string_type);
+}
+
 const Type* Checker::check_comparison(Expression& e) {
+    unite_texts(e.operands[0], e.operands[1]);
+    const auto is_kind = [&](Kind kind) {
+        return std::ranges::any_of(e.operands,
+                                   [&](const Expression* o) { return o->type->kind == kind; });
+    };
+    if (is_kind(Kind::bits) && is_kind(Kind::integer)) reinterpret(e, Kind::bits);
     const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
     const bool order = e.op != Word::equal && e.op != Word::unequal;
     if (a.kind == Kind::text && b.kind == Kind::text) return &bool_type;
@@ -534,6 +570,7 @@ const Type* Checker::check_comparison(Expression& e) {
 const Type* Checker::check_arithmetic(Expression& e, const Type* expected) {
     const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
     if (a.is_time() || b.is_time()) return check_time_arithmetic(e);
+    reinterpret(e, Kind::bits, expected);
     for (const Expression* operand : e.operands) {
         const Type& type = *operand->type;
         if (type.is_number() || type.is_any()) continue;
@@ -766,6 +803,14 @@ bool Checker::coerce(Expression*& e, const Type& to) {
     if (&from == &to || same_type(from, to)) return true;
     if (from.is_any()) return coerce_constant(*e, to);
     if (from.kind == Kind::text && to.kind == Kind::text) return true;
+    if (to.is_character && is_constant(*e) && e->constant.text.size() == 1) {
+        become(*e, to, {.integer = static_cast<unsigned char>(e->constant.text[0])});
+        return true;
+    }
+    if (from.is_character && to.kind == Kind::text) {
+        convert(e, to);
+        return true;
+    }
     if (to.is_subrange && same_type(from.plain(), to.plain())) {
         if (is_constant(*e) && (e->constant.integer < to.lower || e->constant.integer > to.upper)) {
             fail("L0908", e->place,
@@ -802,6 +847,7 @@ bool Checker::refuse_conversion(const Expression& e, const Type& to) {
     }
     std::string help;
     if (to.kind == Kind::time && from.is_number()) help = "write a time with its unit: T#500ms";
+    if (to.is_character && from.kind == Kind::text) help = "a CHAR is one character: 'A'";
     if (to.kind == Kind::boolean && from.is_number()) help = "compare it, as in 'x <> 0'";
     if (to.kind == Kind::enumeration && !to.values.empty())
         help = fmt::format("write one of its values, such as {}#{}", to.name, to.values.front());

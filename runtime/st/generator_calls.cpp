@@ -71,6 +71,13 @@ void Generator::call_routine(const Expression& e) {
     take(frame, e);
 }
 
+std::uint32_t Generator::standard_number(const BlockType& kind) {
+    const auto [it, added] =
+        standard_numbers_.emplace(&kind, static_cast<std::uint32_t>(code_.standard.size()));
+    if (added) code_.standard.push_back(&kind);
+    return it->second;
+}
+
 void Generator::call_instance(const Expression& e) {
     const Expression& callee = *e.operands[0];
     const Type& type = *callee.type;
@@ -89,9 +96,7 @@ void Generator::call_instance(const Expression& e) {
     for (const Argument& argument : e.arguments)
         if (argument.variable->section != Section::output || is_set(argument))
             assign(part(frame, *argument.variable), *argument.variable->type, *argument.value);
-    const auto [it, added] =
-        standard_numbers_.emplace(type.standard, static_cast<std::uint32_t>(code_.standard.size()));
-    if (added) code_.standard.push_back(type.standard);
+    const std::uint32_t number = standard_number(*type.standard);
     place_ = e.place;
     std::vector<std::uint32_t> runs, mocked;
     if (has_tests_) {
@@ -100,9 +105,9 @@ void Generator::call_instance(const Expression& e) {
         land(runs);
     }
     if (frame.mode == Mode::slot)
-        put(Op::call_block, frame.slot, it->second);
+        put(Op::call_block, frame.slot, number);
     else
-        put(Op::call_block_at, address_of(frame), it->second);
+        put(Op::call_block_at, address_of(frame), number);
     land(mocked);
     take(frame, e);
 }
@@ -187,7 +192,8 @@ void Generator::give_left_out(const Location& frame, const Expression& e) {
 void Generator::take(const Location& frame, const Expression& e) {
     for (const Argument& argument : e.arguments) {
         const Variable& variable = *argument.variable;
-        if (variable.section != Section::output || is_set(argument)) continue;
+        const bool is_taken = argument.is_output || variable.section == Section::output;
+        if (!is_taken || is_set(argument)) continue;
         const Location from = part(frame, variable);
         const Location to = locate(*argument.value);
         const Type &given = *variable.type, &wanted = *argument.value->type;
@@ -296,10 +302,42 @@ Slot Generator::standard(const Expression& e, Slot wanted) {
             return emit(Op::to_bcd, wanted, argument(0), static_cast<Slot>(type.bits / 4));
         case Rule::time:
             return emit(Op::time_now, wanted, 0);
+        case Rule::swap:
+            return emit(Op::swap_bytes, wanted, argument(0), static_cast<Slot>(type.bits));
+        case Rule::encode:
+            return emit(Op::lowest_bit, wanted, argument(0));
+        case Rule::decode: {
+            const auto last = static_cast<std::uint64_t>(type.bits - 1);
+            const Slot place = emit(Op::and_bits, none, argument(0), constant_slot(last));
+            return emit(Op::shl_64, wanted, constant_slot(1), place);
+        }
+        case Rule::statement:
+            return reset_timer(*e.arguments[0].value);
+        case Rule::capacity:
         case Rule::move:
         case Rule::operation:
             return value_or_address(*e.arguments[0].value, none);
     }
+    return none;
+}
+
+/// As the timer begins, but with the time that was given to it.
+Slot Generator::reset_timer(const Expression& timer) {
+    const Type& type = *timer.type;
+    const std::uint32_t slots = slots_of(type);
+    if (images_[&type].empty()) {
+        Image fresh(slots, 0);
+        fill_default(fresh, 0, type);
+        images_[&type] = std::move(fresh);
+    }
+    const Slot made = new_temporary(slots);
+    image_uses_.push_back({next(), &type, nullptr});
+    put(Op::initialise, made, 0, slots);
+    const Location at = locate(timer);
+    for (const Variable* member : type.members)
+        if (same_name(member->text, "pt"))
+            put(Op::move, made + member->slot, load(part(at, *member)));
+    copy(at, {Mode::slot, made}, slots - (has_tests_ ? 1 : 0));
     return none;
 }
 

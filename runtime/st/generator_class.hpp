@@ -121,17 +121,20 @@ class Generator {
     Slot text_function(const Expression& e);
     Slot text_conversion(const Expression& e);
     void append(Slot to, Slot from, Slot first, Slot count);
+    Slot character(const Expression& e, Slot wanted);
     void store_bits(const Expression& target, const Expression& from);
 
     // generator_calls.cpp
     Slot call(const Expression& e, Slot wanted);
     Location method_base(const Expression& e);
+    std::uint32_t standard_number(const BlockType& kind);
     void call_instance(const Expression& e);
     void call_routine(const Expression& e);
     void give_left_out(const Location& frame, const Expression& e);
     void give(const Location& frame, const Expression& e, const Routine& routine);
     void take(const Location& frame, const Expression& e);
     Slot standard(const Expression& e, Slot wanted);
+    Slot reset_timer(const Expression& timer);
     Slot extremum(const Expression& e, bool greatest, Slot wanted);
     Slot several(const Expression& e, std::size_t first);
     Slot value_or_address(const Expression& e, Slot wanted);
@@ -140,6 +143,7 @@ class Generator {
     struct Compared {
         Slot holds = none, found = none, wanted = none, tolerance = none;
     };
+    void advance_time(Slot by);
     void write_test_statement(const Expression& e);
     Location calls_of(const Expression& instance);
     Location locate_global(const Variable& variable);

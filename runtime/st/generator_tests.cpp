@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "runtime/st/generator_class.hpp"
+#include "runtime/st/standard_source.hpp"
 
 namespace lineshaft::st {
 
@@ -19,7 +20,7 @@ void Generator::write_test_statement(const Expression& e) {
     const Expression& first = *e.arguments[0].value;
     switch (e.test) {
         case TestCall::advance_time:
-            return put(Op::advance_time, 0, value(first));
+            return advance_time(value(first));
         case TestCall::mock: {
             const Location calls = calls_of(first);
             return store(calls, emit(Op::or_bits, none, load(calls), constant_slot(mocked_bit)));
@@ -55,6 +56,29 @@ void Generator::write_test_statement(const Expression& e) {
     if (type.kind == Kind::text || type.is_scalar()) return write_assertion(e, compared(e));
     if (e.test == TestCall::assert_eq)
         return write_equal(e, type, locate(first), locate(second), "");
+}
+
+/// In each millisecond of it the test's own objects, such as axes, are scanned.
+void Generator::advance_time(Slot by) {
+    std::vector<const Variable*> objects;
+    for (const Routine* of = routine_->is_test() ? routine_ : nullptr; of; of = of->owner)
+        for (const Variable& variable : of->variables)
+            if (variable.type && variable.type->is_object()) objects.push_back(&variable);
+    if (objects.empty()) return put(Op::advance_time, 0, by, by);
+    const Slot zero = constant_slot(0), left = new_temporary(), step = new_temporary();
+    put(Op::move, left, by);
+    const std::uint32_t start = next();
+    std::vector<std::uint32_t> end;
+    jump(Op::jump_unless, 0, emit(Op::lt_signed, none, zero, left), end);
+    put(Op::min_signed, step, left, constant_slot(1'000'000));
+    put(Op::advance_time, 0, step, step);
+    for (const Variable* object : objects)
+        put(Op::call_block_at, address_of(locate_global(*object)),
+            standard_number(*object->type->standard));
+    put(Op::sub_lint, left, left, step);
+    put(Op::repeat, 0, 0, start);
+    land(end);
+    put(Op::advance_time, 0, zero, by);
 }
 
 /// Where it is counted how often an instance was called.
@@ -175,7 +199,8 @@ void Generator::count_call(const Location& calls, std::vector<std::uint32_t>& ru
 }
 
 void Generator::cover(CoverPoint::Kind kind, Place place, std::size_t branch) {
-    if (!options_.covered || place.file->get() == test_file_) return;
+    const SourceFile* file = place.file->get();
+    if (!options_.covered || file == test_file_ || file == standard_source().get()) return;
     const bool is_function = kind == CoverPoint::Kind::function;
     put(Op::cover, static_cast<Slot>(code_.points.size()));
     code_.points.push_back({kind, place, static_cast<std::uint32_t>(branch),

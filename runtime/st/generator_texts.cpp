@@ -98,7 +98,12 @@ Slot Generator::text_conversion(const Expression& e) {
     if (from.type->kind == Type::Kind::enumeration)
         number = convert(number, *from.type, lint_type, false, none);
     Slot made = none;
-    new_text(made);
+    const Slot text = new_text(made);
+    if (from.type->is_character) {
+        put(Op::move, text, constant_slot(1));
+        put(Op::move, text + 1, number);
+        return made;
+    }
     const Op op = from.type->is_real()
                       ? (from.type->bits == 32 ? Op::text_of_float : Op::text_of_real)
                   : from.type->is_unsigned_64() ? Op::text_of_unsigned

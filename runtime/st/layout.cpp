@@ -48,7 +48,8 @@ void Generator::check_size(std::uint64_t slots, Place place, std::string_view na
 
 void Generator::place_variables(Routine& routine, std::uint32_t& at, auto condition) {
     for (Variable& variable : routine.variables) {
-        if (variable.space == Space::none || !condition(variable)) continue;
+        const bool elsewhere = variable.space == Space::none || variable.space == Space::global;
+        if (elsewhere || !condition(variable)) continue;
         place_ = variable.name.place;
         variable.slot = at;
         const std::uint64_t own = slots_of(*variable.type);  // also lays out what is referred to
@@ -104,7 +105,9 @@ void Generator::lay_out_method(Routine& method) {
 }
 
 void Generator::fill(Image& image, std::uint32_t at, const Variable& variable) {
-    if (variable.space == Space::reference || variable.space == Space::none) return;
+    if (variable.space == Space::reference || variable.space == Space::none ||
+        (variable.space == Space::global && variable.of))
+        return;
     fill_default(image, at, *variable.type);
     if (variable.initial) fill(image, at, *variable.type, *variable.initial);
 }

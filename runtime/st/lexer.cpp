@@ -1,6 +1,7 @@
 #include "runtime/st/lexer.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -44,6 +45,8 @@ constexpr Sign signs[] = {{":=", Word::assign},
                           {"-=", Word::minus_assign},
                           {"*=", Word::times_assign},
                           {"/=", Word::divided_assign},
+                          {"S=", Word::set_assign},
+                          {"R=", Word::reset_assign},
                           {"=>", Word::output},
                           {"?=", Word::reference_assign},
                           {"**", Word::power},
@@ -120,14 +123,21 @@ class Lexer {
             if (text_[at_] == '\n')
                 new_line_ = true;
             else if (at("(*") || at("/*") || is_translated_comment())
-                skip_comment();
+                note_comment(&Lexer::skip_comment);
             else if (at("//"))
-                skip_line();
+                note_comment(&Lexer::skip_line);
             else if (text_[at_] == '{')
                 skip_pragma();
             else if (text_[at_] != ' ' && text_[at_] != '\t' && text_[at_] != '\r')
                 return;
         }
+    }
+
+    void note_comment(void (Lexer::*skip)()) {
+        const std::size_t begin = at_;
+        (this->*skip)();
+        tokens_.comments.push_back(
+            {tokens_.tokens.size(), new_line_, place(begin, std::min(at_ + 1, text_.size()))});
     }
 
     /// Stops before the end of the line.
@@ -212,9 +222,9 @@ class Lexer {
         const std::string_view text = text_.substr(start_, at_ - start_);
         const bool after_dot = !tokens_.tokens.empty() && tokens_.tokens.back().word == Word::dot;
         if (peek() == '#' && !after_dot) return read_prefix(text);
-        if (same_name(text, "ref") && peek() == '=') {
+        if (const auto word = read_letter_assign(text)) {
             ++at_;
-            add(Word::reference_assign);
+            add(*word);
             return;
         }
         const auto it = words().find(text);
@@ -226,6 +236,18 @@ class Lexer {
         }
         add(it->second);
         if (it->second == Word::region_ || it->second == Word::end_region_) skip_title();
+    }
+
+    /// `REF=`, and behind what may be assigned `S=` and `R=`.
+    std::optional<Word> read_letter_assign(std::string_view text) const {
+        if (peek() != '=' || tokens_.tokens.empty()) return {};
+        if (same_name(text, "ref")) return Word::reference_assign;
+        const Token& before = tokens_.tokens.back();
+        const bool assigned = before.word == Word::name || before.word == Word::close_bracket ||
+                              before.word == Word::direct || before.word == Word::integer;
+        if (!assigned || new_line_) return {};
+        if (same_name(text, "s")) return Word::set_assign;
+        return same_name(text, "r") ? std::optional(Word::reset_assign) : std::nullopt;
     }
 
     /// A ':', ':=' or ',' follows.
@@ -307,10 +329,13 @@ class Lexer {
             else
                 fail(place(start_, start_ + 1), "the quoted name does not end",
                      "it ends with '\"'");
-            Token& token = add(Word::name);
+            const bool is_prefix =
+                !local && peek() == '#' && (is_letter(peek(1)) || peek(1) == '"');
+            Token& token = add(is_prefix ? Word::prefix : Word::name);
             token.text = text;
             token.quoted = !local;
             token.local = local;
+            if (is_prefix) ++at_;
             return;
         }
         skip_while([](char c) { return is_letter(c) || is_digit(c); });

@@ -110,6 +110,25 @@ struct Library::Made : Compiled {
 
 namespace {
 
+/// What comments say, in one line.
+std::string text_of_comments(std::string_view written) {
+    constexpr std::string_view marks = "(*/) \t\r\n";
+    std::string text;
+    for (std::size_t begin = 0; begin < written.size();) {
+        const std::size_t end = std::min(written.find('\n', begin), written.size());
+        std::string_view line = written.substr(begin, end - begin);
+        begin = end + 1;
+        line.remove_prefix(std::min(line.find_first_not_of(marks), line.size()));
+        const bool is_closed =
+            line.ends_with("*)") || line.ends_with("*/") || line.ends_with("*/)");
+        const std::size_t last = line.find_last_not_of(is_closed ? marks : " \t\r");
+        line = line.substr(0, last == std::string_view::npos ? 0 : last + 1);
+        if (!text.empty() && !line.empty()) text += ' ';
+        text += line;
+    }
+    return text;
+}
+
 /// Writes down the fields of one kind.
 class FieldWriter {
   public:
@@ -255,6 +274,8 @@ class FieldWriter {
         Field field;
         field.name = made_.names.emplace_back(name);
         field.unit = type.is_time() ? std::string_view("ns") : std::string_view(variable.unit);
+        if (!variable.doc.empty())
+            field.doc = made_.names.emplace_back(text_of_comments(variable.doc));
         field.direction = direction;
         field.offset = offset;
         field.type = type.kind == Kind::boolean       ? lineshaft::Type::boolean
@@ -334,6 +355,8 @@ void add_routine(Library::Made& made, const Routine& routine, const CodeRoutine&
     kind.doc = fmt::format("{} of {}",
                            routine.pou->kind == PouKind::program ? "PROGRAM" : "FUNCTION_BLOCK",
                            (*routine.pou->name.place.file)->path);
+    if (!routine.pou->doc.empty())
+        kind.doc = fmt::format("{} ({})", text_of_comments(routine.pou->doc), kind.doc);
     FieldWriter fields(made, kind);
     fields.write_header(routine);
     for (const Variable& variable : routine.variables) {

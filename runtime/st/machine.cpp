@@ -184,6 +184,22 @@ std::int64_t compare_texts(const std::byte* a, const std::byte* b) {
     return text_at(a).compare(text_at(b));
 }
 
+/// The one numbered `place` (from 1) of a text that has room for so many: 0 behind its end.
+std::optional<std::uint64_t> character_of(const std::byte* from, std::int64_t place,
+                                          std::uint32_t room) {
+    if (place < 1 || place > std::int64_t{room}) return {};
+    const auto at = static_cast<std::uint64_t>(place - 1);
+    return at < word(from, 0) ? byte(from + 8, at) : 0;
+}
+
+/// False if the text is shorter.
+bool set_character(std::byte* text, std::int64_t place, std::uint64_t value) {
+    const auto at = static_cast<std::uint64_t>(place - 1);
+    const bool is_there = at < word(text, 0);
+    if (is_there) set_byte(text + 8, at, value);
+    return is_there;
+}
+
 /// The first place, counted from 1, or 0.
 std::uint64_t find_text(const std::byte* in, const std::byte* what) {
     return text_at(what).empty() ? 0 : text_at(in).find(text_at(what)) + 1;

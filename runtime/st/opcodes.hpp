@@ -60,7 +60,7 @@
     OP(call_at, call, "rf--", CALL(U(a), b))                                                         \
     OP(call_block, call, "sn--", frames.call_block(at(a), b))                                        \
     OP(call_block_at, call, "rn--", frames.call_block(target(U(a)), b))                              \
-    OP(advance_time, call, "-r--", frames.now.time += I(b); frames.now.interval = I(b); ++frames.now.index) \
+    OP(advance_time, call, "-rr-", frames.now.time += I(b); frames.now.interval = I(c); ++frames.now.index) \
     OP(message, none, "r---", (void)a)                                                                \
     OP(cover, none, "n---", code.hits[a].fetch_add(1, std::memory_order_relaxed))                     \
     OP(stop, jump, "rrr-", FAIL(assertion))                                                           \
@@ -70,6 +70,8 @@
     OP(xor_bits, boolean, "wrr-", put(a, U(b) ^ U(c)))                                               \
     OP(not_bool, boolean, "wr--", put(a, U(b) ^ 1))                                                  \
     OP(not_bits, boolean, "wrn-", put(a, ~U(b) & mask(c)))                                           \
+    OP(swap_bytes, boolean, "wrn-", put(a, __builtin_bswap64(U(b)) >> (64 - c)))                      \
+    OP(lowest_bit, boolean, "wr--", put(a, U(b) == 0 ? 0 : static_cast<std::uint64_t>(std::countr_zero(U(b))))) \
     OP(get_bits, boolean, "wrn-", put(a, U(b) >> (c & 63) & mask(c >> 6)))                           \
     OP(set_bits, boolean, "wrn-", put(a, (U(a) & ~(mask(c >> 6) << (c & 63))) | (U(b) & mask(c >> 6)) << (c & 63))) \
     LINESHAFT_ST_SHIFTS(OP, 8) LINESHAFT_ST_SHIFTS(OP, 16)                                           \
@@ -127,6 +129,8 @@
     OP(text_append, text, "rrs-", append_text(target(U(a)), target(U(b)), I(c), I(c + 1)))           \
     OP(text_length, text, "wr--", put(a, word(target(U(b)), 0)))                                     \
     OP(text_compare, text, "wrr-", put(a, compare_texts(target(U(b)), target(U(c)))))                \
+    OP(text_character, text, "wrrn", if (const auto n = character_of(target(U(b)), I(c), d)) put(a, *n); else FAIL(array_bounds)) \
+    OP(set_character, text, "rrr-", if (!set_character(target(U(b)), I(c), U(a))) FAIL(array_bounds)) \
     OP(text_find, text, "wrr-", put(a, find_text(target(U(b)), target(U(c)))))                       \
     OP(text_of_signed, text, "rr--", write_number(target(U(a)), I(b)))                               \
     OP(text_of_unsigned, text, "rr--", write_number(target(U(a)), U(b)))                             \

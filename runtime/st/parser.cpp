@@ -107,6 +107,7 @@ class Parser {
         : is_tests_(is_tests),
           tokens_(tokens.tokens),
           pragmas_(tokens.pragmas),
+          comments_(tokens.comments),
           mistakes_(tokens.mistakes),
           tree_(tree),
           out_(out) {}
@@ -353,9 +354,11 @@ class Parser {
     }
 
     Pou* read_pou_of(const PouWords& words) {
+        const std::string_view doc = comment_before(at_, true);
         const Token opener = take();
         Pou& pou = tree_.pous.emplace_back();
         pou.kind = words.kind;
+        pou.doc = doc;
         pou.is_private = is(Word::private_);
         accept_access();
         while (is_name(next()) && (is(Word::override_) || is(Word::final_))) {
@@ -368,6 +371,7 @@ class Parser {
         if (accept(Word::colon)) pou.result = read_type();
         if (panic_) skip_to_statement();
         read_header(pou);
+        if (pou.doc.empty()) pou.doc = comment_before(at_, true);
         read_sections(pou, words.end);
         if (std::exchange(is_spoiled_, false)) return skip_past(words.end), &pou;
         accept(Word::begin_);
@@ -535,9 +539,10 @@ class Parser {
         if (!panic_) end_of_statement();
         if (panic_) return skip_declaration();
         const auto [unit, place] = unit_of(first);
+        const std::string_view doc = comment_before(at_, false);
         for (const Token& name : names)
-            to.push_back(
-                &tree_.declarations.emplace_back(Declaration{name, type, initial, unit, place}));
+            to.push_back(&tree_.declarations.emplace_back(
+                Declaration{name, type, initial, unit, place, doc}));
     }
 
     /// A statement stands where a declaration is due.
@@ -575,6 +580,25 @@ class Parser {
             if (begin != end) return {text.substr(begin + 1, end - begin - 1), it->place};
         }
         return {};
+    }
+
+    /// The comments before a token that begin their lines, or that do not: those behind the last
+    /// empty line.
+    std::string_view comment_before(std::size_t token, bool first_in_line) const {
+        const auto first = std::ranges::lower_bound(comments_, token, {}, &Pragma::before);
+        const auto behind = std::ranges::upper_bound(comments_, token, {}, &Pragma::before);
+        const auto fits = [&](const Pragma& c) { return c.first_in_line == first_in_line; };
+        auto begin = std::find_if(first, behind, fits);
+        const auto end = std::find_if_not(begin, behind, fits);
+        const auto is_apart = [](const Pragma& a, const Pragma& b) {
+            Place between = a.place;
+            between.begin = a.place.end;
+            between.end = b.place.begin;
+            return std::ranges::count(between.text(), '\n') > 1;
+        };
+        for (auto next = begin; next != end && next + 1 != end; ++next)
+            if (is_apart(*next, next[1])) begin = next + 1;
+        return begin == end ? std::string_view() : begin->place.to((end - 1)->place).text();
     }
 
     void read_types() {
@@ -1009,6 +1033,7 @@ class Parser {
         if (panic_) return nullptr;
         const Word op = here().word;
         if (op >= Word::assign && op <= Word::divided_assign) return read_assignment(target);
+        if (op == Word::set_assign || op == Word::reset_assign) return read_latch(target);
         if (op == Word::equal) return assigned_by_comparison(target);
         Statement* statement = make(Statement::Kind::call, target->token);
         statement->place = target->place;
@@ -1060,6 +1085,21 @@ class Parser {
             fail("L0903", here().place, "an assignment gives one variable its value",
                  "write two statements");
         }
+        return ended(statement);
+    }
+
+    /// `lamp S= start;`: IF start THEN lamp := TRUE; END_IF
+    Statement* read_latch(Expression* target) {
+        const Token op = take();
+        Statement* latched = make(Statement::Kind::assign, op);
+        latched->target = target;
+        latched->value = make(Expression::Kind::name, op);
+        latched->value->token.text = op.word == Word::set_assign ? "true" : "false";
+        Statement* statement = make(Statement::Kind::if_, op);
+        Branch& branch = statement->branches.emplace_back();
+        branch.condition = read_expression();
+        branch.body = {latched};
+        latched->place = statement->place = target->place.to(last().place);
         return ended(statement);
     }
 
@@ -1201,7 +1241,7 @@ class Parser {
     const bool is_tests_;
     Pou* fixture_ = nullptr;  ///< that the tests are methods of
     const std::vector<Token>& tokens_;
-    const std::vector<Pragma>& pragmas_;
+    const std::vector<Pragma>&pragmas_, &comments_;
     const std::vector<std::uint32_t>& mistakes_;
     Tree& tree_;
     Diagnostics& out_;

@@ -41,6 +41,13 @@ constexpr StandardFunction functions[] = {
     {"SHR", Rule::shift, 2, 2, Op::shr_8},
     {"ROL", Rule::shift, 2, 2, Op::rol_8},
     {"ROR", Rule::shift, 2, 2, Op::ror_8},
+    {"SWAP", Rule::swap},
+    {"DECO", Rule::decode},
+    {"ENCO", Rule::encode},
+    {"SCATTER", Rule::statement, 2, 2},
+    {"GATHER", Rule::statement, 2, 2},
+    {"RESET_TIMER", Rule::statement},
+    {"PRESET_TIMER", Rule::statement, 2, 2},
     {"MOVE", Rule::move},
     {"ADD", Rule::operation, 2, several, Op::move, Word::plus},
     {"SUB", Rule::operation, 2, 2, Op::move, Word::minus},
@@ -90,7 +97,11 @@ constexpr StandardFunction functions[] = {
     {"SUB_LDT_LDT", Rule::operation, 2, 2, Op::move, Word::minus},
     {"CONCAT_DATE_TOD", Rule::operation, 2, 2, Op::move, Word::plus},
     {"CONCAT_DATE_LTOD", Rule::operation, 2, 2, Op::move, Word::plus},
+    {"T_ADD", Rule::operation, 2, 2, Op::move, Word::plus},
+    {"T_SUB", Rule::operation, 2, 2, Op::move, Word::minus},
+    {"T_DIFF", Rule::operation, 2, 2, Op::move, Word::minus},
     {"LEN", Rule::length},
+    {"MAX_LEN", Rule::capacity},
     {"FIND", Rule::find, 2, 2},
     {"CONCAT", Rule::text, 2, several, Op::move, Word::end_of_file, several},
     {"LEFT", Rule::text, 2, 2},
@@ -106,11 +117,6 @@ struct Elsewhere {
 };
 
 constexpr Elsewhere elsewhere[] = {
-    {"RESET_TIMER", "call the timer with IN := FALSE"},
-    {"PRESET_TIMER", "give the timer its PT"},
-    {"DECO", "write SHL(DWORD#1, n)"},
-    {"ENCO", "find the bit in a FOR: SHR(x, i)"},
-    {"SWAP", "write ROL(x, 8) for a WORD"},
     {"PEEK", "read the variable by its name"},
     {"PEEK_BOOL", "read the variable by its name"},
     {"POKE", "assign to the variable by its name"},
@@ -121,8 +127,6 @@ constexpr Elsewhere elsewhere[] = {
     {"BLKMOV", "assign the structure as a whole"},
     {"FILL_BLK", "assign the elements in a FOR"},
     {"UFILL_BLK", "assign the elements in a FOR"},
-    {"SCATTER", "assign the bits one by one: x.%X0"},
-    {"GATHER", "assign the bits one by one: x.%X0"},
     {"Serialize", "assign the parts one by one"},
     {"Deserialize", "assign the parts one by one"},
     {"CountOfElements", "declare the bounds as constants"},
@@ -175,6 +179,10 @@ std::string argument_name(const StandardFunction& function, int argument) {
             return one_of({"MN", "IN", "MX"});
         case Rule::select:
             return one_of({"G", "IN0", "IN1"});
+        case Rule::statement:
+            if (function.name == "RESET_TIMER") return "TIMER";
+            if (function.name == "PRESET_TIMER") return one_of({"PT", "TIMER"});
+            return one_of({"IN", "OUT"});
         case Rule::multiplex:
             return argument == 0 ? "K" : fmt::format("IN{}", argument - 1);
         case Rule::shift:

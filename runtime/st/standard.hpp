@@ -35,6 +35,11 @@ enum class Rule : std::uint8_t {
     to_bcd,     ///< UINT_TO_BCD_WORD
     valid_bcd,  ///< IS_VALID_BCD
     time,       ///< TIME(), of the scan
+    swap,       ///< SWAP: the bytes the other way round
+    decode,     ///< DECO(n): the bit of that number
+    encode,     ///< ENCO(bits): the number of the lowest bit
+    capacity,   ///< MAX_LEN(text)
+    statement,  ///< no value: see Checker::check_special
 };
 
 /// A function of IEC 61131-3:2013, tables 25 to 38, or of Siemens' SCL.

@@ -35,6 +35,7 @@ void Checker::check(Block& block) {
 }
 
 void Checker::check(Statement& s) {
+    if (rewrite(s)) return;
     switch (s.kind) {
         case S::assign:
             return check_assignment(s);
@@ -77,22 +78,7 @@ void Checker::check_condition(Expression*& condition, std::string_view of) {
          type->is_number() || type->is_bits() ? "compare it, as in 'x <> 0'" : "");
 }
 
-/// Siemens' ENO, a flag of each block: here no caller reads it, so it is a variable of the block.
-void Checker::declare_eno(const Expression& target) {
-    const bool is_eno =
-        target.kind == Expression::Kind::name && same_name(target.token.text, "eno");
-    if (!is_eno || !routine_ || find_variable(target.token)) return;
-    Variable& variable = routine_->variables.emplace_back();
-    variable.name = target.token;
-    variable.text = target.token.text;
-    variable.type = &bool_type;
-    variable.section = Section::temp;
-    variable.of = routine_->pou;
-    routine_->names.emplace(variable.text, &variable);
-}
-
 void Checker::check_assignment(Statement& s) {
-    declare_eno(*s.target);
     const Type* type = check(*s.target);
     if (s.op != Word::assign && type) {
         Expression* sum = make(Expression::Kind::binary, *s.target);
@@ -128,6 +114,8 @@ bool Checker::check_target(Expression& target, std::string_view how) {
     if (target.kind == E::constant && target.variable)
         return refuse(fmt::format("the constant '{}'", target.variable->text),
                       "declare it in VAR, without CONSTANT");
+    if (target.kind == E::bit && target.operands[0]->is_character())
+        return refuse("a bit of a character", "assign the character");
     if (target.kind == E::index || target.kind == E::bit) {
         return !target.operands[0]->type || check_target(*target.operands[0], how);
     }

@@ -163,6 +163,8 @@ bool Checker::check_compared(Expression& call) {
     const Type* first = check(*a, b->type);
     const Type* second = check(*b, first);
     if (!first || !second) return false;
+    unite_texts(a, b);
+    first = a->type, second = b->type;
     const bool parts = first->kind == Kind::array || first->kind == Kind::structure;
     const auto refuse = [&](std::string help) {
         fail("L0905", call.place,

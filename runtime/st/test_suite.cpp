@@ -52,19 +52,22 @@ class Bench {
   public:
     explicit Bench(const TestSuite::Made& made)
         : made_(made), root_(made.generated.images.at(made.fixture->type)) {
-        const auto& globals = made.checked.globals;
-        for (std::size_t i = 0; i < globals.size(); ++i) {
-            globals_.push_back(made.generated.images.at(globals[i].type));
-            root_[globals_slot + i] = i;
+        std::vector<std::size_t> begins;
+        for (const Global& global : made.checked.globals) {
+            const Image& image = made.generated.images.at(global.type);
+            root_[globals_slot + begins.size()] = begins.size();
+            begins.push_back(8 * root_.size());
+            root_.insert(root_.end(), image.begin(), image.end());
         }
-        for (Image& global : globals_) places_.push_back(bytes(global));
+        for (const std::size_t begin : begins) places_.push_back(bytes(root_) + begin);
     }
 
     TestResult run(const CodeRoutine* routine) {
         if (!routine) return {};
         const Code& code = made_.generated.code;
-        const Fault fault = execute(code, *routine, bytes(root_), now_, {nullptr, places_.data()},
-                                    made_.options.fuel, nullptr);
+        const Context context{nullptr, places_.data(), places_.data(), bytes(root_), 0, &never};
+        const Fault fault =
+            execute(code, *routine, bytes(root_), now_, context, made_.options.fuel, nullptr);
         if (fault == Fault::none) return {};
         if (fault == Fault::assertion) return failed_assertion();
         const FaultPlace place = fault_of(code, bytes(root_));
@@ -156,8 +159,7 @@ class Bench {
     }
 
     const TestSuite::Made& made_;
-    Image root_;
-    std::vector<Image> globals_;
+    Image root_;  ///< of the fixture, then the data blocks and the tests' own objects
     std::vector<std::byte*> places_;
     Scan now_{0, 1'000'000, 0};
 };

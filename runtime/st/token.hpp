@@ -75,6 +75,8 @@ enum class Word : std::uint8_t {
     minus_assign,
     times_assign,
     divided_assign,
+    set_assign,        ///< `S=`
+    reset_assign,      ///< `R=`
     output,            ///< `=>`
     reference_assign,  ///< `?=`, `REF=`: not of this language
     power,

@@ -58,6 +58,9 @@ struct Expression {
 
     TestCall test = TestCall::none;  ///< the statement of tests that a call is
 
+    /// `s[3]` of a text, which is no place of its own.
+    bool is_character() const;
+
     /// Of a list: it has lists of elements again, `[[1, 2], [3, 4]]`, not structures, `[(x := 1)]`.
     bool is_nested() const {
         for (const Argument& argument : arguments) {
@@ -127,6 +130,7 @@ struct Declaration {
     Expression* initial = nullptr;
     std::string_view unit = {};
     Place unit_place = {};
+    std::string_view doc = {};  ///< the comments behind it
 };
 
 enum class Section : std::uint8_t { input, output, in_out, local, temp, global, external, result };
@@ -146,6 +150,7 @@ struct Pou {
     Place place = {};            ///< its first line
     TypeText* result = nullptr;  ///< null: none
     TypeText* base = nullptr;    ///< of a data block that is an instance, or a structure
+    std::string_view doc = {};   ///< the comments before it, else below its first line
     bool is_private = false;
     bool is_tests = false;  ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it
     std::vector<DeclarationBlock> blocks = {};

@@ -43,8 +43,9 @@ struct Type {
 
     Kind kind = Kind::integer;
     bool is_signed = false;
-    int bits = 64;          ///< of integer, bits, real
-    std::string name = {};  ///< as messages show it
+    bool is_character = false;  ///< of bits: CHAR
+    int bits = 64;              ///< of integer, bits, real
+    std::string name = {};      ///< as messages show it
     std::uint32_t slots = 1;
     std::int64_t lower = 0, upper = -1;  ///< of an array's index; of a subrange's values
     bool is_subrange = false;
@@ -74,6 +75,8 @@ struct Type {
     bool is_handle() const {
         return kind == Kind::handle || (kind == Kind::array && element->is_handle());
     }
+    /// References to it are values, `AXIS_REF`.
+    bool is_object() const { return kind == Kind::standard && !standard->handle.empty(); }
     bool is_instance() const { return kind == Kind::block || kind == Kind::standard; }
     bool is_unsigned_64() const {
         return (is_bits() || kind == Kind::integer) && !is_signed && bits == 64;
@@ -82,6 +85,10 @@ struct Type {
     const Type& innermost() const { return has_inner ? element->innermost() : *element; }
     const Type& plain() const { return is_subrange ? *base : *this; }
 };
+
+inline bool Expression::is_character() const {
+    return kind == Kind::index && operands[0]->type && operands[0]->type->kind == Type::Kind::text;
+}
 
 /// Where a variable is.
 enum class Space : std::uint8_t {
@@ -107,6 +114,7 @@ struct Variable {
     const Pou* of = nullptr;  ///< null: a member of a structure, or of the catalogue
     bool used = false;
     std::string_view text = {};  ///< its name
+    std::string_view doc = {};   ///< comments, as they are written
 };
 
 /// What runs: the body of a POU, or a method.

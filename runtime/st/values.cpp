@@ -32,9 +32,11 @@ Slot Generator::value(const Expression& e, Slot wanted) {
     switch (e.kind) {
         case E::constant:
             return constant_slot(*e.type, e.constant);
+        case E::index:
+            if (e.is_character()) return character(e, wanted);
+            [[fallthrough]];
         case E::name:
         case E::member:
-        case E::index:
             return load(locate(e), wanted);
         case E::bit:
             return bit(e, wanted);
@@ -180,6 +182,14 @@ Slot Generator::bit(const Expression& e, Slot wanted) {
     return emit(Op::get_bits, wanted, value(*e.operands[0]), static_cast<Slot>(e.constant.integer));
 }
 
+Slot Generator::character(const Expression& e, Slot wanted) {
+    const Expression& text = *e.operands[0];
+    const Slot address = text_address(text), index = value(*e.arguments[0].value);
+    const Slot to = result(wanted);
+    put(Op::text_character, to, address, index, text.type->length);
+    return to;
+}
+
 void Generator::store_bits(const Expression& target, const Expression& from) {
     const Slot bits = value_before(from, target);
     const Location whole = locate(*target.operands[0]);
@@ -195,11 +205,18 @@ void Generator::store_bits(const Expression& target, const Expression& from) {
 
 Slot Generator::converted(const Expression& e, Slot wanted) {
     const Expression& operand = *e.operands[0];
+    if (e.type->kind == Kind::handle)  // in a test, whose frame begins with the instance's header
+        return globals_slot + static_cast<Slot>(operand.variable->global);
     if (operand.type->kind == Kind::text) {
         const Slot text = text_address(operand);
         if (e.type->kind == Kind::real) {
             const Slot real = emit(Op::real_of_text, none, text);
             return e.type->bits == 32 ? emit(Op::narrow, wanted, real) : real;
+        }
+        if (e.type->is_character) {
+            const Slot to = result(wanted);
+            put(Op::text_character, to, text, constant_slot(1), 1);
+            return to;
         }
         return emit(of_type(Op::wrap_sint, e.type->plain()), wanted,
                     emit(Op::integer_of_text, none, text));
