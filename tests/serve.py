@@ -521,7 +521,7 @@ def check_checkpoint(seed):
     write_at_random(machine, rng, until)
     machine.post("pause")
     machine.post("set", {"inputs.go": True})
-    machine.post("force", {"slave.ratio": 0.5, "shaft.velocity": "3 cm/s"})
+    machine.post("force", {"gear.RatioNumerator": 0.5, "shaft.velocity": "3 cm/s"})
     request = urllib.request.Request(f"http://127.0.0.1:{machine.port}/api/checkpoint", b"")
     with urllib.request.urlopen(request, timeout=20) as response:
         (FOLDER / "at.checkpoint").write_bytes(response.read())

@@ -186,7 +186,14 @@ TRACED = """lineshaft: 1
 parameters: {speed: 10 mm/s, jitter: 0 ms}
 tasks: {main: {every: 10 ms, jitter: $jitter}}
 blocks:
-  axis: {type: virtual_axis, task: main, immediate: true, velocity: $speed}
+  axis:
+    type: path_move
+    task: main
+    execute: true
+    length: 1e6 mm
+    start_velocity: $speed
+    velocity_limit: $speed
+    end_velocity: $speed
 run: {for: 1 s}
 trace: {task: main, signals: [axis.position]}
 """

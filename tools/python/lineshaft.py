@@ -123,7 +123,7 @@ class Study:
 
 def run(program, settings=None, *, force=(), check=False, **parameters):
     """Runs a program. `settings` and keywords set its parameters: numbers, booleans, or text with a unit, "20 mm";
-    `force` has texts such as "slave.ratio=3@1s..2s"."""
+    `force` has texts such as "gear.RatioNumerator=3@1s..2s"."""
     program = pathlib.Path(program).resolve()
     with tempfile.TemporaryDirectory(prefix="lineshaft-") as folder:
         trace = pathlib.Path(folder, "trace.csv")

@@ -199,7 +199,7 @@ async function testMakers(page) {
 async function testCircle(browser) {
   circle("early.csv", "method=early");
   circle("immediate.csv", "method=immediate");
-  const address = report("circle.html", file("early.csv"), file("immediate.csv"), "--circle", "0,0,20", "--while", "g.moving");
+  const address = report("circle.html", file("early.csv"), file("immediate.csv"), "--circle", "0,0,20", "--while", "g_state.DiscreteMotion");
   const page = await open(browser, address);
   await testMakers(page);
   await testCurves(page);
@@ -563,7 +563,7 @@ async function testSmallNumbers(browser) {
 }
 
 const tenSignals = ["g.position", "x.position", "y.position", "x.velocity", "y.velocity",
-                    "x.acceleration", "y.acceleration", "circle.ratio_x", "circle.ratio_y", "g.moving"];
+                    "x.acceleration", "y.acceleration", "circle.ratio_x", "circle.ratio_y", "g_state.DiscreteMotion"];
 
 /** When the page says that it has drawn, no plot is empty, nor changes afterwards. */
 async function testDrawnAtTheMark(browser, address) {
