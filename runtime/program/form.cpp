@@ -138,6 +138,9 @@ void apply(const Form& form, const Rule& rule, const Reader& read, const Node& m
     const auto there = [&](std::string_view other) {
         return conditional ? present(form, map, other) : form.find_in(map, other);
     };
+    const auto unknown = [&](const auto& entry) { return !form.find(entry.first.text); };
+    const bool closed = form.others.name.empty();
+    if (!conditional && closed && std::ranges::any_of(map.entries, unknown)) return;
     if (std::ranges::none_of(rule.others, there))
         fail(rule.others.front(), "{0} has no '{2}'", node);
 }

@@ -112,7 +112,7 @@ struct Rule {
     enum class Kind : std::uint8_t {
         not_with,      ///< `key` stands beside none of `others`
         only_with,     ///< `key` stands beside one of `others`; what says the default is not there
-        at_least_one,  ///< of `others` is there
+        at_least_one,  ///< of `others` is there; a misspelt key may have been it
         exactly_one,   ///< of `others` is there; a misspelt key may have been it
     };
     enum class Place : std::uint8_t { the_map, the_key, the_other };  ///< what a message points at
