@@ -260,6 +260,9 @@ def check_modbus():
         raw.sendall(struct.pack(">HHHB", 7, 0, 1 + len(request), 1) + request)
         assert (got := raw.recv(100)) == struct.pack(">HHHB", 7, 0, 1 + len(answer), 1) + answer, (request, got)
         raw.close()
+    raw = connected(machine.modbus_port)
+    raw.sendall(struct.pack(">HHHBBHH", 7, 0, 6, 1, 0x85, 5, 0xFF00))  # the answer to such a function would be none
+    assert answered(raw) == b""
     assert machine.end()[0] == 0
 
 
