@@ -7,9 +7,11 @@ usage: serve.py LINESHAFT SOURCE_DIR [RECORDINGS [SEED]]        so many random r
 
 import http.client
 import json
+import os
 import pathlib
 import random
 import re
+import shutil
 import signal
 import socket
 import struct
@@ -261,7 +263,89 @@ def check_modbus():
         raw.sendall(struct.pack(">HHHB", 7, 0, 1 + len(request), 1) + request)
         assert (got := raw.recv(100)) == struct.pack(">HHHB", 7, 0, 1 + len(answer), 1) + answer, (request, got)
         raw.close()
+    raw = connected(machine.modbus_port)
+    raw.sendall(struct.pack(">HHHBBHH", 7, 0, 6, 1, 0x85, 5, 0xFF00))  # the answer to such a function would be none
+    assert answered(raw) == b""
     assert machine.end()[0] == 0
+
+
+def check_privileges():
+    """Ports below 1024 and real time are for root: who is somebody else is told what to do."""
+    if os.geteuid() == 0:
+        done = run("serve", "program.yaml", "--http", f"127.0.0.1:{free_port()}", "--for", "20 ms", "--realtime", "50")
+        assert done.returncode == 0 or "L0511" in done.stderr, done.stderr  # a container may forbid it to root, too
+    os.chmod(FOLDER, 0o755)
+    other = {"user": 65534, "group": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
+    here = ["--http", f"127.0.0.1:{free_port()}"]
+    for options, words in ((["--realtime", "50", *here], ["L0511", "setcap"]),
+                           (["--http", "127.0.0.1:80"], ["L0510", "for root"])):
+        try:
+            refused = subprocess.run([COMMAND, "serve", "program.yaml", "--for", "20 ms", *options], cwd=FOLDER,
+                                     capture_output=True, text=True, timeout=20, **other)
+        except PermissionError:
+            print("SKIPPED: messages for who is not root, who cannot read the command here")
+            return
+        if refused.returncode == 0:
+            print(f"SKIPPED: message of {options[0]}: it is allowed here")
+        else:
+            assert refused.returncode == 2 and all(word in refused.stderr for word in words), refused.stderr
+
+
+def mbpoll(machine, *arguments):
+    return subprocess.run(["mbpoll", "-0", "-1", "-m", "tcp", "-p", str(machine.modbus_port), *arguments],
+                          capture_output=True, text=True, timeout=20)
+
+
+def check_mbpoll():
+    if not shutil.which("mbpoll"):
+        print("SKIPPED: mbpoll; tools/setup --tests installs it")
+        return
+    machine = Machine()
+    done = mbpoll(machine, "-t", "0", "-r", "5", machine.host, "1")
+    assert done.returncode == 0 and "Written 1 reference" in done.stdout, done
+    eventually(lambda: machine.value("inputs.go") is True)
+    done = mbpoll(machine, "-t", "4:float", "-B", "-r", "10", machine.host)
+    assert "[10]: \t1.5" in done.stdout, done.stdout
+    done = mbpoll(machine, "-t", "4", "-r", "0", machine.host)
+    assert "Illegal data address" in done.stdout + done.stderr, done
+    assert machine.end()[0] == 0
+
+
+def check_capture():
+    """tshark finds nothing malformed in what goes over the wires."""
+    if not shutil.which("tshark"):
+        print("SKIPPED: tshark; tools/setup --tests installs it")
+        return
+    machine = Machine()
+    shark = ["tshark", "-n", "-d", f"tcp.port=={machine.modbus_port},mbtcp", "-d", f"tcp.port=={machine.port},http"]
+    capturing = subprocess.Popen(shark[:2] + ["-i", "lo", "-w", "capture.pcapng", "-f",
+                                              f"tcp port {machine.modbus_port} or tcp port {machine.port}"],
+                                 cwd=FOLDER, stderr=subprocess.PIPE, text=True)
+    while (line := capturing.stderr.readline()) and "Capture started" not in line:
+        pass
+    if not line:
+        print("SKIPPED: tshark may not capture here")
+    client = machine.modbus()
+    for address in range(30):
+        client.read_holding_registers(address, 4)
+        client.read_coils(address, 2)
+        client.write_coil(address, True)
+        client.write_registers(10, [0x4000 + address, 0])
+        client.readwrite_registers(read_address=10, read_count=2, write_address=10, write_registers=[0x4000, 0])
+        client.mask_write_register(20, 1, 2)
+        machine.get("values")
+        machine.ask("/api/nothing")
+    time.sleep(0.5)
+    capturing.send_signal(signal.SIGINT)
+    capturing.wait(20)
+    assert machine.end()[0] == 0
+
+    read = subprocess.run([*shark, "-r", "capture.pcapng", "-T", "fields", "-e", "frame.protocols"], cwd=FOLDER,
+                          capture_output=True, text=True, timeout=300)
+    frames, answers, malformed = (read.stdout.count(what) for what in ("mbtcp", ":http", "malformed"))
+    if line:
+        assert frames >= 360 and answers >= 60 and malformed == 0, (frames, answers, malformed)
+        print(f"tshark: {frames} frames of Modbus/TCP and {answers} of HTTP, 0 malformed")
 
 
 def check_stream():
@@ -299,12 +383,13 @@ class Watch:
 
     def __init__(self, machine, task):
         self.response = http.client.HTTPConnection("127.0.0.1", machine.port, timeout=20)
-        self.response.request("GET", "/api/stream?signals=late.q&every=1h")
+        self.response.request("GET", "/api/stream?signals=inputs.ratio&every=1s")
         self.response, self.task = self.response.getresponse(), task
 
     def scans(self):
-        while self.response.readline() != b"event: state\n":
-            pass
+        while (line := self.response.readline()) != b"event: state\n":
+            if not line:
+                raise ConnectionError
         return scans_of(json.loads(self.response.readline().removeprefix(b"data: ")), self.task)
 
 
@@ -348,16 +433,22 @@ def status_of(answer):
     return int(answer[9:12]) if answer.startswith(b"HTTP/1.1 ") else None
 
 
+def exchange(port, request):
+    """What is answered to bytes after which no more come; empty when the other side ends it."""
+    try:
+        with connected(port) as client:
+            client.sendall(request)
+            client.shutdown(socket.SHUT_WR)
+            return answered(client)
+    except TimeoutError:
+        raise
+    except OSError:
+        return b""
+
+
 def ask_raw(port, request):
     """The status; None when the connection was ended without one."""
-    client = connected(port)
-    try:
-        client.sendall(request)
-        client.shutdown(socket.SHUT_WR)
-    except OSError as error:
-        assert not isinstance(error, TimeoutError)
-        return None
-    return status_of(answered(client))
+    return status_of(exchange(port, request))
 
 
 def resident(process):
@@ -397,24 +488,16 @@ def check_hostile():
     eventually(lambda: watch.scans() > scans + 100)
     for client in flood:
         client.close()
-    eventually(lambda: status_of(answered_once(machine.port)) == 200)
+    eventually(lambda: ask_raw(machine.port, head([b"Connection: close\r\n\r\n"])) == 200)
     assert resident(machine.process) < before + 20, (before, resident(machine.process))
     eventually(lambda: reads_coil(machine.modbus_port))
     code, _, errors = machine.end()
     assert code == 0, errors
 
 
-def answered_once(port):
-    with connected(port) as client:
-        client.sendall(head([b"Connection: close\r\n\r\n"]))
-        return answered(client)
-
-
 def reads_coil(port):
-    with connected(port) as client:
-        client.sendall(struct.pack(">HHHBBHH", 7, 0, 6, 1, 1, 5, 1))
-        client.shutdown(socket.SHUT_WR)
-        return answered(client) == struct.pack(">HHHBBBB", 7, 0, 4, 1, 1, 1, 0)
+    answer = exchange(port, struct.pack(">HHHBBHH", 7, 0, 6, 1, 1, 5, 1))
+    return answer == struct.pack(">HHHBBBB", 7, 0, 4, 1, 1, 1, 0)
 
 
 def check_limits():
@@ -561,6 +644,26 @@ def check_kills(count, seed):
         whole = (FOLDER / "killed.yaml").read_text().rsplit("\n", 1)[0].split("entries:", 1)
         last = re.findall(r"at: ([0-9.]+) s", whole[1] if len(whole) > 1 else "") or ["0"]
         assert abs(json.loads(again.stdout)["machine_time_s"] - float(last[-1])) < 1e-12, (seed, number)
+    print(f"{count} machines killed, each recording played back up to its last whole entry, seed {seed}")
+
+
+def check_memory(program, hours):
+    """However long a machine is served, and whatever its clients want, it takes no more memory."""
+    machine = Machine("--speed", "max", "--for", f"{hours} h", "--record", "long.yaml", program=program)
+    sizes, rounds, watch = [], 0, Watch(machine, "servo")
+    try:
+        while machine.process.poll() is None:
+            machine.post("set", {"inputs.ratio": 1 + rounds % 3})
+            machine.post("force", {"inputs.ratio": 1 + rounds % 2})
+            machine.post("release", {"signals": ["inputs.ratio"]})
+            watch.scans()
+            sizes.append(resident(machine.process))
+            rounds += 1
+    except (OSError, http.client.HTTPException, AssertionError) as error:
+        assert machine.process.wait(5) == 0, error  # it ended in the middle
+    assert machine.process.wait(20) == 0, machine.process.stderr.read()
+    assert len(sizes) > 2 and sizes[-1] < sizes[1] + 2, sizes
+    print(f"{hours} h with a client, {rounds} rounds of what it wants: {sizes[1]:.1f} MB at first, {sizes[-1]:.1f} MB at the end")
 
 
 def main():
@@ -573,7 +676,11 @@ def main():
         (FOLDER / "program.yaml").write_text(PROGRAM, encoding="utf-8")
         check_api()
         check_refusals()
+        check_privileges()
         check_modbus()
+        check_mbpoll()
+        if recordings >= 100:
+            check_capture()
         check_stream()
         check_hostile()
         check_limits()
@@ -581,8 +688,7 @@ def main():
         check_recordings(recordings, seed)
         check_checkpoint(seed)
         check_kills(max(2, recordings // 2), seed)
-        served = Machine("--speed", "max", "--for", "1 h", program=source / "programs" / "13_served_line.yaml")
-        assert served.process.wait(60) == 0
+        check_memory(source / "programs" / "13_served_line.yaml", 24 if recordings >= 100 else 12)
     return 0
 
 

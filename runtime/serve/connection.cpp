@@ -40,7 +40,7 @@ bool Connection::is_readable() const {
 }
 
 bool Connection::is_writable() const {
-    return wait_for(socket_, POLLOUT | POLLRDHUP, 0) == POLLOUT;
+    return wait_for(socket_, POLLRDHUP, 0) == 0;
 }
 
 bool Connection::fill() {

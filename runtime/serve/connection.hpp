@@ -19,7 +19,7 @@ class Connection final : public httplib::Stream {
     /// much.
     bool begin();
 
-    /// False also when the client has gone, or sends no more.
+    /// False when the client has gone, or sends no more; one that is slow is waited for by write().
     bool is_writable() const override;
     bool is_readable() const override;
     ssize_t read(char* to, std::size_t size) override;

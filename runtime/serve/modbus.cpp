@@ -187,6 +187,7 @@ int ModbusDesk::mask(const Request& request, ModbusTables& tables) {
 
 void ModbusDesk::converse(int socket, bool may_write, ModbusTables& tables) {
     constexpr std::uint32_t idle_s = 300;
+    constexpr std::uint8_t first_exception = 0x80;  // no request, and its answer would be none
     modbus_t* const context = modbus_new_tcp("127.0.0.1", MODBUS_TCP_DEFAULT_PORT);
     modbus_set_socket(context, socket);
     modbus_set_indication_timeout(context, idle_s, 0);
@@ -194,7 +195,8 @@ void ModbusDesk::converse(int socket, bool may_write, ModbusTables& tables) {
     std::array<std::uint8_t, MODBUS_TCP_MAX_ADU_LENGTH> query;
     while (true) {
         const int size = modbus_receive(context, query.data());
-        const bool is_modbus = size > static_cast<int>(header) && query[2] == 0 && query[3] == 0;
+        const bool is_modbus = size > static_cast<int>(header) && query[2] == 0 && query[3] == 0 &&
+                               query[header] < first_exception;
         if (!is_modbus) break;
         const auto request = std::span(query).first(static_cast<std::size_t>(size)).subspan(header);
         const int exception = handle(request, may_write, tables);

@@ -43,17 +43,17 @@ std::string_view field(std::string_view head, std::string_view name) {
     return value.substr(0, value.find("\r\n"));
 }
 
-void check_answers(std::string_view answered) {
+void check_answers(std::string_view answered, bool have_bodies) {
     while (!answered.empty()) {
         const std::size_t end = answered.find("\r\n\r\n");
         hold(answered.starts_with("HTTP/1.1 ") && end != answered.npos, "an answer has no head");
         const std::string_view head = answered.substr(0, end + 2);
         hold(is_status(std::atoi(head.substr(9, 3).data())), "no status of the API");
         answered.remove_prefix(end + 4);
-        if (head.find("chunked") != head.npos) return;
+        if (!have_bodies || head.find("chunked") != head.npos) return;
         const std::string length(field(head, "Content-Length: "));
         const std::size_t size = std::strtoull(length.c_str(), nullptr, 10);
-        if (answered.size() < size) return hold(answered.empty(), "an answer is cut off");  // HEAD
+        hold(answered.size() >= size, "an answer is cut off");
         if (field(head, "Content-Type: ") == "application/json" &&
             field(head, "Content-Encoding: ").empty())
             hold(nlohmann::json::accept(answered.substr(0, size)), "an answer is not JSON");
@@ -72,7 +72,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     machine.options.token = token;
     const bool may_write = machine.options.allow_write && bytes.find(token) != bytes.npos;
     const std::string before = machine.state(), inputs = machine.inputs();
-    check_answers(ServedMachine::answer(bytes, [&](int socket) { machine.http.converse(socket); }));
+    check_answers(ServedMachine::answer(bytes, [&](int socket) { machine.http.converse(socket); }),
+                  bytes.find("HEAD ") == bytes.npos);
     hold(may_write || machine.state() == before, "a client changed what it may not");
     machine.go_on();
     hold(may_write || machine.inputs() == inputs, "a client wrote what it may not");

@@ -44,7 +44,7 @@ void check_frames(std::string_view answered) {
     while (!answered.empty()) {
         hold(answered.size() > header, "an answer is cut off");
         const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(answered[at]); };
-        const std::size_t size = byte(4) << 8 | byte(5);
+        const std::size_t size = 256u * byte(4) + byte(5);
         hold(byte(2) == 0 && byte(3) == 0 && size > 1 && answered.size() >= 6 + size,
              "an answer has a wrong header");
         hold(is_answer(answered.substr(header, size - 1)), "an answer is none of its function");
