@@ -278,7 +278,7 @@ const badTexts = (page) => page.evaluate(() => {
     });
   }
   for (const box of document.querySelectorAll("main *, header *, #runs *"))
-    if (box.scrollWidth > box.clientWidth + 1 && box.clientWidth > 0 && !box.closest(".scroll, select, textarea, input, svg, .u-wrap, .uplot"))
+    if (box.checkVisibility() && box.scrollWidth > box.clientWidth + 1 && box.clientWidth > 0 && !box.closest(".scroll, select, textarea, input, svg, .u-wrap, .uplot"))
       found.push(`wider than its box: ${box.className || box.tagName} ${box.textContent.slice(0, 40)}`);
   const width = document.documentElement.scrollWidth;
   if (width > innerWidth) found.push(`the page is ${width} wide`);
