@@ -304,7 +304,7 @@ class SchemaWriter {
             case Kind::task:
                 return or_parameter({reference("task_name")});
             case Kind::number:
-                return reference("number");
+                return or_parameter({reference("number")});
             case Kind::boolean:
                 return or_parameter({of_type("boolean")});
             case Kind::integer:

@@ -64,24 +64,32 @@ class ReportSetup {
     }
 
     Json path(const Node& pair) const {
-        if (pair.items.size() != 2) return {};
-        return {{"x", recorded(pair.items[0])}, {"y", recorded(pair.items[1])}};
+        if (pair.items.size() == 2)
+            return {{"x", recorded(pair.items[0])}, {"y", recorded(pair.items[1])}};
+        to_.read.fail("L0202", pair, "a path takes two signals",
+                      "write [x.position, y.position]: the second is drawn over the first");
+        return {};
     }
 
-    Unit unit_of_paths() const {
+    std::optional<Unit> unit_of_paths() const {
         const Node* paths = report_.find("paths");
         if (!paths || paths->items.empty() || paths->items[0].items.empty()) return {};
         const Signal* signal = find(paths->items[0].items[0].text);
-        return Unit::parse(signal ? signal->unit : "").value_or(Unit{});
+        return signal ? Unit::parse(signal->unit) : std::nullopt;
     }
 
     Json circle_of(const Node& node) const {
         constexpr std::array names{"x", "y", "radius"};
-        if (node.items.size() != names.size()) return {};
+        if (node.items.size() != names.size()) {
+            to_.read.fail("L0202", node, "a circle takes three numbers",
+                          "they are x, y and radius");
+            return {};
+        }
         Json made;
-        const Unit unit = unit_of_paths();
+        const auto unit = unit_of_paths();
+        if (!unit) return {};
         for (std::size_t i = 0; i < names.size(); ++i) {
-            const auto value = to_.read.real(node.items[i], unit);
+            const auto value = to_.read.real(node.items[i], *unit);
             if (!value) return {};
             made[names[i]] = *value;
         }

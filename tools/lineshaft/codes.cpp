@@ -447,10 +447,11 @@ file has been sorted by something else, or put together from several traces.)"},
      R"(The sidecar NAME.csv-metadata.json beside a trace describes its columns; this one
 describes others. Copy a trace together with its own sidecar, or remove the sidecar.)"},
     {"L0724", "traces of different signals",
-     R"(A report lays several traces over each other signal by signal, so all of them must have
+     R"(A picture lays several traces over each other signal by signal, so all of them must have
 the same ones: they are runs of one program, perhaps with other --set values. Pick the
 signals they share:
-    lineshaft report a.csv b.csv --signals shaft.position,slave.position -o both.html)"},
+    lineshaft plot a.csv b.csv --signals shaft.position,slave.position -o both.svg
+A page of 'lineshaft report' draws runs of different signals.)"},
     {"L0725", "traces of different interval",
      R"(The rows of the two traces lie at different distances in time, so that sample cannot be
 compared with sample. Record both with the same task and 'every'.)"},

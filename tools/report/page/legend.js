@@ -61,21 +61,29 @@ export class Legend {
                    ...more.map((text) => element("span", { className: "of" }, ` ${text}`)));
   }
 
-  /** Where the signal may go, for who does not drag. */
-  #mover({ name, formula }) {
+  /** Where the signal may go, for who does not drag; listed when it is wanted. */
+  #mover(signal) {
+    const select = element("select", { className: "mover", title: `Move ${signal.name}` }, element("option", {}, "⋮"));
+    select.ariaLabel = `Move ${signal.name}`;
+    select.dataset.signal = signal.name;
+    let choices = [];
+    select.onfocus = select.onpointerdown = () => {
+      if (choices.length > 0) return;
+      choices = this.#choices(signal);
+      select.append(...choices.map(([text]) => element("option", {}, text)));
+    };
+    select.onchange = () => choices[select.selectedIndex - 1]?.[1]();
+    return select;
+  }
+
+  #choices({ name, formula }) {
     const { arranged, index } = this.plot;
     const own = arranged.hasOwnAxis(name);
     const plots = arranged.plots.map((_, k) => [`to plot ${k + 1}`, () => arranged.move(name, k)]);
-    const choices = [["⋮", () => {}], ...plots.filter((_, k) => k !== index),
-                     ["to a new plot", () => arranged.move(name, plots.length)],
-                     [own ? "to the shared axis" : "to an axis of its own", () => arranged.setOwnAxis(name, !own)],
-                     ...(formula ? [["remove", () => arranged.removeCurve(name)]] : [])];
-    const select = element("select", { className: "mover", title: `Move ${name}` },
-                           ...choices.map(([text]) => element("option", {}, text)));
-    select.ariaLabel = `Move ${name}`;
-    select.dataset.signal = name;
-    select.onchange = () => choices[select.selectedIndex][1]();
-    return select;
+    return [...plots.filter((_, k) => k !== index),
+            ["to a new plot", () => arranged.move(name, plots.length)],
+            [own ? "to the shared axis" : "to an axis of its own", () => arranged.setOwnAxis(name, !own)],
+            ...(formula ? [["remove", () => arranged.removeCurve(name)]] : [])];
   }
 
   #write() {

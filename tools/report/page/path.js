@@ -125,7 +125,7 @@ export class Path {
   #key() {
     if (this.tracks.length < 2) return "";
     return element("p", { className: "key" }, ...this.tracks.map(({ run }) =>
-      element("span", { className: "run-key" }, stroke(run.index, 0), run.label)));
+      element("span", { className: "run-key" }, stroke(run.index, run.index), run.label)));
   }
 
   #write() {

@@ -282,7 +282,7 @@ export class Plot {
     ctx.textAlign = "left";
     ctx.textBaseline = "top";
     ctx.fillStyle = colour("text");
-    for (const { signal, lane } of this.curves)
+    for (const [lane, { signal }] of new Map(this.curves.map((curve) => [curve.lane, curve])))
       ctx.fillText(signal.name, u.bbox.left + 6 * devicePixelRatio,
                    u.valToPos(this.lanes - lane, strips, true) + 2 * devicePixelRatio);
     ctx.restore();
