@@ -140,7 +140,7 @@ std::optional<Linked> StudyFileReader::load(const std::vector<Setting>& settings
         .settings = settings, .include_dirs = options_.include_dirs, .files = &files_};
     const std::size_t before = read_.diagnostics().list().size();
     const Program program = read_program(program_file_, options, read_.diagnostics());
-    Linked linked = link(program, catalog_, read_.diagnostics());
+    Linked linked = link(program, catalog_, read_.diagnostics(), sources_.kinds(program, catalog_));
     if (read_.diagnostics().list().size() > before) return {};
     return linked;
 }

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/study/formula.hpp"
+#include "runtime/source/formula.hpp"
 #include "runtime/study/study_file_reader.hpp"
 
 namespace lineshaft {

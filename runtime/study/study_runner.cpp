@@ -35,6 +35,7 @@ class CaseRunner {
     const Catalog& catalog_;
     const std::atomic<bool>* interrupt_;
     YamlFiles files_;
+    CompiledSources sources_;
     std::vector<Scatter> scatters_;
     bool interrupted_ = false;
 };
@@ -64,7 +65,7 @@ std::optional<CaseResult> CaseRunner::run(std::int64_t index) {
 bool CaseRunner::run_once(std::int64_t repeat, CaseResult& result) {
     Diagnostics out;
     auto loaded = load_program(study_.program, {result.of->settings, study_.include_dirs, &files_},
-                               catalog_, out);
+                               catalog_, out, &sources_);
     if (!loaded) {
         const Diagnostic& first = out.list().front();
         result.faults.push_back(fmt::format("{} [{}]", first.message, first.code));
