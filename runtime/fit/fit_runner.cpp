@@ -76,7 +76,7 @@ class Fitter {
     std::vector<Figures> figures(const std::vector<const FitCell*>& cells,
                                  const std::vector<VectorXd>& points);
     std::vector<Figures> run_all(const std::vector<Job>& jobs);
-    Figures run_one(const Job& job, YamlFiles& files) const;
+    Figures run_one(const Job& job, YamlFiles& files, CompiledSources& sources) const;
     void take_values(const LeastSquares& best);
     void take_rows(const LeastSquares& best);
     std::vector<FitRow> rows(const std::vector<const FitCell*>& cells, const VectorXd& point);
@@ -244,8 +244,9 @@ std::vector<Figures> Fitter::run_all(const std::vector<Job>& jobs) {
     std::mutex progress_mutex;
     const auto work = [&] {
         YamlFiles files;
+        CompiledSources sources;
         for (std::size_t i = next++; i < jobs.size(); i = next++) {
-            results[i] = run_one(jobs[i], files);
+            results[i] = run_one(jobs[i], files, sources);
             const std::lock_guard lock(progress_mutex);
             ++progress_.runs;
             if (options_.progress) options_.progress(progress_);
@@ -256,13 +257,13 @@ std::vector<Figures> Fitter::run_all(const std::vector<Job>& jobs) {
     return results;
 }
 
-Figures Fitter::run_one(const Job& job, YamlFiles& files) const {
+Figures Fitter::run_one(const Job& job, YamlFiles& files, CompiledSources& sources) const {
     if (stopped()) return {.values = {}, .fault = "interrupted"};
     const FitCell& cell = *job.cell;
     Diagnostics out;
     auto loaded = load_program(plan_.program,
                                {settings_at(plan_, cell, job.point), plan_.include_dirs, &files},
-                               catalog_, out);
+                               catalog_, out, &sources);
     if (!loaded) return {.values = {}, .fault = out.render()};
     Machine& machine = loaded->linked.machine;
     machine.seed += static_cast<std::uint64_t>(job.repeat);

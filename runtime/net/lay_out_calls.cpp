@@ -59,15 +59,23 @@ void add(const Wire& wire, Type type, Copy copy, CallWires& to) {
         (type == Type::boolean ? to.booleans : to.words).push_back(copy);
 }
 
-CallWires wires_of(const Net& net, std::span<const int> blocks, Machine& machine) {
+void add(const Net& net, const Wire& wire, Machine& machine, CallWires& to) {
+    const std::byte* from =
+        wire.late == Late::published ? machine.published(wire.from) : machine.live(wire.from);
+    add(wire, net.field(wire.to).type, {from, machine.live(wire.to), wire.negated}, to);
+}
+
+/// The first call of a task has what comes a scan late, too: nothing has been scanned then.
+CallWires wires_of(const Net& net, std::span<const int> blocks, bool first_of_task,
+                   Machine& machine) {
     CallWires out;
-    for (const int block : blocks) {
-        for (const Wire& wire : net.wires_to(block)) {
-            const std::byte* from = wire.late == Late::published ? machine.published(wire.from)
-                                                                 : machine.live(wire.from);
-            add(wire, net.field(wire.to).type, {from, machine.live(wire.to), wire.negated}, out);
-        }
-    }
+    const int task = net.instance(blocks.front()).task;
+    for (const Wire& wire : first_of_task ? std::span(net.wires) : std::span<const Wire>())
+        if (wire.late == Late::delayed && net.instance(wire.to).task == task)
+            add(net, wire, machine, out);
+    for (const int block : blocks)
+        for (const Wire& wire : net.wires_to(block))
+            if (wire.late != Late::delayed) add(net, wire, machine, out);
     return out;
 }
 
@@ -122,7 +130,7 @@ void append_call(const Net& net, std::span<const int> blocks, Machine& machine) 
     call.first = machine.blocks[static_cast<std::size_t>(blocks.front())].live;
     call.count = blocks.size();
     call.size = first.type->size;
-    append_wires(wires_of(net, blocks, machine), call, task.wires);
+    append_wires(wires_of(net, blocks, task.calls.size() == 1, machine), call, task.wires);
 }
 
 }  // namespace

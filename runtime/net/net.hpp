@@ -17,6 +17,7 @@ namespace lineshaft {
 enum class Late : std::uint8_t {
     now,        ///< of this scan: the source stands before in the same task
     previous,   ///< of the last scan: the source is later in the same task, or the block itself
+    delayed,    ///< of the last scan, of a source earlier in the task: taken as the scan begins
     published,  ///< as other tasks see it, or from outside
 };
 

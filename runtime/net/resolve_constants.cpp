@@ -211,6 +211,23 @@ void set_tables(Resolving& to) {
     }
 }
 
+/// `initial:` of a block.
+void set_initial(Resolving& to, int number, const Node& output, const Node& value) {
+    Instance& block = to.net.instances[static_cast<std::size_t>(number)];
+    const Field* field = block.type->find_readable(output.text);
+    if (!field || field->direction != Direction::output) {
+        std::vector<std::string> outputs;
+        for (const Field& f : block.type->fields)
+            if (f.direction == Direction::output) outputs.emplace_back(f.name);
+        return to.read.fail("L0203", output,
+                            fmt::format("{} has no output '{}'", block.described(), output.text),
+                            suggest(output.text, outputs));
+    }
+    const Unit& unit = to.net.unit_of(to.net.port(number, *field));
+    if (const auto initial = read_literal(to.read, value, *field, unit))
+        store(field->type, block.image.data() + field->offset, *initial);
+}
+
 }  // namespace
 
 /// Choices first, because other units may depend on them.
@@ -220,6 +237,9 @@ void resolve_constants(Resolving& to) {
             if (!assignment.wire && is_choice(*assignment.field) == choices)
                 set_constant(to, assignment);
     set_tables(to);
+    for (std::size_t i = 0; i < to.program.blocks.size(); ++i)
+        for (const auto& [output, value] : to.program.blocks[i].initial)
+            if (to.net.instances[i].known()) set_initial(to, static_cast<int>(i), output, value);
 }
 
 }  // namespace lineshaft

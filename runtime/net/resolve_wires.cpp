@@ -61,12 +61,20 @@ bool check_order(const Resolving& to, const Assignment& wire, int source) {
     const bool same_task = source >= 0 && net.instance(source).task == block.task;
     const bool later = same_task && source >= wire.instance;
     if (later == wire.wire->previous) return true;
+    if (wire.wire->previous && same_task) {
+        to.read.diagnostics().warn(
+            "L0407", wire.value->mark,
+            fmt::format("'{}' is scanned earlier in this task: with previous() its value comes a "
+                        "scan late",
+                        net.instance(source).name),
+            fmt::format("write '{}' unless a delay is meant", signal));
+        return true;
+    }
     if (wire.wire->previous) {
-        to.read.fail("L0407", *wire.value,
-                     fmt::format("'{}' needs no previous(): {}", signal,
-                                 same_task ? "its block is scanned earlier in this task"
-                                           : "it comes from outside of this task"),
-                     fmt::format("did you mean '{}'?", signal));
+        to.read.fail(
+            "L0407", *wire.value,
+            fmt::format("'{}' needs no previous(): it comes from outside of this task", signal),
+            fmt::format("did you mean '{}'?", signal));
         return false;
     }
     const std::string path = loop(to, wire.instance, source);
@@ -144,11 +152,13 @@ void connect(Resolving& to, const Assignment& wire) {
         return;
     const bool same_task =
         source->port.instance >= 0 && source->task == to.net.instance(number).task;
+    const bool is_delay = text->previous && source->port.instance < number;
     to.net.wires.push_back({.from = source->port,
                             .to = target,
-                            .late = text->previous ? Late::previous
-                                    : same_task    ? Late::now
-                                                   : Late::published,
+                            .late = is_delay         ? Late::delayed
+                                    : text->previous ? Late::previous
+                                    : same_task      ? Late::now
+                                                     : Late::published,
                             .negated = text->negated,
                             .widens = source->type == Type::integer && field->type == Type::real,
                             .scaled = given.text != wanted.text,

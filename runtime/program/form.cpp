@@ -37,8 +37,9 @@ bool check_size(const Reader& read, const Shape& s, const Node& node, std::size_
 /// About a map of names that was written as something else.
 std::string key_help(const Shape& s) {
     if (s.what.empty()) return {};
+    const Shape& item = s.of[0].of.empty() ? s.of[0] : s.of[0].of.back();
     return fmt::format("write the {}'s name as a key: NAME: {}",
-                       s.what.substr(s.what.find(' ') + 1), s.of[0].form ? "{...}" : "VALUE");
+                       s.what.substr(s.what.find(' ') + 1), item.form ? "{...}" : "VALUE");
 }
 
 bool accept_list(const Reader& read, const Shape& s, const Node& node, std::string_view key) {

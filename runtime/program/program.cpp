@@ -8,6 +8,7 @@
 #include "runtime/program/program_reader.hpp"
 #include "runtime/program/recording_form.hpp"
 #include "runtime/program/shared_folder.hpp"
+#include "runtime/program/templates.hpp"
 #include "runtime/st/test_sources.hpp"
 
 namespace lineshaft {
@@ -37,58 +38,11 @@ bool lies_below(const fs::path& file, const fs::path& folder) {
     return !relative.empty() && *relative.begin() != "..";
 }
 
-std::vector<std::string> names_of(const ParameterValues& values) {
-    std::vector<std::string> names;
-    for (const auto& [name, value] : values) names.push_back(name);
-    return names;
-}
-
 Node unreadable() {
     Node node;
     node.kind = Node::Kind::map;
     return node;
 }
-
-/// Replaces `$name` by the parameter's text throughout a tree.
-class Substitution {
-  public:
-    Substitution(const ParameterValues& values, const Node* declared, const Reader& read)
-        : values_(values), declared_(declared), read_(read) {}
-
-    const std::set<std::string>& used() const { return used_; }
-
-    void apply(Node& node) {
-        for (auto& [key, value] : node.entries) apply(value);
-        for (Node& item : node.items) apply(item);
-        if (!node.is_scalar() || node.quoted || !node.text.starts_with('$')) return;
-        const std::string name = node.text.substr(1);
-        const auto it = values_.find(name);
-        if (it == values_.end()) return unknown(node, name);
-        const Node& value = it->second;
-        used_.insert(name);
-        node.parameter = name;
-        if (!value.is_scalar()) return;
-        node.text = value.text;
-        node.quoted = value.quoted;
-        if (!value.mark.file) return;
-        node.used_in_line = value.mark.file == node.mark.file ? node.mark.line : 0;
-        node.mark = value.mark;
-    }
-
-  private:
-    void unknown(Node& node, const std::string& name) const {
-        if (!declared_ || declared_->is_map())
-            read_.fail("L0207", node, fmt::format("the program has no parameter '{}'", name),
-                       values_.empty() ? "it has no 'parameters:'"
-                                       : suggest(name, names_of(values_), "$"));
-        node.parameter = name;
-    }
-
-    const ParameterValues& values_;
-    const Node* declared_;  ///< `parameters:`, which may be something else than a map; null: none
-    const Reader& read_;
-    std::set<std::string> used_;
-};
 
 /// Whether all of them could be read.
 bool are_known(const Node& tasks) {
@@ -122,9 +76,10 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     program_.title = fs::path(file->path).stem().string();
     auto root = parse(file);
     if (!root || !check_kind(read_, *root, "lineshaft")) return std::move(program_);
-    parameters(*root);
     Substitution substitution(values_, root->find("parameters"), read_);
-    substitution.apply(*root);
+    parameters(*root, substitution);
+    expand_templates(*root, substitution, read_);
+    substitution.apply_to_program(*root);
     unused_parameters(*root, substitution.used());
     const Node* tasks = root->find("tasks");
     const Node* named = root->find("controller");
@@ -161,7 +116,7 @@ std::optional<Node> ProgramReader::parse(const std::shared_ptr<const SourceFile>
 }
 
 /// What is wrong with them is told when the whole file is read.
-void ProgramReader::parameters(const Node& root) {
+void ProgramReader::parameters(const Node& root, Substitution& substitution) {
     const Node* node = root.find("parameters");
     if (node)
         for (const auto& [key, value] : node->entries)
@@ -171,8 +126,10 @@ void ProgramReader::parameters(const Node& root) {
     settings(values_);
     if (node)
         for (const auto& [key, value] : node->entries)
-            if (const auto it = values_.find(key.text); it != values_.end())
+            if (const auto it = values_.find(key.text); it != values_.end()) {
+                substitution.apply(it->second);
                 program_.parameters.emplace_back(key.text, it->second.text);
+            }
 }
 
 void ProgramReader::unused_parameters(const Node& root, const std::set<std::string>& used) {
@@ -186,14 +143,15 @@ void ProgramReader::unused_parameters(const Node& root, const std::set<std::stri
 }
 
 void ProgramReader::settings(ParameterValues& values) {
+    std::vector<std::string> known;
+    for (const auto& [name, value] : values) known.push_back(name);
     for (const Setting& setting : options_.settings) {
         const auto it = values.find(setting.name);
         if (it == values.end()) {
             read_.diagnostics().add(
                 "L0501", setting.mark,
                 fmt::format("the program has no parameter '{}' to set", setting.name),
-                values.empty() ? "it has no 'parameters:'"
-                               : suggest(setting.name, names_of(values)));
+                values.empty() ? "it has no 'parameters:'" : suggest(setting.name, known));
             continue;
         }
         it->second = {};

@@ -47,8 +47,9 @@ struct BlockPlan {
     Node name;
     Node type;
     Node task;
-    std::optional<Node> cost;                  ///< adds to its task's execution time
-    std::vector<std::pair<Node, Node>> ports;  ///< key and value, parameters replaced
+    std::optional<Node> cost;                         ///< adds to its task's execution time
+    std::vector<std::pair<Node, Node>> initial = {};  ///< outputs and values
+    std::vector<std::pair<Node, Node>> ports;         ///< key and value, parameters replaced
 };
 
 struct RunPlan {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "runtime/program/program.hpp"
+#include "runtime/program/templates.hpp"
 
 // clang-format off: tables are laid out by hand
 
@@ -145,6 +146,12 @@ void read_time(const Reader& read, const Node& node, st::InstructionTimes& times
     times[static_cast<std::size_t>(of)] = read.time(node).value_or(0);
 }
 
+void check_instruction_time(const Reader& read, const Node& node, st::InstructionTimes&) {
+    if (node.entries.empty())
+        read.fail("L0202", node, "'instruction_time' says no time",
+                  "write one, such as {real: 12 ns}, or leave it out");
+}
+
 const Form& instruction_time_form() {
     using enum st::OpClass;
     static const Form form = form_of<st::InstructionTimes>(
@@ -168,11 +175,7 @@ const Form& instruction_time_form() {
                       .by_default("0 s"),
                   key<read_time<call>>("call", a_time, "of a function or a function block")
                       .by_default("0 s")},
-         .rules = {{at_least_one,
-                    {},
-                    {"bool", "integer", "real", "text", "move", "jump", "call"},
-                    "'instruction_time' says no time",
-                    "write one, such as {real: 12 ns}, or leave it out"}}});
+         .check = by<check_instruction_time>});
     return form;
 }
 
@@ -183,8 +186,7 @@ void read_instruction_time(const Reader& read, const Node& node, Program& progra
 
 // Blocks
 
-constexpr const char* block_help =
-    "add blocks such as shaft: {type: axis, task: servo, ...}";
+constexpr const char* block_help = "add blocks such as shaft: {type: axis, task: servo, ...}";
 
 void read_block(const Reader& read, const Node& name, const Node& body, Program& program) {
     if (!read.identifier(name, "a block")) return;
@@ -745,12 +747,47 @@ const Form& block_form() {
                   key<&BlockPlan::task>("task", a_task, "scans it, in the order of the file")
                       .must("say which task scans it"),
                   key<&BlockPlan::cost>("cost", a_time, "adds to its task's execution time")
-                      .by_default("0 s")},
+                      .by_default("0 s"),
+                  key<&BlockPlan::initial>(
+                      "initial", named("an output", a_value),
+                      "outputs and what they are before the first scan: what previous() then "
+                      "gives")},
          .others = key("PORT", a_value, "a parameter or an input of the type")});
     return form;
 }
 
+const Form& use_form() {
+    static const Form form = form_of<UsePlan>(
+        {.name = "use",
+         .what = "a use",
+         .doc = "the blocks of a template: left: {use: station} makes left_gate of its block gate",
+         .keys = {
+             key<&UsePlan::use>("use", a_value.as("the name of a template"), "a template").must(),
+             key<&UsePlan::set>("set", named("a parameter", a_value),
+                                "values of the template's parameters")}});
+    return form;
+}
+
 namespace {
+
+/// Only checked: the blocks are read where they are used.
+struct TemplatePlan {};
+
+const Form& template_form() {
+    static const Form form = form_of<TemplatePlan>(
+        {.name = "template",
+         .what = "a template",
+         .doc = "blocks that stand in the program as often as it is used; those of its own are "
+                "named as they are written here",
+         .keys = {key("parameters", named("a parameter", either({nothing, a_value})),
+                      "names and values that a use may set, and must where there is none; $NAME "
+                      "stands for the value"),
+                  key("blocks",
+                      named("a block", a_block(block_form)).filled("the template has no block"),
+                      "in the order of their scan")
+                      .must()}});
+    return form;
+}
 
 /// Nothing is kept here: see connect_report().
 struct ReportPlan {};
@@ -763,8 +800,9 @@ const Form& report_form() {
     static const Form form = form_of<ReportPlan>(
         {.name = "report",
          .what = "'report'",
-         .doc = "the page that 'lineshaft report' makes of the program's traces, as it is when it is "
-                "opened: whoever looks at it may arrange it in another way",
+         .doc =
+             "the page that 'lineshaft report' makes of the program's traces, as it is when it is "
+             "opened: whoever looks at it may arrange it in another way",
          .keys = {key("plots", list_of(drawn().filled("a plot has no signal")),
                       "signals and curves of each plot over time, from the top; what no plot names "
                       "follows, grouped by units"),
@@ -804,7 +842,7 @@ const Form& program_form() {
          .what = "a program",
          .doc = "tasks, blocks in them, and what is recorded and expected of a run. A value may be "
                 "$NAME, a "
-                "parameter",
+                "parameter, or a formula: $speed * 2, $radius / 2 + 1 mm, cos(0.02)",
          .keys =
              {key("lineshaft", a_version, "version of this form").must(),
               key<&Program::title>("title", a_value.as("the title"),
@@ -826,9 +864,12 @@ const Form& program_form() {
                   .by_default("wrap"),
               key<read_blocks>(
                   "blocks",
-                  named("a block", a_block(block_form)).filled("'blocks' has no block", block_help),
-                  "in the order of their scan")
+                  named("a block", either({a_form(use_form), a_block(block_form)}))
+                      .filled("'blocks' has no block", block_help),
+                  "in the order of their scan; NAME: {use: TEMPLATE} is those of a template")
                   .must(block_help),
+              key("templates", named("a template", a_form(template_form)),
+                  "groups of blocks that 'blocks' may use more than once"),
               key<&Program::inputs>("inputs", named("an input", a_value),
                                     "names and values from outside, as they are at the start"),
               key<&Program::outputs>("outputs", named("an output", a_signal),

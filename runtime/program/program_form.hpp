@@ -12,5 +12,6 @@ const Form& controller_form();
 
 /// What all blocks have in common.
 const Form& block_form();
+const Form& use_form();  ///< of a UsePlan
 
 }  // namespace lineshaft

@@ -6,12 +6,9 @@
 #include <string>
 
 #include "runtime/program/program.hpp"
+#include "runtime/program/substitution.hpp"
 
 namespace lineshaft {
-
-/// The parameters' texts in force, where they are declared or where a study sets them; from the
-/// command line they have no place, and what cannot be read (it is reported) is no scalar.
-using ParameterValues = std::map<std::string, Node>;
 
 /// Makes a Program of a file, see read_program(): parameters are replaced and the controller's
 /// tasks read before the form is; then what needs all of it, or other files.
@@ -23,7 +20,7 @@ class ProgramReader {
 
   private:
     std::optional<Node> parse(const std::shared_ptr<const SourceFile>& file) const;
-    void parameters(const Node& root);
+    void parameters(const Node& root, Substitution& substitution);
     void unused_parameters(const Node& root, const std::set<std::string>& used);
     void settings(ParameterValues& values);
     void controller(const Node& node);

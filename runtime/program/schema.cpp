@@ -219,7 +219,13 @@ Json scalars() {
     const std::string parameter = "\\$" + name_pattern;
     Json out;
     out["name"] = text(name_pattern);
-    out["parameter"] = described("$name: a parameter of the program", text(parameter));
+    constexpr const char* functions =
+        "(abs|sqrt|exp|ln|a?sin|a?cos|a?tan|atan2|min|max|mean)\\(.*\\)";
+    const std::string formula =
+        fmt::format(".*{0} *[-+*/,)].*|.*[-+*/(,] *{0}.*|{1}.*", parameter, functions);
+    out["parameter"] =
+        described("$name: a parameter of the program; or a formula, such as $speed * 2",
+                  text(fmt::format("{}|{}", parameter, formula)));
     out["wire"] = described(
         "a wire from block.port or inputs.name; NOT negates it, previous(...) is the last scan's "
         "value",

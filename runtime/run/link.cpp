@@ -16,18 +16,20 @@ namespace lineshaft {
 
 namespace {
 
+st::Options options_of(const Program& program) {
+    const Node* overflow = program.root.find("overflow");
+    return {.times = program.instruction_times,
+            .overflow_faults = overflow && overflow->text == "fault"};
+}
+
 /// What the program's Structured Text brings along; null if there is a mistake in it.
 std::shared_ptr<const Catalog> kinds_of(const Program& program, const Catalog& catalog,
                                         Diagnostics& out) {
     if (!program.sources_known) return {};
     auto kinds = std::make_shared<Catalog>();
     if (program.texts.empty()) return kinds;
-    const Node* overflow = program.root.find("overflow");
-    const bool faults = overflow && overflow->text == "fault";
     Diagnostics found;
-    const auto library =
-        st::compile(program.texts, catalog, found,
-                    {.times = program.instruction_times, .overflow_faults = faults});
+    const auto library = st::compile(program.texts, catalog, found, options_of(program));
     for (const Diagnostic& d : found.warnings()) out.warn(d.code, d.mark, d.message, d.help);
     for (const Diagnostic& d : found.list()) out.add(d.code, d.mark, d.message, d.help);
     if (!library) return {};
@@ -67,6 +69,17 @@ void warn_of_unused_inputs(const Program& program, Linked& linked, Diagnostics& 
 }
 
 }  // namespace
+
+std::shared_ptr<const Catalog> CompiledSources::kinds(const Program& program,
+                                                      const Catalog& catalog) {
+    const st::Options options = options_of(program);
+    for (const Entry& entry : entries_)
+        if (entry.texts == program.texts && entry.options == options) return entry.kinds;
+    Diagnostics untold;
+    const auto kinds = kinds_of(program, catalog, untold);
+    if (kinds) entries_.push_back({program.texts, options, kinds});
+    return kinds;
+}
 
 Linked link(const Program& program, const Catalog& catalog, Diagnostics& out,
             std::shared_ptr<const Catalog> kinds) {

@@ -10,9 +10,26 @@
 #include "runtime/net/net.hpp"
 #include "runtime/program/program.hpp"
 #include "runtime/scan/judge.hpp"
+#include "runtime/st/library.hpp"
 #include "runtime/trace/recorder.hpp"
 
 namespace lineshaft {
+
+/// What the sources of a program that is loaded many times are compiled to: once for each
+/// controller and setting that makes other code of them. For one thread.
+class CompiledSources {
+  public:
+    /// Null where there is a mistake, of which link() tells.
+    std::shared_ptr<const Catalog> kinds(const Program& program, const Catalog& catalog);
+
+  private:
+    struct Entry {
+        std::vector<std::shared_ptr<const SourceFile>> texts;
+        st::Options options;
+        std::shared_ptr<const Catalog> kinds;
+    };
+    std::vector<Entry> entries_;
+};
 
 /// A program that can run.
 struct Linked {

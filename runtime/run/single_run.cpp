@@ -18,11 +18,13 @@
 namespace lineshaft {
 
 std::optional<Loaded> load_program(const std::string& path, const LoadOptions& options,
-                                   const Catalog& catalog, Diagnostics& out) {
+                                   const Catalog& catalog, Diagnostics& out,
+                                   CompiledSources* sources) {
     const auto file = options.files ? options.files->source(path, out) : read_source(path, out);
     if (!file) return {};
     Loaded loaded{.program = read_program(file, options, out), .linked = {}};
-    loaded.linked = link(loaded.program, catalog, out);
+    auto kinds = sources ? sources->kinds(loaded.program, catalog) : nullptr;
+    loaded.linked = link(loaded.program, catalog, out, std::move(kinds));
     if (!out.empty()) return {};
     return loaded;
 }

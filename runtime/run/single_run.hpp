@@ -19,7 +19,8 @@ struct Loaded {
 
 /// Empty when `out` got any diagnostic.
 std::optional<Loaded> load_program(const std::string& path, const LoadOptions& options,
-                                   const Catalog& catalog, Diagnostics& out);
+                                   const Catalog& catalog, Diagnostics& out,
+                                   CompiledSources* sources = nullptr);
 
 /// How a run begins, as the S7-400 manual has it: cold, all values are the initial ones; warm,
 /// retained ones are kept; hot, everything is as at the last checkpoint and goes on.

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/formula.hpp"
 #include "runtime/source/habits.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
@@ -126,6 +127,8 @@ void Reader::fail(const char* code, const Node& node, std::string message, std::
     if (node.used_in_line > 0)
         found.message +=
             fmt::format(" (parameter '{}', used in line {})", node.parameter, node.used_in_line);
+    else if (is_formula(node.parameter))
+        found.message += fmt::format(" ('{}' is {})", node.parameter, node.text);
     else if (!node.parameter.empty())
         found.message += fmt::format(" (parameter '{}' is '{}')", node.parameter, node.text);
     out_.add(std::move(found.code), std::move(found.mark), std::move(found.message),

@@ -26,7 +26,7 @@ struct Node {
 
     std::string text;       ///< scalar; empty for an empty value (`key:`, `key: ~`, `key: null`)
     bool quoted = false;    ///< scalar in quotes or block scalar: never a number or a wire
-    std::string parameter;  ///< name, where the text was written as `$name`
+    std::string parameter;  ///< name, where the text was written as `$name`; or the formula
     int used_in_line = 0;   ///< where it was, if `mark` is where the parameter is declared
     std::vector<std::pair<Node, Node>> entries;  ///< map, in file order; keys are scalars, unique
     std::vector<Node> items;                     ///< sequence

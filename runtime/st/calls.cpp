@@ -122,7 +122,9 @@ Variable* Checker::find_parameter(Argument& argument, Routine& routine, std::siz
                     fmt::format("'{}' takes {} argument{}", routine.name, i, i == 1 ? "" : "s"));
     return fail("L0907", argument.name.place,
                 fmt::format("'{}' has no argument '{}'", routine.name, argument.name.text),
-                suggest(argument.name.text, names));
+                same_name(argument.name.text, "en")
+                    ? "EN is for a call that is a statement, or whose value is assigned"
+                    : suggest(argument.name.text, names));
 }
 
 void Checker::check_arguments(Expression& call, Routine& routine) {
@@ -549,7 +551,9 @@ const Type* Checker::check_bcd(Expression& call, const Type* source, const Type&
 const Type* Checker::check_conversion(Expression& call, std::string_view name) {
     std::string upper(name);
     for (char& c : upper) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-    if (upper.starts_with("ANY_TO_")) upper.erase(0, 4), name.remove_prefix(4);
+    for (const std::size_t prefix : {4U, 5U})  // of any type, of an enumeration
+        if (upper.starts_with(prefix == 4 ? "ANY_TO_" : "ENUM_TO_"))
+            upper.erase(0, prefix), name.remove_prefix(prefix);
     const std::size_t to = upper.starts_with("TO_") ? 0 : upper.find("_TO_");
     const std::size_t trunc = upper.starts_with("TRUNC_") ? 0 : upper.find("_TRUNC_");
     const bool truncates = to == std::string::npos && trunc != std::string::npos;

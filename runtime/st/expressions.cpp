@@ -495,6 +495,8 @@ const Type* Checker::unite(Expression& e, const Type* expected) {
             fmt::format("{} does not go with {} and {}", shown(e.op), describe(a), describe(b)),
             numbers
                 ? fmt::format("convert one of them: {}_TO_{}(...)", a.plain().name, b.plain().name)
+            : a.kind == Kind::enumeration || b.kind == Kind::enumeration
+                ? "an enumeration's number is TO_INT(...)"
                 : "");
     }
     return coerce(left, *common) && coerce(right, *common) ? common : nullptr;
@@ -558,8 +560,9 @@ const Type* Checker::check_comparison(Expression& e) {
         if (!fits)
             return fail("L0905", e.token.place,
                         fmt::format("'{}' does not compare {}", shown(e.op), describe(*type)),
-                        type->is_scalar() ? "the values of an enumeration are equal or not"
-                                          : "compare its parts one by one");
+                        type->is_scalar()
+                            ? "the values of an enumeration are equal or not; compare TO_INT(...)"
+                            : "compare its parts one by one");
     }
     if (!unite(e)) return nullptr;
     e.type = &bool_type;

@@ -333,7 +333,8 @@ Slot Generator::reset_timer(const Expression& timer) {
     const Slot made = new_temporary(slots);
     image_uses_.push_back({next(), &type, nullptr});
     put(Op::initialise, made, 0, slots);
-    const Location at = locate(timer);
+    Location at = locate(timer);
+    if (at.mode == Mode::indexed) at = as_address(at);
     for (const Variable* member : type.members)
         if (same_name(member->text, "pt"))
             put(Op::move, made + member->slot, load(part(at, *member)));

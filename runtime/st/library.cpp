@@ -355,8 +355,7 @@ void add_routine(Library::Made& made, const Routine& routine, const CodeRoutine&
     kind.doc = fmt::format("{} of {}",
                            routine.pou->kind == PouKind::program ? "PROGRAM" : "FUNCTION_BLOCK",
                            (*routine.pou->name.place.file)->path);
-    if (!routine.pou->doc.empty())
-        kind.doc = fmt::format("{} ({})", text_of_comments(routine.pou->doc), kind.doc);
+    if (!routine.pou->doc.empty()) kind.doc += ": " + text_of_comments(routine.pou->doc);
     FieldWriter fields(made, kind);
     fields.write_header(routine);
     for (const Variable& variable : routine.variables) {

@@ -17,6 +17,8 @@ struct Options {
         10'000'000;  ///< passes of loops and calls that one scan of a block may take
     std::optional<InstructionTimes> times = {};  ///< see `Library::counts`
     bool overflow_faults = false;  ///< an integer beyond its type is a fault: it does not wrap
+
+    bool operator==(const Options&) const = default;
 };
 
 /// Where the last scan of an instance ended with a fault.

@@ -85,10 +85,10 @@ StudyReport ReportBuilder::finish(bool interrupted, bool is_chunk) {
             const auto it = names_.find(name);
             return it == names_.end() ? std::nullopt : std::optional(it->second);
         });
-        const bool known = result.error.empty() && std::isfinite(result.value);
-        report_.claims.push_back({&claim,
-                                  known ? result.value : std::numeric_limits<double>::quiet_NaN(),
-                                  known && claim.bounds.hold(result.value)});
+        const bool known = result.error.empty() && std::isfinite(result.amount.value);
+        report_.claims.push_back(
+            {&claim, known ? result.amount.value : std::numeric_limits<double>::quiet_NaN(),
+             known && claim.bounds.hold(result.amount.value)});
     }
     return std::move(report_);
 }

@@ -148,7 +148,8 @@ std::optional<Loaded> StudyFileReader::load(const std::vector<Setting>& settings
     const std::size_t before = read_.diagnostics().list().size();
     Loaded loaded{.program = read_program(program_file_, options, read_.diagnostics()),
                   .linked = {}};
-    loaded.linked = link(loaded.program, catalog_, read_.diagnostics());
+    loaded.linked = link(loaded.program, catalog_, read_.diagnostics(),
+                         sources_.kinds(loaded.program, catalog_));
     if (read_.diagnostics().list().size() > before) return {};
     return loaded;
 }

@@ -54,6 +54,7 @@ class StudyFileReader {
     StudyCheck check_;
     Reader read_;
     YamlFiles files_;
+    CompiledSources sources_;
     StudyPlan plan_;
     Study study_;
     std::shared_ptr<const SourceFile> program_file_;

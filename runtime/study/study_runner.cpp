@@ -38,6 +38,7 @@ class CaseRunner {
     const Catalog& catalog_;
     const CaseOptions& options_;
     YamlFiles files_;
+    CompiledSources sources_;
     std::vector<Scatter> scatters_;
     bool interrupted_ = false;
 };
@@ -79,7 +80,7 @@ std::string CaseRunner::trace_path(const StudyCase& of, std::int64_t repeat) con
 bool CaseRunner::run_once(std::int64_t repeat, bool traced, CaseResult& result) {
     Diagnostics out;
     auto loaded = load_program(study_.program, {result.of->settings, study_.include_dirs, &files_},
-                               catalog_, out);
+                               catalog_, out, &sources_);
     if (!loaded) {
         const Diagnostic& first = out.list().front();
         result.faults.push_back(fmt::format("{} [{}]", first.message, first.code));

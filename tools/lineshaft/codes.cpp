@@ -163,7 +163,8 @@ in the order of the master, whose position rises from each to the next, and ther
 least. The message says which row it is. A point that comes twice is left out; a master that
 runs backwards has its points in the other order.)"},
     {"L0217", "an expression where a value is expected",
-     R"(A program file has values and wires, and does not calculate. What the expression does is
+     R"(A value may be a formula of numbers and parameters ($radius / 2 + 1 mm, cos(0.02)), which
+is computed once, before the run. What an expression of signals does is
 done by a block of IEC 61131-3 (and, or, not, gt, add, mul, ...), whose output is then
 wired or named:
     blocks:
@@ -247,10 +248,10 @@ are constant while the program runs: a stimulus cannot change them either.)"},
 constant or a parameter of the program ($name). 'lineshaft blocks TYPE' says which
 ports are inputs and so take wires.)"},
     {"L0407", "previous() where it is not needed",
-     R"(The block that is read is scanned earlier in the same task, so this scan's value is at
-hand; or it belongs to another task, or is an input of the program, where the wire
-carries what was published last in any case. With previous() it would look like a
-delay that is not there. Remove the word.)"},
+     R"(The block that is read belongs to another task, or is an input of the program: the wire
+carries what was published last in any case, and previous() would look like a delay
+that is not there. Remove the word. Of a block that is scanned earlier in the same task
+previous() is a delay by a scan; a warning says so, for this scan's value is at hand.)"},
     {"L0408", "NOT on something that is not a boolean",
      R"('NOT block.port' negates a boolean wire. The output or the input here is of another
 type. For a comparison or a sign use a block that does it.)"},

@@ -29,7 +29,18 @@ function rateUnit(unit) {
   return next === 1 ? `${of}/s` : `${of}/s^${next}`;
 }
 
+/** Of a plain number; an angle in rad is one. */
+function plain(work) {
+  const unit = (of) => {
+    if (of && of !== "rad") throw new Error(`a plain number is needed here, not ${of}`);
+    return "";
+  };
+  return { values: 1, work: ([a]) => work(a), unit };
+}
+
 const functions = {
+  ...Object.fromEntries(["sin", "cos", "tan", "asin", "acos", "atan", "exp"].map((name) => [name, plain(Math[name])])),
+  ln: plain(Math.log),
   abs: { values: 1, work: ([a]) => Math.abs(a) },
   sqrt: { values: 1, work: ([a]) => Math.sqrt(a), unit: (unit) => (unit ? `√(${unit})` : "") },
   min: { work: (all) => Math.min(...all) },
@@ -39,7 +50,7 @@ const functions = {
 
 /**
  * Reads what runtime/source/formula.cpp reads, over samples: + - * /, parentheses, numbers, names,
- * abs, sqrt, min, max, mean, and derivative(x), the change since the sample before by time.
+ * pi, abs, sqrt, exp, ln, sin and its like, min, max, mean, and derivative(x), the change since the sample before by time.
  */
 class Reader {
   #at = 0;
@@ -111,6 +122,7 @@ class Reader {
     this.#at += name.length;
     if (this.#take("(")) return this.#call(name);
     const signal = this.signal(name);
+    if (!signal && name === "pi") return new Worked(this.times.length, anyUnit, (_, values) => values.fill(Math.PI));
     if (!signal) throw new Error(`there is no signal '${name}'`);
     return new Worked(this.times.length, signal.unit, (first, values) =>
       values.set(signal.values.block(first).values));
