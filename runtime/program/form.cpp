@@ -81,6 +81,19 @@ bool accept_map(const Reader& read, const Shape& s, const Node& node, std::strin
     return good;
 }
 
+/// Of a template, whose parameters have no values yet.
+bool accept_block(const Reader& read, const Form& common, const Node& node) {
+    if (!read.expect_map(node, common.what)) return false;
+    bool good = true;
+    for (const Key& key : common.keys) {
+        if (!key.required || node.find(key.name)) continue;
+        read.fail("L0202", node, fmt::format("{} has no '{}'", common.what, key.name),
+                  std::string(key.help));
+        good = false;
+    }
+    return good;
+}
+
 /// Of `shapes`, the one that is meant.
 const Shape& meant(const std::vector<Shape>& shapes, const Node& node) {
     const auto fits = [&](const Shape& s) {
@@ -139,10 +152,10 @@ void apply(const Form& form, const Rule& rule, const Reader& read, const Node& m
     const auto there = [&](std::string_view other) {
         return conditional ? present(form, map, other) : form.find_in(map, other);
     };
-    const auto unknown = [&](const auto& entry) { return !form.find(entry.first.text); };
-    const bool closed = form.others.name.empty();
-    if (!conditional && closed && std::ranges::any_of(map.entries, unknown)) return;
-    if (std::ranges::none_of(rule.others, there))
+    const auto is_unknown = [&](const auto& entry) { return !form.find(entry.first.text); };
+    const bool misspelt =
+        !conditional && form.others.name.empty() && std::ranges::any_of(map.entries, is_unknown);
+    if (!misspelt && std::ranges::none_of(rule.others, there))
         fail(rule.others.front(), "{0} has no '{2}'", node);
 }
 
@@ -323,6 +336,7 @@ bool accept(const Reader& read, const Shape& s, const Node& node, std::string_vi
         case Kind::either:
             return accept(read, meant(s.of, node), node, key);
         case Kind::block:
+            return accept_block(read, s.form(), node);
         case Kind::nothing:
         case Kind::version:
             return true;

@@ -146,12 +146,6 @@ void read_time(const Reader& read, const Node& node, st::InstructionTimes& times
     times[static_cast<std::size_t>(of)] = read.time(node).value_or(0);
 }
 
-void check_instruction_time(const Reader& read, const Node& node, st::InstructionTimes&) {
-    if (node.entries.empty())
-        read.fail("L0202", node, "'instruction_time' says no time",
-                  "write one, such as {real: 12 ns}, or leave it out");
-}
-
 const Form& instruction_time_form() {
     using enum st::OpClass;
     static const Form form = form_of<st::InstructionTimes>(
@@ -175,7 +169,11 @@ const Form& instruction_time_form() {
                       .by_default("0 s"),
                   key<read_time<call>>("call", a_time, "of a function or a function block")
                       .by_default("0 s")},
-         .check = by<check_instruction_time>});
+         .rules = {{at_least_one,
+                    {},
+                    {"bool", "integer", "real", "text", "move", "jump", "call"},
+                    "'instruction_time' says no time",
+                    "write one, such as {real: 12 ns}, or leave it out"}}});
     return form;
 }
 
@@ -193,6 +191,11 @@ void read_block(const Reader& read, const Node& name, const Node& body, Program&
     if (name.text == "inputs" || name.text == "outputs")
         return read.fail("L0210", name, fmt::format("a block cannot be called '{}'", name.text),
                          fmt::format("{0}.x names the program's own {0}", name.text));
+    if (body.is_map() && body.find("use")) {  // of no template, which is told
+        UsePlan use;
+        read_form(use_form(), read, body, use, fmt::format("block '{}'", name.text));
+        return;
+    }
     BlockPlan& block = program.blocks.emplace_back();
     block.name = name;
     if (!read.expect_map(body, "a block")) return;
