@@ -758,8 +758,9 @@ const Form& report_form() {
     static const Form form = form_of<ReportPlan>(
         {.name = "report",
          .what = "'report'",
-         .doc = "the page that 'lineshaft report' makes of the program's traces, as it is when it is "
-                "opened: whoever looks at it may arrange it in another way",
+         .doc =
+             "the page that 'lineshaft report' makes of the program's traces, as it is when it is "
+             "opened: whoever looks at it may arrange it in another way",
          .keys = {key("plots", list_of(drawn().filled("a plot has no signal")),
                       "signals and curves of each plot over time, from the top; what no plot names "
                       "follows, grouped by units"),
