@@ -58,6 +58,8 @@ Catalog make_catalog() {
     blocks.add<PhasingAbsolute>();
     blocks.add<PhasingRelative>();
     blocks.add<CombineAxes>();
+    blocks.add<PositionProfile>();
+    blocks.add<VelocityProfile>();
     blocks.add<Home>();
     blocks.add<SetPosition>();
     blocks.add<SetOverride>();

@@ -57,6 +57,7 @@ class Checks:
         self.folder, self.kills = folder, kills
         # Where every user reaches it, by a name without the folders above.
         shutil.copy(lineshaft, folder / "lineshaft")
+        (folder / "lineshaft").chmod(0o755)
         self.lineshaft = "./lineshaft"
         (folder / "program.yaml").write_text(PROGRAM)
 

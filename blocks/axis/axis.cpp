@@ -86,7 +86,7 @@ void Axis::start(const Scan& now) {
 
 void Axis::shift(std::int64_t by) {
     for (Moment* moment : {&velocity_motion.start, &point_motion.start, &added_motion.start,
-                           &sync.start, &sync.shifting.start})
+                           &profile_motion.start, &sync.start, &sync.shifting.start})
         moment->time += by;
 }
 
@@ -114,24 +114,35 @@ void Axis::advance(const Context& context, std::int64_t now) {
 
 bool Axis::has_ended(std::int64_t now) const {
     if (doing == Doing::moving_to_point) return point_motion.has_ended(now);
+    if (doing == Doing::following_profile)
+        return profile_motion.start.until(now) >= profile_motion.duration;
     return doing == Doing::following_velocity && velocity_motion.has_ended(now);
 }
 
 void Axis::look(const Context& context, std::int64_t now) {
     if (doing == Doing::following_axes)
         follow(context);
+    else if (doing == Doing::following_profile)
+        base = profile_motion.at(profile_motion.start.until(now), profile_table(context));
     else
         base = doing == Doing::moving_to_point ? point_motion.at(now) : velocity_motion.at(now);
     if (added.exists()) extra = added_motion.at(now);
 }
 
+std::pair<MotionState, Moment> Axis::end_of_motion(const Context& context) const {
+    if (doing == Doing::moving_to_point) return {point_motion.plan.end, point_motion.end()};
+    if (doing == Doing::following_velocity)
+        return {velocity_motion.end_state(), velocity_motion.end()};
+    return {profile_motion.end(profile_table(context)),
+            profile_motion.start.after(profile_motion.duration)};
+}
+
 /// What comes next begins at that very moment.
 void Axis::end_motion(const Context& context) {
-    const bool to_point = doing == Doing::moving_to_point;
-    const Moment at = to_point ? point_motion.end() : velocity_motion.end();
+    const auto [end_state, at] = end_of_motion(context);
     if (leg.exists != 0) return end_leg(at);
     const bool pauses = paused != 0;
-    hold(to_point ? point_motion.plan.end : velocity_motion.end_state(), at);
+    hold(end_state, at);
     if (added.exists()) extra = added_motion.at(at.time);
     paused = pauses ? 1 : 0;
     if (pauses) return;

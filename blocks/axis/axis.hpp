@@ -2,11 +2,13 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 
-#include "blocks/axis/axis_unit.hpp"
 #include "blocks/axis/axis_motion.hpp"
 #include "blocks/axis/axis_states.hpp"
+#include "blocks/axis/axis_unit.hpp"
 #include "blocks/axis/job.hpp"
+#include "blocks/axis/profile_motion.hpp"
 #include "blocks/axis/sync_motion.hpp"
 #include "runtime/model/catalog.hpp"
 #include "runtime/model/field.hpp"
@@ -54,7 +56,8 @@ struct Axis {
         holding,
         moving_to_point,
         following_velocity,
-        following_axes
+        following_axes,
+        following_profile
     };
 
     /// The way that is left behind the end of `point_motion`, of the same job.
@@ -72,6 +75,7 @@ struct Axis {
     SyncMotion sync;
     VelocityMotion velocity_motion;
     PointMotion point_motion;
+    ProfileMotion profile_motion;
     Leg leg;
     PointMotion added_motion;  ///< from 0 on
     MotionState base;          ///< of the motion without what is added
@@ -127,6 +131,8 @@ struct Axis {
     void advance(const Context& context, std::int64_t now);
     bool has_ended(std::int64_t now) const;
     void look(const Context& context, std::int64_t now);
+    std::pair<MotionState, Moment> end_of_motion(const Context& context) const;
+    Cam profile_table(const Context& context) const;
     void end_motion(const Context& context);
     void end_stop(const Context& context);
     void end_leg(const Moment& at);
@@ -190,6 +196,10 @@ struct Axis {
     void fail(const Context& context, const Moment& at, MotionError why);
     void brake(const Moment& at);
     void hold(const MotionState& as, const Moment& at);
+    MotionError plan_any(const Context& context, const Request& request, const Moment& at,
+                         const Start& from);
+    MotionError plan_profile(const Context& context, const Request& request, const Moment& at,
+                             const Start& from);
     MotionError plan(const Request& request, const Moment& at, const Start& from);
     MotionError plan_velocity(const Request& request, const Moment& at, const Start& from);
     MotionError plan_point(const Request& request, double to, const Moment& at, const Start& from);
@@ -215,6 +225,9 @@ bool is_administrative(Command command);
 /// Whether the axis follows others by it; whether it shifts the master that the axis follows.
 bool is_synchronous(Command command);
 bool is_phasing(Command command);
+
+/// Whether a table gives the motion over time.
+bool is_profile(Command command);
 
 /// From 0 up to `period`.
 double within_period(double position, double period);

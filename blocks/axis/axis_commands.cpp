@@ -3,6 +3,7 @@
 
 #include "blocks/axis/axis.hpp"
 #include "blocks/inputs.hpp"
+#include "blocks/motion/cam_table.hpp"
 
 namespace lineshaft {
 
@@ -167,6 +168,57 @@ Axis::Start Axis::start_of(const Request& request, bool keeps_added) const {
         request.command == Command::move_additive && state == AxisState::discrete_motion;
     from.origin = from_goal ? goal : from.state.position;
     return from;
+}
+
+MotionError Axis::plan_any(const Context& context, const Request& request, const Moment& at,
+                           const Start& from) {
+    if (is_synchronous(request.command)) return plan_sync(context, request, at, from);
+    if (is_profile(request.command)) return plan_profile(context, request, at, from);
+    return plan(request, at, from);
+}
+
+bool is_profile(Command command) {
+    return command == Command::position_profile || command == Command::velocity_profile;
+}
+
+Cam Axis::profile_table(const Context& context) const {
+    return context.instance<CamTable>(profile_motion.table).cam(false);
+}
+
+/// It begins where the axis is, with its velocity, and a profile of positions ends in rest.
+MotionError Axis::plan_profile(const Context& context, const Request& request, const Moment& at,
+                               const Start& from) {
+    const Coupling& c = request.coupling;
+    const bool of_velocity = request.command == Command::velocity_profile;
+    const CamTableId id = CamTableId::of(c.cam);
+    if (id.table < 0) return MotionError::no_cam;
+    const CamTable& table = context.instance<CamTable>(id.table);
+    if (table.cam(false).points.empty() || !table.is_over_time(unit, of_velocity))
+        return MotionError::no_cam;
+    if (!(c.master_scaling > 0)) return MotionError::out_of_range;
+    const Cam cam = table.cam(false);
+    ProfileMotion next{
+        at, id.table, of_velocity ? 1 : 0, c.master_scaling, c.slave_scaling, c.slave_offset};
+    next.start_position = from.state.position;
+    next.duration = cam.length() * c.master_scaling;
+    const MotionState begin = next.at(0, cam), end = next.at(next.duration, cam);
+    constexpr double nanosecond = 1e-9;
+    const Dynamics d = defaults();
+    const double v = d.acceleration * nanosecond, a = d.jerk * nanosecond;
+    const auto apart = [](double x, double y, double most) { return !(std::abs(x - y) <= most); };
+    if (apart(begin.position, from.state.position, 1e-9 * (1 + std::abs(begin.position))) ||
+        apart(begin.velocity, from.state.velocity, v) ||
+        apart(begin.acceleration, from.state.acceleration, a) || apart(end.acceleration, 0, a) ||
+        (!of_velocity && apart(end.velocity, 0, v)))
+        return MotionError::out_of_range;
+    if (!next.keeps(d, cam)) return MotionError::sync_limits;
+    profile_motion = next;
+    doing = Doing::following_profile;
+    leg.exists = paused = 0;
+    origin = goal = of_velocity ? from.origin : next.end(cam).position;
+    offset = 0;
+    base = from.state;
+    return MotionError::none;
 }
 
 MotionError Axis::plan(const Request& request, const Moment& at, const Start& from) {

@@ -107,9 +107,7 @@ void Axis::change(const Context& context, const Moment& at, Running& running, co
         Start from = start_of(job.request, true);
         from.origin = origin;
         from.to_come = 0;
-        const MotionError why = is_synchronous(job.request.command)
-                                    ? plan_sync(context, job.request, at, from)
-                                    : plan(job.request, at, from);
+        const MotionError why = plan_any(context, job.request, at, from);
         if (why != MotionError::none) return;
         if (queue.first != nowhere) blend(context, at);
     }
@@ -135,8 +133,7 @@ void Axis::begin(const Context& context, const Moment& at, Job& job) {
         next_state(request.command, stands && !aborts ? AxisState::standstill : state);
     if (!next) return tell(job, Progress::failed, refusal());
     const Start from = start_of(request, !aborts);
-    const MotionError why = is_synchronous(request.command) ? plan_sync(context, request, at, from)
-                                                            : plan(request, at, from);
+    const MotionError why = plan_any(context, request, at, from);
     if (why != MotionError::none) return tell(job, Progress::failed, why);
     if (aborts) {
         extra = {};

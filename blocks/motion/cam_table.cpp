@@ -6,9 +6,12 @@ namespace lineshaft {
 
 std::span<const Field> CamTable::fields() {
     static const Field fields[] = {
-        parameter("unit", &CamTable::unit, "", "of the slave").one_of(axis_unit_names),
-        parameter("master_unit", &CamTable::master_unit, "", "of the master")
-            .one_of(axis_unit_names),
+        parameter("unit", &CamTable::unit, "",
+                  "of the slave; of a profile over time: of the axis, or its velocity")
+            .one_of(cam_unit_names),
+        parameter("master_unit", &CamTable::master_unit, "",
+                  "of the master; s: a profile over time")
+            .one_of(cam_unit_names),
         parameter("periodic", &CamTable::periodic, "",
                   "open velocities go on from the end to the beginning"),
     };

@@ -14,6 +14,12 @@
 
 namespace lineshaft {
 
+/// Of a cam: those of axes, their velocities, and time.
+enum class CamUnit : std::int64_t { mm, rad, deg, m, rev, mm_s, rad_s, deg_s, m_s, rev_s, s };
+
+inline constexpr std::string_view cam_unit_names[] = {
+    "mm", "rad", "deg", "m", "rev", "mm/s", "rad/s", "deg/s", "m/s", "rev/s", "s"};
+
 /// The points of a cam: data that MC_CamTableSelect names. Given in the program or in a CSV file,
 /// and checked and completed when it is loaded: a scan does nothing.
 struct CamTable {
@@ -22,7 +28,7 @@ struct CamTable {
         std::array<CamPoint, most_cam_points> rows{};
     };
 
-    AxisUnit unit = AxisUnit::mm, master_unit = AxisUnit::mm;
+    CamUnit unit = CamUnit::mm, master_unit = CamUnit::mm;
     bool periodic = false;
     Points table;
 
@@ -32,6 +38,14 @@ struct CamTable {
     static std::span<const Field> fields();
     static std::span<const TableField> tables();
     void scan(const Scan&) {}
+
+    /// For MC_PositionProfile or MC_VelocityProfile of an axis.
+    bool is_over_time(AxisUnit of_axis, bool of_velocity) const {
+        constexpr auto rates = static_cast<std::int64_t>(CamUnit::mm_s);
+        return master_unit == CamUnit::s &&
+               static_cast<std::int64_t>(unit) ==
+                   static_cast<std::int64_t>(of_axis) + (of_velocity ? rates : 0);
+    }
 
     /// Puts in what the points leave open.
     std::optional<TableFault> complete();

@@ -1,5 +1,9 @@
 #include "blocks/motion/synchronous.hpp"
 
+#include <algorithm>
+
+#include "blocks/motion/cam_table.hpp"
+
 namespace lineshaft {
 
 namespace {
@@ -167,6 +171,42 @@ std::span<const Field> PhasingRelative::fields() {
 void Phasing::scan(const Scan& now, const Context& context) {
     run(now, context);
     if (axis != nowhere) shift = context.seen_instance<Axis>(axis).sync.shift.position;
+}
+
+namespace {
+
+std::vector<Field> profile_table(std::string_view reference, std::string_view scale,
+                                 std::string_view unit, const Field& first_output) {
+    return pin::table(
+        {in_out(reference, &Profile::table, CamTable::type, "points over time"),
+         coupled("TimeScale", &C::master_scaling, "", "time = this times the table's; above 0"),
+         coupled(scale, &C::slave_scaling, "", "of the table's values"),
+         coupled("Offset", &C::slave_offset, unit, "of the scaled values"), pin::buffer_mode()},
+        first_output);
+}
+
+}  // namespace
+
+std::span<const Field> PositionProfile::fields() {
+    static const auto fields = profile_table("TimePosition", "PositionScale", "{Axis}",
+                                             pin::done("the profile has come to its end"));
+    return fields;
+}
+
+std::span<const Field> VelocityProfile::fields() {
+    static const auto fields =
+        profile_table("TimeVelocity", "VelocityScale", "{Axis}/s",
+                      pin::reached("ProfileCompleted", "the last velocity is kept"));
+    return fields;
+}
+
+/// A profile has its own beginning: blending is waiting.
+void Profile::scan(const Scan& now, const Context& context) {
+    pins.coupling.cam = table == nowhere ? 0 : CamTableId{table}.number();
+    const BufferMode wanted = pins.mode;
+    pins.mode = std::min(wanted, BufferMode::buffered);
+    run(now, context);
+    pins.mode = wanted;
 }
 
 std::span<const Field> command_kinds::gear_out_fields() {

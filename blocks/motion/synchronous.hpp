@@ -4,8 +4,8 @@
 
 namespace lineshaft {
 
-/// Commands by which a slave follows others (PLCopen Part 1 v2.0, 3.26 to 3.36). `axis` of the base
-/// is the slave. Quantities of the master are in its own unit.
+/// Commands by which a slave follows others, or a profile (PLCopen Part 1 v2.0, 3.26 to 3.36).
+/// `axis` of the base is the slave. Quantities of the master are in its own unit.
 
 /// MC_GearIn: on the way of ratio x master in the least time, within the slave's limits relative to
 /// the master's motion. A change of the ratio is a new start. Beyond the standard: Transition says
@@ -65,6 +65,30 @@ struct PhasingRelative : Phasing {
     static constexpr std::string_view doc = "shifts the master that a slave sees by a value";
     static std::span<const Field> fields();
     constexpr PhasingRelative() { pins.command = Command::phasing_relative; }
+};
+
+/// MC_PositionProfile, MC_VelocityProfile (3.13, 3.14): the motion that a cam_table gives over time
+/// (master_unit: s), within the limits of the axis. It begins where the axis is, with its velocity.
+struct Profile : CommandBlock {
+    std::int64_t table = nowhere;
+
+    void scan(const Scan& now, const Context& context);
+};
+
+/// Positions; the profile ends in rest.
+struct PositionProfile : Profile {
+    static constexpr std::string_view type = "MC_PositionProfile";
+    static constexpr std::string_view doc = "moves an axis by positions over time";
+    static std::span<const Field> fields();
+    constexpr PositionProfile() { pins.command = Command::position_profile; }
+};
+
+/// Velocities; the last one is kept.
+struct VelocityProfile : Profile {
+    static constexpr std::string_view type = "MC_VelocityProfile";
+    static constexpr std::string_view doc = "moves an axis by velocities over time";
+    static std::span<const Field> fields();
+    constexpr VelocityProfile() { pins.command = Command::velocity_profile; }
 };
 
 namespace command_kinds {

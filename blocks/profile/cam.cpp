@@ -107,6 +107,12 @@ Polynomial<5> curve(const CamPoint& p, const CamPoint& q) {
     return y;
 }
 
+CurvePoint at_way(const Polynomial<5>& y, double h) {
+    const auto first = y.slope();
+    const auto second = first.slope();
+    return {y.at(h), first.at(h), second.at(h), second.slope().at(h)};
+}
+
 }  // namespace
 
 CamProblem complete_cam(std::span<CamPoint> points, bool periodic) {
@@ -128,10 +134,48 @@ CurvePoint Cam::at(double x) const {
                                        [](double at, const CamPoint& p) { return at < p.x; });
     const CamPoint& p = *(next - 1);
     const double h = within - p.x;
-    const auto y = curve(p, *next);
-    const auto first = y.slope();
-    const auto second = first.slope();
-    return {y.at(h) + turns * lift(), first.at(h), second.at(h), second.slope().at(h)};
+    CurvePoint found = at_way(curve(p, *next), h);
+    found.y += turns * lift();
+    return found;
+}
+
+CurvePoint Cam::last() const {
+    const CamPoint &p = *(points.end() - 2), &q = points.back();
+    return at_way(curve(p, q), q.x - p.x);
+}
+
+double Cam::area(double x) const {
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < points.size() && points[i].x < x; ++i) {
+        const auto y = curve(points[i], points[i + 1]);
+        const double h = std::min(x, points[i + 1].x) - points[i].x;
+        double power = h;
+        for (std::size_t n = 0; n < y.c.size(); ++n, power *= h)
+            sum += y.c[n] * power / static_cast<double>(n + 1);
+    }
+    return sum;
+}
+
+CamExtremes Cam::extremes() const {
+    CamExtremes most;
+    CurvePoint before;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const double h = points[i + 1].x - points[i].x;
+        const auto y = curve(points[i], points[i + 1]);
+        const auto slope = y.slope();
+        const auto bend = slope.slope();
+        most.y = std::max(most.y, range(y, 0, h).size());
+        most.slope = std::max(most.slope, range(slope, 0, h).size());
+        most.bend = std::max(most.bend, range(bend, 0, h).size());
+        most.twist = std::max(most.twist, range(bend.slope(), 0, h).size());
+        const CurvePoint begin = at_way(y, 0);
+        if (i > 0) {
+            most.slope_jump = std::max(most.slope_jump, std::abs(begin.slope - before.slope));
+            most.bend_jump = std::max(most.bend_jump, std::abs(begin.bend - before.bend));
+        }
+        before = at_way(y, h);
+    }
+    return most;
 }
 
 }  // namespace lineshaft

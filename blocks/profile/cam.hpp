@@ -46,6 +46,13 @@ inline constexpr std::size_t most_cam_points = 1024;
 /// Puts in what is not given. On failure the points are unchanged. At most most_cam_points.
 CamProblem complete_cam(std::span<CamPoint> points, bool periodic);
 
+/// The greatest sizes of y and its derivatives within the curves, and of the jumps of y' and y'' at
+/// the points.
+struct CamExtremes {
+    double y = 0, slope = 0, bend = 0, twist = 0;
+    double slope_jump = 0, bend_jump = 0;
+};
+
 /// Slave over master, of points that are complete. A periodic cam goes on beyond its ends, each
 /// period by `lift` further; another one stands there.
 struct Cam {
@@ -59,6 +66,12 @@ struct Cam {
     /// How often the cam has been run through at x; 0 within it.
     double periods(double x) const;
     CurvePoint at(double x) const;
+
+    /// Of one that is not periodic: at its last point, as the curve comes there.
+    CurvePoint last() const;
+    /// The integral of y from the first point to x, within the cam.
+    double area(double x) const;
+    CamExtremes extremes() const;
 };
 
 }  // namespace lineshaft

@@ -22,7 +22,7 @@ tasks: {main: {every: 1 ms}}
 inputs: {go: false}
 stimulus: [{at: 1 ms, set: {inputs.go: true}}]
 blocks:
-  axis: {type: axis, task: main}
+  axis: {type: axis, task: main, default_acceleration: 100 mm/s^2}
   feed: {type: MC_MoveVelocity, task: main, Axis: axis, Velocity: $speed, Execute: true}
   x: {type: pto, task: main, start_rate: 1 kHz, count: 1000, execute: inputs.go}
 run: {for: 20 ms}

@@ -589,7 +589,7 @@ async function testDrawnAtTheMark(browser, address) {
 async function testLarge(browser) {
   const program = readFileSync(join(project, "programs/04_circle.yaml"), "utf8")
     .replace("every: 10\n", "every: 1\n")
-    .replace("sources: paper/", `sources: ${project}/programs/paper/`)
+    .replaceAll("paper/circle_", `${project}/programs/paper/circle_`)
     .replace(/signals: \[.*\]/, `signals: [${tenSignals.join(", ")}]`);
   writeFileSync(file("million.yaml"), program);
   run("run", file("million.yaml"), "--include-dir", project, "--set", "radius=160 mm", "--quiet", "--trace", file("million.csv"));

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+
+#include "blocks/axis/axis_motion.hpp"
+#include "blocks/profile/cam.hpp"
+
+namespace lineshaft {
+
+/// A motion that a table gives over time: MC_PositionProfile, MC_VelocityProfile. The table is not
+/// kept here: each look is given it.
+struct ProfileMotion {
+    Moment start;
+    std::int64_t table = -1;       ///< number of the cam_table
+    std::int64_t of_velocity = 0;  ///< the table has velocities, else positions
+    double time_scale = 1;         ///< time = scale * the table's, > 0
+    double scale = 1, offset = 0;  ///< value = scale * the table's + offset
+    double start_position = 0;     ///< of velocities
+    double duration = 0;           ///< [s]
+
+    /// t seconds after the start, up to `duration`.
+    MotionState at(double t, const Cam& cam) const;
+    /// What is kept from there on: rest at the last position, or the last velocity.
+    MotionState end(const Cam& cam) const;
+
+    /// Whether velocity, acceleration and jerk stay within limits, also at the points.
+    bool keeps(const Dynamics& limits, const Cam& cam) const;
+};
+
+}  // namespace lineshaft
