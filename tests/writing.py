@@ -56,6 +56,7 @@ class Checks:
     def __init__(self, lineshaft, folder, kills):
         self.folder, self.kills = folder, kills
         # Where every user reaches it, by a name without the folders above.
+        os.umask(0o022)
         shutil.copy(lineshaft, folder / "lineshaft")
         (folder / "lineshaft").chmod(0o755)
         self.lineshaft = "./lineshaft"
