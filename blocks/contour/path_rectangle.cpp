@@ -6,8 +6,8 @@
 
 #include <sleef.h>
 
-#include "blocks/inputs.hpp"
 #include "blocks/circle/arc.hpp"
+#include "blocks/inputs.hpp"
 
 namespace lineshaft {
 

@@ -334,7 +334,7 @@ std::string_view name(MoveKind kind) {
 }
 
 int equation(MoveKind kind) {
-    static constexpr std::array<int, move_kinds> equations = {1, 2, 3, 4, 5, 6, 8, 5,
+    static constexpr std::array<int, move_kinds> equations = {1, 2, 3, 4,  5,  6, 8,  5,
                                                               7, 8, 9, 10, 11, 9, 10, 11};
     return equations[static_cast<std::size_t>(kind)];
 }

@@ -131,7 +131,9 @@ inline void HandCircleAxes::interpolate(std::int64_t time, std::int64_t interval
 }
 
 inline bool HandCircleAxes::error() const {
-    const auto refused = [](const Slave& s) { return s.move.error || s.home.error || s.gear.error; };
+    const auto refused = [](const Slave& s) {
+        return s.move.error || s.home.error || s.gear.error;
+    };
     return g.error || x.error || y.error || refused(x_slave_) || refused(y_slave_) ||
            home_g_.error || turn_.error;
 }

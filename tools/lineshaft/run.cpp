@@ -227,8 +227,9 @@ void RunCommand::add_to(CLI::App& sub) {
            "Write the rising edges of all pulse channels to this CSV file; - is the standard "
            "output")
         ->type_name("FILE");
-    sub.add_option("--force", forces,
-                   "Keep a signal at a value, whatever the program writes: gear.RatioNumerator=2@1s..2s")
+    sub.add_option(
+           "--force", forces,
+           "Keep a signal at a value, whatever the program writes: gear.RatioNumerator=2@1s..2s")
         ->type_name("SIGNAL=VALUE@FROM..UNTIL")
         ->take_all()
         ->expected(1, -1)

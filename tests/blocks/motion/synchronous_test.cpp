@@ -100,7 +100,8 @@ blocks:
     CHECK(answer("s7_1500", "RatioNumerator: 1.5") == MotionError::out_of_range);
     CHECK(answer("s7_1500", "RatioNumerator: 3, RatioDenominator: 2") == MotionError::none);
     CHECK(answer("s7_1500", "RatioNumerator: -3, RatioDenominator: 2") == MotionError::none);
-    CHECK(answer("s7_1500", "RatioNumerator: 3, RatioDenominator: -2") == MotionError::out_of_range);
+    CHECK(answer("s7_1500", "RatioNumerator: 3, RatioDenominator: -2") ==
+          MotionError::out_of_range);
     CHECK(answer("s7_1500", "RatioNumerator: 0") == MotionError::out_of_range);
     CHECK(answer("s7_1500", "RatioNumerator: 3e9") == MotionError::out_of_range);
 }

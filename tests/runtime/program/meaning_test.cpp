@@ -81,10 +81,12 @@ TEST_CASE("what a program does, it means") {
     check_other("{for: 2 s", "{for: 3 s");
     check_other("[axis.position]", "[axis.velocity]");
     check_other(
-        "  axis: {type: path_move, task: main, execute: true, length: 1 m, velocity_limit: $speed, acceleration_limit: inputs.limit}\n"
+        "  axis: {type: path_move, task: main, execute: true, length: 1 m, velocity_limit: $speed, "
+        "acceleration_limit: inputs.limit}\n"
         "  after: {type: not, task: main, input: inputs.go}\n",
         "  after: {type: not, task: main, input: inputs.go}\n"
-        "  axis: {type: path_move, task: main, execute: true, length: 1 m, velocity_limit: $speed, acceleration_limit: inputs.limit}\n");
+        "  axis: {type: path_move, task: main, execute: true, length: 1 m, velocity_limit: $speed, "
+        "acceleration_limit: inputs.limit}\n");
 }
 
 TEST_CASE("parameters in force change what runs, not the form") {
@@ -96,7 +98,8 @@ TEST_CASE("parameters in force change what runs, not the form") {
     }
     CHECK(meaning(plain, {.settings = {{"speed", "1 cm/s"}}, .include_dirs = {}}).in_force ==
           a.in_force);
-    const Meaning fixed = meaning(replaced(plain, "velocity_limit: $speed", "velocity_limit: 10 mm/s"));
+    const Meaning fixed =
+        meaning(replaced(plain, "velocity_limit: $speed", "velocity_limit: 10 mm/s"));
     CHECK(fixed.in_force == a.in_force);
     CHECK(fixed.form != a.form);
     CHECK(meaning(replaced(plain, "speed: 10 mm/s", "speed: 20 mm/s")).form == a.form);
