@@ -32,7 +32,7 @@ struct Pin {
 constexpr double V = 100, A = 1000, J = 50000;  ///< greatest of all limits that are drawn
 constexpr double least_J = 2500;                ///< with the factor of an override
 constexpr std::int64_t length = 400;            ///< of a sequence [ms]
-constexpr std::int64_t patience = 4000;         ///< until all stand, afterwards [ms]
+constexpr std::int64_t patience = 8000;         ///< until all stand, afterwards [ms]
 
 struct Kind {
     const char *type, *pins;
