@@ -51,7 +51,7 @@ struct Axis {
     struct JobList {
         std::int64_t first = nowhere, last = nowhere;
     };
-    /// What the set-point does. The motions of gears and cams join here.
+    /// What the set-point does.
     enum class Doing : std::int64_t {
         holding,
         moving_to_point,
