@@ -5,13 +5,15 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { unpack } from "#page/decode";
 import { slicedValues, slices } from "#page/samples";
 import { colouredPixels, frame, withBrowser } from "./browser.mjs";
 
-const [lineshaft, project, folder, bars] = process.argv.slice(2);
+const [lineshaft, project, folder] = process.argv.slice(2, 5).map((path) => resolve(path));
+const bars = process.argv[5];
+
 /** Runs lineshaft; its exit code may be 1 where an expectation is meant to fail. */
 function run(...command) {
   try {
@@ -343,6 +345,7 @@ async function testKeyboard(page) {
   await page.waitForFunction(() => performance.getEntriesByName("lineshaft:drawn").length > 0);
   assert.deepEqual(await page.locator(".legend .name").allTextContents(), shown, "the same again from the address");
   await page.click(".kept summary");
+  await page.waitForFunction(() => document.querySelector(".kept textarea").value !== "");
   assert.match(await page.inputValue(".kept textarea"), /^report:\n  plots: \[/);
 }
 

@@ -6,10 +6,11 @@ import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { createServer } from "node:net";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 import { colouredPixels, withBrowser } from "./browser.mjs";
 
-const [lineshaft, folder, bars] = process.argv.slice(2);
+const [lineshaft, folder] = process.argv.slice(2, 4).map((path) => resolve(path));
+const bars = process.argv[4];
 const file = (name) => join(folder, name);
 const signals = ["path", "x", "y"].flatMap((axis) => ["position", "velocity", "acceleration"].map((of) => `${axis}.${of}`));
 signals.push("inputs.go");
