@@ -2,13 +2,16 @@
 """How well `lineshaft serve` keeps the clock, beside a bare loop of clock_nanosleep in the same time, and what clients
 cost: lateness of the scans of a task of 1 ms.
 
-usage: serve.py LINESHAFT [SECONDS]     first without clients, then with 8 pages of 1,000 signals at 100 Hz and 4 clients
-of Modbus that poll 124 registers as fast as they can
+usage: serve.py LINESHAFT [SECONDS [PRIORITY]]     first without clients, then with 8 pages of 1,000 signals at 100 Hz and
+4 clients of Modbus that poll 124 registers as fast as they can, the bare loop beside both; with a priority both have it
+(`--realtime`)
 """
 
 import ctypes
 import http.client
 import json
+import multiprocessing
+import os
 import pathlib
 import socket
 import struct
@@ -35,19 +38,23 @@ run: {{for: 1 s}}
 """
 
 
-def bare_loop(seconds, late):
+def bare_loop(seconds, priority, pipe):
     """Lateness [us] of waking at each millisecond of the clock."""
     libc = ctypes.CDLL(None)
     libc.prctl(29, 1, 0, 0, 0)  # no slack
+    if priority:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
 
     class Timespec(ctypes.Structure):
         _fields_ = [("s", ctypes.c_long), ("ns", ctypes.c_long)]
 
+    late = []
     due = time.monotonic_ns() + 1_000_000
     for _ in range(int(seconds * 1000)):
         libc.clock_nanosleep(1, 1, ctypes.byref(Timespec(*divmod(due, 10**9))), None)
         late.append((time.monotonic_ns() - due) / 1e3)
         due += 1_000_000
+    pipe.send(sorted(late))
 
 
 def page(port, names, ends, lost):
@@ -69,10 +76,11 @@ def poll(port, ends, count):
         count[threading.get_ident()] = count.get(threading.get_ident(), 0) + 1
 
 
-def serve(command, folder, seconds, clients):
+def serve(command, folder, seconds, priority, clients):
+    realtime = ["--realtime", str(priority)] if priority else []
     process = subprocess.Popen(
         [command, "serve", "program.yaml", "--http", "127.0.0.1:18080", "--modbus", "127.0.0.1:11502", "--json",
-         "--for", f"{seconds} s"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+         "--for", f"{seconds} s", *realtime], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     process.stderr.readline()
     names = [f"x{i}.{port}" for i in range(SIGNALS // 4)
              for port in ("position", "velocity", "acceleration", "enable")]
@@ -92,22 +100,27 @@ def serve(command, folder, seconds, clients):
           (f"  rows lost {sum(lost.values())}, polls {sum(count.values())}" if clients else ""))
 
 
+def beside_bare_loop(command, folder, seconds, priority, clients):
+    here, there = multiprocessing.Pipe()
+    loop = multiprocessing.Process(target=bare_loop, args=(seconds, priority, there))
+    loop.start()
+    serve(command, folder, seconds, priority, clients)
+    late = here.recv()
+    loop.join()
+    names = {"p50": 0.5, "p99": 0.99, "p99.9": 0.999, "greatest": 1}
+    print("bare loop   " + "  ".join(f"{name} {late[min(int(part * len(late)), len(late) - 1)]:8.1f} us"
+                                     for name, part in names.items()) +
+          f"  overruns {sum(each >= 1000 for each in late)}", flush=True)
+
+
 def main():
     command = str(pathlib.Path(sys.argv[1]).resolve())
     seconds = int(sys.argv[2]) if len(sys.argv) > 2 else 20
+    priority = int(sys.argv[3]) if len(sys.argv) > 3 else 0
     with tempfile.TemporaryDirectory() as folder:
         (pathlib.Path(folder) / "program.yaml").write_text(program(), encoding="utf-8")
-        late = []
-        loop = threading.Thread(target=bare_loop, args=(seconds, late))
-        loop.start()
-        serve(command, folder, seconds, False)
-        loop.join()
-        late.sort()
-        names = {"p50": 0.5, "p99": 0.99, "p99.9": 0.999, "greatest": 1}
-        print("bare loop   " + "  ".join(f"{name} {late[min(int(part * len(late)), len(late) - 1)]:8.1f} us"
-                                         for name, part in names.items()) +
-              f"  overruns {sum(each >= 1000 for each in late)}")
-        serve(command, folder, seconds, True)
+        for clients in (False, True):
+            beside_bare_loop(command, folder, seconds, priority, clients)
 
 
 if __name__ == "__main__":
