@@ -149,13 +149,79 @@ void Executive::begin() {
     looked_ = Clock::now();
 }
 
+inline std::int64_t Executive::next_event() {
+    const std::int64_t next = std::min(next_due_, next_outside_);
+    return nothing_waits_ ? next : std::min(next, next_end());
+}
+
+inline void Executive::advance(std::int64_t time) {
+    if (!running_.empty()) state(running_.back()).remaining -= time - now_;
+    now_ = time;
+}
+
+inline void Executive::begin(int index) {
+    State& state = this->state(index);
+    state.scan = {.time = now_, .interval = task(index).every, .index = state.index++};
+    if (state.scan.index == state.outside) stimulate(index);
+}
+
+/// Whether a block may have an error.
+bool Executive::scan_blocks(const Task& task, const Scan& scan) {
+    if (forces_.active()) {
+        scan_forced(task, scan);
+        return true;
+    }
+    bool error = false;
+    Feeder wires(task.wires);
+    for (const Call& call : task.calls) {
+        wires.feed(call);
+        error |= call.scan(call.first, call.count, scan, call.context);
+    }
+    return error;
+}
+
+/// When what others see of the task's scan is in place.
+inline void Executive::conclude(int index) {
+    ++result_.scans.data()[index];
+    for (Observer* observer : observers_) observer->scanned(index, state(index).scan);
+    if (state(index).may_err) report_errors(index);
+}
+
+inline void Executive::State::set_next(const Task& task) {
+    const std::int64_t off = task.jitter > 0 ? jitter.around_zero(task.jitter) : 0;
+    due = later(later(due, task.every), off);
+}
+
+/// Where nothing waits: what is due runs at once. A clock of the circle takes 150 ns so, 183 in the
+/// general way.
+inline void Executive::run_due() {
+    if (next_outside_ <= now_ || interpolates_) act_from_outside();
+    if (next_due_ > now_) return;
+    std::int64_t next = never;
+    int index = 0;
+    for (State& state : states_) {
+        if (state.due <= now_ && !stopped_) {
+            begin(index);
+            state.may_err |= scan_blocks(task(index), state.scan);
+            conclude(index);
+            state.set_next(task(index));
+        }
+        next = std::min(next, state.due);
+        ++index;
+    }
+    next_due_ = next;
+}
+
 bool Executive::run_until(std::int64_t time) {
     const std::int64_t last = std::min(time, machine_.duration);
     std::int64_t next = next_event();
     if (has_run_ && known_until_ <= last) settle(std::min(next - 1, last));
     while (!ended_ && next <= last) {
         advance(next);
-        instant();
+        if (nothing_waits_)
+            run_due();
+        else
+            instant();
         has_run_ = true;
         next = next_event();
         ended_ = stopped_ || (machine_.until && read<bool>(machine_.until->slot));
@@ -255,9 +321,13 @@ void Executive::look_ahead() {
     if (!mail_.empty()) next_outside_ = std::min(next_outside_, mail_.front().at);
 }
 
-std::int64_t Executive::next_event() {
-    std::int64_t next = std::min(next_due_, next_outside_);
-    if (nothing_waits_) return next;
+std::int64_t Executive::next_time() {
+    return next_event();
+}
+
+/// Of what waits: a device's next moment, the end of the scan under way, a deadline.
+std::int64_t Executive::next_end() {
+    std::int64_t next = never;
     for (const DeviceCall& device : machine_.devices)
         next = std::min(next, next_event_time(device));
     if (running_.empty()) return next;
@@ -265,15 +335,9 @@ std::int64_t Executive::next_event() {
     return std::min(next, later(now_, state(running_.back()).remaining));
 }
 
-void Executive::advance(std::int64_t time) {
-    if (!running_.empty()) state(running_.back()).remaining -= time - now_;
-    now_ = time;
-}
-
 void Executive::instant() {
     if (!machine_.devices.empty()) advance_devices();
     if (next_outside_ <= now_ || interpolates_) act_from_outside();
-    if (nothing_waits_) return run_due();
     if (!trigger_levels_.empty()) detect_edges();
     finish_top();
     if (!stopped_ && !running_.empty()) check_deadlines();
@@ -310,11 +374,6 @@ void Executive::release(int index, State& state) {
     state.set_next(task);
 }
 
-void Executive::State::set_next(const Task& task) {
-    const std::int64_t off = task.jitter > 0 ? jitter.around_zero(task.jitter) : 0;
-    due = later(later(due, task.every), off);
-}
-
 void Executive::make_pending(int index) {
     bool& pending = state(index).pending;
     pending_ += !pending;
@@ -332,25 +391,6 @@ void Executive::start_pending() {
         }
         publish(i);
     }
-}
-
-/// Where nothing waits: what is due runs at once. A clock of the circle takes 150 ns so, 183 in the
-/// general way.
-void Executive::run_due() {
-    if (next_due_ > now_) return;
-    std::int64_t next = never;
-    int index = 0;
-    for (State& state : states_) {
-        if (state.due <= now_ && !stopped_) {
-            begin(index);
-            state.may_err |= scan_blocks(task(index), state.scan);
-            conclude(index);
-            state.set_next(task(index));
-        }
-        next = std::min(next, state.due);
-        ++index;
-    }
-    next_due_ = next;
 }
 
 /// The first of those that are pending; -1 when it may not interrupt the scan under way.
@@ -379,27 +419,6 @@ void Executive::start(int index) {
     state.deadline = state.cost > 0 ? later(now_, task.maximum_cycle_time) : never;
 }
 
-void Executive::begin(int index) {
-    State& state = this->state(index);
-    state.scan = {.time = now_, .interval = task(index).every, .index = state.index++};
-    if (state.scan.index == state.outside) stimulate(index);
-}
-
-/// Whether a block may have an error.
-bool Executive::scan_blocks(const Task& task, const Scan& scan) {
-    if (forces_.active()) {
-        scan_forced(task, scan);
-        return true;
-    }
-    bool error = false;
-    Feeder wires(task.wires);
-    for (const Call& call : task.calls) {
-        wires.feed(call);
-        error |= call.scan(call.first, call.count, scan, call.context);
-    }
-    return error;
-}
-
 void Executive::scan_forced(const Task& task, const Scan& scan) {
     Feeder wires(task.wires);
     for (const Call& call : task.calls) {
@@ -423,13 +442,6 @@ void Executive::publish(int index) {
         if (device.task == index) publish_device(device);
     conclude(index);
     if (!stopped_ && !trigger_levels_.empty()) detect_edges();
-}
-
-/// When what others see of the task's scan is in place.
-void Executive::conclude(int index) {
-    ++result_.scans.data()[index];
-    for (Observer* observer : observers_) observer->scanned(index, state(index).scan);
-    if (state(index).may_err) report_errors(index);
 }
 
 }  // namespace lineshaft

@@ -101,7 +101,7 @@ class Executive {
     std::int64_t time() const { return known_until_ - 1; }
 
     /// When something is due next [ns].
-    std::int64_t next_time() { return next_event(); }
+    std::int64_t next_time();
 
     /// Between two steps: a value from outside counts from the next nanosecond on, so before every
     /// scan that comes, and is told as a stimulus of that time. A run of the same program with that
@@ -156,6 +156,7 @@ class Executive {
     void settle(std::int64_t last);
     void look();
     std::int64_t next_event();
+    std::int64_t next_end();
     void look_ahead();
     std::int64_t forces_changed();
     void advance(std::int64_t time);
