@@ -935,8 +935,10 @@ class Parser {
     void read_statements(Block& to, Word end, bool in_case = false) {
         while (!panic_ && !is(end) && !at_end_of_statements() && !(in_case && at_label())) {
             const std::size_t before = at_;
-            if (Statement* statement = read_statement(); statement && !panic_)
-                to.push_back(statement);
+            Statement* statement = read_statement();
+            if (!panic_) to.insert(to.end(), before_statement_.begin(), before_statement_.end());
+            before_statement_.clear();
+            if (statement && !panic_) to.push_back(statement);
             if (panic_) skip_to_statement();
             if (at_ == before) take();
         }
@@ -1032,7 +1034,7 @@ class Parser {
         Expression* target = read_postfix();
         if (panic_) return nullptr;
         const Word op = here().word;
-        if (op >= Word::assign && op <= Word::divided_assign) return read_assignment(target);
+        if (is_assignment(op)) return read_assignment(target);
         if (op == Word::set_assign || op == Word::reset_assign) return read_latch(target);
         if (op == Word::equal) return assigned_by_comparison(target);
         Statement* statement = make(Statement::Kind::call, target->token);
@@ -1075,18 +1077,24 @@ class Parser {
         return ended(statement);
     }
 
+    /// `a := b := 0;` is `b := 0; a := b;`
     Statement* read_assignment(Expression* target) {
+        const Level level(*this);
         Statement* statement = make(Statement::Kind::assign, here());
         statement->op = take().word;
         statement->target = target;
+        const std::size_t before = at_;
         statement->value = read_initial();
         statement->place = target->place.to(last().place);
-        if (is(Word::assign)) {
-            fail("L0903", here().place, "an assignment gives one variable its value",
-                 "write two statements");
-        }
-        return ended(statement);
+        if (panic_ || !is_assignment(here().word)) return ended(statement);
+        Expression* inner = statement->value;
+        at_ = before;
+        statement->value = read_initial();
+        before_statement_.push_back(read_assignment(inner));
+        return statement;
     }
+
+    static bool is_assignment(Word op) { return op >= Word::assign && op <= Word::divided_assign; }
 
     /// `lamp S= start;`: IF start THEN lamp := TRUE; END_IF
     Statement* read_latch(Expression* target) {
@@ -1247,6 +1255,7 @@ class Parser {
     Diagnostics& out_;
     std::size_t at_ = 0;
     std::size_t unclosed_at_ = static_cast<std::size_t>(-1);  ///< where an end was missed last
+    Block before_statement_;                                  ///< of a chain of assignments
     std::vector<Place> else_ifs_;                             ///< within the IFs that are open
     int depth_ = 0;
     bool panic_ = false;
