@@ -46,8 +46,10 @@ std::optional<Signal> Net::find(const Reader& read, const Node& node, std::strin
 int Net::find_block(const Reader& read, const Node& node, std::string_view name) const {
     const auto it = instance_numbers.find(std::string(name));
     if (it != instance_numbers.end()) return it->second;
-    read.fail("L0204", node, fmt::format("the program has no block '{}'", name),
-              suggest(name, names(instances)));
+    const bool may_be_in_sources = !kinds;
+    if (!may_be_in_sources)
+        read.fail("L0204", node, fmt::format("the program has no block '{}'", name),
+                  suggest(name, names(instances)));
     return -1;
 }
 

@@ -192,8 +192,7 @@ inline void Executive::State::set_next(const Task& task) {
     due = later(later(due, task.every), off);
 }
 
-/// Where nothing waits: what is due runs at once. A clock of the circle takes 150 ns so, 183 in the
-/// general way.
+/// Where nothing waits: what is due runs at once.
 inline void Executive::run_due() {
     if (next_outside_ <= now_ || interpolates_) act_from_outside();
     if (next_due_ > now_) return;
