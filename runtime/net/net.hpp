@@ -95,8 +95,8 @@ struct Net {
     /// not there; nothing is said again of what could not be read.
     std::optional<Signal> find(const Reader& read, const Node& node, std::string_view name) const;
 
-    /// The block of that name. -1, and L0204 at `node`, when there is none; nothing is said where it
-    /// may be a data block of sources with a mistake.
+    /// The block of that name. -1, and L0204 at `node`, when there is none; nothing is said where
+    /// it may be a data block of sources with a mistake.
     int find_block(const Reader& read, const Node& node, std::string_view name) const;
 
     /// A port's name to look for similar ones of; empty where it is a name in some kind of block,

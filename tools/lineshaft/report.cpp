@@ -343,7 +343,7 @@ void add_report(CLI::App& app, Exit& result) {
         ->delimiter(',')
         ->expected(3);
     sub->add_option("--while", command->condition,
-                    "Take a path for the circle only while this signal is true: g.moving")
+                    "Take a path for the circle only while this signal is true: move.Active")
         ->type_name("SIGNAL");
     sub->add_option("--cases", command->cases,
                     "Of a study's traces, draw those of the cases that this finds: early|centred")
