@@ -69,7 +69,7 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
 }
 
 /// A variable may bear a function's name, but no instance can be meant then.
-bool Checker::is_instance(const Token& name) const {
+bool Checker::is_instance(const Token& name) {
     const Variable* variable = find_variable(name);
     return variable && variable->type && variable->type->is_instance();
 }

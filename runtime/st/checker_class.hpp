@@ -42,6 +42,9 @@ class Checker {
 
     // declarations.cpp
     void collect_names();
+    Type& global_variables();
+    Variable* declare_global(const Declaration& declared, bool constant, bool retain);
+    Variable* declare_early(std::string_view name);
     void declare_globals();
     void declare_routines();
     void declare(Routine& routine, const DeclarationBlock& block);
@@ -83,7 +86,7 @@ class Checker {
     const Type* check_name(Expression& expression, const Type* expected);
     const Type* use(Expression& expression, Variable& variable);
     const Type* unknown_name(Expression& expression);
-    const Type* enumeration_of(const Expression& member) const;
+    const Type* enumeration_of(const Expression& member);
     const Type* check_value(Expression& e, const Type& enumeration, const Token& name);
     const Type* check_member(Expression& expression);
     const Type* check_index(Expression& expression);
@@ -113,13 +116,13 @@ class Checker {
     bool refuse_conversion(const Expression& expression, const Type& to);
     std::optional<Wide> check_whole(Expression*& expression, const Type& type);
     std::vector<std::string> visible_names() const;
-    Variable* find_variable(const Token& token) const;
+    Variable* find_variable(const Token& token);
 
     // calls.cpp
     const Type* check_call(Expression& call, bool as_statement, const Type* expected);
     const Type* check_routine_call(Expression& call, Routine& routine, bool as_statement);
     const Type* check_instance_call(Expression& call, const Type& type, bool as_statement);
-    bool is_instance(const Token& name) const;
+    bool is_instance(const Token& name);
     bool is_in_test() const { return routine_ && routine_->is_test(); }
     void check_arguments(Expression& call, Routine& routine);
     void check_argument(Expression& call, Argument& argument, Variable& parameter);
@@ -139,7 +142,7 @@ class Checker {
     bool check_test_arguments(Expression& call, const TestStatement& known);
     void check_single(Expression& call);
     void check_mocked(Expression& call);
-    void become_text(Expression& expression) const;
+    void become_text(Expression& expression);
     bool check_compared(Expression& call);
     bool check_distance(Expression& call);
     bool make_concrete(Expression*& expression, const Type& other);
@@ -187,6 +190,8 @@ class Checker {
     NameMap<NamedValue> values_;
     NameMap<Routine*> routines_;
     NameMap<Variable*> globals_;
+    NameMap<const Declaration*> constants_;  ///< of VAR_GLOBAL, until all globals are declared
+    std::vector<const Declaration*> begun_constants_;  ///< of those, what is declared already
     NameMap<const Type*> standard_types_;
     NameMap<Place> top_names_;
     bool has_tests_ = false;

@@ -108,6 +108,9 @@ void Checker::collect_names() {
                 routine.methods.emplace(method->name.text, &made);
         }
     }
+    for (const DeclarationBlock& block : tree_.globals)
+        for (const Declaration* declared : block.declarations)
+            if (block.constant) constants_.emplace(declared->name.text, declared);
     for (const TypeDeclaration& declared : tree_.types)
         if (const auto it = named_types_.find(declared.name.text); it != named_types_.end())
             resolve_declared(it->second);
@@ -132,27 +135,47 @@ void Checker::check_unit(Variable& variable, const Declaration& declared) {
              "lineshaft units lists them");
 }
 
+/// All that stands in VAR_GLOBAL.
+Type& Checker::global_variables() {
+    if (checked_.globals.empty())
+        checked_.globals.push_back({"globals", &make_type(Kind::structure, "globals")});
+    return const_cast<Type&>(*checked_.globals.front().type);
+}
+
+Variable* Checker::declare_global(const Declaration& declared, bool constant, bool retain) {
+    Type& all = global_variables();
+    const Type* type = resolve(*declared.type);
+    if (!is_new_name(declared.name, top_names_)) return nullptr;
+    Variable* variable = add(checked_.variables, declared, type);
+    variable->section = Section::global;
+    variable->constant = constant;
+    variable->retain = retain;
+    variable->space = Space::global;
+    variable->global = 0;
+    if (constant) make_constant(*variable);
+    if (variable->space != Space::none) all.members.push_back(variable);
+    globals_.emplace(declared.name.text, variable);
+    return variable;
+}
+
+/// One that a type or another constant asks for, wherever it is declared; null when there is none,
+/// or it asks for itself.
+Variable* Checker::declare_early(std::string_view name) {
+    const auto it = constants_.find(name);
+    if (it == constants_.end() || std::ranges::count(begun_constants_, it->second) > 0)
+        return nullptr;
+    begun_constants_.push_back(it->second);
+    return declare_global(*it->second, true, false);
+}
+
 void Checker::declare_globals() {
-    Type* all = nullptr;
-    for (const DeclarationBlock& block : tree_.globals) {
-        if (!all) {
-            all = &make_type(Kind::structure, "globals");
-            checked_.globals.push_back({"globals", all});
-        }
-        for (const Declaration* declared : block.declarations) {
-            const Type* type = resolve(*declared->type);
-            if (!is_new_name(declared->name, top_names_)) continue;
-            Variable* variable = add(checked_.variables, *declared, type);
-            variable->section = Section::global;
-            variable->constant = block.constant;
-            variable->retain = block.retain;
-            variable->space = Space::global;
-            variable->global = 0;
-            if (block.constant) make_constant(*variable);
-            if (variable->space != Space::none) all->members.push_back(variable);
-            globals_.emplace(declared->name.text, variable);
-        }
-    }
+    for (const DeclarationBlock& block : tree_.globals)
+        for (const Declaration* declared : block.declarations)
+            if (std::ranges::count(begun_constants_, declared) == 0) {
+                if (block.constant) begun_constants_.push_back(declared);
+                declare_global(*declared, block.constant, block.retain);
+            }
+    constants_.clear();
     for (Pou* pou : tree_.units) {
         if (pou->kind != PouKind::data_block) continue;
         const int number = static_cast<int>(checked_.globals.size());

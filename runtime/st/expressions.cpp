@@ -187,12 +187,13 @@ void Checker::become_boolean(Expression& e, bool value) {
 
 // Names.
 
-Variable* Checker::find_variable(const Token& token) const {
+Variable* Checker::find_variable(const Token& token) {
     for (const Routine* r = routine_; r && !token.quoted; r = r->owner)
         if (const auto it = r->names.find(token.text); it != r->names.end()) return it->second;
     if (token.local) return nullptr;
     const auto it = globals_.find(token.text);
     if (it != globals_.end()) return it->second;
+    if (Variable* constant = declare_early(token.text)) return constant;
     return token.quoted && routine_ && routine_->names.contains(token.text)
                ? routine_->names.at(token.text)
                : nullptr;
@@ -274,7 +275,7 @@ std::string_view standard_name(const Type& type, std::string_view name) {
 }
 
 /// The enumeration of `Colour.red`; null if this is none.
-const Type* Checker::enumeration_of(const Expression& member) const {
+const Type* Checker::enumeration_of(const Expression& member) {
     const Expression& of = *member.operands[0];
     if (of.kind != Expression::Kind::name || of.token.local) return nullptr;
     const Variable* variable = find_variable(of.token);

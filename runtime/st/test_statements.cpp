@@ -133,7 +133,7 @@ void Checker::check_mocked(Expression& call) {
 }
 
 /// `"text"` is a text where it names nothing.
-void Checker::become_text(Expression& e) const {
+void Checker::become_text(Expression& e) {
     if (e.kind != E::name || !e.token.quoted || find_variable(e.token)) return;
     e.kind = E::constant;
     e.type = &string_type;
