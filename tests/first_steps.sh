@@ -3,6 +3,7 @@
 #   first_steps.sh SOURCE
 set -euo pipefail
 cd "$1"
+mkdir -p out
 rm -f out/circle.html out/figure10.html
 tools/quickstart | tee out/quickstart.txt
 grep -q 'file://.*/out/circle.html' out/quickstart.txt

@@ -336,6 +336,31 @@ const Type& real_for(const Type& type) {
 
 }  // namespace
 
+/// Bounds of an array, and how many elements it has, are constants.
+const Type* Checker::check_bound(Expression& call) {
+    const StandardFunction& f = standard_functions()[static_cast<std::size_t>(call.standard)];
+    const Type* array = call.arguments[0].value->type;
+    if (array->kind != Kind::array)
+        return fail("L0905", call.arguments[0].value->place,
+                    fmt::format("{} takes an array, not {}", f.name, describe(*array)));
+    std::int64_t value = 1;
+    if (f.most == 1) {
+        for (const Type* inner = array; inner; inner = inner->has_inner ? inner->element : nullptr)
+            value *= inner->upper - inner->lower + 1;
+    } else {
+        const auto dimension = check_whole(call.arguments[1].value, lint_type);
+        if (!dimension) return nullptr;
+        Wide at = 1;
+        for (; at < *dimension && array->has_inner; ++at) array = array->element;
+        if (at != *dimension)
+            return fail("L0908", call.arguments[1].value->place,
+                        fmt::format("the array's dimensions are 1 to {}", static_cast<int>(at)));
+        value = f.name.front() == 'L' ? array->lower : array->upper;
+    }
+    become(call, dint_type, {.integer = value});
+    return &dint_type;
+}
+
 const Type* Checker::standard_result(Expression& call, const Type* expected) {
     const StandardFunction& f = standard_functions()[static_cast<std::size_t>(call.standard)];
     auto& arguments = call.arguments;
@@ -457,6 +482,8 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
                             fmt::format("expected a STRING, found {}", describe(first)));
             become(call, int_type, {.integer = first.length});
             return &int_type;
+        case Rule::bound:
+            return check_bound(call);
         case Rule::length:
         case Rule::find:
         case Rule::text: {

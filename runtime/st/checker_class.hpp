@@ -136,6 +136,7 @@ class Checker {
     const Type* convert_result(Expression& call, const Type& from, const Type& to);
     const Type* check_scale(Expression& call, const Type* expected);
     const Type* standard_result(Expression& call, const Type* expected);
+    const Type* check_bound(Expression& call);
 
     // test_statements.cpp
     const Type* check_test_statement(Expression& call, bool as_statement);

@@ -314,6 +314,7 @@ Slot Generator::standard(const Expression& e, Slot wanted) {
         case Rule::statement:
             return reset_timer(*e.arguments[0].value);
         case Rule::capacity:
+        case Rule::bound:
         case Rule::move:
         case Rule::operation:
             return value_or_address(*e.arguments[0].value, none);

@@ -71,6 +71,7 @@ constexpr StandardFunction functions[] = {
     {"to BCD", Rule::to_bcd},
     {"TIME", Rule::time, 0, 0},
     {"LTIME", Rule::time, 0, 0},
+    {"TIME_TCK", Rule::time, 0, 0},
     {"ADD_TIME", Rule::operation, 2, 2, Op::move, Word::plus},
     {"ADD_LTIME", Rule::operation, 2, 2, Op::move, Word::plus},
     {"SUB_TIME", Rule::operation, 2, 2, Op::move, Word::minus},
@@ -102,6 +103,9 @@ constexpr StandardFunction functions[] = {
     {"T_DIFF", Rule::operation, 2, 2, Op::move, Word::minus},
     {"LEN", Rule::length},
     {"MAX_LEN", Rule::capacity},
+    {"LOWER_BOUND", Rule::bound, 2, 2},
+    {"UPPER_BOUND", Rule::bound, 2, 2},
+    {"CountOfElements", Rule::bound},
     {"FIND", Rule::find, 2, 2},
     {"CONCAT", Rule::text, 2, several, Op::move, Word::end_of_file, several},
     {"LEFT", Rule::text, 2, 2},
@@ -129,16 +133,12 @@ constexpr Elsewhere elsewhere[] = {
     {"UFILL_BLK", "assign the elements in a FOR"},
     {"Serialize", "assign the parts one by one"},
     {"Deserialize", "assign the parts one by one"},
-    {"CountOfElements", "declare the bounds as constants"},
-    {"LOWER_BOUND", "declare the bounds as constants"},
-    {"UPPER_BOUND", "declare the bounds as constants"},
     {"SIZEOF", "declare the size as a constant"},
     {"ADR", "pass the variable as VAR_IN_OUT"},
     {"REF", "pass the variable as VAR_IN_OUT"},
     {"TypeOf", "write a block for each type"},
     {"RD_SYS_T", "wire the time to a VAR_INPUT"},
     {"RD_LOC_T", "wire the time to a VAR_INPUT"},
-    {"TIME_TCK", "write TIME()"},
     {"BCD16_TO_INT", "write WORD_BCD_TO_UINT(x) for a number without a sign"},
     {"INT_TO_BCD16", "write UINT_TO_BCD_WORD(x) for a number without a sign"},
     {"BCD32_TO_DINT", "write DWORD_BCD_TO_UDINT(x) for a number without a sign"},
@@ -185,6 +185,8 @@ std::string argument_name(const StandardFunction& function, int argument) {
             return one_of({"IN", "OUT"});
         case Rule::multiplex:
             return argument == 0 ? "K" : fmt::format("IN{}", argument - 1);
+        case Rule::bound:
+            return function.most == 1 ? "IN" : one_of({"ARR", "DIM"});
         case Rule::shift:
             return one_of({"IN", "N"});
         case Rule::normalise:

@@ -39,6 +39,7 @@ enum class Rule : std::uint8_t {
     decode,     ///< DECO(n): the bit of that number
     encode,     ///< ENCO(bits): the number of the lowest bit
     capacity,   ///< MAX_LEN(text)
+    bound,      ///< LOWER_BOUND(array, dimension), UPPER_BOUND, CountOfElements: a constant
     statement,  ///< no value: see Checker::check_special
 };
 
