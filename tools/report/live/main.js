@@ -37,7 +37,7 @@ function show(now) {
   state = now;
   document.title = `${now.program} – lineshaft`;
   document.querySelector("h1").textContent = now.program;
-  byId("time").textContent = `${now.time_s.toFixed(3)} s`;
+  byId("time").textContent = `${now.time_s.toFixed(now.paused ? 6 : 3)} s`;  // a step may be shorter than 1 ms
   byId("pause").textContent = now.paused ? "Go on" : "Pause";
   const late = now.pace.overruns > 0 ? `, ${now.pace.overruns} overruns` : "";
   byId("status").textContent = `${now.paused ? "paused" : `speed ${now.speed}`}${late}`;
