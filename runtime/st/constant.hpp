@@ -7,6 +7,12 @@ namespace lineshaft::st {
 
 __extension__ using Wide = __int128;
 
+/// Of two numbers within +-2^64. A product beyond Wide comes to another one outside of +-2^64.
+inline Wide product(Wide a, Wide b) {
+    __extension__ using Bits = unsigned __int128;
+    return static_cast<Wide>(static_cast<Bits>(a) * static_cast<Bits>(b));
+}
+
 /// A value known when compiling. Of BOOL, integers, times, bit strings and enumerations `integer`
 /// counts, of REAL and LREAL `real`, of STRING `text`.
 struct Constant {

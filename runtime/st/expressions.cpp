@@ -649,11 +649,12 @@ const Type* Checker::check_power(Expression& e, const Type* expected) {
                        left->type->kind == Kind::any_integer &&
                        right->type->kind == Kind::any_integer && right->constant.integer >= 0;
     if (whole) {
+        constexpr Wide most = Wide{1} << 64;
         Wide value = 1;
-        for (Wide i = 0; i < right->constant.integer && value < (Wide{1} << 64); ++i)
-            value *= left->constant.integer;
+        for (Wide i = 0; i < right->constant.integer && value < most && value > -most; ++i)
+            value = product(value, left->constant.integer);
         if (right->constant.integer <= 64 || left->constant.integer <= 1) {
-            if (value >= (Wide{1} << 64))
+            if (value >= most || value <= -most)
                 return fail("L0908", e.place, "the result is out of range");
             become(e, any_integer_type, {.integer = value});
             return e.type;
@@ -722,7 +723,7 @@ void Checker::fold_binary(Expression& e, const Constant& a, const Constant& b) {
             result = {a.integer - b.integer, x - y};
             break;
         case Word::times:
-            result = {a.integer * b.integer, x * y};
+            result = {product(a.integer, b.integer), x * y};
             break;
         case Word::divided:
             result = {real ? 0 : a.integer / b.integer, x / y};
