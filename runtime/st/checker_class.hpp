@@ -193,6 +193,7 @@ class Checker {
     NameMap<Variable*> globals_;
     NameMap<const Declaration*> constants_;  ///< of VAR_GLOBAL, until all globals are declared
     std::vector<const Declaration*> begun_constants_;  ///< of those, what is declared already
+    int hops_ = 0;  ///< from constant to constant that is declared later
     NameMap<const Type*> standard_types_;
     NameMap<Place> top_names_;
     bool has_tests_ = false;

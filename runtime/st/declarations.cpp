@@ -159,13 +159,18 @@ Variable* Checker::declare_global(const Declaration& declared, bool constant, bo
 }
 
 /// One that a type or another constant asks for, wherever it is declared; null when there is none,
-/// or it asks for itself.
+/// or it asks for itself, or over too many others.
 Variable* Checker::declare_early(std::string_view name) {
+    constexpr int most_hops = 200;
     const auto it = constants_.find(name);
-    if (it == constants_.end() || std::ranges::count(begun_constants_, it->second) > 0)
+    if (it == constants_.end() || hops_ == most_hops ||
+        std::ranges::count(begun_constants_, it->second) > 0)
         return nullptr;
     begun_constants_.push_back(it->second);
-    return declare_global(*it->second, true, false);
+    ++hops_;
+    Variable* variable = declare_global(*it->second, true, false);
+    --hops_;
+    return variable;
 }
 
 void Checker::declare_globals() {
