@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""`lineshaft serve` and real clients: urllib, curl, pymodbus, bare sockets. Nothing here is a matter of time: how well
-the clock is kept is measured by tools/bench/serve.py.
+"""`lineshaft serve` and real clients: urllib, curl, pymodbus, mbpoll, modbus-serial, bare sockets. Nothing here is a
+matter of time: how well the clock is kept is measured by tools/bench/serve.py.
 
 usage: serve.py LINESHAFT SOURCE_DIR [RECORDINGS [SEED]]        so many random recordings are played back
 """
@@ -308,6 +308,18 @@ def check_mbpoll():
     assert "[10]: \t1.5" in done.stdout, done.stdout
     done = mbpoll(machine, "-t", "4", "-r", "0", machine.host)
     assert "Illegal data address" in done.stdout + done.stderr, done
+    assert machine.end()[0] == 0
+
+
+def check_modbus_serial(source):
+    if not (source / "tools/report/node_modules/modbus-serial").is_dir():
+        print("SKIPPED: modbus-serial; tools/setup --tests installs it")
+        return
+    machine = Machine()
+    done = subprocess.run(["node", source / "tests/modbus_serial.mjs", machine.host, str(machine.modbus_port)],
+                          capture_output=True, text=True, timeout=20)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout) == {"go": True, "ratio": 2.25, "hole": 2, "readOnly": 2}, done.stdout
     assert machine.end()[0] == 0
 
 
@@ -679,6 +691,7 @@ def main():
         check_privileges()
         check_modbus()
         check_mbpoll()
+        check_modbus_serial(source)
         if recordings >= 100:
             check_capture()
         check_stream()
