@@ -113,6 +113,12 @@ struct Axis {
     /// A parameter by PLCopen's number, in the unit of the axis; empty for one that it has not.
     std::optional<double> read_parameter(std::int64_t number) const;
 
+    /// Number of the next axis on the way from this one to one that it follows, over however many
+    /// others; `nowhere` when it does not.
+    std::int64_t way_to(const Context& context, const Axis& leader) const;
+    /// The same if it were coupled so.
+    std::int64_t way_to(const Context& context, const Axis& leader, const Coupling& coupling) const;
+
     /// Of the drive where there is one, else of the set-point: position and velocity.
     MotionState actual() const;
     MotionState total() const;  ///< as it is shown, but for the modulo
@@ -144,7 +150,6 @@ struct Axis {
     // axis_sync.cpp: other axes are followed.
     MotionState led_by(const Context& context, const MasterLink& link) const;
     MotionState master(const Context& context) const;
-    bool follows(const Context& context, const Axis& leader) const;
     bool admits(const MasterLink& link) const;
     MotionError check_masters(const Context& context, const Coupling& c) const;
     MotionError plan_sync(const Context& context, const Request& request, const Moment& at,

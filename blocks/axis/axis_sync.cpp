@@ -71,13 +71,18 @@ MotionState Axis::master(const Context& context) const {
     return seen;
 }
 
-bool Axis::follows(const Context& context, const Axis& leader) const {
-    if (doing != Doing::following_axes) return false;
-    for (const MasterLink* link : {&sync.coupling.master, &sync.coupling.second})
-        if (link->axis >= 0 && (&context.instance<Axis>(link->axis) == &leader ||
-                                context.seen_instance<Axis>(link->axis).follows(context, leader)))
-            return true;
-    return false;
+std::int64_t Axis::way_to(const Context& context, const Axis& leader,
+                          const Coupling& coupling) const {
+    for (const MasterLink* link : {&coupling.master, &coupling.second})
+        if (link->axis >= 0 &&
+            (&context.instance<Axis>(link->axis) == &leader ||
+             context.seen_instance<Axis>(link->axis).way_to(context, leader) >= 0))
+            return link->axis;
+    return nowhere;
+}
+
+std::int64_t Axis::way_to(const Context& context, const Axis& leader) const {
+    return doing == Doing::following_axes ? way_to(context, leader, sync.coupling) : nowhere;
 }
 
 /// Siemens' ratios are two DINT, the denominator above 0.
@@ -94,11 +99,7 @@ MotionError Axis::check_masters(const Context& context, const Coupling& c) const
     if (c.master.axis < 0) return MotionError::no_master;
     if (!admits(c.master) || !admits(c.second) || c.master_scaling == 0 || c.start_distance < 0)
         return MotionError::out_of_range;
-    for (const MasterLink* link : {&c.master, &c.second})
-        if (link->axis >= 0 && (&context.instance<Axis>(link->axis) == this ||
-                                context.seen_instance<Axis>(link->axis).follows(context, *this)))
-            return MotionError::master_loop;
-    return MotionError::none;
+    return way_to(context, *this, c) >= 0 ? MotionError::master_loop : MotionError::none;
 }
 
 // Beginnings.

@@ -1,5 +1,7 @@
 #include "blocks/motion/command.hpp"
 
+#include <fmt/format.h>
+
 #include "blocks/inputs.hpp"
 
 namespace lineshaft {
@@ -51,6 +53,21 @@ void CommandBlock::show(const Context& context) {
     done = shown && !error && now_at == Progress::done;
     command_aborted = shown && !error && now_at == Progress::aborted;
     error_id = !error ? MotionError::none : refused ? refusal : job.error;
+}
+
+std::string CommandBlock::why(const Context& context, const NameOf& name_of) const {
+    if (error_id != MotionError::master_loop) return {};
+    const Axis& slave = context.instance<Axis>(axis);
+    std::int64_t hop = slave.way_to(context, slave, job.request.coupling);
+    if (hop == axis) return fmt::format("'{}' cannot follow itself", name_of(axis));
+    if (hop < 0) return {};
+    std::string text = fmt::format("'{}'", name_of(hop));
+    for (const char* link = " follows "; hop != axis; link = ", which follows ") {
+        hop = context.seen_instance<Axis>(hop).way_to(context, slave);
+        if (hop < 0) return {};
+        text += fmt::format("{}'{}'", link, name_of(hop));
+    }
+    return text;
 }
 
 Progress CommandBlock::progress(const Context& context) const {

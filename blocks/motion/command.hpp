@@ -2,10 +2,12 @@
 
 #include <initializer_list>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "blocks/axis/axis.hpp"
 #include "blocks/axis/job.hpp"
+#include "runtime/model/catalog.hpp"
 #include "runtime/model/field.hpp"
 #include "runtime/model/scan.hpp"
 
@@ -42,6 +44,9 @@ struct CommandBlock {
     /// Puts the pins into the job and the job into the axis' inbox: as a new one, or as a change.
     void start(const Scan& now, const Context& context);
     void update(const Scan& now, const Context& context);
+
+    /// The way round of a master_loop: `'c' follows 'b', which follows 'a'`.
+    std::string why(const Context& context, const NameOf& name_of) const;
 
     /// As far as the axis' task has published it.
     Progress progress(const Context& context) const;

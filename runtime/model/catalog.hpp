@@ -33,6 +33,9 @@ struct Misfit {
 /// True of a field that has one value all the time: neither wired nor set from outside.
 using IsConstant = std::function<bool(std::string_view field)>;
 
+/// Of an instance, by its number.
+using NameOf = std::function<std::string(std::int64_t instance)>;
+
 /// What the runtime knows of a kind of block: how to make one, how to call it, what it is made of.
 /// What its texts and fields point to is static, or kept by `owner`.
 struct BlockType {
@@ -48,8 +51,9 @@ struct BlockType {
     std::optional<Misfit> (*misfit)(const std::byte* block,
                                     const IsConstant& is_constant) = nullptr;         ///< or null
     void (*shift)(std::byte* block, std::int64_t by, const void* context) = nullptr;  ///< or null
-    std::string (*why)(const std::byte* block,
-                       const void* context) = nullptr;  ///< where its last error came from; or null
+    /// Where its last error came from, for people; empty: nobody can say. Or null.
+    std::string (*why)(const std::byte* block, const Context& context,
+                       const NameOf& name_of) = nullptr;
     std::optional<std::size_t> time_taken = {};  ///< place of what a scan took: std::int64_t [ns]
     std::string_view handle =
         {};               ///< `AXIS_REF`: how Structured Text calls references to it; or empty
@@ -94,9 +98,10 @@ class Catalog {
   public:
     /// A block is a struct with `type`, `doc`, `fields()` and `scan(const Scan&)`, or
     /// `scan(const Scan&, const Context&)`. An output `error` is its member `error`. It may have
-    /// `misfit(const IsConstant&) const`, for what its limits cannot say. One that remembers
-    /// moments has `shift(by)`, which moves them all by so many ns: a retained block goes on in
-    /// another run.
+    /// `misfit(const IsConstant&) const`, for what its limits cannot say, and
+    /// `why(const Context&, const NameOf&) const`, for what the number of its error cannot say. One
+    /// that remembers moments has `shift(by)`, which moves them all by so many ns: a retained block
+    /// goes on in another run.
     template <class Block>
     Catalog& add() {
         static_assert(PlainData<Block>);
@@ -115,6 +120,7 @@ class Catalog {
                     .device = device_calls<Block>(),
                     .misfit = misfit<Block>(),
                     .shift = shift<Block>(),
+                    .why = why<Block>(),
                     .handle = handle});
     }
 
@@ -142,6 +148,15 @@ class Catalog {
         if constexpr (requires(Block & block) { block.shift(std::int64_t{}); })
             return [](std::byte* block, std::int64_t by, const void*) {
                 std::launder(reinterpret_cast<Block*>(block))->shift(by);
+            };
+        return nullptr;
+    }
+
+    template <class Block>
+    static constexpr auto why() -> decltype(BlockType::why) {
+        if constexpr (requires(const Block& b, const Context& c, const NameOf& n) { b.why(c, n); })
+            return [](const std::byte* block, const Context& context, const NameOf& name_of) {
+                return std::launder(reinterpret_cast<const Block*>(block))->why(context, name_of);
             };
         return nullptr;
     }

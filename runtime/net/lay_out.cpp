@@ -89,7 +89,7 @@ void place_tasks(Layout& layout) {
 /// Code in Structured Text may have a variable `error` of its own: its first two fields say how its
 /// scan ended.
 void add_error_flag(const Instance& block, std::byte* live, Task& task) {
-    const bool is_code = block.type->why && !block.type->single;
+    const bool is_code = block.type->owner && !block.type->single;
     const auto find = [&](std::string_view name, std::size_t place) {
         return is_code ? &block.type->fields[place] : block.type->find_readable(name);
     };

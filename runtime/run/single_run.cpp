@@ -101,7 +101,7 @@ class SingleRun {
     int retained_ = 0;
     std::optional<StateReader> begun_;
     TraceOrigin origin_;
-    OutputSet outputs_;
+    OutputSet outputs_{options_.flush};
     std::deque<Tracing> traces_;
     std::optional<EventWriter> events_;
     std::optional<PulseWriter> pulses_;

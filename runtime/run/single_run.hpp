@@ -32,6 +32,7 @@ struct RunOptions {
     std::string trace_path;
     std::string pulses_path = {};  ///< CSV of all pulse channels' edges; empty: none
     CsvStyle csv_style = {};
+    bool flush = true;  ///< traces, events and pulses to the disk, see OutputSet
     const std::atomic<bool>* interrupt = nullptr;
     std::function<void(std::int64_t time)> progress;  ///< called now and then [ns]
     Observer* observer = nullptr;                     ///< sees the run, besides the trace

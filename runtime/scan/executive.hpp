@@ -194,6 +194,7 @@ class Executive {
     void time_error(int task, std::string what);
     std::string running_block(int task) const;
     void report_errors(int task);
+    std::string why(const ErrorFlag& flag, int task);
     void report_warnings(const DeviceCall& device, int task);
     void tell(EventKind kind, int task, const std::string& text);
     void stop(Outcome outcome, std::string message, int task = -1);

@@ -100,6 +100,20 @@ std::string Executive::running_block(int index) const {
     return fmt::format("; block {} was running", task.infos.back().block);
 }
 
+std::string Executive::why(const ErrorFlag& flag, int index) {
+    if (!flag.type || !flag.type->why) return {};
+    const Context context{.kind = flag.type->context,
+                          .instances = machine_.instances.data(),
+                          .seen = machine_.seen[static_cast<std::size_t>(index)].data(),
+                          .memory = machine_.memory.data(),
+                          .task = index,
+                          .published = result_.scans.data()};
+    const std::string text = flag.type->why(flag.memory, context, [this](std::int64_t instance) {
+        return machine_.blocks[static_cast<std::size_t>(instance)].name;
+    });
+    return text.empty() ? text : ": " + text;
+}
+
 void Executive::report_errors(int index) {
     std::uint8_t* level = error_levels_.data() + state(index).first_error;
     state(index).may_err = false;
@@ -115,9 +129,7 @@ void Executive::report_errors(int index) {
             if (id < flag.names.size()) text += fmt::format(" ({})", flag.names[id]);
         }
         const Scan& scan = state(index).scan;
-        const std::string place = flag.type && flag.type->why
-                                      ? ": " + flag.type->why(flag.memory, flag.type->context)
-                                      : std::string();
+        const std::string place = why(flag, index);
         if (is_endless(flag)) {
             time_error(index, fmt::format("scan {}, begun at {}, does not end in block {}{}",
                                           scan.index, format_time(scan.time), flag.block, place));

@@ -81,8 +81,8 @@ bool scan_blocks(std::byte* first, std::size_t count, const Scan& now, const Con
     return error;
 }
 
-std::string why(const std::byte* block, const void* context) {
-    const FaultPlace found = fault_of(*static_cast<const KindContext*>(context)->code, block);
+std::string why(const std::byte* block, const Context& context, const NameOf&) {
+    const FaultPlace found = fault_of(*static_cast<const KindContext*>(context.kind)->code, block);
     std::string text =
         fmt::format("at {}:{}:{}", found.mark.file->path, found.mark.line, found.mark.column);
     for (std::size_t i = 0; i < found.calls.size(); ++i)

@@ -91,7 +91,8 @@ bool CaseRunner::run_once(std::int64_t repeat, bool traced, CaseResult& result) 
     result.parameters = loaded->program.parameters;
     const std::string trace = traced ? trace_path(*result.of, repeat) : "";
     const RunReport report = lineshaft::run(
-        *loaded, {.trace_path = trace, .interrupt = options_.interrupt, .progress = {}});
+        *loaded,
+        {.trace_path = trace, .flush = false, .interrupt = options_.interrupt, .progress = {}});
     for (const TraceReport& written : report.traces)
         result.traces.insert(result.traces.end(), written.paths.begin(), written.paths.end());
     return judge(report, result) && measure(machine, result);

@@ -45,6 +45,8 @@ struct CaseRange {
 /// Where the cases' traces go, see file_stem(); of a case that is repeated to `STEM.2.csv` and so
 /// on. A case that fails is known by its end only: it runs once more then, traced, which gives the
 /// same values.
+///
+/// They are with the operating system only: flush_file_system() brings all to the disk.
 struct CaseTraces {
     std::string folder;  ///< empty: nothing is traced
     bool of_failed = false;

@@ -24,6 +24,10 @@ class FolderLocks {
     std::vector<int> descriptors_;
 };
 
+/// So that all that has been written below a folder outlives a power failure; false, and errno,
+/// when a disk fails.
+bool flush_file_system(const std::string& folder);
+
 /// Of a file: `.` for a bare name.
 std::string folder_of(const std::string& path);
 

@@ -17,9 +17,16 @@ bool OutputSet::check(const OutputFile& file) {
     return file.error().empty();
 }
 
+void OutputSet::complete(OutputFile& file) {
+    if (flushes_)
+        file.complete();
+    else
+        file.flush();
+    check(file);
+}
+
 void OutputSet::add(std::unique_ptr<OutputFile> file, std::string sidecar) {
-    file->complete();
-    check(*file);
+    complete(*file);
     entries_.push_back({std::move(file), std::move(sidecar)});
 }
 
@@ -29,8 +36,7 @@ bool OutputSet::commit() {
         if (entry.sidecar.empty() || !entry.file->is_regular() || !error_.empty()) continue;
         sidecars.push_back(std::make_unique<OutputFile>(sidecar_path(entry.file->path())));
         sidecars.back()->write(entry.sidecar);
-        sidecars.back()->complete();
-        check(*sidecars.back());
+        complete(*sidecars.back());
     }
     const bool done = error_.empty() && publish(sidecars);
     entries_.clear();
@@ -50,7 +56,7 @@ bool OutputSet::publish(std::vector<std::unique_ptr<OutputFile>>& sidecars) {
         if (!entry.file->publish()) return check(*entry.file);
     for (const auto& sidecar : sidecars)
         if (!sidecar->publish()) return check(*sidecar);
-    if (locks.flush()) return true;
+    if (!flushes_ || locks.flush()) return true;
     error_ = fmt::format("cannot flush the folder of '{}': {}", entries_.front().file->path(),
                          std::strerror(errno));
     return false;

@@ -14,6 +14,10 @@ namespace lineshaft {
 /// come last: whenever this is killed, none tells of another file.
 class OutputSet {
   public:
+    /// Unless it flushes, the files are with the operating system only when they have their names:
+    /// who makes many sets calls flush_file_system() behind the last.
+    explicit OutputSet(bool flushes = true) : flushes_(flushes) {}
+
     /// Takes a file to which all has been written, with the text of the sidecar that will stand
     /// beside it; empty: none does. Devices and pipes have none.
     void add(std::unique_ptr<OutputFile> file, std::string sidecar = {});
@@ -35,8 +39,10 @@ class OutputSet {
     };
 
     bool check(const OutputFile& file);
+    void complete(OutputFile& file);
     bool publish(std::vector<std::unique_ptr<OutputFile>>& sidecars);
 
+    bool flushes_;
     std::vector<Entry> entries_;
     std::string error_;
 };

@@ -1,5 +1,5 @@
 /* Preloaded by tests/fault/fault.py: lets the N-th call of one kind fail, as a disk or a machine at its end would.
-   FAULT_KIND write, fsync, rename, open or malloc; FAULT_AT N, from 1, 0 for none. Calls from main() on are
+   FAULT_KIND write, fsync, syncfs, rename, open or malloc; FAULT_AT N, from 1, 0 for none. Calls from main() on are
    counted; their number goes to the file FAULT_REPORT. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -40,6 +40,12 @@ int fsync(int descriptor) {
     static int (*next)(int);
     if (!next) next = (int (*)(int))dlsym(RTLD_NEXT, "fsync");
     return fails("fsync", EIO) ? -1 : next(descriptor);
+}
+
+int syncfs(int descriptor) {
+    static int (*next)(int);
+    if (!next) next = (int (*)(int))dlsym(RTLD_NEXT, "syncfs");
+    return fails("syncfs", EIO) ? -1 : next(descriptor);
 }
 
 int rename(const char* from, const char* to) {

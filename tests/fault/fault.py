@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Lets the N-th write, fsync, rename, open and allocation of each command fail, for N = 1, 2, 3 ... until none does:
+"""Lets the N-th write, fsync, syncfs, rename, open and allocation of each command fail, for N = 1, 2, 3 ... until none does:
 the command ends with a message and an exit code for it, and what stands under a final name is whole.
 
 usage: fault.py LINESHAFT [STEP]
@@ -43,13 +43,13 @@ cases: [compare: {axis.velocity: {paper: 0.3 mm/s}}]
 """
 COMMANDS = {
     "run": ["run", "program.yaml", "--trace", "out.csv", "--pulses", "out_edges.csv"],
-    "study": ["study", "study.yaml", "-j", "2", "-o", "out.csv"],
+    "study": ["study", "study.yaml", "-j", "2", "-o", "out.csv", "--traces", "out_traces"],
     "fit": ["fit", "fit.yaml", "-j", "2", "-o", "out.yaml"],
     "plan": ["plan", "moves.csv", "-o", "out.csv"],
     "report": ["report", "trace.csv", "-o", "out.html"],
     "verify": ["verify", "trace.csv"],
 }
-KINDS = ("write", "fsync", "rename", "open", "malloc")
+KINDS = ("write", "fsync", "syncfs", "rename", "open", "malloc")
 MOST_SECONDS = 20
 
 
@@ -78,7 +78,7 @@ class Command:
         self.whole = self.outputs()
 
     def run(self, at):
-        for file in self.folder.glob("out*"):
+        for file in self.written():
             file.unlink()
         environment = {**os.environ, "LD_PRELOAD": self.shim, "FAULT_KIND": self.kind, "FAULT_AT": str(at),
                        "FAULT_REPORT": str(self.folder / "calls")}
@@ -86,8 +86,11 @@ class Command:
                                 capture_output=True, timeout=MOST_SECONDS)
         return answer.returncode, (answer.stderr + answer.stdout).decode(errors="replace")
 
+    def written(self):
+        return [file for place in ("out*", "out*/*") for file in self.folder.glob(place) if file.is_file()]
+
     def outputs(self):
-        return {file.name: file.read_bytes() for file in self.folder.glob("out*") if ".part" not in file.name}
+        return {file.name: file.read_bytes() for file in self.written() if ".part" not in file.name}
 
     def mistake(self, at):
         """What is wrong with the answer to a failure of the N-th call; empty when nothing is."""

@@ -72,7 +72,7 @@ void scan(const st::Library& library) {
             const BlockType& kind = library.kinds()[i];
             kind.scan_blocks(places[i], 1, {time, 1, time}, {kind.context, places.data()});
             if (kind.why && library.fault(kind, places[i]).fault != st::Fault::none)
-                kind.why(places[i], kind.context);
+                kind.why(places[i], {.kind = kind.context}, {});
         }
 }
 

@@ -1,3 +1,5 @@
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <thread>
@@ -8,6 +10,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/study/merge.hpp"
 #include "runtime/study/study_reader.hpp"
+#include "runtime/trace/folder_locks.hpp"
 #include "tools/lineshaft/command.hpp"
 #include "tools/lineshaft/study_table.hpp"
 
@@ -131,6 +134,11 @@ Exit StudyRun::merge() {
 }
 
 Exit StudyRun::finish(bool interrupted) {
+    const std::string& traces = command_.traces.folder;
+    if (!traces.empty() && !flush_file_system(traces)) {
+        spdlog::error("cannot flush the traces in '{}': {}", traces, std::strerror(errno));
+        return tell_stopped(Exit::fault);
+    }
     if (file_ && !interrupted && !file_->commit()) return tell_stopped(Exit::fault);
     StudyReport result = builder_.finish(interrupted, !command_.chunk.empty());
     result.wall_seconds = wall_seconds();
