@@ -583,6 +583,20 @@ std::size_t glued_colon(const Source& source, std::size_t offset) {
     return line[colon + 1] == ' ' ? std::string_view::npos : start + colon;
 }
 
+/// `z.dst[6].q`, whose bracket at `offset` YAML takes for that of a list; empty when there is none.
+std::string_view indexed_name(std::string_view text, std::size_t offset) {
+    constexpr std::string_view name =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.";
+    const std::size_t begin = text.substr(0, offset).find_last_not_of(name) + 1;
+    std::size_t end = offset;
+    while (end < text.size() && text[end] == '[') {
+        const std::size_t closed = text.substr(0, text.find('\n', end)).find(']', end);
+        if (closed == std::string_view::npos) return {};
+        end = std::min(text.find_first_not_of(name, closed + 1), text.size());
+    }
+    return begin < offset && offset < end ? text.substr(begin, end - begin) : std::string_view();
+}
+
 void report(const YAML::Exception& fault, const Source& source, const Builder& builder,
             Diagnostics& out) {
     std::size_t offset = source.offset(fault.mark);
@@ -616,9 +630,12 @@ void report(const YAML::Exception& fault, const Source& source, const Builder& b
         return;
     }
     const bool unclosed = in_brackets && known->message.starts_with("expected");
-    out.add(known->code, source.mark(offset), std::string(known->message),
-            unclosed ? fmt::format("the '{}' of line {} is still open", bracket, opened.line)
-                     : std::string(known->help));
+    std::string help(known->help);
+    if (const std::string_view name = indexed_name(source.text(), offset); !name.empty())
+        help = fmt::format("a name with an index stands in quotes here: '{}'", name);
+    else if (unclosed)
+        help = fmt::format("the '{}' of line {} is still open", bracket, opened.line);
+    out.add(known->code, source.mark(offset), std::string(known->message), std::move(help));
 }
 
 void build(const Source& source, Builder& builder, Diagnostics& out) {
