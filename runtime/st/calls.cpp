@@ -19,7 +19,8 @@ bool is_variable(const Expression& e) {
 bool is_own_input(const Expression& e) {
     const Expression* root = &e;
     while (root->kind != Expression::Kind::name && root->operands[0]) root = root->operands[0];
-    return root->variable && root->variable->section == Section::input && !e.type->is_scalar();
+    return root->variable && root->variable->section == Section::input &&
+           (!e.type->is_scalar() || e.type->is_handle());
 }
 
 }  // namespace

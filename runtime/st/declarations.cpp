@@ -38,6 +38,14 @@ constexpr std::pair<std::string_view, std::string_view> aliases[] = {
     {"ton_time", "ton"},  {"tof_time", "tof"}, {"tp_time", "tp"},   {"ton_ltime", "ton"},
     {"tof_ltime", "tof"}, {"tp_ltime", "tp"},  {"iec_timer", "ton"}};
 
+/// What Siemens calls references.
+constexpr std::pair<std::string_view, std::string_view> handles[] = {
+    {"to_axis", "axis_ref"},
+    {"to_speedaxis", "axis_ref"},
+    {"to_positioningaxis", "axis_ref"},
+    {"to_synchronousaxis", "axis_ref"},
+    {"to_cam", "cam_ref"}};
+
 Section section_of(Direction direction) {
     if (direction == Direction::output) return Section::output;
     if (direction == Direction::local) return Section::local;
@@ -635,6 +643,8 @@ const Type* Checker::handle_type(std::string_view name) {
 
 const Type* Checker::standard_type(std::string_view name) {
     if (const auto it = standard_types_.find(name); it != standard_types_.end()) return it->second;
+    for (const auto& [theirs, ours] : handles)
+        if (same_name(theirs, name)) return standard_type(ours);
     if (const Type* handle = handle_type(name)) return handle;
     const auto* preset = std::ranges::find_if(
         counters, [&](const Preset& counter) { return same_name(counter.name, name); });
@@ -667,6 +677,7 @@ const Type* Checker::standard_type(std::string_view name) {
                 make_type(Kind::enumeration, fmt::format("{}.{}", kind->name, field.name));
             values.slots = 1;
             values.base = &lint_type;
+            values.is_code = same_name(field.name, "errorid") || field.name == "error_id";
             for (const std::string_view value : field.names) {
                 values.numbers.push_back(static_cast<std::int64_t>(values.values.size()));
                 values.values.emplace_back(value);

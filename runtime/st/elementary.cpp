@@ -127,6 +127,7 @@ bool widens(const Type& given_from, const Type& given_to) {
     if (from.kind == Kind::integer && to.kind == Kind::real)
         return from.bits <= (to.bits == 32 ? 16 : 32);
     if (from.kind == Kind::boolean) return to.kind == Kind::bits;
+    if (from.is_code) return (to.kind == Kind::integer || to.kind == Kind::bits) && to.bits >= 16;
     return from.kind == to.kind && (from.kind == Kind::real || from.kind == Kind::bits) &&
            from.bits < to.bits;
 }

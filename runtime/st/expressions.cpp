@@ -474,9 +474,9 @@ const Type* Checker::unite(Expression& e, const Type* expected) {
         common = a.is_real() ? &a : b.is_real() ? &b : &any_integer_type;
         if (a.kind == b.kind) common = &a;
     } else if (a.is_any()) {
-        common = &b.plain();
+        common = b.is_code ? &lint_type : &b.plain();
     } else if (b.is_any()) {
-        common = &a.plain();
+        common = a.is_code ? &lint_type : &a.plain();
     } else {
         common = common_type(a, b);
     }

@@ -233,12 +233,12 @@ class FieldWriter {
     /// One that a block keeps for itself is no field.
     void write_handle(const Type& type, std::size_t offset, const std::string& name,
                       Direction direction) {
-        if (direction != Direction::in_out) return;
+        if (direction != Direction::in_out && direction != Direction::input) return;
         Field field;
         field.name = made_.names.emplace_back(name);
         field.refers = type.standard->name;
         field.doc = type.standard->doc;
-        field.direction = direction;
+        field.direction = Direction::in_out;
         field.type = lineshaft::Type::integer;
         field.offset = offset;
         field.required = true;
