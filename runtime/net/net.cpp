@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/st/library.hpp"
+
 namespace lineshaft {
 
 namespace {
@@ -55,6 +57,11 @@ int Net::find_block(const Reader& read, const Node& node, std::string_view name)
 
 void Net::unknown_port(const Reader& read, const Node& node, const Instance& block,
                        std::string_view port) const {
+    if (const auto text = st::find_text(*block.type, port); !text.empty())
+        return read.fail("L0203", node,
+                         fmt::format("'{}.{}' is a STRING, which is no signal", block.name, text),
+                         fmt::format("compare it in {}, and take the BOOL: is_so := {} = 'text'",
+                                     block.type->name, text));
     std::vector<std::string> names;
     using enum Direction;
     for (const Direction d : {output, input, parameter, local})

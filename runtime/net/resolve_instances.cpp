@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "runtime/net/resolve.hpp"
+#include "runtime/st/library.hpp"
 
 namespace lineshaft {
 
@@ -106,6 +107,8 @@ void refuse_port(Resolving& to, const Instance& block, const Node& key) {
                         field->direction == Direction::output ? "an" : "a",
                         name_of(field->direction), block.described()),
             fmt::format("'lineshaft blocks {}' lists its inputs", block.type->name));
+    if (!st::find_text(*block.type, key.text).empty())
+        return (void)to.net.find(to.read, key, fmt::format("{}.{}", block.name, key.text));
     std::vector<std::string> settable{"type", "task"};
     for (const Field& f : block.type->fields)
         if (block.type->find_settable(f.name) == &f && !is_data_block(to, f))

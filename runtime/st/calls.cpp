@@ -253,6 +253,9 @@ bool Checker::put_in_order(Expression& call, const StandardFunction& f) {
     std::vector<Argument> sorted(call.arguments.size());
     std::vector<std::string> names;
     for (int i = 0; i < count; ++i) names.push_back(argument_name(f, i));
+    const bool has_else = std::ranges::any_of(
+        call.arguments, [](const Argument& a) { return same_name(a.name.text, "inelse"); });
+    if (f.rule == Rule::multiplex && has_else) names.back() = "INELSE";
     for (int i = 0; i < count; ++i) {
         const Argument& argument = call.arguments[static_cast<std::size_t>(i)];
         const auto is_called = [&](const std::string& name) {
@@ -352,7 +355,7 @@ const Type* Checker::check_bound(Expression& call) {
         const auto dimension = check_whole(call.arguments[1].value, lint_type);
         if (!dimension) return nullptr;
         Wide at = 1;
-        for (; at < *dimension && array->has_inner; ++at) array = array->element;
+        for (; at != *dimension && array->has_inner; ++at) array = array->element;
         if (at != *dimension)
             return fail("L0908", call.arguments[1].value->place,
                         fmt::format("the array's dimensions are 1 to {}", static_cast<int>(at)));

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -192,7 +193,7 @@ class Checker {
     NameMap<Routine*> routines_;
     NameMap<Variable*> globals_;
     NameMap<const Declaration*> constants_;  ///< of VAR_GLOBAL, until all globals are declared
-    std::vector<const Declaration*> begun_constants_;  ///< of those, what is declared already
+    std::unordered_set<const Declaration*> begun_constants_;  ///< declared already, or being so
     int hops_ = 0;  ///< from constant to constant that is declared later
     NameMap<const Type*> standard_types_;
     NameMap<Place> top_names_;

@@ -171,10 +171,8 @@ Variable* Checker::declare_global(const Declaration& declared, bool constant, bo
 Variable* Checker::declare_early(std::string_view name) {
     constexpr int most_hops = 200;
     const auto it = constants_.find(name);
-    if (it == constants_.end() || hops_ == most_hops ||
-        std::ranges::count(begun_constants_, it->second) > 0)
+    if (it == constants_.end() || hops_ == most_hops || !begun_constants_.insert(it->second).second)
         return nullptr;
-    begun_constants_.push_back(it->second);
     ++hops_;
     Variable* variable = declare_global(*it->second, true, false);
     --hops_;
@@ -184,10 +182,8 @@ Variable* Checker::declare_early(std::string_view name) {
 void Checker::declare_globals() {
     for (const DeclarationBlock& block : tree_.globals)
         for (const Declaration* declared : block.declarations)
-            if (std::ranges::count(begun_constants_, declared) == 0) {
-                if (block.constant) begun_constants_.push_back(declared);
+            if (!block.constant || begun_constants_.insert(declared).second)
                 declare_global(*declared, block.constant, block.retain);
-            }
     constants_.clear();
     for (Pou* pou : tree_.units) {
         if (pou->kind != PouKind::data_block) continue;

@@ -256,7 +256,10 @@ Slot Generator::standard(const Expression& e, Slot wanted) {
         }
         case Rule::multiplex: {
             const Slot k = argument(0), first = several(e, 1);
-            const Slot index = emit(Op::index, none, k, table({0, e.arguments.size() - 1, 1}));
+            const std::uint64_t count = e.arguments.size() - 1;
+            const bool has_else = same_name(e.arguments.back().name.text, "inelse");
+            const Slot index = has_else ? emit(Op::min_unsigned, none, k, constant_slot(count - 1))
+                                        : emit(Op::index, none, k, table({0, count, 1}));
             return emit(Op::load_at, wanted, first, index);
         }
         case Rule::shift: {

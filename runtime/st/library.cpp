@@ -18,6 +18,7 @@ struct KindContext {
     Options options;
     std::string name, doc;
     std::vector<Field> fields;
+    std::vector<std::string_view> texts;
     std::vector<std::string_view> retained;  ///< names of those in VAR RETAIN
     struct Check {
         std::uint32_t slot;
@@ -221,6 +222,8 @@ class FieldWriter {
                         write(member, slot, name + ".", inner(direction));
                 return;
             case Kind::text:
+                if (kind_.texts.size() < Library::most_parts)
+                    kind_.texts.push_back(made_.names.emplace_back(name));
                 return;
             case Kind::handle:
                 write_handle(type, offset, name, direction);
@@ -431,6 +434,14 @@ FaultPlace Library::fault(const BlockType& kind, const std::byte* instance) cons
 std::span<const std::uint64_t, op_classes> Library::counts(const std::byte* instance) const {
     return std::span<const std::uint64_t, op_classes>(
         std::launder(reinterpret_cast<const std::uint64_t*>(instance)) + counts_slot, op_classes);
+}
+
+std::string_view find_text(const BlockType& kind, std::string_view name) {
+    if (kind.scan_blocks != scan_blocks) return {};
+    const auto& texts = static_cast<const KindContext*>(kind.context)->texts;
+    const auto it = std::ranges::find_if(
+        texts, [&](std::string_view text) { return same_letters(text, name); });
+    return it == texts.end() ? std::string_view() : *it;
 }
 
 std::span<const std::string_view> retained(const BlockType& kind) {

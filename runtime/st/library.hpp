@@ -78,6 +78,10 @@ class Library {
 /// fields). Of another kind none.
 std::span<const std::string_view> retained(const BlockType& kind);
 
+/// The variable of that name that is a STRING, as it is written; empty if there is none. Capital
+/// letters make no difference.
+std::string_view find_text(const BlockType& kind, std::string_view name);
+
 /// Where a block of a kind of some library first cut a text short, which was too long for its
 /// variable; empty if it never did. Of another kind empty.
 std::optional<Mark> cut_text(const BlockType& kind, const std::byte* instance);

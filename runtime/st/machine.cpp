@@ -194,7 +194,7 @@ std::optional<std::uint64_t> character_of(const std::byte* from, std::int64_t pl
 
 /// False if the text is shorter.
 bool set_character(std::byte* text, std::int64_t place, std::uint64_t value) {
-    const auto at = static_cast<std::uint64_t>(place - 1);
+    const auto at = static_cast<std::uint64_t>(place) - 1;
     const bool is_there = at < word(text, 0);
     if (is_there) set_byte(text + 8, at, value);
     return is_there;

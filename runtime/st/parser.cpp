@@ -192,7 +192,12 @@ class Parser {
             return "write ELSIF";
         if (is(Word::assign) && !is_in_body_)
             return "statements stand in a PROGRAM, FUNCTION_BLOCK or FUNCTION";
-        return {};
+        const bool is_reserved = !is_name() && here().word < Word::end_of_file;
+        return is_reserved && (is_declared() || next().word == Word::assign) ? another_name() : "";
+    }
+
+    std::string another_name() const {
+        return fmt::format("take another name, or write it in quotes: \"{}\"", here().text);
     }
 
     std::string found() const {
@@ -369,7 +374,7 @@ class Parser {
         pou.name = read_name(fmt::format("the name of the {}", shown(opener.word)));
         pou.place = opener.place.to(pou.name.place);
         if (accept(Word::colon)) pou.result = read_type();
-        if (panic_) skip_to_statement();
+        if (panic_) skip_line();
         read_header(pou);
         if (pou.doc.empty()) pou.doc = comment_before(at_, true);
         read_sections(pou, words.end);
@@ -557,7 +562,7 @@ class Parser {
     void reserved_name() {
         tell("L0902", here().place,
              fmt::format("'{}' is a word of the language, not a name", here().text),
-             "take another name for the variable");
+             another_name());
         is_spoiled_ = section_left_ = true;
         unclosed_at_ = at_;
     }

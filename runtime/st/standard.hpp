@@ -19,7 +19,7 @@ enum class Rule : std::uint8_t {
     extremum,   ///< the least or greatest of several numbers, times
     limit,      ///< LIMIT(mn, in, mx)
     select,     ///< SEL(g, in0, in1)
-    multiplex,  ///< MUX(k, in0, ...)
+    multiplex,  ///< MUX(k, in0, ...), MUX(K := k, IN0 := a, INELSE := b)
     shift,      ///< SHL(bits, n)
     move,       ///< its argument
     operation,  ///< ADD(a, b, ...): an operator
