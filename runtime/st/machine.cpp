@@ -180,8 +180,10 @@ void append_text(std::byte* to, const std::byte* from, std::int64_t first, std::
     set_word(to, 0, static_cast<std::uint64_t>(before + count));
 }
 
+/// -1, 0 or 1: the size of what std::memcmp returns depends on where the texts are.
 std::int64_t compare_texts(const std::byte* a, const std::byte* b) {
-    return text_at(a).compare(text_at(b));
+    const auto order = text_at(a) <=> text_at(b);
+    return order < 0 ? -1 : order > 0;
 }
 
 /// The one numbered `place` (from 1) of a text that has room for so many: 0 behind its end.

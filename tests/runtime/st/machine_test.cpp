@@ -189,3 +189,24 @@ TEST_CASE("Structured Text: instructions take the times of their classes", "[st]
     times.fill(std::int64_t{1} << 62);
     CHECK(time_taken(compiled(loop("f := NOT f;\n"), {.times = times}), 100) == never);
 }
+
+TEST_CASE("Structured Text: an instance has the same bytes wherever in a page it stands", "[st]") {
+    const st::Library library = compiled(
+        "PROGRAM Main\nVAR a : STRING[12] := '-7-7$$'; b, c : STRING[12] := '$0A-7$0Aa';\n"
+        "less, same : BOOL; n : INT; END_VAR\n"
+        "c := CONCAT(a, b); n := FIND(b, 'a'); same := a = b; less := a < b;\nEND_PROGRAM\n");
+    const BlockType& kind = library.kinds().front();
+    constexpr std::size_t page = 4096 / 8;
+    std::vector<std::uint64_t> memory(2 * page + kind.size / 8), first;
+    for (std::size_t start = 0; start < page; ++start) {
+        std::byte* const place = reinterpret_cast<std::byte*>(memory.data() + start);
+        kind.construct(place);
+        kind.scan_blocks(place, 1, {0, 1'000'000, 0}, {.kind = kind.context});
+        const auto begin = memory.begin() + static_cast<std::ptrdiff_t>(start);
+        const std::vector<std::uint64_t> bytes(begin,
+                                               begin + static_cast<std::ptrdiff_t>(kind.size / 8));
+        if (first.empty()) first = bytes;
+        INFO(start << " words further");
+        REQUIRE(bytes == first);
+    }
+}
