@@ -181,7 +181,8 @@ void append_text(std::byte* to, const std::byte* from, std::int64_t first, std::
 }
 
 std::int64_t compare_texts(const std::byte* a, const std::byte* b) {
-    return text_at(a).compare(text_at(b));
+    const int order = text_at(a).compare(text_at(b));  // as memcmp gives it: only its sign is known
+    return (order > 0) - (order < 0);
 }
 
 /// The one numbered `place` (from 1) of a text that has room for so many: 0 behind its end.
