@@ -13,7 +13,22 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-enum class Kind { boolean, integer, bits, real, time, text, enumeration, array, structure, block };
+enum class Kind {
+    boolean,
+    integer,
+    bits,
+    real,
+    time,
+    date,
+    clock,
+    moment,
+    character,
+    text,
+    enumeration,
+    array,
+    structure,
+    block
+};
 
 struct Type {
     struct Part {
@@ -85,7 +100,9 @@ const std::vector<Type>& elementaries() {
         elementary(Kind::integer, "USINT", 8),      elementary(Kind::integer, "UINT", 16),
         elementary(Kind::integer, "ULINT", 64),     elementary(Kind::bits, "BYTE", 8),
         elementary(Kind::bits, "DWORD", 32),        elementary(Kind::bits, "LWORD", 64),
-        elementary(Kind::time, "LTIME", 64, true),
+        elementary(Kind::time, "LTIME", 64, true),  elementary(Kind::character, "CHAR", 8),
+        elementary(Kind::date, "DATE", 64, true),   elementary(Kind::clock, "TOD", 64, true),
+        elementary(Kind::moment, "DT", 64, true),
     };
     return types;
 }
@@ -205,7 +222,7 @@ class SourceMaker {
     }
 
     void declare_type() {
-        switch (below(5)) {
+        switch (below(6)) {
             case 0:
             case 1:
                 return declare_structure();
@@ -213,6 +230,8 @@ class SourceMaker {
                 return declare_enumeration();
             case 3:
                 return declare_subrange();
+            case 5:
+                return declare_flags();
             default: {
                 Type& type = array_of(any_type());
                 const std::string written = written_type(type);
@@ -236,6 +255,27 @@ class SourceMaker {
         --indent_;
         line("END_STRUCT;");
         aggregates_.push_back(&type);
+    }
+
+    /// As many BOOL as a bit string has bits.
+    void declare_flags() {
+        const Type& bits = named(below(2) == 0 ? "BYTE" : "WORD");
+        const bool is_array = below(2) == 0;
+        Type& type = add_type(is_array ? Kind::array : Kind::structure, "Flags");
+        type.element = &named("BOOL");
+        if (is_array) {
+            type.ranges.emplace_back(-1, bits.bits - 2);
+            line(fmt::format("{} : ARRAY[-1..{}] OF BOOL;", type.name, bits.bits - 2));
+        } else {
+            std::string parts;
+            for (int i = 0; i < bits.bits; ++i) {
+                type.parts.push_back({new_name("m"), type.element});
+                parts += (i == 0 ? "" : ", ") + type.parts.back().name;
+            }
+            line(fmt::format("{} : STRUCT {} : BOOL; END_STRUCT;", type.name, parts));
+        }
+        aggregates_.push_back(&type);
+        flags_.emplace_back(&type, &bits);
     }
 
     void declare_enumeration() {
@@ -333,6 +373,16 @@ class SourceMaker {
                 return {fmt::format("{}#{}", type.name, real_number())};
             case Kind::time:
                 return {time_literal()};
+            case Kind::date:
+                return {"D#" + day()};
+            case Kind::clock:
+                return {"TOD#" + clock()};
+            case Kind::moment:
+                return {fmt::format("DT#{}-{}", day(), clock())};
+            case Kind::character: {
+                const char* const characters[] = {"a", "B", "1", "$$", " ", "$'", "-", "$0A"};
+                return {fmt::format("CHAR#'{}'", characters[below(8)])};
+            }
             case Kind::text:
                 return {text_literal()};
             default: {
@@ -406,6 +456,14 @@ class SourceMaker {
             case 5:
                 return fmt::format("LTIME#{}ns", word(4));
         }
+    }
+
+    std::string day() {
+        return fmt::format("{}-{:02}-{:02}", 1960 + below(99), 1 + below(12), 1 + below(28));
+    }
+
+    std::string clock() {
+        return fmt::format("{:02}:{:02}:{:02}.{}", below(24), below(60), below(60), below(100));
     }
 
     std::string text_literal() {
@@ -534,6 +592,12 @@ class SourceMaker {
                 return real(type, depth);
             case Kind::time:
                 return time(type, depth);
+            case Kind::date:
+            case Kind::clock:
+            case Kind::moment:
+                return date(type, depth);
+            case Kind::character:
+                return character(type, depth);
             case Kind::text:
                 return text(type, depth);
             default:
@@ -635,7 +699,7 @@ class SourceMaker {
 
     Text selection(const Type& type, int depth) {
         const std::string first = sub(type, depth), second = sub(type, depth);
-        const bool plain = type.kind == Kind::boolean || type.kind >= Kind::text;
+        const bool plain = type.kind == Kind::boolean || type.kind >= Kind::character;
         switch (plain ? below(3) : below(3 + (type.kind == Kind::bits ? 2 : 3))) {
             default:
                 return {fmt::format("SEL({}, {}, {})", sub(named("BOOL"), depth), first, second)};
@@ -644,7 +708,9 @@ class SourceMaker {
                 const std::string place = below(8) == 7
                                               ? sub(k, depth)
                                               : fmt::format("LIMIT(0, {}, 1)", varying(k, depth));
-                return {fmt::format("MUX({}, {}, {})", place, first, second)};
+                if (below(3) != 2) return {fmt::format("MUX({}, {}, {})", place, first, second)};
+                return {fmt::format("MUX(K := {}, IN0 := {}, INELSE := {})", sub(k, depth), first,
+                                    second)};
             }
             case 2:
                 return {fmt::format("MOVE({})", first)};
@@ -716,8 +782,16 @@ class SourceMaker {
             return fmt::format("{}({})", names[below(4)], small_real(depth));
         }
         if (type.name != "INT") return leaf(type).text;
-        if (below(2) == 0) return fmt::format("LEN({})", sub(any, depth));
-        return fmt::format("FIND({}, {})", sub(any, depth), sub(any, depth));
+        switch (below(4)) {
+            default:
+                return fmt::format("LEN({})", sub(any, depth));
+            case 1:
+                return fmt::format("FIND({}, {})", sub(any, depth), sub(any, depth));
+            case 2:
+                return fmt::format("ENCO({})", sub(named(below(2) == 0 ? "WORD" : "LWORD"), depth));
+            case 3:
+                return fmt::format("CHAR_TO_INT({})", sub(named("CHAR"), depth));
+        }
     }
 
     std::string small_real(int depth) {
@@ -756,6 +830,8 @@ class SourceMaker {
         if (from.base || &from == &type || from.kind == Kind::time)
             return time_conversion(type, depth);
         if (from.kind == Kind::enumeration && type.kind == Kind::time) return leaf(type);
+        if (from.kind >= Kind::date && from.kind <= Kind::character && !is_whole(type))
+            return leaf(type);
         std::string value = sub(from, depth);
         const bool same_bits = type.kind == Kind::bits && from.bits == type.bits;
         if (from.kind == Kind::real && same_bits) {
@@ -779,7 +855,7 @@ class SourceMaker {
     Text bit_string(const Type& type, int depth) {
         const char* const ops[] = {"AND", "OR", "XOR"};
         constexpr int strengths[] = {and_, or_, xor_};
-        switch (below(8)) {
+        switch (below(11)) {
             default:
                 return leaf(type);
             case 1:
@@ -787,6 +863,16 @@ class SourceMaker {
                 const std::size_t op = below(3);
                 return binary(ops[op], strengths[op], type, type, depth);
             }
+            case 8:
+                return {fmt::format("SWAP({})", sub(type, depth))};
+            case 9: {
+                const std::string bit = fmt::format("DECO({})", sub(named("INT"), depth));
+                return {type.bits == 32 ? bit : fmt::format("DWORD_TO_{}({})", type.name, bit)};
+            }
+            case 10:
+                if (type.bits != 16) return leaf(type);
+                return {fmt::format("UINT_TO_BCD_WORD(LIMIT(0, {}, 9999))",
+                                    varying(named("UINT"), depth))};
             case 3:
                 return {"NOT " + wrapped(expression(type, depth - 1), atom), unary};
             case 4:
@@ -840,9 +926,15 @@ class SourceMaker {
 
     Text time(const Type& type, int depth) {
         const Type& lint = named(below(2) == 0 ? "LINT" : "INT");
-        switch (below(10)) {
+        switch (below(11)) {
             default:
                 return leaf(type);
+            case 10: {
+                if (below(4) == 3) return {"TIME()"};
+                const char* const dates[] = {"DT", "DATE", "TOD"};
+                const Type& of = named(dates[below(3)]);
+                return binary("-", add, of, of, depth);
+            }
             case 1:
             case 2:
                 return binary(below(2) == 0 ? "+" : "-", add, type, type, depth);
@@ -869,9 +961,48 @@ class SourceMaker {
         }
     }
 
+    Text date(const Type& type, int depth) {
+        const Type &moment = named("DT"), &time = named("TIME");
+        switch (below(6)) {
+            default:
+                return leaf(type);
+            case 3:
+                return selection(type, depth);
+            case 4:
+                if (type.kind == Kind::moment)
+                    return {fmt::format("CONCAT_DATE_TOD({}, {})", sub(named("DATE"), depth),
+                                        sub(named("TOD"), depth))};
+                return {fmt::format("DT_TO_{}({})", type.name, sub(moment, depth))};
+            case 5:
+                if (type.kind == Kind::date) return leaf(type);
+                return binary(below(2) == 0 ? "+" : "-", add, type, time, depth);
+        }
+    }
+
     std::string position(int depth) {
         if (below(3) != 2) return std::to_string(1 + below(6));
         return fmt::format("LIMIT(1, {}, 9)", varying(named("INT"), depth));
+    }
+
+    /// One of a text, a number's, or the first of a text.
+    Text character(const Type& type, int depth) {
+        const Type& any = *choices_.one_of(texts_);
+        switch (below(8)) {
+            default:
+                return leaf(type);
+            case 3:
+            case 4: {
+                const auto from = place(any, false);
+                if (!from) return leaf(type);
+                return {fmt::format("{}[{}]", *from, index(1, 3))};
+            }
+            case 5:
+                return {fmt::format("BYTE_TO_CHAR({})", sub(named("BYTE"), depth))};
+            case 6:
+                return {fmt::format("STRING_TO_CHAR({})", sub(any, depth))};
+            case 7:
+                return selection(type, depth);
+        }
     }
 
     Text text(const Type&, int depth) {
@@ -901,7 +1032,9 @@ class SourceMaker {
                                     position(depth), position(depth))};
             case 8: {
                 const Type& from = elementaries()[below(elementaries().size())];
-                if (from.kind == Kind::time || from.kind == Kind::boolean) return leaf(any);
+                if ((from.kind >= Kind::time && from.kind <= Kind::moment) ||
+                    from.kind == Kind::boolean)
+                    return leaf(any);
                 return {fmt::format("{}_TO_STRING({})", from.name, sub(from, depth))};
             }
         }
@@ -992,8 +1125,16 @@ class SourceMaker {
             const std::string instance = *place(*callable.of, true);
             text = callable.is_method ? instance + "." + callable.name : instance;
         }
-        const auto given = arguments(callable, 2);
+        auto given = arguments(callable, 2);
         if (!given) return assign();
+        const bool by_name = *given == "()" || given->find(" := ") != std::string::npos;
+        if (by_name && below(4) == 3) {
+            const bool empty = *given == "()";
+            const std::string rest = empty ? "" : given->substr(1, given->size() - 2);
+            std::string before = enable();
+            if (empty) before.resize(before.size() - 2);
+            given = fmt::format("({}{}{})", before, rest, enabled());
+        }
         text += *given;
         if (callable.result && below(3) != 0)
             if (auto to = place(*callable.result, true)) return line(*to + " := " + text + ";");
@@ -1013,6 +1154,9 @@ class SourceMaker {
         switch (below(deep ? 8 : 16)) {
             default:
                 assign();
+                break;
+            case 2:
+                rarer();
                 break;
             case 3:
                 accumulate();
@@ -1052,6 +1196,82 @@ class SourceMaker {
         if (!to) return;
         line(fmt::format("{} := {};", *to,
                          expression(narrower(type), 1 + static_cast<int>(below(4))).text));
+    }
+
+    /// What fewer programs have, of Siemens' SCL mostly.
+    void rarer() {
+        const Type& boolean = named("BOOL");
+        switch (below(8)) {
+            default:
+                return assign();
+            case 1:
+                return assign_twice();
+            case 2:
+                if (const auto to = place(boolean, true))
+                    line(fmt::format("{} {}= {};", *to, below(2) == 0 ? 'S' : 'R',
+                                     expression(boolean, 2).text));
+                return;
+            case 3:
+                return set_character();
+            case 4:
+                return scatter();
+            case 5:
+                return call_if_enabled();
+            case 6:
+                return set_timer();
+            case 7:
+                if (has_eno_) line(fmt::format("ENO := ENO XOR {};", sub(boolean, 2)));
+        }
+    }
+
+    void assign_twice() {
+        const Type& type = any_type();
+        const auto first = place(type, true), second = place(type, true);
+        if (first) line(fmt::format("{} := {} := {};", *first, *second, expression(type, 3).text));
+    }
+
+    /// Of a text that is long enough, mostly.
+    void set_character() {
+        const Type& any = *choices_.one_of(texts_);
+        const auto text = place(any, true);
+        if (!text) return assign();
+        const std::size_t at = 1 + below(3);
+        const std::string set =
+            fmt::format("{}[{}] := {};", *text, at, expression(named("CHAR"), 2).text);
+        line(below(10) == 9 ? set
+                            : fmt::format("IF LEN({}) >= {} THEN {} END_IF;", *text, at, set));
+    }
+
+    void scatter() {
+        if (flags_.empty()) return assign();
+        const auto& [flags, bits] = choices_.one_of(flags_);
+        const auto one = place(*flags, true), other = place(*bits, true);
+        if (!one || !other) return assign();
+        if (below(2) == 0) return line(fmt::format("SCATTER(IN := {}, OUT := {});", *other, *one));
+        line(fmt::format("GATHER(IN := {}, OUT := {});", *one, *other));
+    }
+
+    void call_if_enabled() {
+        const char* const names[] = {"ADD", "MUL", "MAX", "SUB"};
+        const Type& type = named(below(2) == 0 ? "DINT" : "LREAL");
+        const auto to = place(type, true);
+        if (!to) return assign();
+        line(fmt::format("{} := {}({}IN1 := {}, IN2 := {}{});", *to, names[below(4)], enable(),
+                         sub(type, 2), sub(type, 2), enabled()));
+    }
+
+    std::string enable() { return fmt::format("EN := {}, ", sub(named("BOOL"), 2)); }
+
+    std::string enabled() {
+        const auto to = place(named("BOOL"), true);
+        return to ? fmt::format(", ENO => {}", *to) : "";
+    }
+
+    void set_timer() {
+        const auto timer = place(*standard_[below(3)], true);
+        if (!timer) return assign();
+        if (below(2) == 0) return line(fmt::format("RESET_TIMER({});", *timer));
+        line(fmt::format("PRESET_TIMER(PT := {}, TIMER := {});", sub(named("TIME"), 2), *timer));
     }
 
     void accumulate() {
@@ -1263,6 +1483,7 @@ class SourceMaker {
         const std::size_t kept = scope_.size();
         enter(given.inputs, given.in_outs, given.outputs, locals);
         if (callable.result) scope_.push_back({callable.name, callable.result});
+        has_eno_ = true;
         const std::string body = written_body(1 + below(5));
         line(fmt::format("{} {} : {}", keyword, callable.name,
                          callable.result ? written_type(*callable.result) : "Void"));
@@ -1305,6 +1526,7 @@ class SourceMaker {
         for (std::size_t i = below(3); i > 0; --i) made.push_back(write_method(type, methods));
         if (!risky) enter(given.in_outs);
         enter(temps);
+        has_eno_ = true;
         const std::string body = written_body(2 + below(5));
         line("FUNCTION_BLOCK " + type.name);
         declare(given);
@@ -1358,6 +1580,7 @@ class SourceMaker {
         instances(locals);
         const auto temps = variables("t", below(3), true);
         enter(inputs, locals, temps);
+        has_eno_ = false;
         const std::string body = written_body(below(20));
         line("PROGRAM Main");
         section("VAR_INPUT", inputs, false);
@@ -1372,8 +1595,10 @@ class SourceMaker {
     Choices& choices_;
     std::string out_;
     int names_ = 0, indent_ = 0, nesting_ = 0, loops_ = 0, index_depth_ = 0, reads_ = 0;
+    bool has_eno_ = false;
     std::deque<Type> types_;
     std::vector<const Type*> scalars_, texts_, aggregates_, standard_, own_;
+    std::vector<std::pair<const Type*, const Type*>> flags_;  ///< and bit strings of as many bits
     std::deque<Callable> callables_;
     std::vector<Variable> globals_, scope_, counters_, constants_;
 };

@@ -42,6 +42,11 @@ std::string real_constant(double value) {
     return fmt::format("({:a})", value);
 }
 
+/// The flag of a routine that a caller may take; not a variable of that name.
+bool is_eno(const Variable& variable) {
+    return variable.section == Section::temp && variable.text == "ENO";
+}
+
 bool is_input(const Variable& variable) {
     return variable.section == Section::input || variable.section == Section::in_out;
 }
@@ -291,6 +296,8 @@ class CWriter {
         for (const Variable& v : routine.variables)
             if (!is_block && v.section == Section::output && v.space == Space::frame)
                 put("*out_{0} = {0};", name_of(v));
+        for (const Variable& v : routine.variables)
+            if (is_eno(v)) put("twin_eno = {}{};", is_block ? "self->" : "", name_of(v));
         if (result) put("return {};", name_of(*result));
         put("}}");
         routine_ = nullptr;
@@ -371,6 +378,11 @@ class CWriter {
             const auto [first, mask] = bits_of(target);
             return put("{0} = ({1})(((u64){0} & ~({2} << {3})) | ((u64){4} & {2}) << {3});", whole,
                        c_type(*target.operands[0]->type), mask, first, bits);
+        }
+        if (target.is_character()) {
+            const std::string c = value(*s.value), in = text(*target.operands[0]);
+            return put("twin_set_character({}, {}, {}, {});", in, value(*target.arguments[0].value),
+                       c, line_);
         }
         assign(place(target), *target.type, *s.value);
     }
@@ -481,7 +493,7 @@ class CWriter {
             case E::name:
             case E::member:
             case E::index:
-                return made(*e.type, place(e));
+                return e.is_character() ? character(e) : made(*e.type, place(e));
             case E::bit: {
                 const auto [first, mask] = bits_of(e);
                 return made(*e.type,
@@ -496,6 +508,13 @@ class CWriter {
             default:
                 return converted(e);
         }
+    }
+
+    std::string character(const Expression& e) {
+        const std::string in = text(*e.operands[0]);
+        return made(*e.type,
+                    fmt::format("twin_character({}, {}, {}, {})", in, e.operands[0]->type->length,
+                                value(*e.arguments[0].value), line_));
     }
 
     std::string place(const Expression& e) {
@@ -650,6 +669,8 @@ class CWriter {
         const Expression& operand = *e.operands[0];
         if (is_text(operand)) {
             const std::string from = text(operand);
+            if (e.type->is_character)
+                return made(*e.type, fmt::format("twin_character({}, 1, 1, 0)", from));
             return made(*e.type, fmt::format("twin_read_{}({}, {})",
                                              e.type->is_real() ? "real" : "integer", from, line_));
         }
@@ -680,7 +701,7 @@ class CWriter {
             check_range(whole, 0, static_cast<std::int64_t>(to.values.size()) - 1);
             return made(to, whole);
         }
-        if (from.kind == Kind::time || to.kind == Kind::time) return convert_time(x, from, to);
+        if (from.is_time() || to.is_time()) return convert_time(x, from, to);
         if (to.kind == Kind::boolean) return made(to, x + " != 0");
         const bool same_bits = from.bits == to.bits && (from.is_bits() || to.is_bits());
         if (from.is_real() != to.is_real() && same_bits) {
@@ -693,15 +714,26 @@ class CWriter {
         return made(to, x);
     }
 
-    /// In s as a real number, in ms as an integer of up to 32 bits, in ns as one of 64.
+    /// In s as a real number, in ns as an integer of 64 bits. In a shorter one TIME and TOD in ms,
+    /// DATE and DT in s, DATE in 16 bits in days since 1990.
     std::string convert_time(const std::string& x, const Type& from, const Type& to) {
-        if (from.kind == to.kind) return x;
+        if (from.is_time() && to.is_time()) {
+            if (from.kind != Kind::moment || to.kind == Kind::moment) return x;
+            const std::string clock = made(to, fmt::format("twin_clock({})", x));
+            return to.kind == Kind::clock ? clock : made(to, x + " - " + clock);
+        }
         if (from.is_real()) return rounded(to, fmt::format("(f64){} * 1e9", x));
         if (to.is_real()) return made(to, fmt::format("(f64){} / 1e9", x));
         if (to.kind == Kind::boolean) return made(to, x + " != 0");
-        if (to.kind == Kind::time)
-            return made(to, from.bits < 64 ? fmt::format("(i64){} * 1000000", x) : x);
-        return made(to, to.bits < 64 ? x + " / 1000000" : x);
+        const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
+        if (number.bits == 64) return made(to, x);
+        const bool is_date = time.kind == Kind::date, in_days = is_date && number.bits == 16;
+        const char* const unit = in_days                                ? "86400000000000"
+                                 : is_date || time.kind == Kind::moment ? "1000000000"
+                                                                        : "1000000";
+        const int start = in_days ? 7305 : 0;
+        if (to.is_time()) return made(to, fmt::format("((i64){} + {}) * {}", x, start, unit));
+        return made(to, fmt::format("({} - {} * {}) / {}", x, start, unit, unit));
     }
 
     // Texts: the address of one.
@@ -725,6 +757,10 @@ class CWriter {
         std::string number = value(*e.operands[0]);
         if (from.kind == Kind::enumeration) number = convert(number, from, lint_type);
         const std::string name = new_text();
+        if (from.is_character) {
+            put("twin_literal(&{}, 254, (char[]){{{}}}, 1);", name, number);
+            return "&" + name;
+        }
         const bool is_unsigned = from.is_unsigned_64();
         put("twin_{}(&{}, {});",
             from.is_real() ? (from.bits == 32 ? "single" : "real")
@@ -812,7 +848,9 @@ class CWriter {
         else
             put("{}({});", name_of(routine), given);
         for (const Argument& argument : e.arguments)
-            if (argument.variable->section == Section::output)
+            if (is_eno(*argument.variable))
+                take("twin_eno", argument);
+            else if (argument.variable->section == Section::output)
                 take(values[argument.variable], argument);
         return name;
     }
@@ -861,7 +899,7 @@ class CWriter {
         else
             put("call_{}({});", small(type.standard->name), self);
         for (const Argument& argument : e.arguments)
-            if (argument.variable->section == Section::output)
+            if (argument.variable->section == Section::output || is_eno(*argument.variable))
                 take(self + "->" + name_of(*argument.variable), argument);
         return {};
     }
@@ -910,6 +948,25 @@ class CWriter {
                 return made(type, fmt::format("twin_find({}, {})", a[0], a[1]));
             case Rule::finite:
                 return made(type, fmt::format("{0} - {0} == 0", a[0]));
+            case Rule::swap:
+                return made(type,
+                            fmt::format("__builtin_bswap64((u64){}) >> {}", a[0], 64 - type.bits));
+            case Rule::encode:
+                return made(type, fmt::format("{0} ? __builtin_ctzll({0}) : 0", a[0]));
+            case Rule::decode:
+                return made(type, fmt::format("1ull << ((u64){} & {})", a[0], type.bits - 1));
+            case Rule::to_bcd:
+                return made(type,
+                            fmt::format("twin_to_bcd({}, {}, {})", a[0], type.bits / 4, line_));
+            case Rule::time:
+                return made(type, "twin_now");
+            case Rule::statement: {
+                const std::string type_of = c_type(*e.arguments[0].value->type);
+                put("{{ {0}* t = {1}; const i64 pt = t->pt; memset(t, 0, sizeof *t); t->pt = pt; "
+                    "}}",
+                    type_of, a[0]);
+                return {};
+            }
             default:
                 return chosen(e, f, a);
         }
@@ -935,8 +992,9 @@ class CWriter {
                 so_far = lesser(type, so_far, a[i], f.name == "MAX");
             return so_far;
         }
-        put("if ((i128){0} < 0 || (i128){0} > {1}) {2};", a[0], a.size() - 2,
-            fault("array_bounds"));
+        if (!same_name(e.arguments.back().name.text, "inelse"))
+            put("if ((i128){0} < 0 || (i128){0} > {1}) {2};", a[0], a.size() - 2,
+                fault("array_bounds"));
         std::string list;
         for (std::size_t i = 1; i + 1 < a.size(); ++i)
             list += fmt::format("{} == {} ? ({}){} : ", a[0], i - 1, c, a[i]);

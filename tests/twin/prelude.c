@@ -6,6 +6,7 @@
 
 jmp_buf twin_end;
 i64 twin_now;
+u8 twin_eno;
 
 void twin_fault(int fault, int line) {
     longjmp(twin_end, fault * 1000000 + line);
@@ -68,6 +69,28 @@ i64 twin_compare(const void* a, const void* b) {
     const i64 first = as_text(a)->length, second = as_text(b)->length;
     const int order = memcmp(as_text(a)->c, as_text(b)->c, (size_t)(first < second ? first : second));
     return order != 0 ? order : first < second ? -1 : first > second;
+}
+
+i64 twin_clock(i64 moment) {
+    const i64 day = 86400000000000;
+    const i64 rest = moment % day;
+    return rest < 0 ? rest + day : rest;
+}
+
+u8 twin_character(const void* from, i64 room, i64 place, int line) {
+    if (place < 1 || place > room) twin_fault(array_bounds, line);
+    return place > as_text(from)->length ? 0 : (u8)as_text(from)->c[place - 1];
+}
+
+void twin_set_character(void* to, i64 place, u8 c, int line) {
+    if (place < 1 || place > as_text(to)->length) twin_fault(array_bounds, line);
+    ((text*)to)->c[place - 1] = (char)c;
+}
+
+u64 twin_to_bcd(u64 value, int digits, int line) {
+    char decimal[24];
+    if (snprintf(decimal, sizeof decimal, "%llu", (unsigned long long)value) > digits) twin_fault(out_of_range, line);
+    return strtoull(decimal, 0, 16);
 }
 
 void twin_signed(result* to, i64 value) {

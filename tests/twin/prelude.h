@@ -23,6 +23,7 @@ enum { array_bounds = 1, division_by_zero, out_of_range, no_reference };
 
 extern jmp_buf twin_end;
 extern i64 twin_now;
+extern u8 twin_eno; /* of the routine that ended last */
 void twin_fault(int fault, int line) __attribute__((noreturn));
 
 /* Texts: any struct that begins so. `room` is how many characters it holds; results hold 254. */
@@ -39,6 +40,10 @@ void twin_signed(result* to, i64 value);
 void twin_unsigned(result* to, u64 value);
 void twin_real(result* to, f64 value);
 void twin_single(result* to, f32 value);
+i64 twin_clock(i64 moment);
+u8 twin_character(const void* from, i64 room, i64 place, int line);
+void twin_set_character(void* to, i64 place, u8 c, int line);
+u64 twin_to_bcd(u64 value, int digits, int line);
 i64 twin_read_integer(const void* from, int line);
 f64 twin_read_real(const void* from, int line);
 
