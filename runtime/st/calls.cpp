@@ -181,6 +181,15 @@ void Checker::check_argument(Expression&, Argument& argument, Variable& paramete
         if (check(*value, type) && type) coerce(value, *type);
         return;
     }
+    const bool is_unknown = value->kind == Expression::Kind::name && !find_variable(value->token);
+    if (is_unknown && type && type->kind == Kind::handle) {
+        const std::string_view name = value->token.text;
+        fail("L0904", value->place, fmt::format("'{}' is not declared", name),
+             fmt::format("declare it here, VAR_IN_OUT {0} : {1};, and give the block "
+                         "{0}: {0} in the program",
+                         name, type->name));
+        return;
+    }
     const Type* given = check(*value);
     if (!given || !type) return;
     if (type->kind == Kind::handle && given->is_object() && given->standard == type->standard &&

@@ -329,7 +329,8 @@ const Type* Checker::check_member(Expression& e) {
     }
     if (names.empty())
         return fail("L0905", e.token.place, fmt::format("{} has no parts", describe(*type)),
-                    "'.' takes a part of a structure or of an instance");
+                    type->is_handle() ? "blocks read what it refers to, as MC_ReadActualPosition"
+                                      : "'.' takes a part of a structure or of an instance");
     return fail("L0904", e.token.place, fmt::format("{} has no '{}'", describe(*type), name),
                 suggest(name, names));
 }
