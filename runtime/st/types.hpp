@@ -57,8 +57,8 @@ struct Type {
     std::vector<std::string> values = {};    ///< of an enumeration
     std::vector<std::int64_t> numbers = {};  ///< of its values
     bool counted = true;                     ///< those are 0, 1, 2, ...
-    bool is_code = false;  ///< of an enumeration: ErrorID, which the standards make a WORD
-    Routine* routine = nullptr;              ///< of a block
+    bool is_code = false;        ///< of an enumeration: ErrorID, which the standards make a WORD
+    Routine* routine = nullptr;  ///< of a block
     const BlockType* standard = nullptr;
     std::vector<std::pair<std::string_view, Constant>> presets = {};  ///< parameters of `standard`
     Constant initial = {};
