@@ -143,6 +143,12 @@ def folders(c):
         c.run("run", "program.yaml", *FOREVER, option, "nowhere/t.csv", expect=3,
               says="cannot open 'nowhere/t.csv': No such file or directory")
     assert not any(c.path("closed").iterdir())
+    c.path("dark").mkdir()
+    c.path("dark").chmod(0o333)  # may be written, but not read
+    c.path("study.yaml").write_text("lineshaft_study: 1\ntitle: Short\nprogram: program.yaml\n"
+                                    "compare: [axis.position]\ncases: [grid: {time: [5 ms, 6 ms]}]\n")
+    c.run("study", "study.yaml", "--traces", "dark", expect=0, preexec_fn=nobody)
+    assert len(list(c.path("dark").glob("*time=?_ms.csv"))) == 2, list(c.path("dark").iterdir())
 
 
 def standard_output(c):

@@ -42,7 +42,10 @@ bool FolderLocks::flush() const {
 
 bool flush_file_system(const std::string& folder) {
     const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor < 0) return false;
+    if (descriptor < 0) {
+        ::sync();
+        return true;
+    }
     const bool flushed = ::syncfs(descriptor) == 0;
     ::close(descriptor);
     return flushed;

@@ -25,7 +25,7 @@ class FolderLocks {
 };
 
 /// So that all that has been written below a folder outlives a power failure; false, and errno,
-/// when a disk fails.
+/// when a disk fails. Of a folder that may not be read nobody is told whether one does.
 bool flush_file_system(const std::string& folder);
 
 /// Of a file: `.` for a bare name.
