@@ -147,6 +147,10 @@ def check_api():
     machine.post("run_until", {"time": f"{goal} ns"})
     eventually(lambda: machine.get("state")["paused"])
     assert machine.get("state")["time_ns"] == goal
+    machine.post("run_until", {"time": goal / 1e9 + 1 / 3})
+    eventually(lambda: machine.get("state")["paused"])
+    goal += 333_333_333
+    assert machine.get("state")["time_ns"] == goal, "a number of seconds: the nearest nanosecond"
     assert machine.post("set", {"inputs.go": True, "inputs.ratio": 2})["time_ns"] == goal + 1
     machine.post("resume")
     eventually(lambda: machine.value("inputs.go") is True)
@@ -178,6 +182,8 @@ def check_refusals():
         ("step", {"task": "none"}, "task"),
         ("speed", {"speed": -1}, "speed"),
         ("run_until", {"time": "soon"}, "soon"),
+        ("run_until", {"time": 1e300}, "time"),
+        ("run_until", {"time": True}, "expected a time"),
     ]:
         status, answer = machine.ask(f"/api/{path}", body)
         assert status == 400 and words in json.dumps(answer), (path, body, answer)
@@ -403,6 +409,24 @@ class Watch:
             if not line:
                 raise ConnectionError
         return scans_of(json.loads(self.response.readline().removeprefix(b"data: ")), self.task)
+
+
+def check_streams_end():
+    """A stream ends with its machine, and says nothing but what it is to say."""
+    for _ in range(3):
+        machine = Machine("--speed", "max", "--for", "100 h")
+        watches = []
+        for _ in range(20):
+            watches.append(Watch(machine, "servo"))
+            time.sleep(0.02)  # each is told the state at its own moments
+        machine.process.send_signal(signal.SIGINT)
+        for watch in watches:
+            try:
+                while True:
+                    watch.scans()
+            except (OSError, http.client.HTTPException):
+                pass
+        assert machine.end()[0] == 0
 
 
 def begun_connection(port):
@@ -695,6 +719,7 @@ def main():
         if recordings >= 100:
             check_capture()
         check_stream()
+        check_streams_end()
         check_hostile()
         check_limits()
         check_other_addresses()

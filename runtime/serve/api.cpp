@@ -72,6 +72,12 @@ std::optional<std::int64_t> time_of(const std::string& text, Diagnostics& out) {
     return Reader(out).time(node);
 }
 
+/// What a client has calculated in seconds is seldom a whole number of nanoseconds: the nearest.
+std::optional<std::int64_t> time_of(const Json& time, Diagnostics& out) {
+    if (!time.is_number()) return time_of(time.get<std::string>(), out);
+    return time_of(fmt::format("{:.9f} s", time.get<double>()), out);
+}
+
 // What a request and its reply are, for the table
 
 Json described(Json schema, const char* doc) {
@@ -156,7 +162,9 @@ std::vector<Route> make_routes() {
                  {"task", of_type("string", "whose scans; all tasks' unless given")}}),
          state_schema(), &Api::step},
         {"POST", "/api/run_until", "Goes on until a time, then pauses", true, {},
-         object({{"time", of_type("string", "virtual time from the start, such as 2 s")}}, {"time"}),
+         object({{"time", described({{"type", {"string", "number"}}},
+                                    "from the start: 2 s, or a number of seconds as 'time_s' is one")}},
+                {"time"}),
          state_schema(), &Api::run_until},
         {"POST", "/api/speed", "Changes how many virtual seconds a second has", true, {},
          object({{"speed", described(Json::object(), "a number from 1e-6 to 1e6, or max")}}, {"speed"}),
@@ -367,10 +375,11 @@ ApiReply Api::step(const ApiRequest& request) {
 
 ApiReply Api::run_until(const ApiRequest& request) {
     const Json& body = request.body;
-    if (!body.is_object() || !body.contains("time") || !body["time"].is_string())
+    const Json wanted = body.is_object() && body.contains("time") ? body["time"] : Json();
+    if (!wanted.is_string() && !wanted.is_number())
         return failure(400, "expected a time", "{\"time\": \"2 s\"}");
     Diagnostics out;
-    const auto time = time_of(body["time"].get<std::string>(), out);
+    const auto time = time_of(wanted, out);
     if (!time) return mistake(out);
     return after([this, goal = *time] { live_.run_until(goal); });
 }

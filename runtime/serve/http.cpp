@@ -215,10 +215,14 @@ bool HttpServer::Server::feed(Stream& stream, httplib::DataSink& sink) {
     const auto write = [&](const std::string& text) {
         return text.empty() || sink.write(text.data(), text.size());
     };
+    const auto write_state = [&] {
+        const ApiReply state = api.state({});
+        return state.status != 200 || write(event("state", state.body));
+    };
     std::int64_t lost = 0;
     if (!write(event("signals", heading(stream)))) return false;
     for (int i = 0; !ends && !stream.is_closed(); ++i) {
-        if (i % rows_a_state == 0 && !write(event("state", api.state({}).body))) return false;
+        if (i % rows_a_state == 0 && !write_state()) return false;
         if (!sink.is_writable() || !write(rows(stream, lost))) return false;
         std::this_thread::sleep_for(pause);
     }

@@ -139,7 +139,7 @@ async function testWriting(newPage, port) {
   await eventually(page, (time) => parseFloat(document.querySelector("#time").textContent) > time, stands);
   assert.ok(await timeOf(page) - stands < 0.0025, "one scan of 1 ms");
   assert.equal((await value())["inputs.go"], true);
-  await page.fill("#until input", `${stands + 0.5} s`);
+  await page.fill("#until input", `${(stands + 0.5).toFixed(6)} s`);
   await page.press("#until input", "Enter");
   await eventually(page, (time) => parseFloat(document.querySelector("#time").textContent) >= time, stands + 0.499);
   await page.fill("#filter", "x.velocity");

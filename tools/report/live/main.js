@@ -21,6 +21,12 @@ function tell(text) {
   byId("message").hidden = !text;
 }
 
+/** What was typed, as a number where it is one. */
+function typed({ value }) {
+  const text = value.trim();
+  return text !== "" && Number.isFinite(Number(text)) ? Number(text) : text;
+}
+
 /** Does what a click asks for, and says why not. */
 const attempt = (task) => async (event) => {
   event?.preventDefault();
@@ -130,11 +136,7 @@ function signalRow(signal) {
   const { name, unit, settable } = signal;
   const field = element("input", { type: "text", ariaLabel: `value of ${name}`,
                                    placeholder: signal.names?.join(" | ") ?? unit });
-  const value = () => {
-    const text = field.value.trim();
-    if (text === "true" || text === "false") return text === "true";
-    return text !== "" && Number.isFinite(Number(text)) ? Number(text) : text;
-  };
+  const value = () => ({ true: true, false: false })[field.value.trim()] ?? typed(field);
   const set = element("button", { hidden: !settable }, "set");
   set.onclick = attempt(() => post("set", { [name]: value() }));
   const force = element("button", {}, "force");
@@ -162,11 +164,8 @@ function firstChoice(signals) {
 function connectToolbar() {
   byId("pause").onclick = attempt(() => post(state?.paused ? "resume" : "pause"));
   byId("step").onclick = attempt(() => post("step"));
-  byId("until").onsubmit = attempt((event) => post("run_until", { time: event.target.time.value }));
-  byId("speed").onsubmit = attempt((event) => {
-    const text = event.target.speed.value.trim();
-    return post("speed", { speed: text === "max" ? text : Number(text) });
-  });
+  byId("until").onsubmit = attempt((event) => post("run_until", { time: typed(event.target.time) }));
+  byId("speed").onsubmit = attempt((event) => post("speed", { speed: typed(event.target.speed) }));
   byId("hold").onclick = () => scope.hold(!scope.held);
   byId("trigger").onsubmit = attempt((event) => arm(event.target));
   byId("trigger").signal.onchange = offerConditions;
