@@ -12,6 +12,7 @@
 
 #include <sleef.h>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/constant.hpp"
 
 namespace lineshaft::st {
@@ -214,13 +215,24 @@ void write_number(std::byte* to, T value) {
     set_word(to, 0, error == std::errc() ? static_cast<std::uint64_t>(end - first) : 0);
 }
 
+/// As controllers read it: the number at the beginning, behind blanks; 0 where there is none.
 template <class T>
-std::optional<T> number_of_text(const std::byte* from) {
-    const std::string_view text = text_at(from);
+T number_of_text(const std::byte* from) {
+    std::string_view text = text_at(from);
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    const bool is_negative = text.starts_with('-');
+    if (is_negative || text.starts_with('+')) text.remove_prefix(1);
+    if (text.find_first_of(".0123456789") != 0) return T{};
     T value{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return {};
-    return value;
+    if (error != std::errc()) return T{};
+    return is_negative ? -value : value;
+}
+
+std::uint64_t truth_of_text(const std::byte* from) {
+    const auto is_letter = [](char a, char b) { return upper(a) == b; };
+    const std::string_view text = text_at(from);
+    return text == "1" || std::ranges::equal(text, std::string_view("TRUE"), is_letter) ? 1 : 0;
 }
 
 /// What a scan needs besides where it is: apart, so that the registers are left to that.

@@ -213,6 +213,7 @@ Slot Generator::converted(const Expression& e, Slot wanted) {
             const Slot real = emit(Op::real_of_text, none, text);
             return e.type->bits == 32 ? emit(Op::narrow, wanted, real) : real;
         }
+        if (e.type->kind == Kind::boolean) return emit(Op::truth_of_text, wanted, text);
         if (e.type->is_character) {
             const Slot to = result(wanted);
             put(Op::text_character, to, text, constant_slot(1), 1);
