@@ -10,7 +10,8 @@ namespace lineshaft {
 
 /// A client's socket as cpp-httplib reads and writes it, with limits that the library does not
 /// have: a request has at most 100 lines of header, 16 KiB of them and 80 KiB in all, and has come
-/// within five seconds, however slowly its bytes come. Beyond them nothing more is read.
+/// within five seconds, however slowly its bytes come. Beyond them nothing more is read, nor from a
+/// client that has taken nothing of its answers for five seconds: it may have asked for many.
 class Connection final : public httplib::Stream {
   public:
     explicit Connection(int socket) : socket_(socket) {}
@@ -36,7 +37,7 @@ class Connection final : public httplib::Stream {
     std::array<char, 4096> buffer_{};
     std::size_t first_ = 0, end_ = 0;               ///< of what is left in the buffer
     std::size_t bytes_ = 0, lines_ = 0, line_ = 0;  ///< of the request; of its last line
-    bool in_head_ = true, too_much_ = false;
+    bool in_head_ = true, ended_ = false;
     std::int64_t deadline_ = 0;  ///< [ns]
 };
 

@@ -96,6 +96,8 @@ std::string ServedMachine::answer(std::string_view bytes,
                                   const std::function<void(int)>& converse) {
     int ends[2];
     if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) std::abort();
+    const int room = 8 << 20;  // for all answers, which are read when all are there
+    ::setsockopt(ends[1], SOL_SOCKET, SO_SNDBUFFORCE, &room, sizeof room);
     const auto written = ::send(ends[0], bytes.data(), bytes.size(), 0);
     if (written != static_cast<ssize_t>(bytes.size())) std::abort();
     ::shutdown(ends[0], SHUT_WR);
