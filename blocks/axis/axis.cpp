@@ -41,6 +41,8 @@ std::span<const Field> Axis::fields() {
         output("state", &A::state, "", "of PLCopen").one_of(axis_state_names),
         output("error", &A::error, "", "the axis has stopped; MC_Reset ends it"),
         output("error_id", &A::error_id, "", "why").one_of(motion_error_names),
+        local("actual_velocity", &A::actual_velocity, "{unit}/s", "with `has_drive`"),
+        local("homed", &A::homed, "", "by MC_Home"),
     };
     return table;
 }
@@ -155,9 +157,14 @@ void Axis::end_motion(const Context& context) {
         active.request.command != Command::cam_out)
         tell(context, active, Progress::reached);
     else
-        end(context, active, Progress::done);
+        end_done(context);
     if (queue.first != nowhere) return begin_next(context, at);
     settle();
+}
+
+void Axis::end_done(const Context& context) {
+    homed = homed || active.request.command == Command::home;
+    end(context, active, Progress::done);
 }
 
 /// MC_Stop is done, and goes on to hold the axis.

@@ -38,6 +38,7 @@ struct Axis {
     AxisState state = AxisState::standstill;
     bool error = false;
     MotionError error_id = MotionError::none;
+    bool homed = false;
 
     /// A job at work: a copy of what its command asked, who reads how far it is.
     struct Running {
@@ -97,6 +98,7 @@ struct Axis {
     static constexpr std::string_view type = "axis";
     static constexpr std::string_view doc = "axis that takes commands: see the MC_ blocks";
     static constexpr std::string_view handle = "AXIS_REF";
+    static const std::string_view structured_text;
     static std::span<const Field> fields();
     std::optional<Misfit> misfit(const IsConstant& is_constant) const;
     void scan(const Scan& now, const Context& context);
@@ -140,6 +142,7 @@ struct Axis {
     std::pair<MotionState, Moment> end_of_motion(const Context& context) const;
     Cam profile_table(const Context& context) const;
     void end_motion(const Context& context);
+    void end_done(const Context& context);
     void end_stop(const Context& context);
     void end_leg(const Moment& at);
     void end_added(const Context& context);

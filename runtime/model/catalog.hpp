@@ -56,8 +56,11 @@ struct BlockType {
                        const NameOf& name_of) = nullptr;
     std::optional<std::size_t> time_taken = {};  ///< place of what a scan took: std::int64_t [ns]
     std::string_view handle =
-        {};               ///< `AXIS_REF`: how Structured Text calls references to it; or empty
-    bool single = false;  ///< one a program, without an entry: a data block
+        {};  ///< `AXIS_REF`: how Structured Text calls references to it; or empty
+    /// Of Structured Text: FUNCTIONs `"AXIS_REF.StatusWord"`, which sources read of such a
+    /// reference as if they were its fields, `axis.StatusWord`; FUNCTION_BLOCKs. Or empty.
+    std::string_view structured_text = {};
+    bool single = false;                     ///< one a program, without an entry: a data block
     const void* context = nullptr;           ///< what all blocks of the kind share; may be null
     std::shared_ptr<const void> owner = {};  ///< of a kind that a program brings along
 
@@ -109,6 +112,9 @@ class Catalog {
         if constexpr (requires { Block::tables(); }) tables = Block::tables();
         std::string_view handle;
         if constexpr (requires { Block::handle; }) handle = Block::handle;
+        std::string_view structured_text;
+        if constexpr (requires { Block::structured_text; })
+            structured_text = Block::structured_text;
         return add({.name = Block::type,
                     .doc = Block::doc,
                     .fields = Block::fields(),
@@ -121,7 +127,8 @@ class Catalog {
                     .misfit = misfit<Block>(),
                     .shift = shift<Block>(),
                     .why = why<Block>(),
-                    .handle = handle});
+                    .handle = handle,
+                    .structured_text = structured_text});
     }
 
     Catalog& add(BlockType type) {

@@ -46,6 +46,8 @@ struct Field {
     bool maximum_excluded = false;
     bool required = false;
     std::string_view refers = {};  ///< of a reference: the type that it takes
+    std::string_view global = {};  ///< of a reference: it takes the block of that name, and no
+                                   ///< program writes it down
 
     /// Limits of a constant in the program file; a wired value is the block's own business.
     constexpr Field above(double limit) const {

@@ -60,20 +60,57 @@ void add_single_blocks(Resolving& to) {
     }
 }
 
-/// References to data blocks, which a program does not write down.
-void refer_to_single_blocks(Resolving& to) {
-    for (int number = 0; number < static_cast<int>(to.net.instances.size()); ++number) {
-        Instance& block = to.net.instances[static_cast<std::size_t>(number)];
-        if (!block.known()) continue;
-        for (const Field& field : block.type->fields) {
-            const auto it = to.net.instance_numbers.find(std::string(field.refers));
-            if (field.direction != Direction::in_out || it == to.net.instance_numbers.end() ||
-                !to.net.instance(it->second).known() || !to.net.instance(it->second).type->single)
-                continue;
-            to.net.references.push_back({to.net.port(number, field), it->second});
-            store(field.type, block.image.data() + field.offset, std::int64_t{it->second});
-        }
+/// The program's block of that name; capital letters make no difference where there is no other.
+int find_global(const Resolving& to, std::string_view name) {
+    const auto it = to.net.instance_numbers.find(std::string(name));
+    if (it != to.net.instance_numbers.end()) return it->second;
+    const auto other = std::ranges::find_if(
+        to.net.instances, [&](const Instance& block) { return same_letters(block.name, name); });
+    return other == to.net.instances.end() ? -1
+                                           : static_cast<int>(other - to.net.instances.begin());
+}
+
+void refuse_global(Resolving& to, const Instance& block, const Node& place, const Field& field,
+                   int found) {
+    if (found >= 0)
+        return to.read.fail(
+            "L0401", place,
+            fmt::format("the sources of {} name {}, a block of type {}, which {} is not",
+                        block.described(), field.name, field.refers,
+                        to.net.instance(found).described()));
+    std::vector<std::string> fitting;
+    for (const Instance& other : to.net.instances)
+        if (other.type && other.type->name == field.refers) fitting.push_back(other.name);
+    const std::string known = suggest(std::string(field.global), fitting);
+    to.read.fail("L0204", place,
+                 fmt::format("the sources of {} name {}, and the program has no {} '{}'",
+                             block.described(), field.name, field.refers, field.global),
+                 fmt::format("declare it, {}: {{type: {}, task: ...}}, or the source takes it as "
+                             "VAR_IN_OUT{}{}",
+                             field.global, field.refers, known.empty() ? "" : "; ", known));
+}
+
+void refer_to_global(Resolving& to, int number, const Field& field) {
+    Instance& block = to.net.instances[static_cast<std::size_t>(number)];
+    const int other = find_global(to, field.global);
+    if (other >= 0 && !to.net.instance(other).known()) return;
+    if (other >= 0 && to.net.instance(other).type->name == field.refers) {
+        to.net.references.push_back({to.net.port(number, field), other});
+        return store(field.type, block.image.data() + field.offset, std::int64_t{other});
     }
+    const BlockType* kind = to.net.kinds ? to.net.kinds->find(field.refers) : nullptr;
+    if (kind && kind->single) return;  // another block has its name, which has been told
+    const auto plan = static_cast<std::size_t>(number);
+    if (plan < to.program.blocks.size())
+        refuse_global(to, block, to.program.blocks[plan].name, field, other);
+}
+
+/// References that a program does not write down.
+void refer_to_globals(Resolving& to) {
+    for (int number = 0; number < static_cast<int>(to.net.instances.size()); ++number)
+        if (const Instance& block = to.net.instance(number); block.known())
+            for (const Field& field : block.type->fields)
+                if (!field.global.empty()) refer_to_global(to, number, field);
 }
 
 std::optional<WireText> parse_wire(const Node& node) {
@@ -93,12 +130,6 @@ std::optional<WireText> parse_wire(const Node& node) {
     return wire;
 }
 
-/// A reference that no program writes down.
-bool is_data_block(const Resolving& to, const Field& field) {
-    const BlockType* kind = to.net.kinds ? to.net.kinds->find(field.refers) : nullptr;
-    return kind && kind->single;
-}
-
 void refuse_port(Resolving& to, const Instance& block, const Node& key) {
     if (const Field* field = block.type->find_readable(key.text))
         return to.read.fail(
@@ -111,7 +142,7 @@ void refuse_port(Resolving& to, const Instance& block, const Node& key) {
         return (void)to.net.find(to.read, key, fmt::format("{}.{}", block.name, key.text));
     std::vector<std::string> settable{"type", "task"};
     for (const Field& f : block.type->fields)
-        if (block.type->find_settable(f.name) == &f && !is_data_block(to, f))
+        if (block.type->find_settable(f.name) == &f && f.global.empty())
             settable.emplace_back(f.name);
     for (const TableField& t : block.type->tables) settable.emplace_back(t.name);
     to.read.fail("L0203", key,
@@ -124,8 +155,7 @@ void check_required(const Resolving& to, const BlockPlan& plan, const Instance& 
         const auto is_field = [&](const auto& port) {
             return same_letters(field.name, port.first.text);
         };
-        if (!field.required || is_data_block(to, field) ||
-            std::ranges::any_of(plan.ports, is_field))
+        if (!field.required || !field.global.empty() || std::ranges::any_of(plan.ports, is_field))
             continue;
         to.read.fail("L0403", plan.name,
                      fmt::format("{} needs its {} '{}': {}", block.described(),
@@ -183,7 +213,7 @@ void resolve_instances(Resolving& to) {
         to.net.instances.push_back(std::move(block));
     }
     add_single_blocks(to);
-    refer_to_single_blocks(to);
+    refer_to_globals(to);
 }
 
 void resolve_assignments(Resolving& to) {

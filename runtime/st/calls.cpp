@@ -181,20 +181,11 @@ void Checker::check_argument(Expression&, Argument& argument, Variable& paramete
         if (check(*value, type) && type) coerce(value, *type);
         return;
     }
-    const bool is_unknown = value->kind == Expression::Kind::name && !find_variable(value->token);
-    if (is_unknown && type && type->kind == Kind::handle) {
-        const std::string_view name = value->token.text;
-        fail("L0904", value->place, fmt::format("'{}' is not declared", name),
-             fmt::format("declare it here, VAR_IN_OUT {0} : {1};, and give the block "
-                         "{0}: {0} in the program",
-                         name, type->name));
-        return;
-    }
-    const Type* given = check(*value);
+    const Type* given = check(*value, type && type->kind == Kind::handle ? type : nullptr);
     if (!given || !type) return;
-    if (type->kind == Kind::handle && given->is_object() && given->standard == type->standard &&
-        value->variable->space == Space::global)
-        return convert(value, *type);
+    if (type->kind == Kind::handle && given->is_object()) {
+        if (coerce(value, *type)) return;
+    }
     const bool is_read = parameter.section == Section::in_out && is_own_input(*value);
     if (!is_variable(*value) || (!is_read && !check_target(*value, "given here"))) {
         if (!is_variable(*value))
@@ -213,6 +204,18 @@ void Checker::check_argument(Expression&, Argument& argument, Variable& paramete
                          describe(*given)));
 }
 
+/// Of a block that commands an axis, inputs that vendors add to PLCopen's: an axis without a real
+/// drive does the same with and without.
+bool is_vendors_own(const Type& type, std::string_view argument) {
+    constexpr std::string_view known[] = {"StartMode",   "StopMode",           "Restart",
+                                          "Current",     "PositionControlled", "bRegulatorOn",
+                                          "bDriveStart", "Enable_Positive",    "Enable_Negative",
+                                          "Override",    "AbortAcceleration"};
+    const auto refers = [](const Variable* member) { return member->type->is_handle(); };
+    return std::ranges::any_of(type.members, refers) &&
+           std::ranges::any_of(known, [&](auto name) { return same_name(name, argument); });
+}
+
 void Checker::check_standard_arguments(Expression& call, const Type& type) {
     std::vector<std::string> names;
     for (const Variable* member : type.members) names.emplace_back(member->text);
@@ -227,6 +230,13 @@ void Checker::check_standard_arguments(Expression& call, const Type& type) {
                     found = member;
         }
         argument.variable = found;
+        if (!found && !argument.is_output && is_vendors_own(type, argument.name.text)) {
+            check(*argument.value);
+            out_.warn("L0923", argument.name.place.mark(),
+                      fmt::format("{} does not take '{}'", type.name, argument.name.text),
+                      "a simulated axis does the same with and without");
+            continue;
+        }
         if (!found) {
             fail("L0907", argument.name.text.empty() ? argument.value->place : argument.name.place,
                  fmt::format("{} has no argument '{}'", type.name, argument.name.text),
@@ -235,6 +245,7 @@ void Checker::check_standard_arguments(Expression& call, const Type& type) {
         }
         check_argument(call, argument, *found);
     }
+    std::erase_if(call.arguments, [](const Argument& argument) { return !argument.variable; });
     for (const Variable* member : type.members) {
         if (member->section != Section::in_out ||
             std::ranges::find(call.arguments, member, &Argument::variable) != call.arguments.end())

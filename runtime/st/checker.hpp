@@ -20,6 +20,7 @@ struct Checked {
 ///   L0910  not to be assigned              L0911  a recursion
 ///   L0913  not a constant                  L0914  a statement in a wrong place
 ///   L0921  warning: never used             L0922  warning: never reached
+///   L0923  warning: an argument not taken
 Checked check(Tree& tree, const Catalog& standard, Diagnostics& out);
 
 }  // namespace lineshaft::st

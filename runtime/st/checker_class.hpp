@@ -46,6 +46,7 @@ class Checker {
     Type& global_variables();
     Variable* declare_global(const Declaration& declared, bool constant, bool retain);
     Variable* declare_early(std::string_view name);
+    Variable* declare_object(Variable& variable);
     void declare_globals();
     void declare_routines();
     void declare(Routine& routine, const DeclarationBlock& block);
@@ -86,6 +87,11 @@ class Checker {
     const Type* check_text(Expression& expression);
     const Type* check_name(Expression& expression, const Type* expected);
     const Type* use(Expression& expression, Variable& variable);
+    const Type* use_object(Expression& expression, const Type& type);
+    const Type* object_type(const Type& handle);
+    bool is_object_of(const Expression& member);
+    Routine* find_part(const Type& type, std::string_view name);
+    const Type* check_part(Expression& member, Routine& part);
     const Type* unknown_name(Expression& expression);
     const Type* enumeration_of(const Expression& member);
     const Type* check_value(Expression& e, const Type& enumeration, const Token& name);
@@ -110,6 +116,7 @@ class Checker {
     void fold_binary(Expression& expression, const Constant& a, const Constant& b);
     void become(Expression& expression, const Type& type, Constant value);
     void become_boolean(Expression& expression, bool value);
+    bool coerce_number(Expression*& expression, const Type& to);
     bool coerce(Expression*& expression, const Type& to);
     bool coerce_constant(Expression& expression, const Type& to);
     void convert(Expression*& expression, const Type& to);

@@ -76,6 +76,7 @@ std::string instruction_error(const Code& code, const CodeRoutine& routine, cons
         case Op::call_block_at:
             return in.b >= code.standard.size() ? "a kind of block that is not there" : "";
         case Op::set_global:
+        case Op::set_global_number:
             return in.b >= code.globals ? "a data block that is not there" : "";
         case Op::cover:
             return in.a >= code.points.size() ? "a point that is not there" : "";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -19,13 +20,13 @@ Compiled::~Compiled() {
 namespace {
 
 /// What the sources do not declare themselves.
-void add_standard_source(Tree& tree, Diagnostics& out) {
+void add_standard(const std::shared_ptr<const SourceFile>& source, Tree& tree, Diagnostics& out) {
     NameSet own;
     for (const Pou* unit : tree.units) own.insert(unit->name.text);
     for (const TypeDeclaration& type : tree.types) own.insert(type.name.text);
     const auto units = static_cast<std::ptrdiff_t>(tree.units.size());
     const auto types = static_cast<std::ptrdiff_t>(tree.types.size());
-    parse(read_tokens(standard_source(), out), tree, out);
+    parse(read_tokens(source, out), tree, out);
     const auto is_own_unit = [&](const Pou* unit) { return own.contains(unit->name.text); };
     const auto is_own_type = [&](const TypeDeclaration& t) { return own.contains(t.name.text); };
     tree.units.erase(std::remove_if(tree.units.begin() + units, tree.units.end(), is_own_unit),
@@ -39,13 +40,19 @@ void add_standard_source(Tree& tree, Diagnostics& out) {
 bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOptions options,
              const SourceFile* tests) {
     bool uses_standard = false;
+    std::set<const BlockType*> used;
     for (const auto& source : to.sources) {
         const Tokens tokens = read_tokens(source, out);
         parse(tokens, to.tree, out, source.get() == tests);
         uses_standard = uses_standard || uses_standard_source(tokens);
+        for (const BlockType& type : standard.types())
+            if (uses_source_of(type, tokens)) used.insert(&type);
     }
     if (!out.empty()) return false;
-    if (uses_standard) add_standard_source(to.tree, out);
+    if (uses_standard) add_standard(standard_source(), to.tree, out);
+    for (const BlockType& type : standard.types())
+        if (used.contains(&type))
+            add_standard(to.of_standard.emplace_back(source_of(type)), to.tree, out);
     to.checked = check(to.tree, standard, out);
     if (!out.empty()) return false;
     options.covered = is_covered();

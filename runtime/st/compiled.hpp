@@ -1,5 +1,7 @@
 #pragma once
 
+#include <deque>
+
 #include "runtime/st/generator.hpp"
 #include "runtime/st/library.hpp"
 
@@ -8,6 +10,7 @@ namespace lineshaft::st {
 /// What sources are compiled to, with all that it refers to: so it is not moved.
 struct Compiled {
     std::vector<std::shared_ptr<const SourceFile>> sources;
+    std::deque<std::shared_ptr<const SourceFile>> of_standard;  ///< what kinds of the catalogue say
     Tree tree;
     Checked checked;
     Generated generated;

@@ -38,13 +38,23 @@ constexpr std::pair<std::string_view, std::string_view> aliases[] = {
     {"ton_time", "ton"},  {"tof_time", "tof"}, {"tp_time", "tp"},   {"ton_ltime", "ton"},
     {"tof_ltime", "tof"}, {"tp_ltime", "tp"},  {"iec_timer", "ton"}};
 
-/// What Siemens calls references.
+/// What Siemens and CODESYS call references.
 constexpr std::pair<std::string_view, std::string_view> handles[] = {
     {"to_axis", "axis_ref"},
     {"to_speedaxis", "axis_ref"},
     {"to_positioningaxis", "axis_ref"},
     {"to_synchronousaxis", "axis_ref"},
+    {"axis_ref_sm3", "axis_ref"},
+    {"axis_ref_virtual_sm3", "axis_ref"},
     {"to_cam", "cam_ref"}};
+
+/// What the numbers mean that Siemens' MC_MOVEABSOLUTE and MC_MOVEVELOCITY have for a Direction,
+/// and MC_HOME for its Mode.
+std::vector<std::int64_t> numbers_of(std::string_view field) {
+    if (field == "Direction") return {0, 1, 2, 0};
+    if (field == "HomingMode") return {0, -1, -1, -1, -1, -1, -1, 0};
+    return {};
+}
 
 Section section_of(Direction direction) {
     if (direction == Direction::output) return Section::output;
@@ -155,6 +165,7 @@ Variable* Checker::declare_global(const Declaration& declared, bool constant, bo
     const Type* type = resolve(*declared.type);
     if (!is_new_name(declared.name, top_names_)) return nullptr;
     Variable* variable = add(checked_.variables, declared, type);
+    if (type && type->kind == Kind::handle) return declare_object(*variable);
     variable->section = Section::global;
     variable->constant = constant;
     variable->retain = retain;
@@ -164,6 +175,17 @@ Variable* Checker::declare_global(const Declaration& declared, bool constant, bo
     if (variable->space != Space::none) all.members.push_back(variable);
     globals_.emplace(declared.name.text, variable);
     return variable;
+}
+
+/// `VAR_GLOBAL Axis_1 : AXIS_REF`: the program has the block.
+Variable* Checker::declare_object(Variable& variable) {
+    if (variable.type->kind == Kind::handle) variable.type = object_type(*variable.type);
+    variable.section = Section::global;
+    variable.space = Space::global;
+    variable.global = static_cast<int>(checked_.globals.size());
+    checked_.globals.push_back({std::string(variable.text), variable.type, nullptr, &variable});
+    globals_.emplace(variable.text, &variable);
+    return &variable;
 }
 
 /// One that a type or another constant asks for, wherever it is declared; null when there is none,
@@ -673,6 +695,7 @@ const Type* Checker::standard_type(std::string_view name) {
                 make_type(Kind::enumeration, fmt::format("{}.{}", kind->name, field.name));
             values.slots = 1;
             values.base = &lint_type;
+            values.of_number = numbers_of(field.name);
             values.is_code = same_name(field.name, "errorid") || field.name == "error_id";
             for (const std::string_view value : field.names) {
                 values.numbers.push_back(static_cast<std::int64_t>(values.values.size()));

@@ -225,6 +225,9 @@ const Type* Checker::check_name(Expression& e, const Type* expected) {
     }
     if (same_name(token.text, "eno") && routine_ && routine_->pou->kind != PouKind::data_block)
         return use(e, eno_of(*routine_));
+    if (expected && expected->kind == Kind::handle && !token.local &&
+        (token.quoted || !is_in_test()))
+        return use_object(e, *object_type(*expected));
     return unknown_name(e);
 }
 
@@ -237,7 +240,55 @@ const Type* Checker::use(Expression& e, Variable& variable) {
         return variable.type;
     }
     if (variable.space == Space::global) depend(variable.type, e.place);
+    if (routine_ && variable.type->is_object()) routine_->objects.push_back(variable.global);
     return variable.type;
+}
+
+// Technology objects, as Siemens has them: blocks of the program that sources name, `"Axis_1"`.
+
+const Type* Checker::use_object(Expression& e, const Type& type) {
+    Variable& variable = checked_.variables.emplace_back();
+    variable.name = e.token;
+    variable.text = e.token.text;
+    variable.type = &type;
+    declare_object(variable);
+    return use(e, variable);
+}
+
+const Type* Checker::object_type(const Type& handle) {
+    return standard_type(handle.standard->name);
+}
+
+/// `"Axis_1".Position`, where nothing else is called so.
+bool Checker::is_object_of(const Expression& member) {
+    const Expression& of = *member.operands[0];
+    if (of.kind != Expression::Kind::name || of.type || !of.token.quoted) return false;
+    if (find_variable(of.token) || routines_.contains(of.token.text)) return false;
+    const Type* axis = standard_type("axis_ref");
+    if (!axis || enumeration_of(member)) return false;
+    return find_part(*axis, member.token.text) ||
+           std::ranges::any_of(object_type(*axis)->members, [&](const Variable* field) {
+               return same_name(field->text, member.token.text);
+           });
+}
+
+/// What its kind says in Structured Text.
+Routine* Checker::find_part(const Type& type, std::string_view name) {
+    if (type.kind != Kind::handle && !type.is_object()) return nullptr;
+    const auto it = routines_.find(fmt::format("{}.{}", type.standard->handle, name));
+    return it == routines_.end() ? nullptr : it->second;
+}
+
+/// The function is called with what stands before the point.
+const Type* Checker::check_part(Expression& member, Routine& part) {
+    Expression* callee = make(Expression::Kind::name, member);
+    callee->token = member.token;
+    Expression call = *make(Expression::Kind::call, member);
+    call.token = member.token;
+    call.operands[0] = callee;
+    call.arguments.push_back({.value = member.operands[0]});
+    member = call;
+    return check_routine_call(member, part, false);
 }
 
 const Type* Checker::unknown_name(Expression& e) {
@@ -263,7 +314,8 @@ std::vector<std::string> Checker::visible_names() const {
 
 std::string_view standard_name(const Type& type, std::string_view name) {
     constexpr std::pair<std::string_view, std::string_view> others[] = {
-        {"reset", "r"}, {"load", "ld"}, {"set1", "s1"}, {"set", "s"}, {"reset1", "r1"}};
+        {"reset", "r"},   {"load", "ld"},    {"set1", "s1"},        {"set", "s"},
+        {"reset1", "r1"}, {"busy", "valid"}, {"mode", "homingmode"}};
     if (type.kind != Kind::standard) return name;
     const auto has = [&](std::string_view known) {
         return std::ranges::any_of(type.members,
@@ -299,8 +351,14 @@ const Type* Checker::check_value(Expression& e, const Type& enumeration, const T
 
 const Type* Checker::check_member(Expression& e) {
     if (const Type* enumeration = enumeration_of(e)) return check_value(e, *enumeration, e.token);
+    if (is_object_of(e)) use_object(*e.operands[0], *object_type(*standard_type("axis_ref")));
     const Type* type = check(*e.operands[0]);
     if (!type) return nullptr;
+    if (Routine* part = find_part(*type, e.token.text)) return check_part(e, *part);
+    if (type->kind == Kind::handle) {
+        type = object_type(*type);
+        convert(e.operands[0], *type);
+    }
     const std::string_view name = standard_name(*type, e.token.text);
     std::vector<std::string> names;
     if (type->kind == Kind::block) {
@@ -329,8 +387,12 @@ const Type* Checker::check_member(Expression& e) {
     }
     if (names.empty())
         return fail("L0905", e.token.place, fmt::format("{} has no parts", describe(*type)),
-                    type->is_handle() ? "blocks read what it refers to, as MC_ReadActualPosition"
-                                      : "'.' takes a part of a structure or of an instance");
+                    "'.' takes a part of a structure or of an instance");
+    if (type->is_object())
+        for (const auto& [routine, part] : routines_)
+            if (routine.starts_with(std::string(type->standard->handle) + '.'))
+                names.emplace_back(routine.substr(type->standard->handle.size() + 1));
+    std::ranges::sort(names);
     return fail("L0904", e.token.place, fmt::format("{} has no '{}'", describe(*type), name),
                 suggest(name, names));
 }
@@ -803,11 +865,35 @@ bool Checker::rounds(const Expression& e, const Type& to) {
     return true;
 }
 
+/// Siemens gives a number where PLCopen has a name: `Direction := 1`.
+bool Checker::coerce_number(Expression*& e, const Type& to) {
+    if (!is_constant(*e)) {
+        convert(e, to);
+        return true;
+    }
+    const Wide number = e->constant.integer;
+    const bool exists = number >= 0 && number < static_cast<Wide>(to.of_number.size());
+    const std::int64_t value = exists ? to.of_number[static_cast<std::size_t>(number)] : -1;
+    if (value < 0) {
+        fail("L0908", e->place,
+             fmt::format("{} has nothing for the number {}", to.name, to_string(number)),
+             fmt::format("write one of its values, such as {}#{}", to.name, to.values.front()));
+        return false;
+    }
+    become(*e, to, {.integer = value});
+    return true;
+}
+
 bool Checker::coerce(Expression*& e, const Type& to) {
     if (!e->type) return false;
     const Type& from = *e->type;
     if (&from == &to || same_type(from, to)) return true;
+    if (!to.of_number.empty() && from.is_integer() && is_scl(*e)) return coerce_number(e, to);
     if (from.is_any()) return coerce_constant(*e, to);
+    if (from.is_object() && to.kind == Kind::handle && from.standard == to.standard) {
+        convert(e, to);
+        return true;
+    }
     if (from.kind == Kind::text && to.kind == Kind::text) return true;
     if (to.is_character && is_constant(*e) && e->constant.text.size() == 1) {
         become(*e, to, {.integer = static_cast<unsigned char>(e->constant.text[0])});

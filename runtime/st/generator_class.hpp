@@ -101,6 +101,7 @@ class Generator {
     Slot bit(const Expression& e, Slot wanted);
     Slot converted(const Expression& e, Slot wanted);
     Slot convert(Slot from_slot, const Type& from, const Type& to, bool truncates, Slot wanted);
+    Slot look_up(Slot slot, const std::vector<std::int64_t>& numbers);
     Slot convert_real(Slot slot, const Type& from, const Type& to, bool truncates, Slot wanted);
     Slot convert_date(Slot slot, const Type& from, const Type& to, Slot wanted);
     Slot convert_time(Slot slot, const Type& from, const Type& to, Slot wanted);
@@ -109,6 +110,7 @@ class Generator {
     Location locate_element(const Expression& e);
     Location as_address(Location location);
     Slot address_of(Location location);
+    Location locate_object(const Expression& e);
     Location part(Location of, const Variable& member);
     Location part(Location of, std::uint32_t slots);
     Slot load(const Location& from, Slot wanted = none);

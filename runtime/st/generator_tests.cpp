@@ -64,6 +64,8 @@ void Generator::advance_time(Slot by) {
     for (const Routine* of = routine_->is_test() ? routine_ : nullptr; of; of = of->owner)
         for (const Variable& variable : of->variables)
             if (variable.type && variable.type->is_object()) objects.push_back(&variable);
+    for (const Global& global : checked_.globals)
+        if (global.object) objects.push_back(global.object);
     if (objects.empty()) return put(Op::advance_time, 0, by, by);
     const Slot zero = constant_slot(0), left = new_temporary(), step = new_temporary();
     put(Op::move, left, by);
@@ -200,7 +202,7 @@ void Generator::count_call(const Location& calls, std::vector<std::uint32_t>& ru
 
 void Generator::cover(CoverPoint::Kind kind, Place place, std::size_t branch) {
     const SourceFile* file = place.file->get();
-    if (!options_.covered || file == test_file_ || file == standard_source().get()) return;
+    if (!options_.covered || file == test_file_ || is_standard_source(*file)) return;
     const bool is_function = kind == CoverPoint::Kind::function;
     put(Op::cover, static_cast<Slot>(code_.points.size()));
     code_.points.push_back({kind, place, static_cast<std::uint32_t>(branch),

@@ -1,6 +1,7 @@
 #include "runtime/st/library.hpp"
 
 #include <cstring>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -135,7 +136,8 @@ class FieldWriter {
   public:
     FieldWriter(Library::Made& made, KindContext& kind) : made_(made), kind_(kind) {}
 
-    void write_header(const Routine& routine) {
+    /// `objects` are the globals of the program that it names.
+    void write_header(const Routine& routine, const std::set<int>& objects) {
         const bool own = routine.names.contains("error") || routine.names.contains("error_id");
         Field error;
         error.name = own ? "fault" : "error";
@@ -152,9 +154,14 @@ class FieldWriter {
         id.names = fault_names;
         kind_.fields.push_back(id);
         for (std::uint32_t i = 0; i < made_.checked.globals.size(); ++i) {
+            const Global& global = made_.checked.globals[i];
+            if (global.object && !objects.contains(static_cast<int>(i))) continue;
             Field reference;
-            reference.name = reference.refers = made_.checked.globals[i].name;
-            reference.doc = "the data block of that name";
+            reference.name = made_.names.emplace_back(fmt::format("\"{}\"", global.name));
+            reference.global = global.name;
+            reference.refers = global.object ? global.type->standard->name : global.name;
+            reference.doc =
+                global.object ? "the block of that name" : "the data block of that name";
             reference.direction = Direction::in_out;
             reference.type = lineshaft::Type::integer;
             reference.offset = 8 * std::size_t{globals_slot + i};
@@ -351,6 +358,13 @@ void keep(KindContext& kind, std::size_t first, bool retain) {
             kind.retained.push_back(kind.fields[first].name);
 }
 
+/// Of all that `routine` runs, the blocks of the program that are named.
+void find_objects(const Routine& routine, std::set<const Routine*>& seen, std::set<int>& objects) {
+    if (!seen.insert(&routine).second) return;
+    objects.insert(routine.objects.begin(), routine.objects.end());
+    for (const Routine* called : routine.calls) find_objects(*called, seen, objects);
+}
+
 void add_routine(Library::Made& made, const Routine& routine, const CodeRoutine& code,
                  const Options& options) {
     KindContext& kind = add_kind(made, routine.name, *routine.type, options);
@@ -360,7 +374,10 @@ void add_routine(Library::Made& made, const Routine& routine, const CodeRoutine&
                            (*routine.pou->name.place.file)->path);
     if (!routine.pou->doc.empty()) kind.doc += ": " + text_of_comments(routine.pou->doc);
     FieldWriter fields(made, kind);
-    fields.write_header(routine);
+    std::set<const Routine*> seen;
+    std::set<int> objects;
+    find_objects(routine, seen, objects);
+    fields.write_header(routine, objects);
     for (const Variable& variable : routine.variables) {
         const std::size_t before = kind.fields.size();
         fields.write(variable, 0, {}, FieldWriter::direction_of(variable));
@@ -419,7 +436,8 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     for (const Routine& routine : made->checked.routines)
         if (routine.has_instances() && !routine.owner)
             add_routine(*made, routine, *codes.at(routine.name), options);
-    for (const Global& global : made->checked.globals) add_global(*made, global, options);
+    for (const Global& global : made->checked.globals)
+        if (!global.object) add_global(*made, global, options);
     Library library;
     library.made_ = made;
     for (const KindContext& kind : made->kinds) library.kinds_.push_back(block_type(kind, made));

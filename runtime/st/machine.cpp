@@ -257,9 +257,10 @@ struct Frames {
 
     std::uint64_t address_of(std::uint32_t slot) const { return base + slot; }
 
-    std::uint64_t global(std::uint32_t number) const {
-        return (word(root, globals_slot + number) + 1) << 32;
+    std::uint64_t global_number(std::uint32_t number) const {
+        return word(root, globals_slot + number);
     }
+    std::uint64_t global(std::uint32_t number) const { return (global_number(number) + 1) << 32; }
 
     void call_block(std::byte* block, std::uint32_t number) const {
         const BlockType& type = *code.standard[number];

@@ -24,6 +24,8 @@
     OP(copy, move, "ssn-", copy_slots(at(a), at(b), c))                                              \
     OP(set_address, move, "ws--", put(a, frames.address_of(b)))                                      \
     OP(set_global, move, "wn--", put(a, frames.global(b)))                                           \
+    OP(set_global_number, move, "wn--", put(a, frames.global_number(b)))                             \
+    OP(address_of_number, move, "wr--", put(a, (U(b) + 1) << 32))                                    \
     OP(offset, move, "wrn-", put(a, U(b) + c))                                                       \
     OP(offset_by, move, "wrr-", put(a, U(b) + U(c)))                                                 \
     OP(load, move, "wrn-", put(a, word(target(U(b)), c)))                                            \

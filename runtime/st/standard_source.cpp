@@ -170,4 +170,29 @@ bool uses_standard_source(const Tokens& tokens) {
     });
 }
 
+std::shared_ptr<const SourceFile> source_of(const BlockType& type) {
+    return std::make_shared<const SourceFile>(
+        SourceFile{"(" + std::string(type.name) + ")", std::string(type.structured_text)});
+}
+
+bool uses_source_of(const BlockType& type, const Tokens& tokens) {
+    const std::string_view text = type.structured_text;
+    NameSet said;
+    const auto add = [&](const std::string& before, char end) {
+        for (std::size_t at = text.find(before); at != text.npos; at = text.find(before, at)) {
+            at += before.size();
+            said.insert(text.substr(at, text.find(end, at) - at));
+        }
+    };
+    add("FUNCTION \"" + std::string(type.handle) + '.', '"');
+    add("FUNCTION_BLOCK ", '\n');
+    return !said.empty() && std::ranges::any_of(tokens.tokens, [&](const Token& token) {
+        return token.word == Word::name && said.contains(token.text);
+    });
+}
+
+bool is_standard_source(const SourceFile& source) {
+    return source.path.starts_with('(');
+}
+
 }  // namespace lineshaft::st

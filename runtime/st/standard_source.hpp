@@ -1,5 +1,6 @@
 #pragma once
 
+#include "runtime/model/catalog.hpp"
 #include "runtime/st/lexer.hpp"
 
 namespace lineshaft::st {
@@ -12,5 +13,14 @@ const std::shared_ptr<const SourceFile>& standard_source();
 
 /// A source has one of its names.
 bool uses_standard_source(const Tokens& tokens);
+
+/// What a kind of the catalogue says in Structured Text.
+std::shared_ptr<const SourceFile> source_of(const BlockType& type);
+
+/// A source has a name of a part or of a block that `type` says.
+bool uses_source_of(const BlockType& type, const Tokens& tokens);
+
+/// The source is none of a user's.
+bool is_standard_source(const SourceFile& source);
 
 }  // namespace lineshaft::st

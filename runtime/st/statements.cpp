@@ -135,8 +135,8 @@ bool Checker::check_target(Expression& target, std::string_view how) {
                       "copy it to a variable of VAR, or make it a VAR_IN_OUT");
     if (own) return true;
     const Type* of = target.operands[0]->type;
-    if (of && of->is_instance() && variable->section != Section::input && !is_in_test() &&
-        target.operands[0]->variable)
+    const bool is_named = target.operands[0]->variable || target.operands[0]->kind == E::converted;
+    if (of && of->is_instance() && variable->section != Section::input && !is_in_test() && is_named)
         return refuse(fmt::format("'{}' of {}", variable->text, of->name),
                       "only inputs of an instance are set from outside");
     return of && of->is_instance() ? true : check_target(*target.operands[0], how);

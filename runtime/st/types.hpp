@@ -49,14 +49,15 @@ struct Type {
     std::uint32_t slots = 1;
     std::int64_t lower = 0, upper = -1;  ///< of an array's index; of a subrange's values
     bool is_subrange = false;
-    const Type* base = nullptr;              ///< of a subrange; of an enumeration with numbers
-    const Type* element = nullptr;           ///< of an array
-    bool has_inner = false;                  ///< of an array: its element is its next dimension
-    std::uint32_t length = 0;                ///< of a text, in characters
-    std::vector<Variable*> members = {};     ///< of a structure
-    std::vector<std::string> values = {};    ///< of an enumeration
-    std::vector<std::int64_t> numbers = {};  ///< of its values
-    bool counted = true;                     ///< those are 0, 1, 2, ...
+    const Type* base = nullptr;                ///< of a subrange; of an enumeration with numbers
+    const Type* element = nullptr;             ///< of an array
+    bool has_inner = false;                    ///< of an array: its element is its next dimension
+    std::uint32_t length = 0;                  ///< of a text, in characters
+    std::vector<Variable*> members = {};       ///< of a structure
+    std::vector<std::string> values = {};      ///< of an enumeration
+    std::vector<std::int64_t> numbers = {};    ///< of its values
+    bool counted = true;                       ///< those are 0, 1, 2, ...
+    std::vector<std::int64_t> of_number = {};  ///< what SCL's numbers mean; -1, or beyond: nothing
     bool is_code = false;        ///< of an enumeration: ErrorID, which the standards make a WORD
     Routine* routine = nullptr;  ///< of a block
     const BlockType* standard = nullptr;
@@ -130,6 +131,7 @@ struct Routine {
     Type* type = nullptr;  ///< of its instances, of a block
     std::vector<Routine*> calls = {};
     std::vector<Place> call_places = {};
+    std::vector<int> objects = {};  ///< globals that are blocks of the program, and that it names
     enum class State : std::uint8_t { fresh, visiting, done } state = State::fresh;
 
     const Variable *mock_flag = nullptr, *mock_value = nullptr;  ///< of a function: MOCK_FUNCTION
@@ -154,6 +156,7 @@ struct Global {
     std::string name;
     const Type* type = nullptr;  ///< structure, or block
     const Pou* pou = nullptr;
+    const Variable* object = nullptr;  ///< a block of the program, which sources name only
 };
 
 }  // namespace lineshaft::st

@@ -205,8 +205,8 @@ void Generator::store_bits(const Expression& target, const Expression& from) {
 
 Slot Generator::converted(const Expression& e, Slot wanted) {
     const Expression& operand = *e.operands[0];
-    if (e.type->kind == Kind::handle)  // in a test, whose frame begins with the instance's header
-        return globals_slot + static_cast<Slot>(operand.variable->global);
+    if (e.type->kind == Kind::handle)
+        return emit(Op::set_global_number, wanted, static_cast<Slot>(operand.variable->global));
     if (operand.type->kind == Kind::text) {
         const Slot text = text_address(operand);
         if (e.type->kind == Kind::real) {
@@ -225,6 +225,12 @@ Slot Generator::converted(const Expression& e, Slot wanted) {
     return convert(value(operand), *operand.type, *e.type, e.op == Word::divided, wanted);
 }
 
+Slot Generator::look_up(Slot slot, const std::vector<std::int64_t>& numbers) {
+    const std::uint64_t first = code_.numbers.size();
+    code_.numbers.insert(code_.numbers.end(), numbers.begin(), numbers.end());
+    return emit(Op::look_up, none, slot, table({0, numbers.size(), 1, first}));
+}
+
 Slot Generator::convert(Slot slot, const Type& given_from, const Type& given_to, bool truncates,
                         Slot wanted) {
     const Type &from = given_from.plain(), &to = given_to.plain();
@@ -236,12 +242,11 @@ Slot Generator::convert(Slot slot, const Type& given_from, const Type& given_to,
         return whole;
     }
     if (from.kind == Kind::enumeration && !from.counted) {
-        const std::uint64_t first = code_.numbers.size();
-        code_.numbers.insert(code_.numbers.end(), from.numbers.begin(), from.numbers.end());
-        slot = emit(Op::look_up, none, slot, table({0, from.numbers.size(), 1, first}));
+        slot = look_up(slot, from.numbers);
         return convert(slot, *from.base, to, truncates, wanted);
     }
     if (to.kind == Kind::enumeration) {
+        if (!to.of_number.empty() && from.is_integer()) slot = look_up(slot, to.of_number);
         if (from.is_real()) slot = convert_real(slot, from, lint_type, truncates, none);
         put(Op::within, 0, slot, table({0, to.values.size(), 1}));
         return slot;
@@ -319,6 +324,7 @@ Location Generator::locate(const Expression& e) {
     if (e.kind == E::member) return part(locate(*e.operands[0]), *e.variable);
     if (e.kind == E::index) return locate_element(e);
     if (e.kind == E::call) return {Mode::slot, call(e, none)};
+    if (e.kind == E::converted) return locate_object(e);
     const Variable& variable = *e.variable;
     if (variable.space == Space::reference) {
         const bool of_block = routine_->owner && variable.of != routine_->pou;
@@ -331,6 +337,13 @@ Location Generator::locate(const Expression& e) {
         return {Mode::address, 0, address, variable.slot};
     }
     return {Mode::slot, variable.slot};
+}
+
+/// What a reference refers to.
+Location Generator::locate_object(const Expression& e) {
+    const Slot address = emit(Op::address_of_number, none, value(*e.operands[0]));
+    put(Op::bound, 0, address);
+    return {Mode::address, 0, address, 0};
 }
 
 Location Generator::part(Location of, const Variable& member) {

@@ -148,12 +148,11 @@ void Generator::add_block(std::size_t index) {
         if (field.direction == Direction::in_out) refer(field);
     made_.emplace(type_->name, Made{name, names_.contains("unit") ? names_["unit"] : ""});
     for (const Field& field : type_->fields)
-        if (field.direction != Direction::output && field.direction != Direction::in_out &&
-            field.type != Type::enumeration)
+        if (field.direction < Direction::output && field.type != Type::enumeration)
             numbers_[std::string(field.name)] = as_real(default_of(*type_, field));
     for (const Field& field : type_->fields) {
         const bool is_set =
-            field.direction != Direction::output && !names_.contains(std::string(field.name)) &&
+            field.direction < Direction::output && !names_.contains(std::string(field.name)) &&
             (field.required || choices_.once_in(2)) && !is_switch(field) &&
             !(may_misfit(field) && !field.unit.empty() && field.type == Type::integer);
         if (is_set) program_.text += setting(field, unit_of(field));

@@ -558,6 +558,9 @@ name is misspelt elsewhere.)"},
     {"L0922", "a statement that is never reached",
      R"(A warning: the statement before it leaves the block or the loop. Remove it, or put the statement
 before it into an IF.)"},
+    {"L0923", "an argument that is not taken",
+     R"(A warning: a controller's block has this input, and the one of PLCopen has not. It says something of
+a real drive (StartMode, StopMode, bRegulatorOn, ...), which a simulated axis has not.)"},
 };
 
 }  // namespace

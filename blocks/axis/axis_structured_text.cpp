@@ -1,0 +1,112 @@
+#include "blocks/axis/axis.hpp"
+
+namespace lineshaft {
+
+// The bits of StatusWord and ErrorWord: Siemens, S7-1500 Motion Control, tags of the positioning
+// and synchronous axis. A position is reached at once, so Done and Standstill come together.
+const std::string_view Axis::structured_text = R"(
+FUNCTION "AXIS_REF.ActualPosition" : LREAL
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.ActualPosition" := SEL(axis.has_drive, axis.position, axis.actual_position);
+    IF axis.has_drive AND axis.modulo THEN
+        "AXIS_REF.ActualPosition" :=
+            axis.actual_position - FLOOR(axis.actual_position / axis.period) * axis.period;
+    END_IF;
+END_FUNCTION
+
+FUNCTION "AXIS_REF.ActualVelocity" : LREAL
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.ActualVelocity" := SEL(axis.has_drive, axis.velocity, axis.actual_velocity);
+END_FUNCTION
+
+FUNCTION "AXIS_REF.StatusWord" : DWORD
+VAR_INPUT axis : AXIS_REF; END_VAR
+VAR_TEMP word : DWORD; power : LREAL; END_VAR
+    power := axis.velocity * axis.acceleration;
+    word.%X0 := axis.state <> disabled;
+    word.%X1 := axis.error;
+    word.%X5 := axis.homed;
+    word.%X6 := axis.state = standstill;
+    word.%X7 := axis.velocity = 0;
+    word.%X8 := axis.state = discrete_motion;
+    word.%X10 := axis.state = continuous_motion;
+    word.%X11 := axis.state = homing;
+    word.%X12 := axis.acceleration = 0;
+    word.%X13 := power > 0 OR axis.velocity = 0 AND axis.acceleration <> 0;
+    word.%X14 := power < 0;
+    word.%X15 := axis.software_limits AND axis.position <= axis.lowest_position;
+    word.%X16 := axis.software_limits AND axis.position >= axis.highest_position;
+    word.%X22 := axis.state = synchronized_motion;
+    "AXIS_REF.StatusWord" := word;
+END_FUNCTION
+
+FUNCTION "AXIS_REF.ErrorWord" : DWORD
+VAR_INPUT axis : AXIS_REF; END_VAR
+VAR_TEMP word : DWORD; END_VAR
+    CASE axis.error_id OF
+        none: ;
+        software_limit: word.%X8 := TRUE;
+        no_master, master_loop, master_stands, sync_passed, sync_limits: word.%X14 := TRUE;
+    ELSE
+        word.%X2 := TRUE;  // UserFault
+    END_CASE;
+    "AXIS_REF.ErrorWord" := word;
+END_FUNCTION
+
+TYPE "AXIS_REF.Error" : STRUCT Number : UDINT; END_STRUCT END_TYPE
+
+FUNCTION "AXIS_REF.ErrorDetail" : "AXIS_REF.Error"
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.ErrorDetail".Number := TO_UDINT(axis.error_id);
+END_FUNCTION
+
+TYPE "AXIS_REF.Dynamics" : STRUCT
+    Velocity, Acceleration, Deceleration, EmergencyDeceleration, Jerk : LREAL;
+END_STRUCT END_TYPE
+
+FUNCTION "AXIS_REF.DynamicDefaults" : "AXIS_REF.Dynamics"
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.DynamicDefaults".Velocity := axis.default_velocity;
+    "AXIS_REF.DynamicDefaults".Acceleration := axis.default_acceleration;
+    "AXIS_REF.DynamicDefaults".Deceleration := axis.default_deceleration;
+    "AXIS_REF.DynamicDefaults".EmergencyDeceleration := axis.default_deceleration;
+    "AXIS_REF.DynamicDefaults".Jerk := axis.default_jerk;
+END_FUNCTION
+
+FUNCTION_BLOCK MC_MoveJog
+VAR_INPUT
+    Axis : AXIS_REF;
+    JogForward, JogBackward : BOOL;
+    Velocity : LREAL := 100.0;
+    Acceleration, Deceleration, Jerk : LREAL := -1.0;
+    PositionControlled : BOOL := TRUE;
+END_VAR
+VAR_OUTPUT InVelocity, Busy, CommandAborted, Error : BOOL; ErrorId : WORD; END_VAR
+VAR move : MC_MoveVelocity; halt : MC_Halt; jogs, jogged : BOOL; END_VAR
+    jogs := JogForward XOR JogBackward;
+    move(Axis := Axis, Execute := jogs, ContinuousUpdate := TRUE,
+         Velocity := SEL(JogForward, -ABS(Velocity), ABS(Velocity)),
+         Acceleration := Acceleration, Deceleration := Deceleration, Jerk := Jerk);
+    IF jogged AND NOT jogs THEN
+        halt(Axis := Axis, Execute := NOT move.CommandAborted AND NOT move.Error,
+             Deceleration := Deceleration, Jerk := Jerk);
+    ELSE
+        halt(Axis := Axis, Execute := halt.Busy);
+    END_IF;
+    jogged := jogs;
+    InVelocity := move.InVelocity;
+    Busy := jogs AND move.Busy OR halt.Busy;
+    CommandAborted := jogs AND move.CommandAborted OR halt.CommandAborted;
+    Error := jogs AND move.Error OR halt.Error OR JogForward AND JogBackward;
+    ErrorId := 0;
+    IF jogs AND move.Error THEN
+        ErrorId := TO_WORD(TO_UINT(move.ErrorID));
+    ELSIF halt.Error THEN
+        ErrorId := TO_WORD(TO_UINT(halt.ErrorID));
+    ELSIF JogForward AND JogBackward THEN
+        ErrorId := 16#8007;  // Siemens: incorrect direction
+    END_IF;
+END_FUNCTION_BLOCK
+)";
+
+}  // namespace lineshaft
