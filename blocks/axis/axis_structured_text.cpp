@@ -3,7 +3,8 @@
 namespace lineshaft {
 
 // The bits of StatusWord and ErrorWord: Siemens, S7-1500 Motion Control, tags of the positioning
-// and synchronous axis. A position is reached at once, so Done and Standstill come together.
+// and synchronous axis. A position is reached at once, so Done and Standstill come together. No part
+// may have the name of a field: Siemens' Modulo is not here.
 const std::string_view Axis::structured_text = R"(
 FUNCTION "AXIS_REF.ActualPosition" : LREAL
 VAR_INPUT axis : AXIS_REF; END_VAR
@@ -58,6 +59,18 @@ TYPE "AXIS_REF.Error" : STRUCT Number : UDINT; END_STRUCT END_TYPE
 FUNCTION "AXIS_REF.ErrorDetail" : "AXIS_REF.Error"
 VAR_INPUT axis : AXIS_REF; END_VAR
     "AXIS_REF.ErrorDetail".Number := TO_UDINT(axis.error_id);
+END_FUNCTION
+
+TYPE "AXIS_REF.Limits" : STRUCT
+    Active : BOOL;
+    MinPosition, MaxPosition : LREAL;
+END_STRUCT END_TYPE
+
+FUNCTION "AXIS_REF.PositionLimits_SW" : "AXIS_REF.Limits"
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.PositionLimits_SW".Active := axis.software_limits;
+    "AXIS_REF.PositionLimits_SW".MinPosition := axis.lowest_position;
+    "AXIS_REF.PositionLimits_SW".MaxPosition := axis.highest_position;
 END_FUNCTION
 
 TYPE "AXIS_REF.Dynamics" : STRUCT

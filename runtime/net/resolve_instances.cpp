@@ -155,8 +155,7 @@ void check_required(const Resolving& to, const BlockPlan& plan, const Instance& 
         const auto is_field = [&](const auto& port) {
             return same_letters(field.name, port.first.text);
         };
-        if (!field.required || !field.global.empty() || std::ranges::any_of(plan.ports, is_field))
-            continue;
+        if (!field.required || std::ranges::any_of(plan.ports, is_field)) continue;
         to.read.fail("L0403", plan.name,
                      fmt::format("{} needs its {} '{}': {}", block.described(),
                                  name_of(field.direction), field.name, field.doc));

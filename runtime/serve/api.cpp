@@ -162,7 +162,7 @@ std::vector<Route> make_routes() {
                  {"task", of_type("string", "whose scans; all tasks' unless given")}}),
          state_schema(), &Api::step},
         {"POST", "/api/run_until", "Goes on until a time, then pauses", true, {},
-         object({{"time", described({{"type", {"string", "number"}}},
+         object({{"time", described({{"oneOf", {of_type("string"), of_type("number")}}},
                                     "from the start: 2 s, or a number of seconds as 'time_s' is one")}},
                 {"time"}),
          state_schema(), &Api::run_until},

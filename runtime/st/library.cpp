@@ -7,6 +7,7 @@
 
 #include "runtime/st/compiled.hpp"
 #include "runtime/st/elementary.hpp"
+#include "runtime/st/standard_source.hpp"
 
 namespace lineshaft::st {
 
@@ -160,12 +161,10 @@ class FieldWriter {
             reference.name = made_.names.emplace_back(fmt::format("\"{}\"", global.name));
             reference.global = global.name;
             reference.refers = global.object ? global.type->standard->name : global.name;
-            reference.doc =
-                global.object ? "the block of that name" : "the data block of that name";
+            reference.doc = "the program's, by its name";
             reference.direction = Direction::in_out;
             reference.type = lineshaft::Type::integer;
             reference.offset = 8 * std::size_t{globals_slot + i};
-            reference.required = true;
             kind_.fields.push_back(reference);
         }
     }
@@ -434,7 +433,8 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     std::unordered_map<std::string_view, const CodeRoutine*> codes;
     for (const CodeRoutine& code : routines) codes.emplace(code.name, &code);
     for (const Routine& routine : made->checked.routines)
-        if (routine.has_instances() && !routine.owner)
+        if (routine.has_instances() && !routine.owner &&
+            !is_standard_source(**routine.pou->place.file))
             add_routine(*made, routine, *codes.at(routine.name), options);
     for (const Global& global : made->checked.globals)
         if (!global.object) add_global(*made, global, options);

@@ -530,11 +530,7 @@ class Parser {
             return reserved_name();
         std::vector<Token> names{read_name("the name of a variable")};
         while (accept(Word::comma)) names.push_back(read_name("the name of a variable"));
-        if (is(Word::at_)) {
-            take();
-            fail("L0903", here().place, "direct addresses are not supported",
-                 "leave AT out, and wire the variable in the program");
-        }
+        if (accept(Word::at_)) refuse_place();
         expect(Word::colon, "after the name");
         TypeText* type = read_type();
         if (same_name(here().text, "r_edge") || same_name(here().text, "f_edge"))
@@ -548,6 +544,17 @@ class Parser {
         for (const Token& name : names)
             to.push_back(&tree_.declarations.emplace_back(
                 Declaration{name, type, initial, unit, place, doc}));
+    }
+
+    /// Behind AT: `%IX0.0`, or another variable.
+    void refuse_place() {
+        if (is_name())
+            return fail("L0903", here().place, "overlays (AT) are not supported",
+                        fmt::format("leave AT out, and write {0}.%X3 or {0}.%B1, or SCATTER and "
+                                    "GATHER",
+                                    here().text));
+        fail("L0903", here().place, "direct addresses are not supported",
+             "leave AT out, and wire the variable in the program");
     }
 
     /// A statement stands where a declaration is due.

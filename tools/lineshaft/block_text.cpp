@@ -50,8 +50,8 @@ std::string names_text(const Field& field) {
 
 /// What must be known to set it: the default, the limits.
 std::string notes(const Field& field, const Fresh& fresh) {
-    const bool settable =
-        field.direction != Direction::output && field.direction != Direction::local;
+    const bool settable = field.direction != Direction::output &&
+                          field.direction != Direction::local && field.global.empty();
     std::string text = !settable        ? ""
                        : field.required ? "must be set"
                                         : fmt::format("default {}", written(fresh.text(field)));
