@@ -27,7 +27,8 @@ int wait_for(int socket, int events, std::int64_t milliseconds) {
 }  // namespace
 
 bool Connection::begin() {
-    if (ended_ || (first_ == end_ && wait_for(socket_, POLLIN, idle_ms) == 0)) return false;
+    if (too_much_ || gone_ || (first_ == end_ && wait_for(socket_, POLLIN, idle_ms) == 0))
+        return false;
     bytes_ = lines_ = line_ = 0;
     in_head_ = true;
     deadline_ = Pacer::now() + request_time;
@@ -64,25 +65,25 @@ bool Connection::is_allowed(char next) {
 }
 
 ssize_t Connection::read(char* to, std::size_t size) {
-    if (ended_) return -1;
+    if (too_much_ || gone_) return -1;
     if (first_ == end_ && !fill()) {
-        ended_ = true;
+        too_much_ = true;
         return -1;
     }
     std::size_t count = 0;
-    for (; count < size && first_ < end_ && !ended_; ++first_)
+    for (; count < size && first_ < end_ && !too_much_; ++first_)
         if (is_allowed(buffer_[first_]))
             to[count++] = buffer_[first_];
         else
-            ended_ = true;
-    return ended_ ? -1 : static_cast<ssize_t>(count);
+            too_much_ = true;
+    return too_much_ ? -1 : static_cast<ssize_t>(count);
 }
 
 ssize_t Connection::write(const char* from, std::size_t size) {
-    if (ended_) return -1;
+    if (gone_) return -1;
     const bool is_ready = (wait_for(socket_, POLLOUT, write_ms) & POLLOUT) != 0;
     const ssize_t sent = is_ready ? ::send(socket_, from, size, MSG_NOSIGNAL) : -1;
-    ended_ = sent < 0;
+    gone_ = sent < 0;
     return sent;
 }
 

@@ -37,7 +37,7 @@ class Connection final : public httplib::Stream {
     std::array<char, 4096> buffer_{};
     std::size_t first_ = 0, end_ = 0;               ///< of what is left in the buffer
     std::size_t bytes_ = 0, lines_ = 0, line_ = 0;  ///< of the request; of its last line
-    bool in_head_ = true, ended_ = false;
+    bool in_head_ = true, too_much_ = false, gone_ = false;
     std::int64_t deadline_ = 0;  ///< [ns]
 };
 
