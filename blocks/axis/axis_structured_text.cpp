@@ -3,8 +3,8 @@
 namespace lineshaft {
 
 // The bits of StatusWord and ErrorWord: Siemens, S7-1500 Motion Control, tags of the positioning
-// and synchronous axis. A position is reached at once, so Done and Standstill come together. No part
-// may have the name of a field: Siemens' Modulo is not here.
+// and synchronous axis. A position is reached at once, so Done and Standstill come together. No
+// part may have the name of a field: Siemens' Modulo is not here.
 const std::string_view Axis::structured_text = R"(
 FUNCTION "AXIS_REF.ActualPosition" : LREAL
 VAR_INPUT axis : AXIS_REF; END_VAR
