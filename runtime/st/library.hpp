@@ -45,8 +45,10 @@ struct FaultPlace {
 /// the last scan; in one that has, they are `fault` and `fault_id`. After a fault the scan ends,
 /// what was written so far stays, and the next scan begins anew.
 ///
-/// Each kind that sees data blocks has a required reference (`Direction::in_out`) to each of them,
-/// named as it and of its type: an instance of that kind must be among the program's.
+/// Each kind has a reference (Field::global) to each data block, and to each block of the program,
+/// such as an axis, that it or what it runs names: an instance of that name must be among the
+/// program's. Such a reference is called `"Recipe"`, with the quotes, so that an input may be
+/// Recipe.
 class Library {
   public:
     static constexpr std::size_t most_parts = 4096;
