@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "blocks/axis/axis_motion.hpp"
@@ -103,6 +104,7 @@ struct Axis {
     std::optional<Misfit> misfit(const IsConstant& is_constant) const;
     void scan(const Scan& now, const Context& context);
     void shift(std::int64_t by);
+    std::string why(const Context&, const NameOf&) const { return std::string(text_of(error_id)); }
 
     /// Of a command block: the job, or its changed request, is put into the inbox. Before that the
     /// command writes the request and, at each start, the next ticket.

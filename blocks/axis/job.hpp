@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <string_view>
 
 #include "blocks/axis/axis_states.hpp"
@@ -30,26 +31,26 @@ enum class MoveDirection : std::int64_t { shortest_way, positive, negative, curr
 inline constexpr std::string_view move_direction_names[] = {
     "mcShortestWay", "mcPositiveDirection", "mcNegativeDirection", "mcCurrentDirection"};
 
-/// Why an axis or a command set its error.
+/// Why an axis or a command set its error: see motion_error_texts.
 enum class MotionError : std::int64_t {
     none,
-    no_axis,             ///< the command refers to no axis
-    not_finite,          ///< a pin is NaN or infinite, or what it asks for is
-    limit_not_positive,  ///< velocity, acceleration, deceleration or jerk is not above 0
-    out_of_range,        ///< a pin is outside of what it may be
-    axis_disabled,       ///< the command needs power
-    axis_stopping,       ///< MC_Stop holds the axis
-    axis_homing,         ///< the axis is homing
-    axis_in_error,       ///< the axis is in ErrorStop
-    wrong_state,         ///< the command does not go with what the axis is doing
-    software_limit,      ///< beyond the axis' software limits
-    no_master,           ///< the command refers to no master
-    master_loop,         ///< the master follows the slave, over however many others
-    master_stands,       ///< a slave in motion cannot get in sync with a master that stands
-    sync_passed,         ///< the master is beyond the position where it was to be met
-    sync_limits,         ///< in sync not within velocity, acceleration, jerk
-    no_cam,              ///< CamTableID is not that of a cam table
-    no_such_parameter,   ///< MC_ReadParameter, MC_WriteParameter
+    no_axis,
+    not_finite,
+    limit_not_positive,
+    out_of_range,
+    axis_disabled,
+    axis_stopping,
+    axis_homing,
+    axis_in_error,
+    wrong_state,
+    software_limit,
+    no_master,
+    master_loop,
+    master_stands,
+    sync_passed,
+    sync_limits,
+    no_cam,
+    no_such_parameter,
 };
 
 inline constexpr std::string_view motion_error_names[] = {
@@ -57,6 +58,32 @@ inline constexpr std::string_view motion_error_names[] = {
     "axis_disabled",  "axis_stopping", "axis_homing",      "axis_in_error",      "wrong_state",
     "software_limit", "no_master",     "master_loop",      "master_stands",      "sync_passed",
     "sync_limits",    "no_cam",        "no_such_parameter"};
+
+inline constexpr std::string_view motion_error_texts[] = {
+    "",
+    "the command refers to no axis",
+    "an input is NaN or infinite, or what it asks for is",
+    "velocity, acceleration, deceleration or jerk is not above 0",
+    "an input is outside of what it may be",
+    "the axis has no power, which MC_Power gives",
+    "MC_Stop holds the axis until its Execute is false",
+    "the axis is homing",
+    "the axis is in ErrorStop, which MC_Reset ends",
+    "the command does not go with what the axis is doing",
+    "the way leads beyond the axis' software limits",
+    "the command refers to no master",
+    "the master follows the slave, over however many others",
+    "a slave in motion cannot get in sync with a master that stands",
+    "the master is beyond the position where it was to be met",
+    "the coupling takes more velocity, acceleration or jerk than the command allows, or where it "
+    "says nothing the axis' default_velocity and so on",
+    "CamTableID is not that of a cam table",
+    "the axis has no parameter of that number"};
+static_assert(std::size(motion_error_texts) == std::size(motion_error_names));
+
+constexpr std::string_view text_of(MotionError error) {
+    return motion_error_texts[static_cast<std::size_t>(error)];
+}
 
 /// `option` of MC_Home.
 inline constexpr std::int64_t homing_direct = 0, homing_to_position = 1, homing_on_signal = 2,

@@ -55,6 +55,7 @@ struct Abs {
     static constexpr std::string_view type = "abs";
     static constexpr std::string_view doc = "a number without its sign";
     static std::span<const Field> fields();
+    static constexpr auto main_input = &Abs::in;
     void scan(const Scan& now);
 };
 
@@ -76,6 +77,7 @@ struct Convert {
     static constexpr std::string_view doc =
         to_time ? "a real number of seconds as a time" : "a real number rounded to an integer";
     static std::span<const Field> fields();
+    static constexpr auto main_input = &Convert::in;
     void scan(const Scan& now);
 };
 

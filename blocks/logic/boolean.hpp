@@ -49,6 +49,7 @@ struct Not {
     static constexpr std::string_view type = "not";
     static constexpr std::string_view doc = "true when the input is false";
     static std::span<const Field> fields();
+    static constexpr auto main_input = &Not::in;
     void scan(const Scan& now);
 };
 

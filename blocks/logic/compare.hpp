@@ -27,6 +27,7 @@ struct Compare {
     static constexpr std::string_view type = comparison_names[static_cast<std::size_t>(comparison)];
     static constexpr std::string_view doc = comparison_docs[static_cast<std::size_t>(comparison)];
     static std::span<const Field> fields();
+    static constexpr auto main_input = &Compare::in1;
     void scan(const Scan& now);
 };
 
@@ -49,6 +50,7 @@ struct Hysteresis {
     static constexpr std::string_view type = "hysteresis";
     static constexpr std::string_view doc = "two-point switch: true from high on, false from low";
     static std::span<const Field> fields();
+    static constexpr auto main_input = &Hysteresis::in;
     void scan(const Scan& now);
 };
 

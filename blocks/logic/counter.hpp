@@ -31,6 +31,7 @@ struct Ctu {
     static constexpr std::string_view type = "ctu";
     static constexpr std::string_view doc = "up counter";
     static std::span<const Field> fields();
+    static constexpr auto main_input = &Ctu::cu;
     std::optional<Misfit> misfit(const IsConstant& is_constant) const;
     void scan(const Scan& now);
 };
@@ -49,6 +50,7 @@ struct Ctd {
     static constexpr std::string_view type = "ctd";
     static constexpr std::string_view doc = "down counter";
     static std::span<const Field> fields();
+    static constexpr auto main_input = &Ctd::cd;
     std::optional<Misfit> misfit(const IsConstant& is_constant) const;
     void scan(const Scan& now);
 };

@@ -23,6 +23,7 @@ struct Edge {
     static constexpr std::string_view doc =
         falling ? "falling edge: q is true for one scan" : "rising edge: q is true for one scan";
     static std::span<const Field> fields();
+    static constexpr auto main_input = &Edge::clk;
     void scan(const Scan& now);
 };
 

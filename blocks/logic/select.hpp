@@ -57,6 +57,7 @@ struct Limit {
     static constexpr std::string_view type = "limit";
     static constexpr std::string_view doc = "a number held between mn and mx";
     static std::span<const Field> fields();
+    static constexpr auto main_input = &Limit::in;
     std::optional<Misfit> misfit(const IsConstant& is_constant) const;
     void scan(const Scan& now);
 };

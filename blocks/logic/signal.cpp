@@ -17,6 +17,10 @@ double share_of(std::int64_t step, double time_constant) {
     return time_constant > 0 ? -Sleef_cinz_expm1d1_u10purec(-seconds(step) / time_constant) : 1;
 }
 
+std::uint64_t bits(double x) {
+    return std::bit_cast<std::uint64_t>(x);
+}
+
 struct Share {
     std::int64_t step = 0;            ///< [ns]
     std::uint64_t time_constant = 0;  ///< its bits
@@ -27,12 +31,12 @@ struct Share {
 /// meet the same new interval, and the exponential takes ten times as long as the rest. A thread
 /// has its own, so that nobody waits; what is found is what would be computed.
 double recent_share(std::int64_t step, double time_constant) {
-    constexpr int bits = 8;
-    thread_local Share recent[1 << bits];
-    const auto constant = std::bit_cast<std::uint64_t>(time_constant);
+    constexpr int size_bits = 8;
+    thread_local Share recent[1 << size_bits];
+    const std::uint64_t constant = bits(time_constant);
     const std::uint64_t mixed =
         (static_cast<std::uint64_t>(step) ^ constant >> 20) * 0x9e3779b97f4a7c15u;
-    Share& share = recent[mixed >> (64 - bits)];
+    Share& share = recent[mixed >> (64 - size_bits)];
     if (share.step != step || share.time_constant != constant)
         share = {step, constant, share_of(step, time_constant)};
     return share.share;
@@ -85,25 +89,34 @@ std::span<const Field> FilterPt1::fields() {
 }
 
 void FilterPt1::scan(const Scan& now) {
-    const std::int64_t step = now.time - last_time;
-    if (step != share_step || time_constant != share_constant) set_share(step);
+    if (now.time - last_time == share_step && bits(time_constant) == bits(share_constant))
+        follow(now);
+    else
+        follow_with_new_share(now);
+}
+
+inline void FilterPt1::follow(const Scan& now) {
     const double from = started ? out : in;
     const double next = from + (in - from) * share;
-    if (!report(*this, all_finite(next) ? NumberError::none : why_not_finite())) return;
+    if (!all_finite(next)) return tell_why_not_finite();
+    report(*this, NumberError::none);
     out = next;
     started = true;
     last_time = now.time;
 }
 
-void FilterPt1::set_share(std::int64_t step) {
-    share_step = step;
+inline void FilterPt1::follow_with_new_share(const Scan& now) {
+    share_step = now.time - last_time;
     share_constant = time_constant;
-    share = recent_share(step, time_constant);
+    share = recent_share(share_step, time_constant);
+    follow(now);
 }
 
-NumberError FilterPt1::why_not_finite() const {
-    if (!all_finite(in, time_constant)) return NumberError::not_finite;
-    return time_constant < 0 ? NumberError::wrong_limits : NumberError::overflow;
+void FilterPt1::tell_why_not_finite() {
+    if (!all_finite(in, time_constant))
+        report(*this, NumberError::not_finite);
+    else
+        report(*this, time_constant < 0 ? NumberError::wrong_limits : NumberError::overflow);
 }
 
 }  // namespace lineshaft

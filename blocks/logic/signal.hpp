@@ -24,6 +24,7 @@ struct Scale {
     static constexpr std::string_view type = "scale";
     static constexpr std::string_view doc = "a number from one range to another, linearly";
     static std::span<const Field> fields();
+    static constexpr auto main_input = &Scale::in;
     void scan(const Scan& now);
 };
 
@@ -49,12 +50,14 @@ struct FilterPt1 {
     static constexpr std::string_view type = "filter_pt1";
     static constexpr std::string_view doc = "first-order low-pass filter";
     static std::span<const Field> fields();
+    static constexpr auto main_input = &FilterPt1::in;
     void scan(const Scan& now);
     void shift(std::int64_t by) { last_time += by; }
 
   private:
-    void set_share(std::int64_t step);
-    NumberError why_not_finite() const;
+    void follow(const Scan& now);
+    void follow_with_new_share(const Scan& now);
+    [[gnu::cold]] void tell_why_not_finite();
 };
 
 }  // namespace lineshaft

@@ -47,6 +47,7 @@ struct Timer {
     static constexpr std::string_view type = timer_names[static_cast<std::size_t>(kind)];
     static constexpr std::string_view doc = timer_docs[static_cast<std::size_t>(kind)];
     static std::span<const Field> fields();
+    static constexpr auto main_input = &Timer::in;
     void scan(const Scan& now);
     void shift(std::int64_t by) { start += by; }
 

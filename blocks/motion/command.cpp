@@ -56,7 +56,11 @@ void CommandBlock::show(const Context& context) {
 }
 
 std::string CommandBlock::why(const Context& context, const NameOf& name_of) const {
-    if (error_id != MotionError::master_loop) return {};
+    const std::string hops = error_id == MotionError::master_loop ? loop(context, name_of) : "";
+    return hops.empty() ? std::string(text_of(error_id)) : hops;
+}
+
+std::string CommandBlock::loop(const Context& context, const NameOf& name_of) const {
     const Axis& slave = context.instance<Axis>(axis);
     std::int64_t hop = slave.way_to(context, slave, job.request.coupling);
     if (hop == axis) return fmt::format("'{}' cannot follow itself", name_of(axis));

@@ -45,8 +45,9 @@ struct CommandBlock {
     void start(const Scan& now, const Context& context);
     void update(const Scan& now, const Context& context);
 
-    /// The way round of a master_loop: `'c' follows 'b', which follows 'a'`.
     std::string why(const Context& context, const NameOf& name_of) const;
+    /// The way round of a master_loop: `'c' follows 'b', which follows 'a'`; or empty.
+    std::string loop(const Context& context, const NameOf& name_of) const;
 
     /// As far as the axis' task has published it.
     Progress progress(const Context& context) const;

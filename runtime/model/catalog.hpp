@@ -16,6 +16,7 @@
 #include "runtime/model/device.hpp"
 #include "runtime/model/field.hpp"
 #include "runtime/model/scan.hpp"
+#include "runtime/model/wire.hpp"
 
 namespace lineshaft {
 
@@ -47,6 +48,7 @@ struct BlockType {
     std::size_t alignment = 0;
     void (*make)(std::byte* place, const void* context) = nullptr;
     ScanBlocks scan_blocks = nullptr;
+    MainInput main_input = {};
     DeviceCalls device = {};
     std::optional<Misfit> (*misfit)(const std::byte* block,
                                     const IsConstant& is_constant) = nullptr;         ///< or null
@@ -89,6 +91,15 @@ constexpr bool copied_as_bytes() {
 
 }  // namespace detail
 
+/// Whether a number that anybody may have put in is that of a block of this kind. A reference
+/// (Direction::in_out) needs no such look: it has been checked when the program was loaded.
+template <class Block>
+bool is_instance(const Context& context, std::int64_t number) {
+    if (number < 0 || number >= context.blocks) return false;
+    const BlockType& type = *context.types[number];
+    return !type.owner && type.name == Block::type;
+}
+
 /// Plain data: without pointers, references, unions, made by a constant expression, so that a
 /// machine's state can be kept and restored as bytes.
 template <class Block>
@@ -104,7 +115,7 @@ class Catalog {
     /// `misfit(const IsConstant&) const`, for what its limits cannot say, and
     /// `why(const Context&, const NameOf&) const`, for what the number of its error cannot say. One
     /// that remembers moments has `shift(by)`, which moves them all by so many ns: a retained block
-    /// goes on in another run.
+    /// goes on in another run. An input that is mostly wired alone may be named as `main_input`.
     template <class Block>
     Catalog& add() {
         static_assert(PlainData<Block>);
@@ -123,6 +134,7 @@ class Catalog {
                     .alignment = alignof(Block),
                     .make = [](std::byte* place, const void*) { new (place) Block{}; },
                     .scan_blocks = scan_blocks<Block>,
+                    .main_input = main_input<Block>(),
                     .device = device_calls<Block>(),
                     .misfit = misfit<Block>(),
                     .shift = shift<Block>(),
@@ -181,6 +193,38 @@ class Catalog {
             if constexpr (requires { block->error; }) error |= block->error;
         }
         return error;
+    }
+
+    template <class Block, Transfer transfer, bool two>
+    static bool feed_and_scan(const FedBlock& fed, const Scan& now) {
+        Block& block = *std::launder(reinterpret_cast<Block*>(fed.first));
+        auto& input = block.*Block::main_input;
+        if constexpr (two) deliver<transfer>(fed.copies[1]);
+        const auto value = fetch<transfer>(fed.copies[0]);
+        input = std::bit_cast<std::remove_reference_t<decltype(input)>>(value);
+        block.scan(now);
+        if constexpr (requires { block.error; }) return block.error;
+        return false;
+    }
+
+    template <class Block>
+    static MainInput main_input() {
+        MainInput found;
+        if constexpr (requires { Block::main_input; }) {
+            found.offset = detail::offset_of(Block::main_input);
+            const auto set = [&](Feed feed, FeedAndScan scan) {
+                found.scan[static_cast<std::size_t>(feed)] = scan;
+            };
+            using Input = std::remove_cvref_t<decltype(Block{}.*Block::main_input)>;
+            constexpr bool is_boolean = std::is_same_v<Input, bool>;
+            constexpr Transfer as_is = is_boolean ? Transfer::boolean : Transfer::word;
+            set(is_boolean ? Feed::boolean : Feed::word, feed_and_scan<Block, as_is, false>);
+            set(is_boolean ? Feed::two_booleans : Feed::two_words,
+                feed_and_scan<Block, as_is, true>);
+            if constexpr (std::is_same_v<Input, double>)
+                set(Feed::widened, feed_and_scan<Block, Transfer::widened, false>);
+        }
+        return found;
     }
 
     template <class Block>

@@ -6,6 +6,8 @@
 
 namespace lineshaft {
 
+struct BlockType;
+
 /// What a block knows of the moment it is called.
 struct Scan {
     std::int64_t time =
@@ -19,8 +21,10 @@ struct Context {
     const void* kind = nullptr;  ///< what all blocks of the kind share: BlockType::context
     std::byte* const* instances = nullptr;  ///< the program's blocks, by number
     std::byte* const* seen = nullptr;  ///< the same, those of other tasks as they published them
-    std::byte* memory = nullptr;       ///< of the whole machine
-    int task = -1;                     ///< that scans the block
+    const BlockType* const* types = nullptr;  ///< of the blocks, by number
+    std::byte* memory = nullptr;              ///< of the whole machine
+    int task = -1;                            ///< that scans the block
+    int blocks = 0;                           ///< how many the program has
     const std::int64_t* published = nullptr;  ///< scans of each task whose outputs all others see
 
     /// The block that a reference names.

@@ -9,13 +9,6 @@ namespace lineshaft {
 
 namespace {
 
-template <class T>
-T read(const std::byte* slot) {
-    T value;
-    std::memcpy(&value, slot, sizeof value);
-    return value;
-}
-
 std::partial_ordering compare(std::int64_t a, double b) {
     constexpr double beyond = 0x1p63;
     if (std::isnan(b)) return std::partial_ordering::unordered;

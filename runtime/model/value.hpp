@@ -26,6 +26,14 @@ constexpr std::string_view name_of(Type type) {
     return names[static_cast<std::size_t>(type)];
 }
 
+/// As its bytes are.
+template <class T>
+T read(const std::byte* slot) {
+    T value;
+    std::memcpy(&value, slot, sizeof value);
+    return value;
+}
+
 /// Reads the signal of `type` that is stored at `slot`.
 Value load(Type type, const std::byte* slot);
 

@@ -131,6 +131,7 @@ void fill_blocks(Layout& layout) {
     for (std::size_t i = 0; i < layout.net.instances.size(); ++i) {
         const Instance& block = layout.net.instances[i];
         BlockPlace& place = machine.blocks.emplace_back(BlockPlace{block.name, block.type});
+        machine.types.push_back(block.type);
         if (!block.known()) continue;
         Task& task = machine.tasks[static_cast<std::size_t>(block.task)];
         const bool is_device = block.type->is_device();

@@ -117,20 +117,44 @@ void append_wires(const CallWires& own, Call& call, Wires& wires) {
     call.scaled = static_cast<std::uint32_t>(scaled.size());
 }
 
+/// Has the single block of the call fed and scanned at once, where it is its main input that is
+/// fed.
+void feed_at_once(const MainInput& input, Call& call) {
+    if (call.count != 1 || call.feed == Feed::many) return;
+    const auto feeds_it = [&](const Copy& copy) {
+        return copy.target == call.first + input.offset;
+    };
+    if (feeds_it(call.copies[1])) std::swap(call.copies[0], call.copies[1]);
+    const FeedAndScan at_once = input.scan[static_cast<std::size_t>(call.feed)];
+    if (feeds_it(call.copies[0]) && at_once) call.run = at_once;
+}
+
 void append_call(const Net& net, std::span<const int> blocks, Machine& machine) {
     const Instance& first = net.instance(blocks.front());
     Task& task = machine.tasks[static_cast<std::size_t>(first.task)];
     Call& call = task.calls.emplace_back();
     call.scan = first.type->scan_blocks;
-    call.context = {.kind = first.type->context,
-                    .instances = machine.instances.data(),
-                    .seen = machine.seen[static_cast<std::size_t>(first.task)].data(),
-                    .memory = machine.memory.data(),
-                    .task = first.task};
+    call.context = machine.context_of(*first.type, first.task);
     call.first = machine.blocks[static_cast<std::size_t>(blocks.front())].live;
     call.count = blocks.size();
     call.size = first.type->size;
     append_wires(wires_of(net, blocks, task.calls.size() == 1, machine), call, task.wires);
+    feed_at_once(first.type->main_input, call);
+}
+
+/// Once no wire of the task moves any more.
+void point_to_wires(Task& task) {
+    const Copy* copy = task.wires.copies.data();
+    const Row* row = task.wires.rows.data();
+    const ScaledCopy* scaled = task.wires.scaled.data();
+    for (Call& call : task.calls) {
+        call.first_copy = copy;
+        call.first_row = row;
+        call.first_scaled = scaled;
+        copy += call.booleans + call.words + call.widened;
+        row += call.rows;
+        scaled += call.scaled;
+    }
 }
 
 }  // namespace
@@ -152,6 +176,7 @@ void lay_out_calls(const Net& net, const std::vector<int>& sequence, const std::
         append_call(net, {first, next}, machine);
         first = next;
     }
+    std::ranges::for_each(machine.tasks, point_to_wires);
 }
 
 }  // namespace lineshaft

@@ -39,4 +39,14 @@ Signal Machine::placed(Signal signal) {
     return signal;
 }
 
+Context Machine::context_of(const BlockType& type, int task) {
+    return {.kind = type.context,
+            .instances = instances.data(),
+            .seen = seen[static_cast<std::size_t>(task)].data(),
+            .types = types.data(),
+            .memory = memory.data(),
+            .task = task,
+            .blocks = static_cast<int>(types.size())};
+}
+
 }  // namespace lineshaft

@@ -10,23 +10,10 @@
 
 #include "runtime/model/catalog.hpp"
 #include "runtime/model/value.hpp"
+#include "runtime/model/wire.hpp"
 #include "runtime/net/replay.hpp"
 
 namespace lineshaft {
-
-/// A value on its way into an input, before the block is called.
-struct Copy {
-    const std::byte* source = nullptr;
-    std::byte* target = nullptr;
-    bool negates = false;  ///< a boolean (`NOT x.q`)
-};
-
-/// What becomes of it on the way.
-enum class Transfer : std::uint8_t {
-    boolean,  ///< 1 byte, negated or as it is
-    word,     ///< 8 bytes, as they are
-    widened,  ///< an integer to a real
-};
 
 /// Copies at equal distances: the same input of one block after the other.
 struct Row {
@@ -45,29 +32,35 @@ struct ScaledCopy {
     bool widens = false;  ///< the source is an integer
 };
 
-/// What feeds the inputs of a call's blocks, or of all of a task's, one call after the other.
+/// What feeds the inputs of a task's blocks, one call after the other.
 struct Wires {
     std::vector<Copy> copies;  ///< those in no row: of each call in the order of Transfer
     std::vector<Row> rows;
     std::vector<ScaledCopy> scaled;
 };
 
-/// What feeds a call: what most of them have, or else all kinds.
-enum class Feed : std::uint8_t { no_wire, boolean, two_booleans, word, two_words, widened, many };
+/// Of any call.
+bool feed_and_scan(const FedBlock& call, const Scan& now);
 
 /// One entry of a task's list: blocks of one kind, of which none waits for another, one behind the
 /// other in memory.
-struct Call {
+struct Call : FedBlock {
+    FeedAndScan run = feed_and_scan;  ///< for a single block maybe what its kind brings along
     ScanBlocks scan = nullptr;
-    Context context = {};
-    std::byte* first = nullptr;
     std::size_t count = 0, size = 0;  ///< of blocks; [bytes] of each
+    Context context = {};
     Feed feed = Feed::no_wire;
-    Copy copies[2] = {};  ///< where Feed::many does not take the next so many of the task's wires:
+    /// With Feed::many: so many of the task's wires from these on.
     std::uint32_t booleans = 0, words = 0, widened = 0, rows = 0, scaled = 0;
+    const Copy* first_copy = nullptr;
+    const Row* first_row = nullptr;
+    const ScaledCopy* first_scaled = nullptr;
 
     std::byte* block(std::size_t i) const { return first + i * size; }
 };
+
+/// Copies to the inputs of the call's blocks what they are wired to.
+void feed(const Call& call);
 
 /// A block's `error` output, looked at after each scan of its task.
 struct ErrorFlag {
@@ -228,6 +221,7 @@ struct Machine {
     std::vector<Task> tasks;  ///< in scan order of equal instants: priority, then place in the file
     std::vector<BlockPlace> blocks;             ///< in the order of the file
     std::vector<std::byte*> instances;          ///< their live memory, for references
+    std::vector<const BlockType*> types;        ///< theirs
     std::vector<std::vector<std::byte*>> seen;  ///< by task: of other tasks what they published
     std::vector<Signal> signals;
     std::vector<Stimulus> stimuli;  ///< sorted by time
@@ -261,6 +255,9 @@ struct Machine {
 
     /// The signal with its place, as all others see it.
     Signal placed(Signal signal);
+
+    /// What blocks of that kind in that task are given.
+    Context context_of(const BlockType& type, int task);
 };
 
 }  // namespace lineshaft

@@ -11,89 +11,11 @@ namespace lineshaft {
 
 namespace {
 
-template <class T>
-T read(const std::byte* slot) {
-    T value;
-    std::memcpy(&value, slot, sizeof value);
-    return value;
-}
-
-template <Transfer transfer>
-void move(const Copy& wire) {
-    const auto put = [&](auto value) { std::memcpy(wire.target, &value, sizeof value); };
-    if constexpr (transfer == Transfer::boolean)
-        put(read<bool>(wire.source) != wire.negates);
-    else if constexpr (transfer == Transfer::word)
-        put(read<std::uint64_t>(wire.source));
-    else
-        put(static_cast<double>(read<std::int64_t>(wire.source)));
-}
-
-template <Transfer transfer>
-void move(const Row& row) {
-    auto [wire, source_step, target_step, count, _] = row;
-    // A scan of a hundred small blocks takes 225 ns so, 248 without.
-#pragma GCC unroll 4
-    for (; count > 0; --count, wire.source += source_step, wire.target += target_step)
-        move<transfer>(wire);
-}
-
-void move(const Row& row) {
-    if (row.transfer == Transfer::boolean) return move<Transfer::boolean>(row);
-    if (row.transfer == Transfer::word) return move<Transfer::word>(row);
-    move<Transfer::widened>(row);
-}
-
-double scaled(const ScaledCopy& wire) {
-    const double value = wire.widens ? static_cast<double>(read<std::int64_t>(wire.source))
-                                     : read<double>(wire.source);
-    return value * wire.factor / wire.divisor;
-}
-
 void sow(const BlockSeed& seed, std::uint64_t run_seed) {
     if (std::get<std::int64_t>(load(Type::integer, seed.place)) != 0) return;
     const std::uint64_t drawn = Random(run_seed, seed.block + ".seed").next();
     store(Type::integer, seed.place, static_cast<std::int64_t>(drawn >> 1));
 }
-
-/// Hands out a task's wires, call by call.
-class Feeder {
-  public:
-    explicit Feeder(const Wires& wires)
-        : copy_(wires.copies.data()), row_(wires.rows.data()), scaled_(wires.scaled.data()) {}
-
-    void feed(const Call& call) {
-        const auto& [first, second] = call.copies;
-        if (call.feed <= Feed::two_booleans) {
-            if (call.feed == Feed::no_wire) return;
-            move<Transfer::boolean>(first);
-            if (call.feed == Feed::two_booleans) move<Transfer::boolean>(second);
-        } else if (call.feed <= Feed::two_words) {
-            move<Transfer::word>(first);
-            if (call.feed == Feed::two_words) move<Transfer::word>(second);
-        } else if (call.feed == Feed::widened) {
-            move<Transfer::widened>(first);
-        } else {
-            feed_many(call);
-        }
-    }
-
-  private:
-    void feed_many(const Call& call) {
-        for (std::uint32_t n = call.booleans; n > 0; --n) move<Transfer::boolean>(*copy_++);
-        for (std::uint32_t n = call.words; n > 0; --n) move<Transfer::word>(*copy_++);
-        for (std::uint32_t n = call.widened; n > 0; --n) move<Transfer::widened>(*copy_++);
-        for (std::uint32_t n = call.rows; n > 0; --n) move(*row_++);
-        for (std::uint32_t n = call.scaled; n > 0; --n, ++scaled_) {
-            const double value = scaled(*scaled_);
-            std::memcpy(scaled_->target, &value, sizeof value);
-        }
-    }
-
-    const Copy* copy_;
-    const Row* row_;
-    const ScaledCopy* scaled_;
-};
 
 }  // namespace
 
@@ -159,9 +81,8 @@ inline void Executive::advance(std::int64_t time) {
     now_ = time;
 }
 
-inline void Executive::begin(int index) {
-    State& state = this->state(index);
-    state.scan = {.time = now_, .interval = task(index).every, .index = state.index++};
+inline void Executive::begin(int index, const Task& task, State& state) {
+    state.scan = {.time = now_, .interval = task.every, .index = state.index++};
     if (state.scan.index == state.outside) stimulate(index);
 }
 
@@ -172,19 +93,15 @@ bool Executive::scan_blocks(const Task& task, const Scan& scan) {
         return true;
     }
     bool error = false;
-    Feeder wires(task.wires);
-    for (const Call& call : task.calls) {
-        wires.feed(call);
-        error |= call.scan(call.first, call.count, scan, call.context);
-    }
+    for (const Call& call : task.calls) error |= call.run(call, scan);
     return error;
 }
 
 /// When what others see of the task's scan is in place.
-inline void Executive::conclude(int index) {
+inline void Executive::conclude(int index, const State& state) {
     ++result_.scans.data()[index];
-    for (Observer* observer : observers_) observer->scanned(index, state(index).scan);
-    if (state(index).may_err) report_errors(index);
+    for (Observer* observer : observers_) observer->scanned(index, state.scan);
+    if (state.may_err) report_errors(index);
 }
 
 inline void Executive::State::set_next(const Task& task) {
@@ -200,10 +117,11 @@ inline void Executive::run_due() {
     int index = 0;
     for (State& state : states_) {
         if (state.due <= now_ && !stopped_) {
-            begin(index);
-            state.may_err |= scan_blocks(task(index), state.scan);
-            conclude(index);
-            state.set_next(task(index));
+            const Task& task = this->task(index);
+            begin(index, task, state);
+            state.may_err |= scan_blocks(task, state.scan);
+            conclude(index, state);
+            state.set_next(task);
         }
         next = std::min(next, state.due);
         ++index;
@@ -225,7 +143,6 @@ bool Executive::run_until(std::int64_t time) {
         next = next_event();
         ended_ = stopped_ || (machine_.until && read<bool>(machine_.until->slot));
         settle(ended_ ? now_ : std::min(next - 1, last));
-        result_.time = now_;
         if (ended_) break;
         if (next > next_save_) {
             save_(now_);
@@ -233,6 +150,7 @@ bool Executive::run_until(std::int64_t time) {
         }
         if (--until_look_ == 0) look();
     }
+    result_.time = now_;
     if (!ended_) known_until_ = std::max(known_until_, last + 1);
     return !ended_ && last < machine_.duration;
 }
@@ -410,7 +328,7 @@ void Executive::start(int index) {
     state.cost =
         task.cost + (task.cost_jitter > 0 ? state.cost_jitter.around_zero(task.cost_jitter) : 0);
     const std::size_t said = state.next_cost;
-    begin(index);
+    begin(index, task, state);
     state.may_err |= scan_blocks(task, state.scan);
     if (state.next_cost == said)
         for (const std::int64_t* taken : task.times_taken) state.cost = later(state.cost, *taken);
@@ -419,10 +337,9 @@ void Executive::start(int index) {
 }
 
 void Executive::scan_forced(const Task& task, const Scan& scan) {
-    Feeder wires(task.wires);
     for (const Call& call : task.calls) {
         for (std::size_t i = 0; i < call.count; ++i) forces_.release_inputs(call.block(i));
-        wires.feed(call);
+        feed(call);
         for (std::size_t i = 0; i < call.count; ++i) forces_.impose_inputs(call.block(i));
         for (std::size_t i = 0; i < call.count; ++i) forces_.release_outputs(call.block(i));
         call.scan(call.first, call.count, scan, call.context);
@@ -439,7 +356,7 @@ void Executive::publish(int index) {
     if (forces_.active()) forces_.published(index);
     for (const DeviceCall& device : machine_.devices)
         if (device.task == index) publish_device(device);
-    conclude(index);
+    conclude(index, state);
     if (!stopped_ && !trigger_levels_.empty()) detect_edges();
 }
 

@@ -154,7 +154,7 @@ class Executive {
     };
 
     void settle(std::int64_t last);
-    void look();
+    [[gnu::cold]] void look();
     std::int64_t next_event();
     std::int64_t next_end();
     void look_ahead();
@@ -169,11 +169,11 @@ class Executive {
     void make_pending(int task);
     int next_to_start() const;
     void start(int task);
-    void begin(int task);
+    void begin(int index, const Task& task, State& state);
     bool scan_blocks(const Task& task, const Scan& scan);
     void scan_forced(const Task& task, const Scan& scan);
     void publish(int task);
-    void conclude(int task);
+    void conclude(int index, const State& state);
 
     // executive_outside.cpp
     void advance_devices();
@@ -181,7 +181,7 @@ class Executive {
     std::int64_t next_event_time(const DeviceCall& device);
     void publish_device(const DeviceCall& device);
     void act_from_outside();
-    void stimulate(int task);
+    [[gnu::cold]] void stimulate(int task);
     void set(const Stimulus& stimulus, int task);
     void play();
     void look_ahead(int task);
@@ -193,7 +193,7 @@ class Executive {
     void due_again(int task);
     void time_error(int task, std::string what);
     std::string running_block(int task) const;
-    void report_errors(int task);
+    [[gnu::cold]] void report_errors(int task);
     std::string why(const ErrorFlag& flag, int task);
     void report_warnings(const DeviceCall& device, int task);
     void tell(EventKind kind, int task, const std::string& text);

@@ -102,12 +102,8 @@ std::string Executive::running_block(int index) const {
 
 std::string Executive::why(const ErrorFlag& flag, int index) {
     if (!flag.type || !flag.type->why) return {};
-    const Context context{.kind = flag.type->context,
-                          .instances = machine_.instances.data(),
-                          .seen = machine_.seen[static_cast<std::size_t>(index)].data(),
-                          .memory = machine_.memory.data(),
-                          .task = index,
-                          .published = result_.scans.data()};
+    Context context = machine_.context_of(*flag.type, index);
+    context.published = result_.scans.data();
     const std::string text = flag.type->why(flag.memory, context, [this](std::int64_t instance) {
         return machine_.blocks[static_cast<std::size_t>(instance)].name;
     });

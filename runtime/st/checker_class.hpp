@@ -127,6 +127,7 @@ class Checker {
     Variable* find_variable(const Token& token);
 
     // calls.cpp
+    void check_call(Statement& statement);
     const Type* check_call(Expression& call, bool as_statement, const Type* expected);
     const Type* check_routine_call(Expression& call, Routine& routine, bool as_statement);
     const Type* check_instance_call(Expression& call, const Type& type, bool as_statement);

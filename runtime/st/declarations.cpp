@@ -56,6 +56,9 @@ std::vector<std::int64_t> numbers_of(std::string_view field) {
     return {};
 }
 
+/// Enumerations that the standards make a WORD.
+constexpr std::string_view code_names[] = {"errorid", "axiserrorid", "error_id", "warning_id"};
+
 Section section_of(Direction direction) {
     if (direction == Direction::output) return Section::output;
     if (direction == Direction::local) return Section::local;
@@ -696,7 +699,8 @@ const Type* Checker::standard_type(std::string_view name) {
             values.slots = 1;
             values.base = &lint_type;
             values.of_number = numbers_of(field.name);
-            values.is_code = same_name(field.name, "errorid") || field.name == "error_id";
+            values.is_code = std::ranges::any_of(
+                code_names, [&](std::string_view code) { return same_name(field.name, code); });
             for (const std::string_view value : field.names) {
                 values.numbers.push_back(static_cast<std::int64_t>(values.values.size()));
                 values.values.emplace_back(value);

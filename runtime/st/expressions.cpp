@@ -161,7 +161,9 @@ const Type* Checker::check_typed(Expression& e) {
     const Type* type = find_prefix(name.text);
     if (it != named_types_.end()) type = it->second.type;
     if (!type) {
-        resolve_name(name);
+        if (resolve_name(name))
+            fail("L0904", name.place, fmt::format("'{}' is not a type of values", name.text),
+                 "write a type, as in INT#5");
         return nullptr;
     }
     if (type->kind == Kind::enumeration && value.kind == Expression::Kind::name)
@@ -512,6 +514,12 @@ const Type* Checker::check_binary(Expression& e, const Type* expected) {
 
 namespace {
 
+/// A constant of another type loses nothing.
+bool fits_as_constant(const Expression& e, const Type& to) {
+    return is_constant(e) && e.type->is_integer() && to.is_integer() &&
+           e.constant.integer >= smallest(to) && e.constant.integer <= largest(to);
+}
+
 /// The signed type that holds a constant which `typed` does not, and all of that; null if there is
 /// none, or none is needed.
 const Type* wider_for(const Expression& constant, const Type& typed) {
@@ -550,6 +558,12 @@ const Type* Checker::unite(Expression& e, const Type* expected) {
     if (const Type* real = a.is_any() ? real_of(a, b) : real_of(b, a)) common = real;
     if (const Type* wider = a.is_any() ? wider_for(*left, b) : wider_for(*right, a))
         if (!expected || !expected->is_integer() || widens(*wider, *expected)) common = wider;
+    const auto reckons_in = [&](const Type& type, const Expression& constant) {
+        return common && expected && expected->is_integer() && !widens(*common, *expected) &&
+               widens(type, *expected) && fits_as_constant(constant, type);
+    };
+    if (reckons_in(a, *right)) common = &a.plain();
+    if (reckons_in(b, *left)) common = &b.plain();
     const bool narrows = expected && is_single(*expected) && common == &lreal_type && is_scl(e);
     if (narrows && !same_type(a, lreal_type) && !same_type(b, lreal_type)) common = &real_type;
     if (!common) {
@@ -916,6 +930,10 @@ bool Checker::coerce(Expression*& e, const Type& to) {
     if (from.kind == Kind::enumeration && to.kind == Kind::enumeration && from.name == to.name &&
         from.values == to.values)
         return true;
+    if (fits_as_constant(*e, to)) {
+        become(*e, to, {.integer = e->constant.integer});
+        return true;
+    }
     const bool fits =
         from.is_scalar() && (widens(from, to) || is_same_pattern(*e, to) || rounds(*e, to));
     if (!fits) return refuse_conversion(*e, to);

@@ -315,6 +315,7 @@ void Generator::write_statement(const Statement& s) {
         case S::assign:
             return write_assignment(s);
         case S::call:
+            if (s.value->kind == Expression::Kind::constant) return;
             if (s.value->test != TestCall::none)
                 write_test_statement(*s.value);
             else if (s.value->routine && s.value->routine->has_instances())
@@ -323,6 +324,8 @@ void Generator::write_statement(const Statement& s) {
                 call_instance(*s.value);
             else if (s.value->routine)
                 call_routine(*s.value);
+            else if (s.value->type->kind == Type::Kind::text)
+                text_address(*s.value);
             else
                 value(*s.value);
             return;

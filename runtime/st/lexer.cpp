@@ -207,7 +207,7 @@ class Lexer {
         if (is_digit(c)) return read_number();
         if (c == '\'') return read_text();
         if (c == '"' || c == '#') return read_marked_name();
-        if (c == '%') return read_direct();
+        if (c == '%' && is_direct()) return read_direct();
         for (const Sign& sign : signs) {
             if (!at(sign.text)) continue;
             at_ += sign.text.size();
@@ -347,6 +347,9 @@ class Lexer {
         tokens_.tokens.pop_back();
     }
 
+    /// `%X0`, or what follows the dot of a bit.
+    bool is_direct() const { return is_letter(peek(1)) || text_.substr(0, at_).ends_with('.'); }
+
     void read_direct() {
         ++at_;
         skip_while([](char c) { return is_letter(c) || is_digit(c); });
@@ -375,9 +378,16 @@ class Lexer {
         if (!character.valid || is_control(character.code))
             return fail(here, "the file has a byte that is not text", "save it as UTF-8");
         fail(here, fmt::format("'{}' has no meaning here", here.text()),
-             text_.substr(start_).starts_with("!=")
-                 ? "write '<>'"
-                 : "names have letters without accents, digits and '_'; others stand in quotes");
+             std::string(instead_of(text_.substr(start_))));
+    }
+
+    /// What other languages write with signs that this one has not.
+    static std::string_view instead_of(std::string_view text) {
+        if (text.starts_with("!=")) return "write '<>'";
+        if (text.starts_with('!')) return "write NOT";
+        if (text.starts_with('?')) return "write IF, or SEL(condition, otherwise, then)";
+        if (text.starts_with('%')) return "write MOD";
+        return "names have letters without accents, digits and '_'; others stand in quotes";
     }
 
     void fail(Place where, std::string message, std::string help) {

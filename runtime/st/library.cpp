@@ -100,7 +100,7 @@ void shift(std::byte* block, std::int64_t by, const void* context) {
 
 void make(std::byte* place, const void* context) {
     const auto& kind = *static_cast<const KindContext*>(context);
-    std::memcpy(place, kind.image, kind.size);
+    if (kind.size > 0) std::memcpy(place, kind.image, kind.size);  // globals may be constants only
 }
 
 }  // namespace

@@ -20,13 +20,6 @@ namespace lineshaft::st {
 namespace {
 
 template <class T>
-T read(const std::byte* place) {
-    T value;
-    std::memcpy(&value, place, sizeof value);
-    return value;
-}
-
-template <class T>
 void write(std::byte* place, T value) {
     static_assert(sizeof value == 8);
     std::memcpy(place, &value, sizeof value);

@@ -6,6 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/letters.hpp"
+#include "runtime/st/elementary.hpp"
+
 namespace lineshaft::st {
 
 namespace {
@@ -182,6 +185,8 @@ class Parser {
         const auto is_pair = [&](Word word) { return is(word) && last().word == word && touches; };
         if (is_pair(Word::equal)) return "write '=' to compare";
         if (is_pair(Word::ampersand)) return "write AND";
+        if (is_pair(Word::less)) return "write SHL(value, bits)";
+        if (is_pair(Word::greater)) return "write SHR(value, bits)";
         const bool before_pair =
             next().word == here().word && here().place.end == next().place.begin;
         if (before_pair && is(Word::plus)) return "write 'name += 1;'";
@@ -190,6 +195,9 @@ class Parser {
             return "write a decimal point: 1.5";
         if (same_name(last().text, "elseif") || same_name(last().text, "elif"))
             return "write ELSIF";
+        if (same_name(here().text, "step")) return "write BY";
+        if (is_in_body_ && is_name() && find_elementary(lower(last().text)))
+            return "variables are declared in VAR ... END_VAR";
         if (is(Word::assign) && !is_in_body_)
             return "statements stand in a PROGRAM, FUNCTION_BLOCK or FUNCTION";
         const bool is_reserved = !is_name() && here().word < Word::end_of_file;

@@ -34,14 +34,22 @@ void Checker::check(Block& block) {
     }
 }
 
+/// The value of a standard function may be left, as that of any other.
+void Checker::check_call(Statement& s) {
+    if (s.value->type) return;
+    const Type* type = check_call(*s.value, true, nullptr);
+    if (!type || s.value->standard < 0) return;
+    s.value->type = type;
+    make_concrete(s.value, *type);
+}
+
 void Checker::check(Statement& s) {
     if (rewrite(s)) return;
     switch (s.kind) {
         case S::assign:
             return check_assignment(s);
         case S::call:
-            if (!s.value->type) check_call(*s.value, true, nullptr);
-            return;
+            return check_call(s);
         case S::if_:
             for (Branch& branch : s.branches) {
                 check_condition(branch.condition, "IF");

@@ -65,7 +65,11 @@ class Bench {
     TestResult run(const CodeRoutine* routine) {
         if (!routine) return {};
         const Code& code = made_.generated.code;
-        const Context context{nullptr, places_.data(), places_.data(), bytes(root_), 0, &never};
+        const Context context{.instances = places_.data(),
+                              .seen = places_.data(),
+                              .memory = bytes(root_),
+                              .task = 0,
+                              .published = &never};
         const Fault fault =
             execute(code, *routine, bytes(root_), now_, context, made_.options.fuel, nullptr);
         if (fault == Fault::none) return {};

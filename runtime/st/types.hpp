@@ -58,7 +58,7 @@ struct Type {
     std::vector<std::int64_t> numbers = {};    ///< of its values
     bool counted = true;                       ///< those are 0, 1, 2, ...
     std::vector<std::int64_t> of_number = {};  ///< what SCL's numbers mean; -1, or beyond: nothing
-    bool is_code = false;        ///< of an enumeration: ErrorID, which the standards make a WORD
+    bool is_code = false;  ///< of an enumeration: one that the standards make a WORD, as ErrorID
     Routine* routine = nullptr;  ///< of a block
     const BlockType* standard = nullptr;
     std::vector<std::pair<std::string_view, Constant>> presets = {};  ///< parameters of `standard`

@@ -225,11 +225,13 @@ std::string difference(SmallWiring wiring) {
 
 std::string difference() {
     using enum SmallWiring;
-    for (const std::string& where : {difference<InlinedSmallBlocks<batched>>(batched),
-                                     difference<CalledSmallBlocks<batched>>(batched),
-                                     difference<CalledSmallBlocks<irregular>>(irregular),
-                                     difference<InlinedSmallBlocks<serial>>(serial),
-                                     difference<CalledSmallBlocks<serial>>(serial)})
+    for (const std::string& where :
+         {difference<InlinedSmallBlocks<batched>>(batched),
+          difference<CalledSmallBlocks<batched>>(batched),
+          difference<CalledSmallBlocks<irregular>>(irregular),
+          difference<InlinedSmallBlocks<serial>>(serial),
+          difference<CalledSmallBlocks<serial>>(serial),
+          difference<CalledSmallBlocks<serial, CatalogueBlocks>>(serial)})
         if (!where.empty()) return where;
     return {};
 }
@@ -266,6 +268,11 @@ BENCHMARK(small_by_hand<InlinedSmallBlocks<SmallWiring::serial>>)
     ->Arg(1000);
 BENCHMARK(small_by_hand<CalledSmallBlocks<SmallWiring::serial>>)
     ->Name("called/serial")
+    ->Arg(4)
+    ->Arg(100)
+    ->Arg(1000);
+BENCHMARK(small_by_hand<CalledSmallBlocks<SmallWiring::serial, CatalogueBlocks>>)
+    ->Name("called_of_the_catalogue/serial")
     ->Arg(4)
     ->Arg(100)
     ->Arg(1000);

@@ -7,7 +7,10 @@
 #include <random>
 #include <vector>
 
+#include "blocks/logic/counter.hpp"
+#include "blocks/logic/edge.hpp"
 #include "blocks/logic/signal.hpp"
+#include "blocks/logic/timer.hpp"
 
 /// Chains of small blocks written by hand, in two ways: what the executive is measured against.
 /// Each chain is a timer, an edge of it, a counter of the edges and a filter of the count. The same
@@ -55,7 +58,7 @@ struct SmallTimer {
     bool in = false, q = false, running = false;
     std::int64_t et = 0, start = 0;
 
-    void scan(std::int64_t time) {
+    void scan(const Scan& now) {
         if (!in) {
             running = q = false;
             et = 0;
@@ -63,28 +66,28 @@ struct SmallTimer {
         }
         if (!running) {
             running = true;
-            start = time;
+            start = now.time;
         }
         if (q) return;
-        et = std::min(time - start, pt);
-        q = time - start >= pt;
+        et = std::min(now.time - start, pt);
+        q = now.time - start >= pt;
     }
 };
 
 struct SmallEdge {
     bool clk = false, q = false, last = false;
 
-    void scan() {
+    void scan(const Scan&) {
         q = clk && !last;
         last = clk;
     }
 };
 
 struct SmallCounter {
-    std::int64_t pv = 10, cv = 0;
+    std::int64_t pv = 0, cv = 0;
     bool cu = false, r = false, q = false, last = false;
 
-    void scan() {
+    void scan(const Scan&) {
         const bool up = cu && !last;
         last = cu;
         if (r)
@@ -99,7 +102,7 @@ struct SmallFilter {
     double in = 0, out = 0, share = small_share();
     bool started = false;
 
-    void scan() {
+    void scan(const Scan&) {
         out = started ? out + (in - out) * share : in;
         started = true;
     }
@@ -119,22 +122,26 @@ template <SmallWiring wiring>
 class InlinedSmallBlocks {
   public:
     explicit InlinedSmallBlocks(std::size_t chains) : chains_(chains) {
-        for (std::size_t i = 0; i < chains; ++i) chains_[i].timer.pt = small_preset(wiring, i);
+        for (std::size_t i = 0; i < chains; ++i) {
+            chains_[i].timer.pt = small_preset(wiring, i);
+            chains_[i].counter.pv = 10;
+        }
     }
 
     void scan(std::int64_t time) {
+        const Scan now{.time = time, .interval = small_interval};
         bool before = wiring == SmallWiring::serial && chains_.front().timer.q;
         bool reset = false;
         for (Chain& chain : chains_) {
             chain.timer.in = !(wiring == SmallWiring::serial ? before : chain.timer.q);
-            chain.timer.scan(time);
+            chain.timer.scan(now);
             chain.edge.clk = chain.timer.q;
-            chain.edge.scan();
+            chain.edge.scan(now);
             chain.counter.cu = chain.edge.q;
             chain.counter.r = reset;
-            chain.counter.scan();
+            chain.counter.scan(now);
             chain.filter.in = static_cast<double>(chain.counter.cv);
-            chain.filter.scan();
+            chain.filter.scan(now);
             before = reset = chain.edge.q;
         }
     }
@@ -150,8 +157,23 @@ class InlinedSmallBlocks {
     std::vector<Chain> chains_;
 };
 
+struct SmallBlocks {
+    using Timer = SmallTimer;
+    using Edge = SmallEdge;
+    using Counter = SmallCounter;
+    using Filter = SmallFilter;
+};
+
+/// Those of the catalogue, with all that they look after.
+struct CatalogueBlocks {
+    using Timer = Ton;
+    using Edge = RTrig;
+    using Counter = Ctu;
+    using Filter = FilterPt1;
+};
+
 /// A list of virtual calls; each block fetches its inputs by pointers.
-template <SmallWiring wiring>
+template <SmallWiring wiring, class Blocks = SmallBlocks>
 class CalledSmallBlocks {
   public:
     explicit CalledSmallBlocks(std::size_t chains) {
@@ -170,46 +192,47 @@ class CalledSmallBlocks {
     }
 
     void scan(std::int64_t time) {
-        for (const auto& call : calls_) call->scan(time);
+        const Scan now{.time = time, .interval = small_interval};
+        for (const auto& call : calls_) call->scan(now);
     }
     double out(std::size_t chain) const { return *outs_[chain]; }
 
   private:
     struct Call {
         virtual ~Call() = default;
-        virtual void scan(std::int64_t time) = 0;
+        virtual void scan(const Scan& now) = 0;
     };
     struct Timer : Call {
-        SmallTimer block;
+        typename Blocks::Timer block;
         const bool* in = nullptr;
-        void scan(std::int64_t time) override {
+        void scan(const Scan& now) override {
             block.in = !*in;
-            block.scan(time);
+            block.scan(now);
         }
     };
     struct Edge : Call {
-        SmallEdge block;
+        typename Blocks::Edge block;
         const bool* clk = nullptr;
-        void scan(std::int64_t) override {
+        void scan(const Scan& now) override {
             block.clk = *clk;
-            block.scan();
+            block.scan(now);
         }
     };
     struct Counter : Call {
-        SmallCounter block;
+        typename Blocks::Counter block;
         const bool *cu = nullptr, *r = nullptr;
-        void scan(std::int64_t) override {
+        void scan(const Scan& now) override {
             block.cu = *cu;
             block.r = *r;
-            block.scan();
+            block.scan(now);
         }
     };
     struct Filter : Call {
-        SmallFilter block;
+        typename Blocks::Filter block;
         const std::int64_t* in = nullptr;
-        void scan(std::int64_t) override {
+        void scan(const Scan& now) override {
             block.in = static_cast<double>(*in);
-            block.scan();
+            block.scan(now);
         }
     };
     struct Chain {
@@ -231,6 +254,9 @@ class CalledSmallBlocks {
               std::size_t number) {
         const auto at = [&](std::ptrdiff_t i) { return made[static_cast<std::size_t>(i)]; };
         chain.timer->block.pt = small_preset(wiring, number);
+        chain.counter->block.pv = 10;
+        if constexpr (requires { chain.filter->block.time_constant; })
+            chain.filter->block.time_constant = small_time_constant;
         chain.timer->in = from.timer < 0 ? &chain.timer->block.q : &at(from.timer).edge->block.q;
         chain.edge->clk = &at(from.edge).timer->block.q;
         chain.counter->cu = &at(from.counter).edge->block.q;

@@ -27,6 +27,7 @@ struct Mix {
         };
         return table;
     }
+    static constexpr auto main_input = &Mix::b;
     void scan(const Scan&) { out = (factor * out + 7 * a + 11 * b + 1) % 1'000'003; }
 };
 
@@ -189,4 +190,85 @@ TEST_CASE("link: a chain is called link by link") {
                                   "  b: {type: mix_3, task: t, a: a.out}\n"
                                   "  c: {type: mix_3, task: t, a: b.out}\n"))) ==
           std::vector<std::size_t>{1, 1, 1});
+}
+
+namespace {
+
+/// Two values that change, as wires see them.
+struct Sources {
+    alignas(8) std::byte values[2][8] = {};
+
+    void draw(std::mt19937& random, Type type) {
+        for (auto& value : values) {
+            const auto drawn = static_cast<std::int64_t>(random() % 7) - 3;
+            store(type, value,
+                  type == Type::boolean ? Value(drawn > 0)
+                  : type == Type::real  ? Value(static_cast<double>(drawn) / 2)
+                                        : Value(drawn));
+        }
+    }
+};
+
+/// A block of the kind, fed by one or two wires.
+struct FedBlockOfKind {
+    const BlockType& type;
+    std::vector<std::byte> memory = std::vector<std::byte>(type.size);
+    Call call;
+
+    FedBlockOfKind(const BlockType& kind, Feed feed, const Sources& sources) : type(kind) {
+        type.construct(memory.data());
+        call.first = memory.data();
+        call.count = 1;
+        call.size = type.size;
+        call.scan = type.scan_blocks;
+        call.feed = feed;
+        call.copies[0] = {sources.values[0], call.first + type.main_input.offset, true};
+        for (const Field& field : type.fields)
+            if (field.direction == Direction::input && field.offset != type.main_input.offset &&
+                size_of(field.type) == (feed == Feed::two_booleans ? 1 : 8))
+                call.copies[1] = {sources.values[1], call.first + field.offset};
+    }
+
+    std::string values() const {
+        std::string text;
+        for (const Field& field : type.fields)
+            text += fmt::format(
+                "{}: {:02x}\n", field.name,
+                fmt::join(std::span(memory).subspan(field.offset, size_of(field.type)), ""));
+        return text;
+    }
+};
+
+Type source_type(Feed feed, const BlockType& type) {
+    if (feed == Feed::boolean || feed == Feed::two_booleans) return Type::boolean;
+    const bool is_real = type.main_input.scan[static_cast<std::size_t>(Feed::widened)] != nullptr;
+    return is_real && feed != Feed::widened ? Type::real : Type::integer;
+}
+
+}  // namespace
+
+TEST_CASE("a block that is fed and scanned at once does as one that is fed, then scanned") {
+    int kinds = 0;
+    for (const BlockType& type : standard_blocks().types())
+        for (std::size_t i = 0; i < static_cast<std::size_t>(Feed::many); ++i) {
+            const FeedAndScan at_once = type.main_input.scan[i];
+            if (!at_once) continue;
+            const auto feed = static_cast<Feed>(i);
+            Sources sources;
+            FedBlockOfKind plain(type, feed, sources), fed(type, feed, sources);
+            const bool two = feed == Feed::two_booleans || feed == Feed::two_words;
+            if (two && !plain.call.copies[1].target) continue;
+            fed.call.run = at_once;
+            ++kinds;
+            std::mt19937 random(7);
+            for (std::int64_t scan = 0; scan < 200; ++scan) {
+                sources.draw(random, source_type(feed, type));
+                const Scan now{scan * 1'000'000, 1'000'000, scan};
+                const bool error = plain.call.run(plain.call, now);
+                INFO(type.name << " in scan " << scan);
+                REQUIRE(fed.call.run(fed.call, now) == error);
+                REQUIRE(fed.values() == plain.values());
+            }
+        }
+    CHECK(kinds >= 30);
 }

@@ -119,7 +119,7 @@ TEST_CASE("a block's error is a fault, and what was traced until then is kept") 
     CHECK(report.faulted());
     CHECK(report.result.message ==
           "block 'again' (MC_MoveVelocity) reports error 3 (limit_not_positive) in scan 51 of task "
-          "'main' at 0.51 s");
+          "'main' at 0.51 s: velocity, acceleration, deceleration or jerk is not above 0");
     CHECK(read(trace) == "time,scan,axis.velocity,feed.Busy\n0,0,0,1\n0.5,50,10,1\n");
 }
 

@@ -15,6 +15,15 @@ namespace lineshaft::test {
 
 inline constexpr std::int64_t ms = 1'000'000;
 
+template <class Block>
+void add_call(Task& task, Block& block, ScanBlocks scan) {
+    Call& call = task.calls.emplace_back();
+    call.scan = scan;
+    call.first = reinterpret_cast<std::byte*>(&block);
+    call.count = 1;
+    call.size = sizeof(Block);
+}
+
 /// A scan as it was called.
 struct Event {
     std::string task;
@@ -103,8 +112,10 @@ class Bench {
         target.wires.copies.push_back(
             {.source = reinterpret_cast<const std::byte*>(&published(from).output),
              .target = reinterpret_cast<std::byte*>(&live(to).input)});
-        target.calls.front().feed = Feed::many;
-        ++target.calls.front().words;
+        Call& call = target.calls.front();
+        call.feed = Feed::many;
+        call.first_copy = target.wires.copies.data();
+        ++call.words;
     }
     /// The task is released by the rising edges of another one's published flag.
     void trigger(const std::string& from, const std::string& to) {
@@ -152,16 +163,11 @@ class Bench {
         probe->log = &log;
         probe->task = spec.name.c_str();
         if (task.published != task.live) new (task.published) Probe(*probe);
-        task.calls.push_back(
-            {.scan =
-                 [](std::byte* first, std::size_t, const Scan& now, const Context&) {
-                     auto* block = reinterpret_cast<Probe*>(first);
-                     block->scan(now);
-                     return block->flag;
-                 },
-             .first = task.live,
-             .count = 1,
-             .size = sizeof(Probe)});
+        add_call(task, *probe, [](std::byte* first, std::size_t, const Scan& now, const Context&) {
+            auto* block = reinterpret_cast<Probe*>(first);
+            block->scan(now);
+            return block->flag;
+        });
         machine.tasks.push_back(std::move(task));
     }
 

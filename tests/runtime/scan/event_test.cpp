@@ -51,12 +51,10 @@ DeviceCall call_of(Bell& bell, int task) {
 
 /// The scan of `task` takes the bell's flag back.
 void silence(Bench& bench, Bell& bell, const std::string& task) {
-    bench.task(task).calls.push_back(
-        {.scan = [](std::byte* first, std::size_t, const Scan&,
-                    const Context&) { return reinterpret_cast<Bell*>(first)->ringing = false; },
-         .first = reinterpret_cast<std::byte*>(&bell),
-         .count = 1,
-         .size = sizeof(Bell)});
+    add_call(bench.task(task), bell,
+             [](std::byte* first, std::size_t, const Scan&, const Context&) {
+                 return reinterpret_cast<Bell*>(first)->ringing = false;
+             });
 }
 
 }  // namespace
@@ -153,12 +151,11 @@ TEST_CASE("event tasks that start each other for ever stop the run") {
     bench.machine.triggers.push_back({&other, bench.index("e")});
     static bool* second = nullptr;
     second = &other;
-    bench.task("e").calls.push_back(
-        {.scan = [](std::byte*, std::size_t, const Scan&, const Context&) {
-            *wanted = !*wanted;
-            *second = !*wanted;
-            return false;
-        }});
+    add_call(bench.task("e"), other, [](std::byte*, std::size_t, const Scan&, const Context&) {
+        *wanted = !*wanted;
+        *second = !*wanted;
+        return false;
+    });
     const RunResult result = bench.run();
     CHECK(result.outcome == Outcome::overrun);
     CHECK(result.message ==

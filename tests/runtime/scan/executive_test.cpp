@@ -356,6 +356,8 @@ TEST_CASE("inputs are converted as their wires say") {
                              {at(ports.millimetres), at(ports.centimetres), 1, 10, false}}};
     Call& call = task.calls.front();
     call.feed = Feed::many;
+    call.first_copy = task.wires.copies.data();
+    call.first_scaled = task.wires.scaled.data();
     call.words = call.widened = 1;
     call.booleans = call.scaled = 2;
     bench.machine.duration = 0;
