@@ -164,6 +164,7 @@ MotionError Axis::place_cam(const Context& context, const MotionState& leader,
                             const MotionState& from) {
     const Coupling& c = sync.coupling;
     const CamTableId id = CamTableId::of(c.cam);
+    if (!is_instance<CamTable>(context, id.table)) return MotionError::no_cam;
     const Cam table = cam(context);
     if (table.points.empty()) return MotionError::no_cam;
     const double relocated_by = context.seen_instance<Axis>(c.master.axis).relocated;
@@ -181,7 +182,7 @@ MotionError Axis::place_cam(const Context& context, const MotionState& leader,
 Cam Axis::cam(const Context& context) const {
     if (sync.law != Law::cammed) return {};
     const CamTableId id = CamTableId::of(sync.coupling.cam);
-    return id.table < 0 ? Cam{} : context.instance<CamTable>(id.table).cam(id.periodic);
+    return context.instance<CamTable>(id.table).cam(id.periodic);
 }
 
 void Axis::begin_phasing(const Context& context, Job& job) {

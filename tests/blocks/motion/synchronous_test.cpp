@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -287,6 +288,35 @@ TEST_CASE("a slave gets in gear with a master that accelerates, two scans from t
     INFO("optimum " << high * 1e3 << " ms, in gear after " << scans << " scans");
     CHECK(scans >= high * 1e3);
     CHECK(scans <= high * 1e3 + 2);
+}
+
+TEST_CASE("a CamTableID that MC_CamTableSelect never gave is refused, whatever its number") {
+    constexpr const char* program = R"(
+tasks: {main: {every: 1 ms}}
+blocks:
+  m: {type: axis, task: main}
+  points: {type: cam_table, task: main, points: [[0 mm, 0 mm], [50 mm, 30 mm]]}
+  s: {type: axis, task: main}
+  cam: {type: MC_CamIn, task: main, Master: m, Slave: s}
+)";
+    const auto error_of = [&](std::int64_t id) {
+        MotionBench bench(program);
+        bench.set("cam.CamTableID", id);
+        bench.set("cam.Execute", true);
+        bench.step(3);
+        return bench.block<CamIn>("cam").error_id;
+    };
+    const std::int64_t points = 1, all_flags = 8;
+    for (std::int64_t id = -100; id < 100; ++id) {
+        INFO("CamTableID " << id);
+        const bool names_it = id / all_flags - 1 == points && id > 0;
+        CHECK((error_of(id) == MotionError::no_cam) == !names_it);
+    }
+    using Limits = std::numeric_limits<std::int64_t>;
+    for (const std::int64_t id : {Limits::min(), Limits::max(), std::int64_t{1} << 35}) {
+        INFO("CamTableID " << id);
+        CHECK(error_of(id) == MotionError::no_cam);
+    }
 }
 
 TEST_CASE("a checkpoint in mid-coupling goes on to the same bytes") {
