@@ -68,6 +68,15 @@ void Net::unknown_port(const Reader& read, const Node& node, const Instance& blo
         for (const Field& f : block.type->fields)
             if (f.direction == d && std::ranges::find(names, f.name) == names.end())
                 names.emplace_back(f.name);
+    const auto is_part = [&](const std::string& name) {
+        return name.size() > port.size() &&
+               (name[port.size()] == '.' || name[port.size()] == '[') &&
+               same_letters(name.substr(0, port.size()), port);
+    };
+    if (const auto part = std::ranges::find_if(names, is_part); part != names.end())
+        return read.fail("L0203", node,
+                         fmt::format("'{}.{}' is more than one value", block.name, port),
+                         fmt::format("name one of them, such as {}.{}", block.name, *part));
     read.fail("L0203", node, fmt::format("{} has no port '{}'", block.described(), port),
               suggest(misspelt(port), names, block.name + "."));
 }

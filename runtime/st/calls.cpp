@@ -638,6 +638,7 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
     } else if (source && !same_type(*given, *source)) {
         if (!coerce(value, *source)) return nullptr;
     }
+    if (source && source->kind == Kind::time) value->type = source;  // TIME and LTIME are alike
     const Type& from = *value->type;
     const bool impossible = !from.is_scalar() || !target->is_scalar();
     if (impossible && !(from.kind == Kind::text && target->is_scalar()) &&

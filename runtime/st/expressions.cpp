@@ -688,7 +688,7 @@ const Type* Checker::check_time_arithmetic(Expression& e) {
                     fmt::format("'{}' does not go with {} and {}", shown(e.op),
                                 describe(*left->type), describe(*right->type)),
                     "times are added and subtracted, and multiplied or divided by a number; "
-                    "TIME_TO_LREAL gives seconds");
+                    "TIME_TO_LREAL gives a number of ms");
     if (scales) {
         const Type& to = number->type->is_real() ? lreal_type : lint_type;
         const bool is_long = number->type->is_unsigned_64();

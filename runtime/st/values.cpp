@@ -290,24 +290,25 @@ Slot Generator::convert_date(Slot slot, const Type& from, const Type& to, Slot w
     return is_date ? emit(Op::sub_lint, wanted, slot, clock) : clock;
 }
 
-/// A time is in s as a real number, and in ns as an integer of 64 bits. In a shorter one a TIME and
-/// a TOD are in ms, as IEC 61131-3's vendors have it, a DT and a DATE in s; in 16 bits a DATE is in
-/// days since 1990, as Siemens has it.
+/// A time is in ns as an integer of 64 bits. As any other number a TIME and a TOD are in ms, as
+/// IEC 61131-3's vendors have it, a DT and a DATE in s, and an LTIME as a real number in ns; in 16
+/// bits a DATE is in days since 1990, as Siemens has it.
 Slot Generator::convert_time(Slot slot, const Type& from, const Type& to, Slot wanted) {
     const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
-    const Slot billion = constant_slot(lreal_type, {.integer = 1'000'000'000, .real = 1e9});
     if (to.kind == Kind::boolean) return emit(Op::ne_word, wanted, slot, constant_slot(0));
-    if (from.is_real())
-        return emit(Op::round_lint, wanted, emit(Op::mul_lreal, none, slot, billion));
-    if (to.is_real()) {
+    const bool in_seconds = time.kind == Kind::date || time.kind == Kind::moment;
+    if (number.is_real()) {
+        const double unit = in_seconds ? 1e9 : time.name == "LTIME" ? 1 : 1e6;
+        const Slot one = constant_slot(lreal_type, {.real = unit});
+        if (from.is_real())
+            return emit(Op::round_lint, wanted, emit(Op::mul_lreal, none, slot, one));
         const Slot real = emit(Op::lreal_from_signed, none, slot);
-        const Slot seconds = emit(Op::div_lreal, wanted, real, billion);
-        return to.bits == 32 ? emit(Op::narrow, wanted, seconds) : seconds;
+        const Slot counted = emit(Op::div_lreal, wanted, real, one);
+        return to.bits == 32 ? emit(Op::narrow, wanted, counted) : counted;
     }
     if (number.bits == 64) return slot;
     constexpr std::uint64_t day = 86'400'000'000'000;
     const bool in_days = time.kind == Kind::date && number.bits == 16;
-    const bool in_seconds = time.kind == Kind::date || time.kind == Kind::moment;
     const Slot unit = constant_slot(in_days ? day : in_seconds ? 1'000'000'000 : 1'000'000);
     const Slot start = constant_slot(in_days ? 7305 * day : 0);
     if (to.is_time()) {

@@ -714,23 +714,25 @@ class CWriter {
         return made(to, x);
     }
 
-    /// In s as a real number, in ns as an integer of 64 bits. In a shorter one TIME and TOD in ms,
-    /// DATE and DT in s, DATE in 16 bits in days since 1990.
+    /// In ns as an integer of 64 bits, and an LTIME as a real number. Else TIME and TOD in ms, DATE
+    /// and DT in s, DATE in 16 bits in days since 1990.
     std::string convert_time(const std::string& x, const Type& from, const Type& to) {
         if (from.is_time() && to.is_time()) {
             if (from.kind != Kind::moment || to.kind == Kind::moment) return x;
             const std::string clock = made(to, fmt::format("twin_clock({})", x));
             return to.kind == Kind::clock ? clock : made(to, x + " - " + clock);
         }
-        if (from.is_real()) return rounded(to, fmt::format("(f64){} * 1e9", x));
-        if (to.is_real()) return made(to, fmt::format("(f64){} / 1e9", x));
         if (to.kind == Kind::boolean) return made(to, x + " != 0");
         const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
-        if (number.bits == 64) return made(to, x);
         const bool is_date = time.kind == Kind::date, in_days = is_date && number.bits == 16;
+        const bool in_ns = number.is_real() && time.name == "LTIME";
         const char* const unit = in_days                                ? "86400000000000"
                                  : is_date || time.kind == Kind::moment ? "1000000000"
+                                 : in_ns                                ? "1"
                                                                         : "1000000";
+        if (from.is_real()) return rounded(to, fmt::format("(f64){} * {}.0", x, unit));
+        if (to.is_real()) return made(to, fmt::format("(f64){} / {}.0", x, unit));
+        if (number.bits == 64) return made(to, x);
         const int start = in_days ? 7305 : 0;
         if (to.is_time()) return made(to, fmt::format("((i64){} + {}) * {}", x, start, unit));
         return made(to, fmt::format("({} - {} * {}) / {}", x, start, unit, unit));
