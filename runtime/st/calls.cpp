@@ -237,8 +237,14 @@ void Checker::check_standard_arguments(Expression& call, const Type& type) {
                       "a simulated axis does the same with and without");
             continue;
         }
+        if (!found && argument.name.word == Word::end_of_file) {
+            fail("L0907", argument.value->place,
+                 fmt::format("{} takes {} arguments", type.name, names.size()),
+                 fmt::format("they are {}", fmt::join(names, ", ")));
+            break;
+        }
         if (!found) {
-            fail("L0907", argument.name.text.empty() ? argument.value->place : argument.name.place,
+            fail("L0907", argument.name.place,
                  fmt::format("{} has no argument '{}'", type.name, argument.name.text),
                  suggest(argument.name.text, names));
             continue;
@@ -281,16 +287,15 @@ bool Checker::put_in_order(Expression& call, const StandardFunction& f) {
         const auto is_called = [&](const std::string& name) {
             return same_name(name, argument.name.text);
         };
-        const auto it = argument.name.word == Word::end_of_file
-                            ? names.begin() + i
-                            : std::ranges::find_if(names, is_called);
+        const bool named = argument.name.word != Word::end_of_file;
+        const auto it = named ? std::ranges::find_if(names, is_called) : names.begin() + i;
         const char* wrong = it == names.end() ? "not an argument of"
                             : sorted[static_cast<std::size_t>(it - names.begin())].value
                                 ? "given twice to"
                                 : nullptr;
         if (wrong) {
-            fail("L0907", argument.name.place,
-                 fmt::format("'{}' is {} {}", argument.name.text, wrong, f.name),
+            fail("L0907", named ? argument.name.place : argument.value->place,
+                 fmt::format("'{}' is {} {}", named ? argument.name.text : *it, wrong, f.name),
                  fmt::format("it takes {}", fmt::join(names, ", ")));
             return false;
         }

@@ -167,7 +167,7 @@ class Parser {
         fail("L0902", here().place,
              fmt::format("expected {0}{1}{0}{2}{3}, found {4}", is_word ? "" : "'", what,
                          where.empty() ? "" : " ", where, found()),
-             habit());
+             habit(what));
     }
 
     /// The lexer left something out just before.
@@ -180,7 +180,7 @@ class Parser {
     }
 
     /// What is written here in other languages.
-    std::string habit() const {
+    std::string habit(std::string_view expected) const {
         const bool touches = last().place.end == here().place.begin;
         const auto is_pair = [&](Word word) { return is(word) && last().word == word && touches; };
         if (is_pair(Word::equal)) return "write '=' to compare";
@@ -191,8 +191,12 @@ class Parser {
             next().word == here().word && here().place.end == next().place.begin;
         if (before_pair && is(Word::plus)) return "write 'name += 1;'";
         if (before_pair && is(Word::minus)) return "write 'name -= 1;'";
-        if (is(Word::comma) && last().word == Word::integer && next().word == Word::integer)
+        const bool touches_next = here().place.end == next().place.begin;
+        if (is(Word::comma) && last().word == Word::integer && next().word == Word::integer &&
+            touches_next)
             return "write a decimal point: 1.5";
+        if (is(Word::comma) && expected == ")" && !is_in_body_)
+            return "name the members: (name := value, ...)";
         if (same_name(last().text, "elseif") || same_name(last().text, "elif"))
             return "write ELSIF";
         if (same_name(here().text, "step")) return "write BY";
