@@ -37,7 +37,8 @@ VAR_TEMP word : DWORD; power : LREAL; END_VAR
     word.%X14 := power < 0;
     word.%X15 := axis.software_limits AND axis.position <= axis.lowest_position;
     word.%X16 := axis.software_limits AND axis.position >= axis.highest_position;
-    word.%X22 := axis.state = synchronized_motion;
+    word.%X21 := axis.state = synchronized_motion AND axis.synchronization <> in_sync;
+    word.%X22 := axis.state = synchronized_motion AND axis.synchronization = in_sync;
     "AXIS_REF.StatusWord" := word;
 END_FUNCTION
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "blocks/axis/axis_motion.hpp"
 #include "blocks/axis/coupling.hpp"
@@ -28,6 +29,9 @@ struct SyncMotion {
         in_transition,  ///< onto the guide
         in_sync,
     };
+
+    static constexpr std::string_view stage_names[] = {"waiting", "approaching", "in_transition",
+                                                       "in_sync"};
 
     Law law = Law::geared;
     Stage stage = Stage::in_sync;

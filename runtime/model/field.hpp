@@ -201,6 +201,12 @@ Field local(std::string_view name, T Block::*member, std::string_view unit, std:
     return detail::field(Direction::local, name, member, unit, doc);
 }
 
+template <class Block, class Part, class T>
+Field local(std::string_view name, Part Block::*part, T Part::*member, std::string_view unit,
+            std::string_view doc) {
+    return detail::field(Direction::local, name, part, member, unit, doc);
+}
+
 /// `axis: shaft`: the number of a block of type `refers`, which a program must give. The block is
 /// scanned in the order of the file with all that refer to the same one in its task.
 template <class Block>

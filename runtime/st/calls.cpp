@@ -205,15 +205,35 @@ void Checker::check_argument(Expression&, Argument& argument, Variable& paramete
 }
 
 /// Of a block that commands an axis, inputs that vendors add to PLCopen's: an axis without a real
-/// drive does the same with and without.
-bool is_vendors_own(const Type& type, std::string_view argument) {
-    constexpr std::string_view known[] = {"StartMode",   "StopMode",           "Restart",
-                                          "Current",     "PositionControlled", "bRegulatorOn",
-                                          "bDriveStart", "Enable_Positive",    "Enable_Negative",
-                                          "Override",    "AbortAcceleration"};
+/// drive does the same with and without, with some if they are this constant.
+struct VendorsOwn {
+    std::string_view name;
+    std::optional<double> only = {};
+};
+
+const VendorsOwn* vendors_own(const Type& type, std::string_view argument) {
+    static constexpr VendorsOwn known[] = {{"StartMode"},       {"StopMode"},
+                                           {"Restart"},         {"PositionControlled"},
+                                           {"bRegulatorOn"},    {"bDriveStart"},
+                                           {"Enable_Positive"}, {"Enable_Negative"},
+                                           {"Current", 0},      {"AbortAcceleration", 0},
+                                           {"Override", 100}};
     const auto refers = [](const Variable* member) { return member->type->is_handle(); };
-    return std::ranges::any_of(type.members, refers) &&
-           std::ranges::any_of(known, [&](auto name) { return same_name(name, argument); });
+    const auto* it = std::ranges::find_if(
+        known, [&](const VendorsOwn& input) { return same_name(input.name, argument); });
+    return it != std::end(known) && std::ranges::any_of(type.members, refers) ? it : nullptr;
+}
+
+void Checker::ignore(const Type& type, Argument& argument, std::optional<double> only) {
+    if (!check(*argument.value)) return;
+    const Expression& value = *argument.value;
+    if (!only || (is_constant(value) && as_real(value) == *only))
+        return out_.warn("L0923", argument.name.place.mark(),
+                         fmt::format("{} does not take '{}'", type.name, argument.name.text),
+                         "a simulated axis does the same with and without");
+    fail("L0903", argument.name.place,
+         fmt::format("'{}' of {} is not supported", argument.name.text, type.name),
+         fmt::format("leave it out: it is as if it were {}", *only == 0 ? "FALSE" : "100"));
 }
 
 void Checker::check_standard_arguments(Expression& call, const Type& type) {
@@ -230,11 +250,10 @@ void Checker::check_standard_arguments(Expression& call, const Type& type) {
                     found = member;
         }
         argument.variable = found;
-        if (!found && !argument.is_output && is_vendors_own(type, argument.name.text)) {
-            check(*argument.value);
-            out_.warn("L0923", argument.name.place.mark(),
-                      fmt::format("{} does not take '{}'", type.name, argument.name.text),
-                      "a simulated axis does the same with and without");
+        const VendorsOwn* ignored =
+            found || argument.is_output ? nullptr : vendors_own(type, argument.name.text);
+        if (ignored) {
+            ignore(type, argument, ignored->only);
             continue;
         }
         if (!found && argument.name.word == Word::end_of_file) {
@@ -246,7 +265,9 @@ void Checker::check_standard_arguments(Expression& call, const Type& type) {
         if (!found) {
             fail("L0907", argument.name.place,
                  fmt::format("{} has no argument '{}'", type.name, argument.name.text),
-                 suggest(argument.name.text, names));
+                 same_name(argument.name.text, "cam")
+                     ? "select the cam with MC_CamTableSelect, and give its CamTableID"
+                     : suggest(argument.name.text, names));
             continue;
         }
         check_argument(call, argument, *found);
@@ -317,13 +338,13 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
         return fail("L0905", call.place, fmt::format("{} has no value", name.text),
                     "write it as a statement of its own");
     for (Argument& argument : call.arguments)
-        if (argument.is_output)
+        if (argument.is_output && call.standard >= 0)
             return fail("L0907", argument.name.place,
                         "a standard function has no output but its value");
     if (call.standard < 0) {
         if (const Type* type = check_conversion(call, name.text)) return type;
         if (call.type || call.standard == -2) return nullptr;
-        if (routines_.contains(name.text))
+        if (routines_.contains(name.text) || standard_type(name.text))
             return fail("L0907", name.place,
                         fmt::format("'{}' is a kind of block, not an instance", name.text),
                         "declare one in VAR, and call that");

@@ -16,6 +16,14 @@ struct StandardFunction;
 /// The standard's name of a part of its function blocks that CODESYS calls otherwise: RESET is R.
 std::string_view standard_name(const Type& type, std::string_view name);
 
+bool is_constant(const Expression& expression);
+
+/// The number of a constant.
+double as_real(const Expression& constant);
+
+/// By the name of its file: all but the standard's ST.
+bool is_scl(const Expression& expression);
+
 /// What check() keeps while it works: declarations.cpp, expressions.cpp, calls.cpp, statements.cpp.
 class Checker {
   public:
@@ -135,6 +143,8 @@ class Checker {
     bool is_in_test() const { return routine_ && routine_->is_test(); }
     void check_arguments(Expression& call, Routine& routine);
     void check_argument(Expression& call, Argument& argument, Variable& parameter);
+    /// An input that a vendor adds to a block, which only a constant may set where `only` is given.
+    void ignore(const Type& type, Argument& argument, std::optional<double> only);
     void check_standard_arguments(Expression& call, const Type& type);
     Variable* find_parameter(Argument& argument, Routine& routine, std::size_t position);
     bool check_count(const Expression& call, const StandardFunction& function);

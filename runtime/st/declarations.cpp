@@ -22,21 +22,31 @@ struct Preset {
     std::string_view type;
 };
 
-constexpr Preset counters[] = {
-    {"ctu", "ctu", 0, "int"},           {"ctd", "ctd", 0, "int"},
-    {"ctud", "ctud", 0, "int"},         {"ctu_int", "ctu", 0, "int"},
-    {"ctd_int", "ctd", 0, "int"},       {"ctud_int", "ctud", 0, "int"},
-    {"ctu_dint", "ctu", 1, "dint"},     {"ctd_dint", "ctd", 1, "dint"},
-    {"ctud_dint", "ctud", 1, "dint"},   {"ctu_lint", "ctu", 2, "lint"},
-    {"ctd_lint", "ctd", 2, "lint"},     {"ctud_lint", "ctud", 2, "lint"},
-    {"ctu_udint", "ctu", 3, "udint"},   {"ctd_udint", "ctd", 3, "udint"},
-    {"ctud_udint", "ctud", 3, "udint"}, {"ctu_ulint", "ctu", 4, "ulint"},
-    {"ctd_ulint", "ctd", 4, "ulint"},   {"ctud_ulint", "ctud", 4, "ulint"},
-    {"iec_counter", "ctu", 0, "int"}};
+constexpr Preset counters[] = {{"ctu", "ctu", 0, "int"},
+                               {"ctd", "ctd", 0, "int"},
+                               {"ctud", "ctud", 0, "int"},
+                               {"ctu_int", "ctu", 0, "int"},
+                               {"ctd_int", "ctd", 0, "int"},
+                               {"ctud_int", "ctud", 0, "int"},
+                               {"ctu_dint", "ctu", 1, "dint"},
+                               {"ctd_dint", "ctd", 1, "dint"},
+                               {"ctud_dint", "ctud", 1, "dint"},
+                               {"ctu_lint", "ctu", 2, "lint"},
+                               {"ctd_lint", "ctd", 2, "lint"},
+                               {"ctud_lint", "ctud", 2, "lint"},
+                               {"ctu_udint", "ctu", 3, "udint"},
+                               {"ctd_udint", "ctd", 3, "udint"},
+                               {"ctud_udint", "ctud", 3, "udint"},
+                               {"ctu_ulint", "ctu", 4, "ulint"},
+                               {"ctd_ulint", "ctd", 4, "ulint"},
+                               {"ctud_ulint", "ctud", 4, "ulint"},
+                               {"iec_counter", "ctu", 0, "int"},
+                               {"iec_dcounter", "ctu", 1, "dint"},
+                               {"iec_udcounter", "ctu", 3, "udint"}};
 
 constexpr std::pair<std::string_view, std::string_view> aliases[] = {
-    {"ton_time", "ton"},  {"tof_time", "tof"}, {"tp_time", "tp"},   {"ton_ltime", "ton"},
-    {"tof_ltime", "tof"}, {"tp_ltime", "tp"},  {"iec_timer", "ton"}};
+    {"ton_time", "ton"},  {"tof_time", "tof"}, {"tp_time", "tp"},    {"ton_ltime", "ton"},
+    {"tof_ltime", "tof"}, {"tp_ltime", "tp"},  {"iec_timer", "ton"}, {"iec_ltimer", "ton"}};
 
 /// What Siemens and CODESYS call references.
 constexpr std::pair<std::string_view, std::string_view> handles[] = {

@@ -75,6 +75,10 @@ constexpr Foreign foreign[] = {{"wstring", "write STRING; texts are bytes"},
                                {"any", "write the type; a block for each"},
                                {"variant", "write the type; a block for each"},
                                {"pointer", "pass the variable as VAR_IN_OUT"},
+                               {"db_any", "name the data block"},
+                               {"hw_io", "wire an input of the program"},
+                               {"hw_any", "wire an input of the program"},
+                               {"pid_compact", "write the controller as a FUNCTION_BLOCK"},
                                {"counter", "declare an instance of CTU, CTD or CTUD"},
                                {"timer", "declare an instance of TON, TOF or TP"}};
 

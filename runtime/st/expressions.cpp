@@ -7,10 +7,6 @@
 
 namespace lineshaft::st {
 
-namespace {
-
-using Kind = Type::Kind;
-
 bool is_constant(const Expression& expression) {
     return expression.kind == Expression::Kind::constant && expression.type;
 }
@@ -20,14 +16,17 @@ double as_real(const Expression& constant) {
                                     : static_cast<double>(constant.constant.integer);
 }
 
-bool is_single(const Type& type) {
-    return type.kind == Kind::real && type.bits == 32;
-}
-
-/// By the name of its file: all but the standard's ST.
 bool is_scl(const Expression& e) {
     const std::string_view path = (*e.place.file)->path;
     return !path.ends_with(".st") && !path.ends_with(".ST");
+}
+
+namespace {
+
+using Kind = Type::Kind;
+
+bool is_single(const Type& type) {
+    return type.kind == Kind::real && type.bits == 32;
 }
 
 bool is_comparison(Word op) {
@@ -295,9 +294,16 @@ const Type* Checker::check_part(Expression& member, Routine& part) {
 
 const Type* Checker::unknown_name(Expression& e) {
     const std::string_view name = e.token.text;
-    if (routines_.contains(name))
-        return fail("L0914", e.place, fmt::format("'{}' is a block, and has no value", name),
-                    fmt::format("declare an instance, or call a function: {}()", name));
+    if (const auto it = routines_.find(name); it != routines_.end()) {
+        if (it->second->type)
+            return fail("L0914", e.place, fmt::format("'{}' is a block, and has no value", name),
+                        "declare an instance in VAR, and name that");
+        return it->second == routine_
+                   ? fail("L0914", e.place, fmt::format("the function '{}' has no value", name),
+                          fmt::format("declare of which type: FUNCTION {} : INT", name))
+                   : fail("L0914", e.place, fmt::format("'{}' is a function", name),
+                          fmt::format("call it: {}()", name));
+    }
     return fail("L0904", e.place, fmt::format("'{}' is not declared", name),
                 suggest(name, nearest(name, visible_names())));
 }
@@ -316,8 +322,8 @@ std::vector<std::string> Checker::visible_names() const {
 
 std::string_view standard_name(const Type& type, std::string_view name) {
     constexpr std::pair<std::string_view, std::string_view> others[] = {
-        {"reset", "r"},   {"load", "ld"},    {"set1", "s1"},        {"set", "s"},
-        {"reset1", "r1"}, {"busy", "valid"}, {"mode", "homingmode"}};
+        {"reset", "r"},    {"load", "ld"},         {"set1", "s1"}, {"set", "s"}, {"reset1", "r1"},
+        {"busy", "valid"}, {"mode", "homingmode"}, {"qu", "q"},    {"qd", "q"}};
     if (type.kind != Kind::standard) return name;
     const auto has = [&](std::string_view known) {
         return std::ranges::any_of(type.members,
@@ -456,7 +462,12 @@ const Type* Checker::check_bit(Expression& e) {
     if ((*number + 1) * bits > type->bits)
         return fail("L0908", e.token.place,
                     fmt::format("{} has no part '{}'", describe(*type), e.token.text),
-                    fmt::format("its bits are 0 to {}", type->bits - 1));
+                    fmt::format("its {} are 0 to {}",
+                                bits == 1    ? "bits"
+                                : bits == 8  ? "bytes"
+                                : bits == 16 ? "words"
+                                             : "double words",
+                                type->bits / bits - 1));
     e.constant.integer = *number * bits + (Wide{bits} << 6);
     return bits == 1 ? &bool_type : &bits_type(bits);
 }
@@ -467,6 +478,8 @@ const Type* Checker::check_unary(Expression& e, const Type* expected) {
     Expression*& operand = e.operands[0];
     const Type* type = check(*operand, expected);
     if (!type) return nullptr;
+    if (e.op == Word::not_) reinterpret(e, Kind::integer);
+    type = operand->type;
     const bool fits = e.op == Word::not_ ? type->kind == Kind::boolean || type->is_bits()
                                          : type->is_integer() || type->is_real() ||
                                                type->kind == Kind::time || type->is_bits();
@@ -584,8 +597,9 @@ const Type* Checker::unite(Expression& e, const Type* expected) {
 /// with the wanted one, if that is wider.
 void Checker::reinterpret(Expression& e, Kind from, const Type* expected) {
     for (Expression*& operand : e.operands) {
+        if (!operand || !is_scl(e)) continue;
         const Type& type = operand->type->plain();
-        if (type.kind != from || !is_scl(e)) continue;
+        if (type.kind != from) continue;
         const bool wider =
             expected && expected->kind == Kind::integer && expected->bits > type.bits;
         convert(operand, from == Kind::integer ? bits_type(type.bits)
@@ -633,6 +647,11 @@ const Type* Checker::check_comparison(Expression& e) {
     const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
     const bool order = e.op != Word::equal && e.op != Word::unequal;
     if (a.kind == Kind::text && b.kind == Kind::text) return &bool_type;
+    if (a.kind == Kind::text || b.kind == Kind::text)
+        return fail(
+            "L0905", e.token.place,
+            fmt::format("'{}' does not go with {} and {}", shown(e.op), describe(a), describe(b)),
+            "a STRING is compared with a STRING");
     for (const Type* type : {&a, &b}) {
         const bool fits = type->is_scalar() && !(order && type->kind == Kind::enumeration);
         if (!fits)
@@ -982,8 +1001,14 @@ void Checker::convert(Expression*& e, const Type& to) {
 
 bool Checker::fold_conversion(Expression& e, const Type& to) {
     const Type& from = *e.type;
-    if (from.kind == Kind::text || to.kind == Kind::text || from.kind == Kind::enumeration)
-        return false;
+    if (from.kind == Kind::text || to.kind == Kind::text) return false;
+    if (from.kind == Kind::enumeration) {
+        if (!to.is_integer() || to.is_subrange) return false;
+        const auto value = static_cast<std::size_t>(e.constant.integer);
+        become(e, to,
+               {.integer = wrapped(to, from.counted ? e.constant.integer : from.numbers[value])});
+        return true;
+    }
     if (to.is_real() && from.is_bits()) return false;
     if (from.is_date() || to.is_date()) return false;
     if ((from.kind == Kind::time) != (to.kind == Kind::time)) return false;

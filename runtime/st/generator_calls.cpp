@@ -268,6 +268,7 @@ Slot Generator::standard(const Expression& e, Slot wanted) {
             const Op op = static_cast<Op>(static_cast<int>(f.op) + 4 * width);
             const Slot a = argument(0), n = argument(1);
             if (!type.is_signed) return emit(op, wanted, a, n);
+            if (f.op == Op::shr_8) return emit(Op::shr_signed, wanted, a, n);
             const Type& bits = bits_type(type.bits);
             const Slot pattern = emit(of_type(Op::wrap_sint, bits), none, a);
             return emit(of_type(Op::wrap_sint, type), wanted, emit(op, none, pattern, n));

@@ -76,6 +76,7 @@
     OP(lowest_bit, boolean, "wr--", put(a, U(b) == 0 ? 0 : static_cast<std::uint64_t>(std::countr_zero(U(b))))) \
     OP(get_bits, boolean, "wrn-", put(a, U(b) >> (c & 63) & mask(c >> 6)))                           \
     OP(set_bits, boolean, "wrn-", put(a, (U(a) & ~(mask(c >> 6) << (c & 63))) | (U(b) & mask(c >> 6)) << (c & 63))) \
+    OP(shr_signed, boolean, "wrr-", put(a, I(b) >> std::min<std::uint64_t>(U(c), 63)))               \
     LINESHAFT_ST_SHIFTS(OP, 8) LINESHAFT_ST_SHIFTS(OP, 16)                                           \
     LINESHAFT_ST_SHIFTS(OP, 32) LINESHAFT_ST_SHIFTS(OP, 64)                                          \
     LINESHAFT_ST_INTEGER(OP, sint, std::int8_t) LINESHAFT_ST_INTEGER(OP, int, std::int16_t)          \

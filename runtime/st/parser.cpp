@@ -236,6 +236,11 @@ class Parser {
         out_.add(code, place.mark(), std::move(message), std::move(help));
     }
 
+    static bool closes_statement(Word word) {
+        return word == Word::end_if_ || word == Word::end_case_ || word == Word::end_for_ ||
+               word == Word::end_while_ || word == Word::end_repeat_;
+    }
+
     /// A comment without an end took the rest of the file.
     bool is_swallowed() const { return !mistakes_.empty() && mistakes_.back() >= last().place.end; }
 
@@ -255,6 +260,11 @@ class Parser {
         if (!else_ifs_.empty() && end == Word::end_if_) {
             tell("L0902", else_ifs_.back(), "'ELSE IF' begins a second IF without an END_IF",
                  "write ELSIF");
+            return false;
+        }
+        if (closes_statement(here().word) && find_pou(opener.word)) {
+            tell("L0902", here().place, fmt::format("{} ends nothing", found()),
+                 "remove it, or look for another one above that is too many");
             return false;
         }
         tell("L0902", here().place, fmt::format("expected {} before {}", shown(end), found()),
@@ -536,7 +546,9 @@ class Parser {
     void read_variables(std::vector<Declaration*>& to) {
         const std::size_t first = at_;
         const Word behind = next().word;
-        if (is_name() && (behind == Word::assign || behind == Word::open || behind == Word::dot))
+        const bool begins = is(Word::begin_) && behind != Word::colon && behind != Word::comma;
+        if (begins ||
+            (is_name() && (behind == Word::assign || behind == Word::open || behind == Word::dot)))
             return missing_end_var();
         if (!is_name() && here().word < Word::end_of_file && behind == Word::colon)
             return reserved_name();

@@ -141,6 +141,19 @@ VAR_OUTPUT HOUR, MINUTE, SECOND, MILLISECOND : INT; END_VAR
              MILLISECOND => MILLISECOND);
 END_FUNCTION
 
+FUNCTION_BLOCK TONR  // adds up the time that IN is there, until R
+VAR_INPUT IN, R : BOOL; PT : TIME; END_VAR
+VAR_OUTPUT Q : BOOL; ET : TIME; END_VAR
+VAR last : TIME; runs : BOOL; END_VAR
+    IF runs AND IN THEN ET := MIN(ET + TIME() - last, PT); END_IF;
+    IF R THEN ET := T#0s; END_IF;
+    Q := NOT R AND (Q OR IN AND ET >= PT);
+    last := TIME();
+    runs := IN;
+END_FUNCTION_BLOCK
+
+TYPE TONR_TIME : TONR; TONR_LTIME : TONR; END_TYPE
+
 FUNCTION DAY_OF_WEEK : INT  // 0 is Sunday
 VAR_INPUT IN : DATE; END_VAR
 VAR_TEMP d : DTL; END_VAR
@@ -150,10 +163,11 @@ END_FUNCTION
 )";
 
 /// Its blocks and types that are to be called.
-constexpr std::string_view names[] = {
-    "DTL",         "LDT_TO_DTL", "DTL_TO_LDT",  "DTL_TO_DT", "DTL_TO_DATE", "DTL_TO_TOD",
-    "DTL_TO_LTOD", "DT_TO_DTL",  "DATE_TO_DTL", "T_COMBINE", "CONCAT_DATE", "CONCAT_TOD",
-    "CONCAT_DT",   "SPLIT_DT",   "SPLIT_DATE",  "SPLIT_TOD", "DAY_OF_WEEK"};
+constexpr std::string_view names[] = {"DTL",         "LDT_TO_DTL", "DTL_TO_LDT",  "DTL_TO_DT",
+                                      "DTL_TO_DATE", "DTL_TO_TOD", "DTL_TO_LTOD", "DT_TO_DTL",
+                                      "DATE_TO_DTL", "T_COMBINE",  "CONCAT_DATE", "CONCAT_TOD",
+                                      "CONCAT_DT",   "SPLIT_DT",   "SPLIT_DATE",  "SPLIT_TOD",
+                                      "DAY_OF_WEEK", "TONR",       "TONR_TIME",   "TONR_LTIME"};
 
 }  // namespace
 

@@ -144,7 +144,11 @@ bool Checker::check_target(Expression& target, std::string_view how) {
     if (own) return true;
     const Type* of = target.operands[0]->type;
     const bool is_named = target.operands[0]->variable || target.operands[0]->kind == E::converted;
-    if (of && of->is_instance() && variable->section != Section::input && !is_in_test() && is_named)
+    const bool is_siemens_own =
+        of && of->kind == Kind::block && is_scl(target) &&
+        (variable->section == Section::local || variable->section == Section::output);
+    if (of && of->is_instance() && variable->section != Section::input && !is_in_test() &&
+        is_named && !is_siemens_own)
         return refuse(fmt::format("'{}' of {}", variable->text, of->name),
                       "only inputs of an instance are set from outside");
     return of && of->is_instance() ? true : check_target(*target.operands[0], how);

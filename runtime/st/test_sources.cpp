@@ -65,9 +65,16 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
         for (const Declaration* variable : block.declarations)
             entry.values.insert(small(variable->name.text));
     Word before = Word::end_of_file;
-    for (const Token& token : tokens.tokens) {
+    for (std::size_t i = 0; i < tokens.tokens.size(); ++i) {
+        const Token& token = tokens.tokens[i];
+        const Word behind = i + 1 < tokens.tokens.size() ? tokens.tokens[i + 1].word : before;
         const bool is_used = token.word == Word::name || token.word == Word::prefix;
-        if (is_used && before != Word::dot && !token.local) entry.used.insert(small(token.text));
+        const bool is_argument = (before == Word::open || before == Word::comma) &&
+                                 (behind == Word::assign || behind == Word::output);
+        const bool is_type = before == Word::colon || before == Word::of_;
+        const bool is_own = !is_type && entry.own.contains(small(token.text));
+        if (is_used && before != Word::dot && !token.local && !is_argument && !is_own)
+            entry.used.insert(small(token.text));
         before = token.word;
     }
     return entry;

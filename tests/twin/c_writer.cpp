@@ -1015,6 +1015,9 @@ class CWriter {
 
     std::string shifted(std::string_view name, const Type& type, const std::string& x,
                         const std::string& n) {
+        if (name == "SHR" && type.is_signed)
+            return made(type,
+                        fmt::format("(i64){0} >> ((u64)(i64){1} < 63 ? (u64){1} : 63)", x, n));
         const std::string pattern = made(fmt::format("u{}", type.bits), x);
         const bool left = name == "SHL" || name == "ROL";
         if (name[0] == 'S')
