@@ -160,6 +160,8 @@ struct Axis {
     MotionError plan_sync(const Context& context, const Request& request, const Moment& at,
                           const Start& from);
     MotionError get_onto_guide(const Context& context, const Moment& at, const MotionState& from);
+    CurveFault approach(const MotionState& from, const MotionState& leader, const Cam& table);
+    double foreseen() const;
     MotionError join_law(const Context& context, const Moment& at, const MotionState& from);
     MotionError place_cam(const Context& context, const MotionState& leader,
                           const MotionState& from);
@@ -178,6 +180,7 @@ struct Axis {
     JobList due_jobs(const Context& context);
     void take(const Context& context, const Moment& at, Job& job);
     void change(const Context& context, const Moment& at, Running& running, const Job& job);
+    Progress begun() const;
     void wait(const Context& context, const Moment& at, Job& job);
     void begin(const Context& context, const Moment& at, Job& job);
     void begin_added(const Context& context, const Moment& at, Job& job);

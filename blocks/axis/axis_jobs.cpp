@@ -75,7 +75,7 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
     if (is_end(job.progress)) return;
     const Request& request = job.request;
     const bool waits = request.mode != BufferMode::aborting && active.exists() && is_moving(state);
-    if (!waits && !next_state(request.command, state))
+    if ((!waits || is_phasing(request.command)) && !next_state(request.command, state))
         return tell(job, Progress::failed, refusal());
     if (request.command == Command::reset && state == AxisState::error_stop &&
         doing != Doing::holding)
@@ -87,7 +87,12 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
     if (request.command == Command::move_superimposed ||
         request.command == Command::halt_superimposed)
         return begin_added(context, at, job);
-    if (is_phasing(request.command)) return begin_phasing(context, job);
+    if (is_phasing(request.command)) {
+        if (request.mode == BufferMode::aborting || !phased.exists())
+            return begin_phasing(context, job);
+        link(context, job, inbox, JobPlace::inbox);
+        return tell(job, Progress::waiting);
+    }
     if (waits) return wait(context, at, job);
     begin(context, at, job);
 }
@@ -111,7 +116,14 @@ void Axis::change(const Context& context, const Moment& at, Running& running, co
         if (why != MotionError::none) return;
         if (queue.first != nowhere) blend(context, at);
     }
-    tell(context, running, Progress::active);
+    tell(context, running, &running == &active ? begun() : Progress::active);
+}
+
+/// StartSync: a slave may leave to meet its master at once.
+Progress Axis::begun() const {
+    const bool leaves =
+        doing == Doing::following_axes && sync.stage == SyncMotion::Stage::approaching;
+    return leaves ? Progress::approaching : Progress::active;
 }
 
 void Axis::wait(const Context& context, const Moment& at, Job& job) {
@@ -142,7 +154,7 @@ void Axis::begin(const Context& context, const Moment& at, Job& job) {
     end(context, active, Progress::aborted);
     active = {context.place_of(job), job.ticket, request, 0};
     state = *next;
-    tell(job, Progress::active);
+    tell(job, begun());
 }
 
 /// The first of the queue that can be begun.
@@ -151,7 +163,7 @@ void Axis::begin_next(const Context& context, const Moment& at) {
         Job& job = front(context);
         unlink(context, job, queue);
         begin(context, at, job);
-        if (job.progress != Progress::active) continue;
+        if (is_end(job.progress)) continue;
         if (queue.first != nowhere) blend(context, at);
         return;
     }

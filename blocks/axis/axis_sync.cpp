@@ -152,11 +152,20 @@ MotionError Axis::join_law(const Context& context, const Moment& at, const Motio
     const double left = sync.distance(leader), start = sync.coupling.start_distance;
     if (!(left > 0)) return MotionError::sync_passed;
     sync.start = at;
-    if (start == 0 || left <= start)
-        return error_of(sync.approach(from, leader, table, modulo ? period : 0));
+    if (start == 0 || left <= start) return error_of(approach(from, leader, table));
     sync.stage = Stage::waiting;
     const double rest = from.acceleration * std::abs(from.acceleration) / (2 * sync.dynamics.jerk);
     return error_of(velocity_motion.begin(from, from.velocity + rest, sync.dynamics, at));
+}
+
+CurveFault Axis::approach(const MotionState& from, const MotionState& leader, const Cam& table) {
+    return sync.approach(from, leader, table, modulo ? period : 0, foreseen());
+}
+
+/// How long a master that accelerates is taken to go on with it [s]: it may be at its velocity at
+/// any time.
+double Axis::foreseen() const {
+    return 2 * seconds(scan_interval);
 }
 
 /// A relative cam begins, on its axis, at MasterOffset and, for the slave, where the slave is.
@@ -243,6 +252,7 @@ void Axis::follow_guide(const Context& context) {
 
 void Axis::reach(const Context& context) {
     sync.stage = Stage::in_sync;
+    sync.reached = 1;
     if (active.exists()) tell(context, active, Progress::reached);
     if (queue.first != nowhere && sync.holds()) begin_next(context, {scan_time});
 }
@@ -254,7 +264,7 @@ void Axis::follow_law(const Context& context) {
         base = velocity_motion.at(scan_time);
         if (sync.distance(leader) > sync.coupling.start_distance) return;
         sync.start = {scan_time};
-        const CurveFault fault = sync.approach(base, leader, table, modulo ? period : 0);
+        const CurveFault fault = approach(base, leader, table);
         if (fault != CurveFault::none) return fail(context, {scan_time}, error_of(fault));
         return tell(context, active, Progress::approaching);
     }
@@ -263,16 +273,17 @@ void Axis::follow_law(const Context& context) {
         return foresee(context, leader);
     }
     base = sync.law_at(leader.position, table).led_by(leader);
-    if (sync.stage == Stage::approaching || !active.exists()) reach(context);
+    if (sync.reached == 0 || !active.exists()) reach(context);
     if (sync.law == Law::cammed) count_periods(context, table, leader);
 }
 
-/// A master that moves otherwise than when the limits were checked: whether they are still kept.
+/// A master that moves otherwise than when the limits were checked, where its jerk does not count:
+/// whether they are still kept.
 void Axis::foresee(const Context& context, const MotionState& leader) {
-    if (sync.transition.foresees(leader, sync.start.until(scan_time))) return;
-    sync.transition.guide = leader;
+    if (sync.sure != 0 && sync.transition.foresees(leader, sync.start.until(scan_time))) return;
     sync.start = {scan_time};
-    const CurveFault fault = check(sync.curve, leader, sync.limits(base.velocity));
+    const CurveFault fault =
+        sync.foresee(sync.curve, leader, sync.limits(base.velocity), foreseen());
     if (fault != CurveFault::none) fail(context, {scan_time}, error_of(fault));
 }
 

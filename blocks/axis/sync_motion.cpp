@@ -55,7 +55,7 @@ void SyncMotion::meet(const MotionState& master, double position, double repeats
 }
 
 CurveFault SyncMotion::approach(const MotionState& slave, const MotionState& master, const Cam& cam,
-                                double period) {
+                                double period, double interval) {
     CurvePoint from, to = law_at(sync_x, cam);
     const double length = sync_x - master.position;
     if (!start_of_curve(slave, master, from)) return CurveFault::standing_master;
@@ -69,13 +69,21 @@ CurveFault SyncMotion::approach(const MotionState& slave, const MotionState& mas
     const Range slope = range(tried.y.slope(), 0, 1);
     const bool turns = slope.least < 0 && slope.greatest > 0;
     const double towards = to.slope * direction;
-    const CurveFault fault = check(
-        tried, master, turns ? limits_towards(towards, symmetric(dynamics)) : limits(towards));
+    const CurveFault fault =
+        foresee(tried, master,
+                turns ? limits_towards(towards, symmetric(dynamics)) : limits(towards), interval);
     if (fault != CurveFault::none) return fault;
     curve = tried;
-    transition.guide = master;
     stage = Stage::approaching;
     return fault;
+}
+
+CurveFault SyncMotion::foresee(const SyncCurve& way, const MotionState& master,
+                               const TransitionLimits& kept, double interval) {
+    transition.guide = master;
+    transition.guide.jerk = 0;
+    sure = check(way, master, kept) == CurveFault::none ? 1 : 0;
+    return sure != 0 ? CurveFault::none : check_soon(way, master, kept, interval);
 }
 
 bool SyncMotion::is_on_law(const MotionState& slave, const MotionState& master,

@@ -35,6 +35,8 @@ struct SyncMotion {
 
     Law law = Law::geared;
     Stage stage = Stage::in_sync;
+    std::int64_t reached = 0;  ///< the command has been told of in_sync
+    std::int64_t sure = 0;     ///< a curve's limits are kept if the master goes on as foreseen
     Coupling coupling;
     Dynamics dynamics;
 
@@ -81,9 +83,15 @@ struct SyncMotion {
     }
 
     /// From the state of the slave on the way to the law at `sync_x`. `period` of the slave: 0 if
-    /// it is not modulo.
+    /// it is not modulo. `interval`: see foresee.
     CurveFault approach(const MotionState& slave, const MotionState& master, const Cam& cam,
-                        double period);
+                        double period, double interval);
+
+    /// Whether the limits are kept on a curve. A master that accelerates may be at its velocity at
+    /// any time: if they would not be to the end, those of `interval` [s] and of its velocity then
+    /// count.
+    CurveFault foresee(const SyncCurve& way, const MotionState& master,
+                       const TransitionLimits& kept, double interval);
 
     /// Whether the slave is where the law has it, with its velocity.
     bool is_on_law(const MotionState& slave, const MotionState& master, const Cam& cam) const;

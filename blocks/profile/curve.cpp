@@ -39,12 +39,28 @@ CurvePoint SyncCurve::at(double x) const {
 }
 
 CurveFault check(const SyncCurve& curve, const MotionState& now, const TransitionLimits& limits) {
+    return check(curve, now, limits, curve.begin + curve.length);
+}
+
+CurveFault check_soon(const SyncCurve& curve, const MotionState& now,
+                      const TransitionLimits& limits, double interval) {
+    const MotionState then = now.after(interval);
+    for (const double a : {now.acceleration, then.acceleration})
+        if (const CurveFault soon =
+                check(curve, {now.position, now.velocity, a, 0}, limits, then.position);
+            soon != CurveFault::none)
+            return soon;
+    return check(curve, {then.position, then.velocity, 0, 0}, limits);
+}
+
+CurveFault check(const SyncCurve& curve, const MotionState& now, const TransitionLimits& limits,
+                 double last) {
     const double L = curve.length, low = std::max(curve.share(now.position), 0.0);
     const double a = now.acceleration, gain = 2 * a * L;
     const double square = now.velocity * now.velocity;
     const bool towards = now.velocity != 0 ? now.velocity * L > 0 : a * L > 0;
     const double turn = gain < 0 && towards ? low - square / gain : 1;
-    const double high = towards ? std::min(turn, 1.0) : low;
+    const double high = towards ? std::min({turn, curve.share(last), 1.0}) : low;
     if (!(low < high)) return CurveFault::none;
 
     const Polynomial<1> speed{{square - gain * low, gain}};

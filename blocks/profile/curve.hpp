@@ -34,10 +34,17 @@ struct SyncCurve {
 enum class CurveFault : std::int64_t { none, velocity, acceleration, jerk, standing_master };
 
 /// Whether the slave keeps its limits at every instant from the master's state `now` to the end of
-/// the curve, or to where the master turns, if the master keeps its acceleration. The squares of
-/// the slave's velocity and jerk and its acceleration are polynomials over the way then: the master
-/// has v^2 = v0^2 + 2 a (x - x0).
+/// the curve, or to where the master turns or is at `last`, if the master keeps its acceleration.
+/// The squares of the slave's velocity and jerk and its acceleration are polynomials over the way
+/// then: the master has v^2 = v0^2 + 2 a (x - x0).
+CurveFault check(const SyncCurve& curve, const MotionState& now, const TransitionLimits& limits,
+                 double last);
 CurveFault check(const SyncCurve& curve, const MotionState& now, const TransitionLimits& limits);
+
+/// The same of a master that keeps its acceleration or its jerk for `interval` [s], and then its
+/// velocity.
+CurveFault check_soon(const SyncCurve& curve, const MotionState& now,
+                      const TransitionLimits& limits, double interval);
 
 /// Where slave and master stand when they begin to approach: y' = v / vm, y'' = (a - y' am) / vm^2.
 /// A slave that stands begins with both 0. False where the slave moves and the master stands.

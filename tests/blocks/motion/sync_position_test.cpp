@@ -123,3 +123,46 @@ TEST_CASE("a sync position that cannot be met within the limits is refused") {
     fast.step(3);
     CHECK(fast.is("gear.Error"));
 }
+
+TEST_CASE("a slave that meets a master whose velocity changes keeps its limits, or is in error") {
+    constexpr std::uint64_t rounds = 300;
+    int in_sync = 0, refused = 0;
+    for (std::uint64_t seed = 1; seed <= rounds; ++seed) {
+        oracle::Random random{seed};
+        const double V = random.decades(1.5, 3), A = V * random.decades(0.5, 1.5),
+                     J = A * random.decades(0.5, 2);
+        const double way = random.between(0.2, 3) * V;
+        MotionBench bench(fmt::format(
+            "tasks: {{main: {{every: 1 ms}}}}\nblocks:\n"
+            "  m: {{type: axis, task: main, default_velocity: {0} mm/s, default_acceleration: {1} "
+            "mm/s^2, default_deceleration: {1} mm/s^2, default_jerk: {2} mm/s^3}}\n"
+            "  s: {{type: axis, task: main, default_velocity: {3} mm/s, default_acceleration: {4} "
+            "mm/s^2, default_deceleration: {4} mm/s^2, default_jerk: {5} mm/s^3}}\n"
+            "  first: {{type: MC_MoveVelocity, task: main, Axis: m, Velocity: {6} mm/s}}\n"
+            "  second: {{type: MC_MoveVelocity, task: main, Axis: m, Velocity: {7} mm/s}}\n"
+            "  gear: {{type: MC_GearInPos, task: main, Master: m, Slave: s, MasterSyncPosition: "
+            "{8} mm, SlaveSyncPosition: {9} mm}}\n",
+            V, A * random.decades(-1, 0), random.one_in(3) ? 0 : J, V, A, J,
+            V * random.between(0.1, 0.8), V * random.between(0.1, 0.8), way,
+            way * random.between(0.3, 1.2)));
+        const std::int64_t begin = random.one_in(2) ? 0 : 300, coupled = random.one_in(2) ? 100 : 1;
+        for (int i = 0; i < 40'000 && !bench.is("gear.InSync") && !bench.is("gear.Error"); ++i) {
+            if (i == begin) bench.set("first.Execute", true);
+            if (i == 900) bench.set("second.Execute", true);
+            if (i == coupled) bench.set("gear.Execute", true);
+            bench.step();
+            const Axis& slave = bench.axis("s");
+            if (slave.state != AxisState::synchronized_motion) continue;
+            const MotionState now = slave.total();
+            INFO("seed " << seed << ", at " << bench.now() << " ms");
+            REQUIRE(std::abs(now.velocity) <= V * (1 + 1e-8));
+            REQUIRE(std::abs(now.acceleration) <= A * (1 + 1e-8));
+        }
+        in_sync += bench.is("gear.InSync") ? 1 : 0;
+        refused += bench.is("gear.Error") ? 1 : 0;
+    }
+    CAPTURE(in_sync, refused);
+    CHECK(in_sync > 100);
+    CHECK(refused > 20);
+    CHECK(in_sync + refused == rounds);
+}
