@@ -506,11 +506,23 @@ class Parser {
         while (!is(Word::end_of_file) && !here().first_in_line) take();
     }
 
+    /// Whether its variables keep their values.
+    static bool stays(PouKind kind) {
+        return kind == PouKind::program || kind == PouKind::function_block;
+    }
+
     void read_sections(Pou& pou, Word end) {
         while (!is(end) && !is(Word::end_of_file)) {
+            const bool is_inst =
+                is(Word::name) && here().first_in_line && same_name(here().text, "var_inst");
             const auto* it = std::ranges::find(section_words, here().word, &SectionWord::word);
-            if (it == std::end(section_words)) return;
-            const DeclarationBlock block = read_section(it->section);
+            if (it == std::end(section_words) && !is_inst) return;
+            if (is_inst || (is(Word::var_stat_) && !stays(pou.kind)))
+                fail("L0903", here().place,
+                     fmt::format("{} is not supported here", here().place.text()),
+                     pou.kind == PouKind::function ? "what is to stay makes a FUNCTION_BLOCK"
+                                                   : "declare it in the VAR of the block");
+            const DeclarationBlock block = read_section(is_inst ? Section::local : it->section);
             if (block.section != Section::external) pou.blocks.push_back(block);
         }
     }

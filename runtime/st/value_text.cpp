@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/utf8.hpp"
+
 namespace lineshaft::st {
 
 namespace {
@@ -86,12 +88,14 @@ std::string time_literal(std::int64_t nanoseconds) {
 
 std::string text_literal(std::string_view text) {
     std::string out = "'";
-    for (const char c : text) {
-        if (c == '$' || c == '\'') out += '$';
-        if (static_cast<unsigned char>(c) < 0x20)
-            out += fmt::format("${:02X}", static_cast<unsigned>(c));
+    while (!text.empty()) {
+        const Utf8Character c = first_character(text);
+        if (c.code == '$' || c.code == '\'') out += '$';
+        if (!c.valid || c.code < 0x20)
+            out += fmt::format("${:02X}", static_cast<unsigned char>(text.front()));
         else
-            out += c;
+            out += text.substr(0, c.bytes);
+        text.remove_prefix(c.bytes);
     }
     return out + "'";
 }
