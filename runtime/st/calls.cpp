@@ -687,7 +687,7 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
         call = copy;
         return target;
     }
-    if (from.kind == Kind::text && (target->is_time() || target->kind == Kind::enumeration))
+    if (from.kind == Kind::text && target->kind == Kind::enumeration)
         return fail(
             "L0905", call.place,
             fmt::format("there is no conversion of {} to {}", describe(from), describe(*target)));

@@ -128,7 +128,7 @@ const Type* Checker::check_number(Expression& e) {
 const Type* Checker::check_time(Expression& e) {
     const std::string_view prefix = e.place.text().substr(0, e.place.text().find('#'));
     if (const Type* type = find_prefix(prefix); type && type->is_date()) {
-        const auto value = read_date(e.token.text, *type);
+        const auto value = read_date(e.token.text, type->kind);
         if (!value)
             return fail("L0908", e.place,
                         fmt::format("'{}' is not a {}", e.place.text(), type->name),

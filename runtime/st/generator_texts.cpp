@@ -104,7 +104,12 @@ Slot Generator::text_conversion(const Expression& e) {
         put(Op::move, text + 1, number);
         return made;
     }
-    const Op op = from.type->is_real()
+    if (from.type->is_time()) {
+        put(Op::text_of_time, made, number, static_cast<Slot>(from.type->kind));
+        return made;
+    }
+    const Op op = from.type->kind == Type::Kind::boolean ? Op::text_of_truth
+                  : from.type->is_real()
                       ? (from.type->bits == 32 ? Op::text_of_float : Op::text_of_real)
                   : from.type->is_unsigned_64() ? Op::text_of_unsigned
                                                 : Op::text_of_signed;

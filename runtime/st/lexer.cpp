@@ -98,7 +98,9 @@ class Lexer {
         return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0';
     }
     bool at(std::string_view text) const {
-        return text_.substr(std::min(at_, text_.size())).starts_with(text);
+        std::size_t same = 0;
+        while (same < text.size() && peek(same) == text[same]) ++same;
+        return same == text.size();
     }
     Place place(std::size_t begin, std::size_t end) const {
         return {&file_, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};

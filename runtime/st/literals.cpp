@@ -4,6 +4,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -54,11 +55,17 @@ constexpr TimeUnit time_units[] = {{"d", 86'400'000'000'000},
                                    {"us", 1'000},
                                    {"ns", 1}};
 
-std::string without_underscores(std::string_view text, bool small) {
-    std::string out;
+using Characters = fmt::memory_buffer;  // on the stack, as long as a literal usually is
+
+Characters without_underscores(std::string_view text, bool small) {
+    Characters out;
     for (const char c : text)
-        if (c != '_') out += small ? lower(c) : c;
+        if (c != '_') out.push_back(small ? lower(c) : c);
     return out;
+}
+
+std::string_view view(const Characters& text) {
+    return {text.data(), text.size()};
 }
 
 /// `3.5` in a unit of so many ns; a fraction of a ns is left out.
@@ -89,16 +96,16 @@ std::optional<Wide> read_integer(std::string_view text) {
 }
 
 std::optional<double> read_real(std::string_view text) {
-    const std::string plain = without_underscores(text, false);
+    const Characters plain = without_underscores(text, false);
     double value = 0;
-    const auto [end, error] = std::from_chars(plain.data(), plain.data() + plain.size(), value);
-    if (error != std::errc() || end != plain.data() + plain.size()) return {};
+    const auto [end, error] = std::from_chars(plain.begin(), plain.end(), value);
+    if (error != std::errc() || end != plain.end()) return {};
     return value;
 }
 
 std::optional<Wide> read_duration(std::string_view given) {
-    const std::string text = without_underscores(given, true);
-    std::string_view rest = text;
+    const Characters text = without_underscores(given, true);
+    std::string_view rest = view(text);
     const bool negative = rest.starts_with('-');
     if (negative || rest.starts_with('+')) rest.remove_prefix(1);
     if (rest.empty()) return {};
@@ -129,24 +136,24 @@ namespace {
 std::optional<Wide> read_clock(std::string_view text) {
     constexpr std::string_view names[] = {"h", "m", "s"};
     constexpr int ends[] = {24, 60, 60};
-    std::string duration;
+    Characters duration;
     for (int i = 0; !text.empty(); ++i) {
         const std::size_t end = std::min(text.find(':'), text.size());
         const auto number = read_digits(text.substr(0, std::min(end, text.find('.'))), 10);
         if (i == 3 || !number || *number >= ends[i]) return {};
-        duration += fmt::format("{}{}", text.substr(0, end), names[i]);
+        fmt::format_to(std::back_inserter(duration), "{}{}", text.substr(0, end), names[i]);
         text.remove_prefix(std::min(end + 1, text.size()));
         if (i == 0 && text.empty()) return {};
     }
-    return read_duration(duration);
+    return read_duration(view(duration));
 }
 
 }  // namespace
 
-std::optional<Wide> read_date(std::string_view text, const Type& type) {
-    if (type.kind == Type::Kind::clock) return read_clock(text);
+std::optional<Wide> read_date(std::string_view text, Type::Kind kind) {
+    if (kind == Type::Kind::clock) return read_clock(text);
     int parts[3] = {};
-    const bool has_time = type.kind == Type::Kind::moment;
+    const bool has_time = kind == Type::Kind::moment;
     for (int& part : parts) {
         const bool is_last = &part == &parts[2];
         const std::size_t end = is_last && !has_time ? text.size() : text.find('-');

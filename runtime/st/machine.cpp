@@ -14,6 +14,8 @@
 
 #include "runtime/source/letters.hpp"
 #include "runtime/st/constant.hpp"
+#include "runtime/st/literals.hpp"
+#include "runtime/st/value_text.hpp"
 
 namespace lineshaft::st {
 
@@ -226,6 +228,26 @@ std::uint64_t truth_of_text(const std::byte* from) {
     const auto is_letter = [](char a, char b) { return upper(a) == b; };
     const std::string_view text = text_at(from);
     return text == "1" || std::ranges::equal(text, std::string_view("TRUE"), is_letter) ? 1 : 0;
+}
+
+void write_text(std::byte* to, std::string_view text) {
+    std::memcpy(to + 8, text.data(), text.size());
+    set_word(to, 0, text.size());
+}
+
+void write_time(std::byte* to, std::uint64_t kind, std::int64_t value) {
+    fmt::memory_buffer text;
+    add_time(text, static_cast<Type::Kind>(kind), value);
+    write_text(to, {text.data(), text.size()});
+}
+
+/// `T#1s`, or without what stands before '#'; 0 where it is none.
+std::int64_t time_of_text(std::uint64_t kind, const std::byte* from) {
+    std::string_view text = text_at(from);
+    text.remove_prefix(text.find('#') + 1);  // 0 without one
+    const auto of = static_cast<Type::Kind>(kind);
+    const auto value = of == Type::Kind::time ? read_duration(text) : read_date(text, of);
+    return static_cast<std::int64_t>(value.value_or(0));
 }
 
 /// What a scan needs besides where it is: apart, so that the registers are left to that.

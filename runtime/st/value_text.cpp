@@ -3,8 +3,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-
-#include <fmt/format.h>
+#include <iterator>
 
 #include "runtime/source/utf8.hpp"
 
@@ -23,21 +22,49 @@ std::string real_text(double value, bool is_long) {
     return plain ? text + ".0" : text;
 }
 
-/// `D#2020-02-29`, `TOD#12:30:15.250000000`, `DT#2020-02-29-12:30:15`
-std::string date_literal(Kind kind, std::int64_t value) {
+using Out = std::back_insert_iterator<fmt::memory_buffer>;
+
+void add_duration(Out to, std::int64_t nanoseconds) {
+    constexpr std::pair<std::uint64_t, const char*> units[] = {{86'400'000'000'000, "d"},
+                                                               {3'600'000'000'000, "h"},
+                                                               {60'000'000'000, "m"},
+                                                               {1'000'000'000, "s"},
+                                                               {1'000'000, "ms"},
+                                                               {1'000, "us"},
+                                                               {1, "ns"}};
+    auto left = static_cast<std::uint64_t>(nanoseconds);
+    if (nanoseconds < 0) left = 0 - left;
+    fmt::format_to(to, "T#{}{}", nanoseconds < 0 ? "-" : "", nanoseconds == 0 ? "0s" : "");
+    for (const auto& [size, unit] : units) {
+        if (left >= size) fmt::format_to(to, "{}{}", left / size, unit);
+        left %= size;
+    }
+}
+
+void add_date(Out to, Kind kind, std::int64_t since_1970) {
     using namespace std::chrono;
-    const sys_time<nanoseconds> moment{nanoseconds(value)};
+    const sys_time<nanoseconds> moment{nanoseconds(since_1970)};
     const auto midnight = floor<days>(moment);
     const year_month_day day(midnight);
     const hh_mm_ss clock(moment - midnight);
-    const std::string date =
-        fmt::format("{:04}-{:02}-{:02}", static_cast<int>(day.year()),
-                    static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()));
-    if (kind == Kind::date) return "D#" + date;
-    std::string time = fmt::format("{:02}:{:02}:{:02}", clock.hours().count(),
-                                   clock.minutes().count(), clock.seconds().count());
-    if (clock.subseconds().count() != 0) time += fmt::format(".{:09}", clock.subseconds().count());
-    return kind == Kind::clock ? "TOD#" + time : "DT#" + date + "-" + time;
+    fmt::format_to(to, "{}", kind == Kind::date ? "D#" : kind == Kind::clock ? "TOD#" : "DT#");
+    if (kind != Kind::clock)
+        fmt::format_to(to, "{:04}-{:02}-{:02}", static_cast<int>(day.year()),
+                       static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()));
+    if (kind == Kind::date) return;
+    fmt::format_to(to, "{}{:02}:{:02}:{:02}", kind == Kind::moment ? "-" : "",
+                   clock.hours().count(), clock.minutes().count(), clock.seconds().count());
+    const auto rest = clock.subseconds().count();
+    if (rest % 1'000'000 != 0)
+        fmt::format_to(to, ".{:09}", rest);
+    else if (rest != 0)
+        fmt::format_to(to, ".{:03}", rest / 1'000'000);
+}
+
+std::string literal(Kind kind, std::int64_t nanoseconds) {
+    fmt::memory_buffer text;
+    add_time(text, kind, nanoseconds);
+    return fmt::to_string(text);
 }
 
 }  // namespace
@@ -54,11 +81,10 @@ std::string value_text(const Type& type, std::uint64_t slot) {
         case Kind::any_real:
             return real_text(std::bit_cast<double>(slot), type.bits != 32);
         case Kind::time:
-            return time_literal(number);
         case Kind::date:
         case Kind::clock:
         case Kind::moment:
-            return date_literal(type.kind, number);
+            return literal(type.kind, number);
         case Kind::enumeration:
             return slot < type.values.size() ? fmt::format("{}#{}", type.name, type.values[slot])
                                              : std::to_string(number);
@@ -68,22 +94,14 @@ std::string value_text(const Type& type, std::uint64_t slot) {
 }
 
 std::string time_literal(std::int64_t nanoseconds) {
-    constexpr std::pair<std::uint64_t, const char*> units[] = {{86'400'000'000'000, "d"},
-                                                               {3'600'000'000'000, "h"},
-                                                               {60'000'000'000, "m"},
-                                                               {1'000'000'000, "s"},
-                                                               {1'000'000, "ms"},
-                                                               {1'000, "us"},
-                                                               {1, "ns"}};
-    if (nanoseconds == 0) return "T#0s";
-    auto left = static_cast<std::uint64_t>(nanoseconds);
-    if (nanoseconds < 0) left = 0 - left;
-    std::string text = nanoseconds < 0 ? "T#-" : "T#";
-    for (const auto& [size, unit] : units) {
-        if (left >= size) text += fmt::format("{}{}", left / size, unit);
-        left %= size;
-    }
-    return text;
+    return literal(Kind::time, nanoseconds);
+}
+
+void add_time(fmt::memory_buffer& to, Kind kind, std::int64_t nanoseconds) {
+    if (kind == Kind::time)
+        add_duration(std::back_inserter(to), nanoseconds);
+    else
+        add_date(std::back_inserter(to), kind, nanoseconds);
 }
 
 std::string text_literal(std::string_view text) {

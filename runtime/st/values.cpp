@@ -214,6 +214,8 @@ Slot Generator::converted(const Expression& e, Slot wanted) {
             return e.type->bits == 32 ? emit(Op::narrow, wanted, real) : real;
         }
         if (e.type->kind == Kind::boolean) return emit(Op::truth_of_text, wanted, text);
+        if (e.type->is_time())
+            return emit(Op::time_of_text, wanted, text, static_cast<Slot>(e.type->kind));
         if (e.type->is_character) {
             const Slot to = result(wanted);
             put(Op::text_character, to, text, constant_slot(1), 1);

@@ -126,6 +126,14 @@ TEST_CASE("Structured Text: a wire's value beyond an input's type is a fault", "
     }
 }
 
+TEST_CASE("Structured Text: a source without a variable runs", "[st]") {
+    const st::Library library =
+        compiled("FUNCTION Nothing : Void\nEND_FUNCTION\nPROGRAM Main\nNothing();\nEND_PROGRAM\n");
+    st::Instances instances(library);
+    instances.scan(0, 1);
+    CHECK(instances.text("error") == "false");
+}
+
 TEST_CASE("Structured Text: a fault has its place and the calls that led there", "[st]") {
     const st::Library library = compiled(
         "FUNCTION Ratio : INT\nVAR_INPUT a, b : INT; END_VAR\nRatio := a / b;\nEND_FUNCTION\n"
@@ -155,7 +163,8 @@ TEST_CASE("Structured Text: executed instructions are counted by class", "[st]")
 }
 
 TEST_CASE("Structured Text: a scan allocates nothing", "[st]") {
-    const st::Library library = compiled(st::read(LINESHAFT_SOURCE_DIR "/tests/st/texts.st")->text);
+    const std::string name = GENERATE("texts.st", "texts_of_times.st");
+    const st::Library library = compiled(st::read(LINESHAFT_SOURCE_DIR "/tests/st/" + name)->text);
     st::Instances instances(library);
     std::vector<std::byte*> places{instances.memory(0)};
     const BlockType& kind = library.kinds()[0];
