@@ -326,6 +326,30 @@ bool Checker::put_in_order(Expression& call, const StandardFunction& f) {
     return true;
 }
 
+/// `LIMIT_INT`, `SHL_WORD`: IEC 61131-3:2013, 6.6.1.7.
+bool is_typed_function(std::string_view name) {
+    const std::size_t end = name.rfind('_');
+    if (end == name.npos || !find_elementary(name.substr(end + 1))) return false;
+    const int standard = find_standard_function(name.substr(0, end));
+    return standard >= 0 &&
+           standard_functions()[static_cast<std::size_t>(standard)].rule != Rule::statement;
+}
+
+const Type* Checker::check_typed_function(Expression& call) {
+    Token& name = call.operands[0]->token;
+    const std::string_view written = name.text;
+    const std::size_t end = written.rfind('_');
+    const Type& type = *find_elementary(written.substr(end + 1));
+    name.text = written.substr(0, end);
+    const Type* result = check_standard_function(call, &type);
+    name.text = written;
+    if (!result || result->kind == Kind::boolean || same_type(*result, type)) return result;
+    if (widens(*result, type)) return convert_result(call, *result, type);
+    return fail("L0906", call.place,
+                fmt::format("{} takes {}, not {}", written, type.name, describe(*result)),
+                fmt::format("write {}", written.substr(0, end)));
+}
+
 const Type* Checker::check_standard_function(Expression& call, const Type* expected) {
     const Token& name = call.operands[0]->token;
     call.standard = find_standard_function(name.text);
@@ -348,13 +372,13 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
             return fail("L0907", name.place,
                         fmt::format("'{}' is a kind of block, not an instance", name.text),
                         "declare one in VAR, and call that");
+        if (is_typed_function(name.text)) return check_typed_function(call);
         std::vector<std::string> names = visible_names();
         for (const StandardFunction& f : standard_functions()) names.emplace_back(f.name);
         if (is_in_test())
             for (const TestStatement& known : test_statements) names.emplace_back(known.name);
         for (Argument& argument : call.arguments) check(*argument.value);
-        return fail("L0904", name.place, fmt::format("'{}' is not declared", name.text),
-                    suggest(name.text, nearest(name.text, names)));
+        return undeclared(name, name.place, names);
     }
     const StandardFunction& f = standard_functions()[static_cast<std::size_t>(call.standard)];
     if (!check_count(call, f) || !put_in_order(call, f)) return nullptr;
@@ -480,7 +504,7 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
             const Type* type = common_from(0);
             if (!type) return nullptr;
             const bool number = type->is_number() || type->is_time() ||
-                                (f.rule == Rule::extremum && type->kind == Kind::bits);
+                                (f.rule != Rule::absolute && type->kind == Kind::bits);
             if (number || f.rule == Rule::move) return type;
             return fail("L0905", arguments[0].value->place,
                         fmt::format("{} takes numbers, not {}", f.name, describe(*type)));
@@ -699,6 +723,8 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
     Expression* operand = value;
     convert(operand, *target);
     if (operand->kind == Expression::Kind::converted && truncates) operand->op = Word::divided;
+    const bool has_sign = target->kind == Kind::text && from.is_integer() && is_scl(call);
+    if (has_sign) operand->op = Word::plus;
     const Place place = call.place;
     call = Expression(*operand);
     call.place = place;

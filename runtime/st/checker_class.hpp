@@ -101,6 +101,7 @@ class Checker {
     Routine* find_part(const Type& type, std::string_view name);
     const Type* check_part(Expression& member, Routine& part);
     const Type* unknown_name(Expression& expression);
+    const Type* undeclared(const Token& name, Place place, const std::vector<std::string>& names);
     const Type* enumeration_of(const Expression& member);
     const Type* check_value(Expression& e, const Type& enumeration, const Token& name);
     const Type* check_member(Expression& expression);
@@ -149,6 +150,7 @@ class Checker {
     Variable* find_parameter(Argument& argument, Routine& routine, std::size_t position);
     bool check_count(const Expression& call, const StandardFunction& function);
     bool put_in_order(Expression& call, const StandardFunction& function);
+    const Type* check_typed_function(Expression& call);
     const Type* check_standard_function(Expression& call, const Type* expected);
     const Type* check_conversion(Expression& call, std::string_view name);
     const Type* check_bcd(Expression& call, const Type* source, const Type& target, bool to_bcd);
@@ -219,6 +221,7 @@ class Checker {
     Type* mocks_ = nullptr;       ///< of the global that has what MOCK_FUNCTION says
     Routine* routine_ = nullptr;  ///< that is being checked
     int loops_ = 0;               ///< around the statement
+    std::unordered_map<const Routine*, NameSet> undeclared_;  ///< names that were told
 };
 
 }  // namespace lineshaft::st

@@ -42,11 +42,11 @@ bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOption
     bool uses_standard = false;
     std::set<const BlockType*> used;
     for (const auto& source : to.sources) {
-        const Tokens tokens = read_tokens(source, out);
-        parse(tokens, to.tree, out, source.get() == tests);
+        Tokens tokens = read_tokens(source, out);
         uses_standard = uses_standard || uses_standard_source(tokens);
         for (const BlockType& type : standard.types())
             if (uses_source_of(type, tokens)) used.insert(&type);
+        parse(std::move(tokens), to.tree, out, source.get() == tests);
     }
     if (!out.empty()) return false;
     if (uses_standard) add_standard(standard_source(), to.tree, out);

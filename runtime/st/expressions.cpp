@@ -304,8 +304,15 @@ const Type* Checker::unknown_name(Expression& e) {
                    : fail("L0914", e.place, fmt::format("'{}' is a function", name),
                           fmt::format("call it: {}()", name));
     }
-    return fail("L0904", e.place, fmt::format("'{}' is not declared", name),
-                suggest(name, nearest(name, visible_names())));
+    return undeclared(e.token, e.place, visible_names());
+}
+
+/// Told once in a block.
+const Type* Checker::undeclared(const Token& name, Place place,
+                                const std::vector<std::string>& names) {
+    if (!undeclared_[routine_].insert(name.text).second) return nullptr;
+    return fail("L0904", place, fmt::format("'{}' is not declared", name.text),
+                suggest(name.text, nearest(name.text, names)));
 }
 
 std::vector<std::string> Checker::visible_names() const {
@@ -478,12 +485,12 @@ const Type* Checker::check_unary(Expression& e, const Type* expected) {
     Expression*& operand = e.operands[0];
     const Type* type = check(*operand, expected);
     if (!type) return nullptr;
-    if (e.op == Word::not_) reinterpret(e, Kind::integer);
+    reinterpret(e, e.op == Word::not_ ? Kind::integer : Kind::bits, expected);
     type = operand->type;
     const bool fits = e.op == Word::not_ ? type->kind == Kind::boolean || type->is_bits()
                                          : type->is_integer() || type->is_real() ||
                                                type->kind == Kind::time || type->is_bits();
-    if (!fits || (e.op == Word::minus && type->kind == Kind::bits))
+    if (!fits)
         return fail("L0905", e.place,
                     fmt::format("{} does not go with {}", shown(e.op), describe(*type)),
                     e.op == Word::not_ ? "NOT takes a BOOL or a bit string" : "");
@@ -593,11 +600,11 @@ const Type* Checker::unite(Expression& e, const Type* expected) {
     return coerce(left, *common) && coerce(right, *common) ? common : nullptr;
 }
 
-/// SCL joins integers as bit strings of their width. It reckons with bit strings as with integers:
-/// with the wanted one, if that is wider.
+/// Integers are joined as bit strings of their width. It is reckoned with bit strings as with
+/// integers: with the wanted one, if that is wider.
 void Checker::reinterpret(Expression& e, Kind from, const Type* expected) {
     for (Expression*& operand : e.operands) {
-        if (!operand || !is_scl(e)) continue;
+        if (!operand) continue;
         const Type& type = operand->type->plain();
         if (type.kind != from) continue;
         const bool wider =
@@ -609,7 +616,9 @@ void Checker::reinterpret(Expression& e, Kind from, const Type* expected) {
 }
 
 const Type* Checker::check_logic(Expression& e) {
-    reinterpret(e, Kind::integer);
+    const auto is_truth = [](const Expression* o) { return o->type->kind == Kind::boolean; };
+    const bool of_truths = std::ranges::any_of(e.operands, is_truth);
+    if (!of_truths) reinterpret(e, Kind::integer);
     const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
     for (const Expression* operand : e.operands) {
         const Type& type = *operand->type;
@@ -675,9 +684,6 @@ const Type* Checker::check_arithmetic(Expression& e, const Type* expected) {
         const Type& type = *operand->type;
         if (type.is_number() || type.is_any()) continue;
         std::string help;
-        if (type.kind == Kind::bits)
-            help = fmt::format("convert it: {}_TO_{}(...)", type.name,
-                               integer_type(type.bits, false).name);
         if (type.kind == Kind::boolean) help = "convert it: BOOL_TO_INT(...)";
         if (type.kind == Kind::enumeration) help = "convert it: TO_INT(...)";
         if (type.kind == Kind::text) help = "join texts with CONCAT(...)";
@@ -880,12 +886,11 @@ bool Checker::coerce_constant(Expression& e, const Type& to) {
     return true;
 }
 
-/// SCL takes a bit string for an integer of its width or a wider one, and the other way.
-bool is_same_pattern(const Expression& e, const Type& to) {
-    const Type& from = *e.type;
+/// A bit string stands for an integer of its width or a wider one, and the other way.
+bool is_same_pattern(const Type& from, const Type& to) {
     const bool mixes = (from.kind == Kind::bits && to.kind == Kind::integer) ||
                        (from.kind == Kind::integer && to.kind == Kind::bits);
-    return mixes && from.bits <= to.bits && !to.is_subrange && is_scl(e);
+    return mixes && from.bits <= to.bits && !to.is_subrange;
 }
 
 /// SCL makes a REAL of a DINT, which loses above 2^24.
@@ -954,7 +959,7 @@ bool Checker::coerce(Expression*& e, const Type& to) {
         return true;
     }
     const bool fits =
-        from.is_scalar() && (widens(from, to) || is_same_pattern(*e, to) || rounds(*e, to));
+        from.is_scalar() && (widens(from, to) || is_same_pattern(from, to) || rounds(*e, to));
     if (!fits) return refuse_conversion(*e, to);
     convert(e, to);
     return true;
@@ -975,7 +980,11 @@ bool Checker::refuse_conversion(const Expression& e, const Type& to) {
         return false;
     }
     std::string help;
-    if (to.kind == Kind::time && from.is_number()) help = "write a time with its unit: T#500ms";
+    if (to.kind == Kind::time && from.is_number())
+        help = from.is_any() ? "write a time with its unit: T#500ms"
+                             : fmt::format("write {}_TO_TIME(...), of ms", from.plain().name);
+    if (to.kind == Kind::structure && describe(to) == describe(from))
+        help = "declare a TYPE, and both variables of that";
     if (to.is_character && from.kind == Kind::text) help = "a CHAR is one character: 'A'";
     if (to.kind == Kind::boolean && from.is_number()) help = "compare it, as in 'x <> 0'";
     if (to.kind == Kind::enumeration && !to.values.empty())

@@ -116,8 +116,9 @@ void Generator::begin(Routine& routine) {
     numbers_[&routine] = static_cast<std::uint32_t>(code_.routines.size());
     code_.routines.push_back({routine.name, next(), 0, 0, routine.depth});
     place_ = routine.pou->place;
-    if (routine.temps_begin < routine.variables_end) {
-        image_uses_.push_back({next(), routine.is_function() ? nullptr : block->type, &routine});
+    const bool in_function = routine.is_function();
+    if (in_function || routine.temps_begin < routine.variables_end) {
+        image_uses_.push_back({next(), in_function ? nullptr : block->type, &routine});
         put(Op::initialise, routine.temps_begin, routine.temps_begin,
             routine.variables_end - routine.temps_begin);
     }

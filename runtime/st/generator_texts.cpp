@@ -113,7 +113,7 @@ Slot Generator::text_conversion(const Expression& e) {
                       ? (from.type->bits == 32 ? Op::text_of_float : Op::text_of_real)
                   : from.type->is_unsigned_64() ? Op::text_of_unsigned
                                                 : Op::text_of_signed;
-    put(op, made, number);
+    put(op, made, number, e.op == Word::plus ? 1 : 0);
     return made;
 }
 

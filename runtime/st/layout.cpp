@@ -213,6 +213,7 @@ void Generator::finish_images() {
             b += function_starts[use.function];
         }
     }
+    code_.images.push_back(0);  // an empty image begins in it, too
 }
 
 }  // namespace lineshaft::st

@@ -389,6 +389,7 @@ class Lexer {
         if (text.starts_with('!')) return "write NOT";
         if (text.starts_with('?')) return "write IF, or SEL(condition, otherwise, then)";
         if (text.starts_with('%')) return "write MOD";
+        if (text.starts_with("||")) return "write OR";
         return "names have letters without accents, digits and '_'; others stand in quotes";
     }
 

@@ -203,10 +203,13 @@ std::uint64_t find_text(const std::byte* in, const std::byte* what) {
     return text_at(what).empty() ? 0 : text_at(in).find(text_at(what)) + 1;
 }
 
+/// `has_sign`: '+42'.
 template <class T>
-void write_number(std::byte* to, T value) {
+void write_number(std::byte* to, T value, bool has_sign = false) {
     char* first = reinterpret_cast<char*>(to + 8);
-    const auto [end, error] = std::to_chars(first, first + longest_result, value);
+    const int sign = has_sign && value >= T{} ? 1 : 0;
+    if (sign == 1) *first = '+';
+    const auto [end, error] = std::to_chars(first + sign, first + longest_result, value);
     set_word(to, 0, error == std::errc() ? static_cast<std::uint64_t>(end - first) : 0);
 }
 

@@ -135,8 +135,8 @@
     OP(text_character, text, "wrrn", if (const auto n = character_of(target(U(b)), I(c), d)) put(a, *n); else FAIL(array_bounds)) \
     OP(set_character, text, "rrr-", if (!set_character(target(U(b)), I(c), U(a))) FAIL(array_bounds)) \
     OP(text_find, text, "wrr-", put(a, find_text(target(U(b)), target(U(c)))))                       \
-    OP(text_of_signed, text, "rr--", write_number(target(U(a)), I(b)))                               \
-    OP(text_of_unsigned, text, "rr--", write_number(target(U(a)), U(b)))                             \
+    OP(text_of_signed, text, "rrn-", write_number(target(U(a)), I(b), c != 0))                       \
+    OP(text_of_unsigned, text, "rrn-", write_number(target(U(a)), U(b), c != 0))                     \
     OP(text_of_real, text, "rr--", write_number(target(U(a)), R(b)))                                 \
     OP(text_of_float, text, "rr--", write_number(target(U(a)), static_cast<float>(R(b))))            \
     OP(integer_of_text, text, "wr--", put(a, number_of_text<std::uint64_t>(target(U(b)))))            \

@@ -8,6 +8,7 @@
 
 #include "runtime/source/letters.hpp"
 #include "runtime/st/elementary.hpp"
+#include "runtime/st/literals.hpp"
 
 namespace lineshaft::st {
 
@@ -79,6 +80,36 @@ constexpr SectionWord section_words[] = {
     {Word::var_in_out_, Section::in_out}, {Word::var_temp_, Section::temp},
     {Word::var_global_, Section::global}, {Word::var_external_, Section::external}};
 
+// That may be spelt wrong where they begin or end something.
+constexpr Word declaration_words[] = {Word::program_,        Word::organization_block_,
+                                      Word::function_block_, Word::function_,
+                                      Word::data_block_,     Word::type_};
+constexpr Word variable_words[] = {Word::var_,        Word::var_stat_, Word::var_input_,
+                                   Word::var_output_, Word::var_temp_, Word::var_in_out_};
+constexpr Word end_words[] = {Word::end_var_, Word::end_struct_, Word::end_type_};
+constexpr Word statement_words[] = {Word::if_,
+                                    Word::case_,
+                                    Word::for_,
+                                    Word::while_,
+                                    Word::repeat_,
+                                    Word::exit_,
+                                    Word::continue_,
+                                    Word::return_,
+                                    Word::else_,
+                                    Word::elsif_,
+                                    Word::until_,
+                                    Word::end_if_,
+                                    Word::end_case_,
+                                    Word::end_for_,
+                                    Word::end_while_,
+                                    Word::end_repeat_,
+                                    Word::end_function_,
+                                    Word::end_function_block_,
+                                    Word::end_program_,
+                                    Word::end_method_,
+                                    Word::end_organization_block_,
+                                    Word::end_data_block_};
+
 struct Binary {
     Word word;
     int binding;
@@ -106,12 +137,12 @@ const PouWords* find_pou(Word word) {
 
 class Parser {
   public:
-    Parser(const Tokens& tokens, Tree& tree, Diagnostics& out, bool is_tests)
+    Parser(Tokens tokens, Tree& tree, Diagnostics& out, bool is_tests)
         : is_tests_(is_tests),
-          tokens_(tokens.tokens),
-          pragmas_(tokens.pragmas),
-          comments_(tokens.comments),
-          mistakes_(tokens.mistakes),
+          tokens_(std::move(tokens.tokens)),
+          pragmas_(std::move(tokens.pragmas)),
+          comments_(std::move(tokens.comments)),
+          mistakes_(std::move(tokens.mistakes)),
           tree_(tree),
           out_(out) {}
 
@@ -155,7 +186,43 @@ class Parser {
 
     bool expect(Word word, std::string_view where = {}) {
         if (accept(word)) return true;
+        if (respell({&word, 1})) return take(), true;
         expected(shown(word), where);
+        return false;
+    }
+
+    /// Where a name cannot stand: it is told as one of the words that is spelt wrong, and taken as
+    /// that.
+    bool respell(std::span<const Word> words) {
+        if (panic_ || !is(Word::name) || here().quoted) return false;
+        std::vector<std::string> names;
+        for (const Word word : words) names.emplace_back(shown(word));
+        const auto found = nearest(here().text, names);
+        if (found.empty()) return false;
+        tell("L0902", here().place, fmt::format("'{}' is not a word of the language", here().text),
+             fmt::format("write {}", found.front()));
+        tokens_[at_].word = words[static_cast<std::size_t>(std::ranges::find(names, found.front()) -
+                                                           names.begin())];
+        return true;
+    }
+
+    /// What follows can follow neither a variable nor a call.
+    bool at_doomed_name() const {
+        if (!is(Word::name)) return false;
+        const Token& behind = next();
+        if (behind.word == Word::semicolon || behind.first_in_line) return true;
+        if (behind.word != Word::open)
+            return is_name(behind) || behind.word == Word::integer || behind.word == Word::not_ ||
+                   is_end(behind.word);
+        int open = 0;
+        for (std::size_t i = 1; at_ + i < tokens_.size(); ++i) {
+            const Word word = next(i).word;
+            open += (word == Word::open) - (word == Word::close);
+            if (word == Word::semicolon) return false;
+            if (open > 0 || next(i + 1).first_in_line) continue;
+            const Word then = next(i + 1).word;
+            return then == Word::then_ || then == Word::do_ || then == Word::of_;
+        }
         return false;
     }
 
@@ -197,9 +264,16 @@ class Parser {
             return "write a decimal point: 1.5";
         if (is(Word::comma) && expected == ")" && !is_in_body_)
             return "name the members: (name := value, ...)";
-        if (same_name(last().text, "elseif") || same_name(last().text, "elif"))
-            return "write ELSIF";
         if (same_name(here().text, "step")) return "write BY";
+        if (is(Word::dot) && next().word == Word::integer && touches_next)
+            return fmt::format("write 0.{}", next().text);
+        if (is(Word::name) && last().word == Word::integer && touches) {
+            const std::string_view number = last().text, behind = here().text;
+            if (number == "0" && (behind[0] == 'x' || behind[0] == 'X'))
+                return fmt::format("write 16#{}", behind.substr(1));
+            if (read_duration(fmt::format("{}{}", number, behind)))
+                return fmt::format("write T#{}{}", number, behind);
+        }
         if (is_in_body_ && is_name() && find_elementary(lower(last().text)))
             return "variables are declared in VAR ... END_VAR";
         if (is(Word::assign) && !is_in_body_)
@@ -221,6 +295,8 @@ class Parser {
     bool refuse_unsupported() {
         const auto* it = std::ranges::find(unsupported, here().word, &Unsupported::word);
         if (it == std::end(unsupported)) return false;
+        if (is(Word::caret) && (next().word == Word::integer || next().word == Word::real))
+            return fail("L0902", here().place, "'^' is not a power", "write '**'"), true;
         fail("L0903", here().place, fmt::format("{} not supported", it->what),
              std::string(it->instead));
         return true;
@@ -316,6 +392,7 @@ class Parser {
         if (is(Word::var_global_)) return tree_.globals.push_back(read_section(Section::global));
         if (is(Word::configuration_)) return read_configuration();
         if (refuse_whole()) return;
+        if (is_name(next()) && respell(declaration_words)) return read_declaration();
         if (at_test() || (is_tests_ && is(Word::test_))) return read_test();
         if (is_end(here().word) && unclosed_at_ < at_) {
             take();
@@ -515,6 +592,8 @@ class Parser {
         while (!is(end) && !is(Word::end_of_file)) {
             const bool is_inst =
                 is(Word::name) && here().first_in_line && same_name(here().text, "var_inst");
+            const bool is_list = next(2).word == Word::colon || next(2).word == Word::comma;
+            if (!is_inst && is_name(next()) && is_list) respell(variable_words);
             const auto* it = std::ranges::find(section_words, here().word, &SectionWord::word);
             if (it == std::end(section_words) && !is_inst) return;
             if (is_inst || (is(Word::var_stat_) && !stays(pou.kind)))
@@ -558,7 +637,9 @@ class Parser {
     void read_variables(std::vector<Declaration*>& to) {
         const std::size_t first = at_;
         const Word behind = next().word;
-        const bool begins = is(Word::begin_) && behind != Word::colon && behind != Word::comma;
+        const bool declares = behind == Word::colon || behind == Word::comma;
+        if (!declares && at_doomed_name() && respell(end_words)) return;
+        const bool begins = is(Word::begin_) && !declares;
         if (begins ||
             (is_name() && (behind == Word::assign || behind == Word::open || behind == Word::dot)))
             return missing_end_var();
@@ -734,6 +815,9 @@ class Parser {
             const Word end = take().word == Word::open_bracket ? Word::close_bracket : Word::close;
             type.length = read_expression();
             expect(end, "after the length");
+        } else if (same_name(type.name.text, "wstring") && accept(Word::open_bracket)) {
+            read_expression();
+            expect(Word::close_bracket, "after the length");
         } else if (is(Word::open)) {
             if (is_name(next()) && (next(2).word == Word::comma || next(2).word == Word::assign ||
                                     next(2).word == Word::close))
@@ -982,6 +1066,7 @@ class Parser {
     /// Up to `end`, or what ends a block around it.
     void read_statements(Block& to, Word end, bool in_case = false) {
         while (!panic_ && !is(end) && !at_end_of_statements() && !(in_case && at_label())) {
+            if (at_doomed_name() && !at_test_word() && respell(statement_words)) continue;
             const std::size_t before = at_;
             Statement* statement = read_statement();
             if (!panic_) to.insert(to.end(), before_statement_.begin(), before_statement_.end());
@@ -1089,7 +1174,10 @@ class Parser {
         statement->place = target->place;
         statement->value = target;
         if (target->kind != Expression::Kind::call) {
-            if (is(Word::semicolon) || here().first_in_line)
+            if (is(Word::colon) && target->token.word == Word::name)
+                fail("L0903", target->place, "labels are not supported",
+                     "write IF, CASE, EXIT or RETURN");
+            else if (is(Word::semicolon) || here().first_in_line)
                 fail("L0902", target->place, "this does nothing",
                      "write 'name := value;', or a call 'name();'");
             else
@@ -1177,10 +1265,7 @@ class Parser {
     Expression* read_condition(Word end, std::string_view where) {
         Expression* condition = read_expression();
         if (!panic_ && is(Word::assign)) compared_by_assignment();
-        if (!accept(end) && !panic_) {
-            expected(shown(end), where);
-            panic_ = false;
-        }
+        if (!panic_ && !expect(end, where)) panic_ = false;
         return condition;
     }
 
@@ -1206,8 +1291,9 @@ class Parser {
         return statement;
     }
 
-    /// Names, numbers, ranges and commas, and then a colon.
+    /// Names, numbers, ranges and commas, and then a colon; one that begins a line is meant.
     bool at_label() const {
+        if (is(Word::integer) && here().first_in_line) return true;
         for (std::size_t i = at_; i < tokens_.size(); ++i) {
             switch (tokens_[i].word) {
                 case Word::colon:
@@ -1296,9 +1382,9 @@ class Parser {
 
     const bool is_tests_;
     Pou* fixture_ = nullptr;  ///< that the tests are methods of
-    const std::vector<Token>& tokens_;
-    const std::vector<Pragma>&pragmas_, &comments_;
-    const std::vector<std::uint32_t>& mistakes_;
+    std::vector<Token> tokens_;
+    const std::vector<Pragma> pragmas_, comments_;
+    const std::vector<std::uint32_t> mistakes_;
     Tree& tree_;
     Diagnostics& out_;
     std::size_t at_ = 0;
@@ -1315,8 +1401,8 @@ class Parser {
 
 }  // namespace
 
-void parse(const Tokens& tokens, Tree& tree, Diagnostics& out, bool is_tests) {
-    Parser(tokens, tree, out, is_tests).read();
+void parse(Tokens tokens, Tree& tree, Diagnostics& out, bool is_tests) {
+    Parser(std::move(tokens), tree, out, is_tests).read();
 }
 
 }  // namespace lineshaft::st

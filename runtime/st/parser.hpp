@@ -11,6 +11,6 @@ namespace lineshaft::st {
 ///   L0903  a part of the language that is not supported
 ///   L0912  nested too deep
 /// In a file of tests TEST, SETUP and TEARDOWN stand beside blocks; elsewhere they are refused.
-void parse(const Tokens& tokens, Tree& tree, Diagnostics& out, bool is_tests = false);
+void parse(Tokens tokens, Tree& tree, Diagnostics& out, bool is_tests = false);
 
 }  // namespace lineshaft::st

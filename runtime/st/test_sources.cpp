@@ -59,6 +59,8 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
     for (const TypeText& type : tree.type_texts)
         if (type.kind == TypeText::Kind::enumeration)
             for (const Argument& value : type.values) entry.values.insert(small(value.name.text));
+    for (const TypeText& type : tree.type_texts)
+        if (!type.name.text.empty()) entry.used.insert(small(type.name.text));
     for (const Declaration& variable : tree.declarations)
         entry.own.insert(small(variable.name.text));
     for (const DeclarationBlock& block : tree.globals)
@@ -71,8 +73,7 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
         const bool is_used = token.word == Word::name || token.word == Word::prefix;
         const bool is_argument = (before == Word::open || before == Word::comma) &&
                                  (behind == Word::assign || behind == Word::output);
-        const bool is_type = before == Word::colon || before == Word::of_;
-        const bool is_own = !is_type && entry.own.contains(small(token.text));
+        const bool is_own = entry.own.contains(small(token.text));
         if (is_used && before != Word::dot && !token.local && !is_argument && !is_own)
             entry.used.insert(small(token.text));
         before = token.word;
