@@ -84,7 +84,7 @@ with tempfile.TemporaryDirectory() as folder:
     expect("exit code of what fails", code, 1)
     compare(root / "fail/expected.txt", said)
     suite = xml.parse(junit).getroot()
-    expect("failures and errors", (suite.get("failures"), suite.get("errors")), ("17", "3"))
+    expect("failures and errors", (suite.get("failures"), suite.get("errors")), ("19", "4"))
 
 code, said, _ = run(root, "pass", "--filter", "mocked function")
 expect("--filter", (code, said.splitlines()[-1]), (0, "1 of 1 passed"))

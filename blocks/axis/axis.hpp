@@ -23,6 +23,8 @@ namespace lineshaft {
 /// Each motion begins in the state in which the one before ends, at that moment, which may lie
 /// between two scans, and is a closed form from there on: positions do not drift. The position
 /// of a modulo axis is shown in 0..period.
+///
+/// One struct, though large, as a block is one piece of memory: a file a matter (README.md).
 struct Axis {
     // Parameters.
     AxisUnit unit = AxisUnit::mm;

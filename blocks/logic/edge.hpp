@@ -21,7 +21,8 @@ struct Edge {
 
     static constexpr std::string_view type = falling ? "f_trig" : "r_trig";
     static constexpr std::string_view doc =
-        falling ? "falling edge: q is true for one scan" : "rising edge: q is true for one scan";
+        falling ? "falling edge: q is true for one scan; clk false at the first scan is one"
+                : "rising edge: q is true for one scan; clk true at the first scan is one";
     static std::span<const Field> fields();
     static constexpr auto main_input = &Edge::clk;
     void scan(const Scan& now);

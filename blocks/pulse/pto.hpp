@@ -46,6 +46,8 @@ struct PulseProfile {
 /// `control` as in SMB67 stands for the named fields if it is 0 or more: bit 7 enable, bit 6 PTO
 /// (0, pulse width modulation, is refused), bit 5 multi-segment, bit 2 update count, bit 0 update
 /// rate. The last two are for single segments: without them the last train's value stays.
+///
+/// More than 250 lines with its methods: SMB67's bits and the two modes share every state.
 struct Pto {
     enum class Refusal : std::int64_t { none, overflow, no_segments, not_pto };
     /// The refusals, then what is clamped as a segment begins.

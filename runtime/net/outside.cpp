@@ -135,6 +135,7 @@ std::optional<Force> find_force(const Connecting& to, const Node& signal, const 
                  .published = split ? forced->published : nullptr,
                  .block = of_block,
                  .is_output = of_block && forced->field.direction != Direction::input,
+                 .is_local = of_block && forced->field.direction == Direction::local,
                  .task = forced->signal.task,
                  .type = forced->field.type,
                  .value = *v,

@@ -113,8 +113,10 @@ void refer_to_globals(Resolving& to) {
                 if (!field.global.empty()) refer_to_global(to, number, field);
 }
 
+/// In `{...}` a name with an index stands in quotes.
 std::optional<WireText> parse_wire(const Node& node) {
-    if (!node.is_scalar() || node.quoted) return {};
+    const bool is_indexed = node.text.find('[') != std::string::npos;
+    if (!node.is_scalar() || (node.quoted && !is_indexed)) return {};
     std::string_view text = node.text;
     WireText wire;
     if (text.starts_with("NOT ")) {

@@ -60,6 +60,23 @@ bool is_structured_text(const fs::path& file) {
                                [&](std::string_view e) { return same_letters(extension, e); });
 }
 
+std::vector<std::string> structured_text_below(const std::string& folder, std::error_code& error) {
+    std::vector<std::string> files;
+    std::error_code unknown;
+    constexpr auto options = fs::directory_options::skip_permission_denied;
+    for (fs::recursive_directory_iterator entry(folder, options, error), end;
+         !error && entry != end; entry.increment(error))
+        if (is_structured_text(entry->path()) && entry->is_regular_file(unknown))
+            files.push_back(entry->path().string());
+    Diagnostics unread;
+    std::erase_if(files, [&](const std::string& file) {
+        const auto source = read_source(file, unread);
+        return source && st::is_test_file(source);
+    });
+    std::ranges::sort(files);
+    return files;
+}
+
 namespace {
 
 /// A text from the command line: it has no place.
@@ -74,6 +91,11 @@ Node node_of(std::string_view text) {
 Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     program_.file = file;
     program_.title = fs::path(file->path).stem().string();
+    if (is_structured_text(file->path)) {
+        read_.diagnostics().add("L0211", {file, 1, 1, 1}, "this is Structured Text, not a program",
+                                "name it in the 'sources' of a program");
+        return std::move(program_);
+    }
     auto root = parse(file);
     if (!root || !check_kind(read_, *root, "lineshaft")) return std::move(program_);
     Substitution substitution(values_, root->find("parameters"), read_);
@@ -244,13 +266,8 @@ void ProgramReader::find_source(const Node& named) {
     if (!path) return;
     std::error_code unknown;
     if (!fs::is_directory(*path, unknown)) return read_source_file(*path, named.mark);
-    std::vector<std::string> files;
     std::error_code error;
-    constexpr auto options = fs::directory_options::skip_permission_denied;
-    for (fs::recursive_directory_iterator entry(*path, options, error), end; !error && entry != end;
-         entry.increment(error))
-        if (is_structured_text(entry->path()) && entry->is_regular_file(unknown))
-            files.push_back(entry->path().string());
+    const std::vector<std::string> files = structured_text_below(*path, error);
     if (error)
         read_.fail("L0001", named,
                    fmt::format("cannot read the folder '{}': {}", named.text, error.message()));
@@ -259,11 +276,7 @@ void ProgramReader::find_source(const Node& named) {
                    fmt::format("the folder '{}' has no file of Structured Text", named.text),
                    "their names end with .st, .scl, .s7dcl, .udt or .db");
     program_.sources_known = program_.sources_known && !error && !files.empty();
-    std::ranges::sort(files);
-    Diagnostics unread;
-    for (const std::string& file : files)
-        if (const auto source = read_source(file, unread); !source || !st::is_test_file(source))
-            read_source_file(file, named.mark);
+    for (const std::string& file : files) read_source_file(file, named.mark);
 }
 
 void ProgramReader::read_source_file(const std::string& path, const Mark& mark) {

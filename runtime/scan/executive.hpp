@@ -65,6 +65,9 @@ struct RunResult {
 /// is lost. The time-error task of the task (OB80) is released. Without one, in a motion task
 /// (MC_Servo), or at the second time error since the main task last began a scan, the machine
 /// stops. A thousand runs of an event task at one instant are STOP in any case.
+///
+/// One class, though large: all of it looks at the same instant, and its members are what a
+/// checkpoint holds.
 class Executive {
   public:
     explicit Executive(Machine& machine);

@@ -71,6 +71,7 @@ void Forces::exchange(const std::byte* block, bool outputs, Way way) {
         const Force& force = forces_[i];
         if (!own_[i].active || force.block != block || force.is_output != outputs) continue;
         if (way == Way::release) {
+            if (force.is_local) continue;
             std::memcpy(force.live, own_[i].live, size_of(force.type));
         } else {
             std::memcpy(own_[i].live, force.live, size_of(force.type));

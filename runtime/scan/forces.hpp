@@ -11,7 +11,8 @@ namespace lineshaft {
 
 /// Keeps forced signals at their values. What the program writes meanwhile (its own value) is kept
 /// beside: a block's own outputs are back in place while it runs, so that it does not see the force
-/// in its memory, and all are back when the force has ended.
+/// in its memory (in its locals it does: nobody else reads them), and all are back when the force
+/// has ended.
 class Forces {
   public:
     /// `forces` may grow, and times of its members change, if look_ahead() or forget_ended() is

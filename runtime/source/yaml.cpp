@@ -218,7 +218,8 @@ std::size_t after_dash(const Source& source, std::size_t next) {
     return next;
 }
 
-/// Builds the tree from the parser's events.
+/// Builds the tree from the parser's events. It is as long as the answers to what YAML allows and
+/// forms do not: anchors, tags, keys twice, and the like.
 class Builder : public YAML::EventHandler {
   public:
     Builder(const Source& source, Diagnostics& out, const YamlLimits& limits)

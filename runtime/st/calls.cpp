@@ -53,8 +53,8 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
         for (const Routine* r = routine_; r; r = r->owner)
             if (const auto it = r->methods.find(name); it != r->methods.end())
                 return check_routine_call(call, *it->second, as_statement);
-        if (const auto it = routines_.find(name); it != routines_.end() && !it->second->type)
-            return check_routine_call(call, *it->second, as_statement);
+        if (Routine* routine = find_routine(callee.token); routine && !routine->type)
+            return check_routine_call(call, *routine, as_statement);
         const bool is_function =
             !callee.token.quoted && !callee.token.local &&
             (find_standard_function(name) >= 0 || !find_variable(callee.token));
@@ -149,7 +149,7 @@ void Checker::check_arguments(Expression& call, Routine& routine) {
     for (const Variable& variable : routine.variables) {
         const bool due = variable.section == Section::in_out ||
                          (variable.section == Section::input && !routine.has_instances() &&
-                          !by_name && !variable.initial);
+                          (!by_name || is_scl(call)) && !variable.initial);
         if (!due || std::ranges::find(given, &variable) != given.end()) continue;
         if (is_in_test() && routine.has_instances())
             leave_out(call, const_cast<Variable&>(variable));
@@ -368,7 +368,7 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
     if (call.standard < 0) {
         if (const Type* type = check_conversion(call, name.text)) return type;
         if (call.type || call.standard == -2) return nullptr;
-        if (routines_.contains(name.text) || standard_type(name.text))
+        if (find_routine(name) || standard_type(name.text))
             return fail("L0907", name.place,
                         fmt::format("'{}' is a kind of block, not an instance", name.text),
                         "declare one in VAR, and call that");
@@ -469,6 +469,8 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         return coerce_from(first, common->plain()) ? &common->plain() : nullptr;
     };
     if (f.rule == Rule::time) return &time_type;
+    if (f.rule == Rule::multiplex || f.rule == Rule::decode) become_number(arguments[0].value);
+    if (f.rule == Rule::shift) become_number(arguments[1].value);
     const Type& first = *arguments[0].value->type;
     switch (f.rule) {
         case Rule::real:
@@ -565,6 +567,7 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
             for (std::size_t i = 0; i < arguments.size(); ++i) {
                 if (i < texts && arguments[i].value->type->is_character)
                     coerce(arguments[i].value, string_type);
+                if (i >= texts) become_number(arguments[i].value);
                 const Type& type = *arguments[i].value->type;
                 if (i < texts ? type.kind == Kind::text : type.is_integer()) {
                     if (type.is_any() && !coerce(arguments[i].value, lint_type)) return nullptr;
@@ -619,7 +622,7 @@ const Type* Checker::check_scale(Expression& call, const Type* expected) {
 /// The call, of type `from`, becomes its conversion.
 const Type* Checker::convert_result(Expression& call, const Type& from, const Type& to) {
     if (&from == &to) return &to;
-    Expression* inner = make(Expression::Kind::call, call);
+    Expression* inner = make(call.kind, call);
     *inner = call;
     inner->type = &from;
     convert(inner, to);
@@ -663,8 +666,10 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
     const std::size_t skip = (truncates ? 6 : 3) + (at == 0 ? 0U : 1U);
     const auto find = [&](std::string_view text) -> const Type* {
         if (const Type* type = find_elementary(text)) return type;
-        const auto it = named_types_.find(text);
-        return it == named_types_.end() ? nullptr : it->second.type;
+        Token named = call.token;
+        named.text = text;
+        const NamedType* type = look_up(&Names::types, named);
+        return type ? type->type : nullptr;
     };
     std::string_view from_name = name.substr(0, at), to_name = name.substr(at + skip);
     const bool to_bcd = std::string_view(upper).substr(at + skip).starts_with("BCD_");

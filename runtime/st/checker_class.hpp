@@ -8,6 +8,7 @@
 
 #include "runtime/st/checker.hpp"
 #include "runtime/st/elementary.hpp"
+#include "runtime/st/standard_source.hpp"
 
 namespace lineshaft::st {
 
@@ -25,6 +26,8 @@ double as_real(const Expression& constant);
 bool is_scl(const Expression& expression);
 
 /// What check() keeps while it works: declarations.cpp, expressions.cpp, calls.cpp, statements.cpp.
+/// One class, though large: a type asks for a constant, that for an expression, and that for a call
+/// and its types again, and all of them for the names and the block that is being checked.
 class Checker {
   public:
     Checker(Tree& tree, const Catalog& standard, Diagnostics& out)
@@ -47,6 +50,14 @@ class Checker {
         const Type* type = nullptr;
         std::size_t index = 0;
         bool ambiguous = false;
+    };
+
+    /// What is declared beside the blocks.
+    struct Names {
+        NameMap<NamedType> types;
+        NameMap<NamedValue> values;
+        NameMap<Routine*> routines;
+        NameMap<Place> places;
     };
 
     // declarations.cpp
@@ -109,6 +120,7 @@ class Checker {
     const Type* check_bit(Expression& expression);
     const Type* check_unary(Expression& expression, const Type* expected);
     const Type* check_binary(Expression& expression, const Type* expected);
+    void become_number(Expression*& e);
     void reinterpret(Expression& expression, Kind from, const Type* expected = nullptr);
     const Type* check_logic(Expression& expression);
     void unite_texts(Expression*& a, Expression*& b);
@@ -196,6 +208,25 @@ class Checker {
         return nullptr;
     }
 
+    /// What a name is. The standard's own sources see nothing of the user's; what they declare he
+    /// sees where he has no such name.
+    template <class T>
+    T* look_up(NameMap<T> Names::*map, const Token& name) {
+        if (!is_standards(name))
+            if (const auto it = (users_.*map).find(name.text); it != (users_.*map).end())
+                return &it->second;
+        const auto it = (standards_.*map).find(name.text);
+        return it == (standards_.*map).end() ? nullptr : &it->second;
+    }
+    Routine* find_routine(const Token& name) {
+        Routine** const routine = look_up(&Names::routines, name);
+        return routine ? *routine : nullptr;
+    }
+    Names& names_beside(const Token& name) { return is_standards(name) ? standards_ : users_; }
+    static bool is_standards(const Token& name) {
+        return name.place.file && is_standard_source(**name.place.file);
+    }
+
     Expression* make(Expression::Kind kind, const Expression& like) {
         Expression& made = tree_.expressions.emplace_back();
         made.kind = kind;
@@ -208,15 +239,12 @@ class Checker {
     const Catalog& standard_;
     Diagnostics& out_;
     Checked checked_;
-    NameMap<NamedType> named_types_;
-    NameMap<NamedValue> values_;
-    NameMap<Routine*> routines_;
+    Names users_, standards_;
     NameMap<Variable*> globals_;
     NameMap<const Declaration*> constants_;  ///< of VAR_GLOBAL, until all globals are declared
     std::unordered_set<const Declaration*> begun_constants_;  ///< declared already, or being so
     int hops_ = 0;  ///< from constant to constant that is declared later
     NameMap<const Type*> standard_types_;
-    NameMap<Place> top_names_;
     bool has_tests_ = false;
     Type* mocks_ = nullptr;       ///< of the global that has what MOCK_FUNCTION says
     Routine* routine_ = nullptr;  ///< that is being checked

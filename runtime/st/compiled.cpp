@@ -17,26 +17,6 @@ Compiled::~Compiled() {
     if (generated.code.hits) record(generated.code);
 }
 
-namespace {
-
-/// What the sources do not declare themselves.
-void add_standard(const std::shared_ptr<const SourceFile>& source, Tree& tree, Diagnostics& out) {
-    NameSet own;
-    for (const Pou* unit : tree.units) own.insert(unit->name.text);
-    for (const TypeDeclaration& type : tree.types) own.insert(type.name.text);
-    const auto units = static_cast<std::ptrdiff_t>(tree.units.size());
-    const auto types = static_cast<std::ptrdiff_t>(tree.types.size());
-    parse(read_tokens(source, out), tree, out);
-    const auto is_own_unit = [&](const Pou* unit) { return own.contains(unit->name.text); };
-    const auto is_own_type = [&](const TypeDeclaration& t) { return own.contains(t.name.text); };
-    tree.units.erase(std::remove_if(tree.units.begin() + units, tree.units.end(), is_own_unit),
-                     tree.units.end());
-    tree.types.erase(std::remove_if(tree.types.begin() + types, tree.types.end(), is_own_type),
-                     tree.types.end());
-}
-
-}  // namespace
-
 bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOptions options,
              const SourceFile* tests) {
     bool uses_standard = false;
@@ -49,10 +29,10 @@ bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOption
         parse(std::move(tokens), to.tree, out, source.get() == tests);
     }
     if (!out.empty()) return false;
-    if (uses_standard) add_standard(standard_source(), to.tree, out);
+    if (uses_standard) parse(read_tokens(standard_source(), out), to.tree, out);
     for (const BlockType& type : standard.types())
         if (used.contains(&type))
-            add_standard(to.of_standard.emplace_back(source_of(type)), to.tree, out);
+            parse(read_tokens(to.of_standard.emplace_back(source_of(type)), out), to.tree, out);
     to.checked = check(to.tree, standard, out);
     if (!out.empty()) return false;
     options.covered = is_covered();
@@ -89,6 +69,12 @@ FaultPlace fault_of(const Code& code, const std::byte* instance) {
         if (level == 0) return found;
         at = slot(stack + 2 * static_cast<std::uint32_t>(level - 1)) - 1;
     }
+}
+
+std::optional<Mark> cut_of(const Code& code, const std::byte* instance) {
+    std::uint64_t behind = 0;
+    std::memcpy(&behind, instance + 8 * std::size_t{cut_slot}, sizeof behind);
+    return behind == 0 ? std::nullopt : std::optional(code.places[behind - 1].mark());
 }
 
 }  // namespace lineshaft::st

@@ -29,4 +29,7 @@ bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOption
 /// Where the last execution on an instance ended with a fault.
 FaultPlace fault_of(const Code& code, const std::byte* instance);
 
+/// Where an instance first cut a text short.
+std::optional<Mark> cut_of(const Code& code, const std::byte* instance);
+
 }  // namespace lineshaft::st

@@ -117,14 +117,15 @@ bool Checker::is_new_name(Token name, NameMap<Place>& names) {
 
 void Checker::collect_names() {
     for (const TypeDeclaration& declared : tree_.types)
-        if (is_new_name(declared.name, top_names_))
-            named_types_.emplace(declared.name.text, NamedType{&declared});
+        if (Names& names = names_beside(declared.name); is_new_name(declared.name, names.places))
+            names.types.emplace(declared.name.text, NamedType{&declared});
     for (Pou* pou : tree_.units) {
         has_tests_ |= pou->is_tests;
-        const bool added = is_new_name(pou->name, top_names_);
+        Names& all = names_beside(pou->name);
+        const bool added = is_new_name(pou->name, all.places);
         if (pou->kind == PouKind::data_block) continue;
         Routine& routine = make_routine(*pou, std::string(pou->name.text));
-        if (added) routines_.emplace(pou->name.text, &routine);
+        if (added) all.routines.emplace(pou->name.text, &routine);
         if (routine.is_function()) continue;
         routine.type = &make_type(Kind::block, routine.name);
         routine.type->routine = &routine;
@@ -143,8 +144,7 @@ void Checker::collect_names() {
         for (const Declaration* declared : block.declarations)
             if (block.constant) constants_.emplace(declared->name.text, declared);
     for (const TypeDeclaration& declared : tree_.types)
-        if (const auto it = named_types_.find(declared.name.text); it != named_types_.end())
-            resolve_declared(it->second);
+        if (NamedType* type = look_up(&Names::types, declared.name)) resolve_declared(*type);
 }
 
 Variable* Checker::add(std::deque<Variable>& to, const Declaration& declared, const Type* type) {
@@ -176,7 +176,7 @@ Type& Checker::global_variables() {
 Variable* Checker::declare_global(const Declaration& declared, bool constant, bool retain) {
     Type& all = global_variables();
     const Type* type = resolve(*declared.type);
-    if (!is_new_name(declared.name, top_names_)) return nullptr;
+    if (!is_new_name(declared.name, users_.places)) return nullptr;
     Variable* variable = add(checked_.variables, declared, type);
     if (type && type->kind == Kind::handle) return declare_object(*variable);
     variable->section = Section::global;
@@ -512,10 +512,9 @@ const Type* Checker::resolve(const TypeText& text) {
 
 const Type* Checker::resolve_name(const Token& name) {
     if (const Type* type = find_elementary(name.text); type && !name.quoted) return type;
-    if (const auto it = named_types_.find(name.text); it != named_types_.end())
-        return resolve_declared(it->second);
-    if (const auto it = routines_.find(name.text); it != routines_.end()) {
-        if (it->second->type) return it->second->type;
+    if (NamedType* type = look_up(&Names::types, name)) return resolve_declared(*type);
+    if (const Routine* routine = find_routine(name)) {
+        if (routine->type) return routine->type;
         return fail("L0905", name.place, fmt::format("'{}' is a function, not a type", name.text),
                     "call it; only function blocks have instances");
     }
@@ -525,8 +524,8 @@ const Type* Checker::resolve_name(const Token& name) {
                     std::string(instead));
     std::vector<std::string> names = {"BOOL", "INT",  "DINT",  "LINT", "UINT",  "UDINT",
                                       "WORD", "REAL", "LREAL", "TIME", "STRING"};
-    for (const auto& [known, type] : named_types_) names.emplace_back(known);
-    for (const auto& [known, routine] : routines_)
+    for (const auto& [known, type] : users_.types) names.emplace_back(known);
+    for (const auto& [known, routine] : users_.routines)
         if (routine->type) names.emplace_back(known);
     for (const BlockType& kind : standard_.types()) names.emplace_back(kind.name);
     std::ranges::sort(names);
@@ -557,16 +556,13 @@ const Type* Checker::resolve_declared(NamedType& named) {
         check_initial(value, copy);
         copy.initial_value = value;
     }
+    auto& values = names_beside(declared.name).values;
     for (std::size_t i = 0; i < type->values.size() && is_own; ++i) {
-        const auto it = std::ranges::find_if(
-            values_, [&](const auto& entry) { return same_name(entry.first, type->values[i]); });
-        if (it != values_.end())
-            it->second.ambiguous = true;
-        else
-            values_.emplace(type->values[i], NamedValue{type, i});
+        const auto [it, is_new] = values.emplace(type->values[i], NamedValue{type, i});
+        if (!is_new) it->second.ambiguous = true;
     }
     if (declared.initial)
-        for (auto& [name, value] : values_)
+        for (auto& [name, value] : values)
             if (value.type && value.type->name == type->name) value.type = type;
     return named.type = type;
 }
@@ -645,7 +641,7 @@ const Type* Checker::resolve_subrange(const TypeText& text) {
     type.base = base;
     type.lower = static_cast<std::int64_t>(*lower);
     type.upper = static_cast<std::int64_t>(*upper);
-    type.initial.integer = *lower > 0 || *upper < 0 ? *lower : 0;
+    type.initial.integer = *lower;  // 6.4.4.4
     return &type;
 }
 

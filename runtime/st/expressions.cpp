@@ -156,9 +156,8 @@ const Type* Checker::check_text(Expression& e) {
 const Type* Checker::check_typed(Expression& e) {
     Expression& value = *e.operands[0];
     Token name = e.token;
-    const auto it = named_types_.find(name.text);
     const Type* type = find_prefix(name.text);
-    if (it != named_types_.end()) type = it->second.type;
+    if (const NamedType* named = look_up(&Names::types, name)) type = named->type;
     if (!type) {
         if (resolve_name(name))
             fail("L0904", name.place, fmt::format("'{}' is not a type of values", name.text),
@@ -192,9 +191,10 @@ Variable* Checker::find_variable(const Token& token) {
     for (const Routine* r = routine_; r && !token.quoted; r = r->owner)
         if (const auto it = r->names.find(token.text); it != r->names.end()) return it->second;
     if (token.local) return nullptr;
-    const auto it = globals_.find(token.text);
-    if (it != globals_.end()) return it->second;
-    if (Variable* constant = declare_early(token.text)) return constant;
+    if (!is_standards(token)) {
+        if (const auto it = globals_.find(token.text); it != globals_.end()) return it->second;
+        if (Variable* constant = declare_early(token.text)) return constant;
+    }
     return token.quoted && routine_ && routine_->names.contains(token.text)
                ? routine_->names.at(token.text)
                : nullptr;
@@ -216,13 +216,13 @@ const Type* Checker::check_name(Expression& e, const Type* expected) {
         become_boolean(e, same_name(token.text, "true"));
         return &bool_type;
     }
-    if (const auto it = values_.find(token.text); it != values_.end() && !token.local) {
-        if (it->second.ambiguous)
+    if (const NamedValue* value = token.local ? nullptr : look_up(&Names::values, token)) {
+        if (value->ambiguous)
             return fail("L0904", e.place,
                         fmt::format("'{}' is a value of several enumerations", token.text),
-                        fmt::format("write {}#{}", it->second.type->name, token.text));
-        become(e, *it->second.type, {.integer = static_cast<Wide>(it->second.index)});
-        return it->second.type;
+                        fmt::format("write {}#{}", value->type->name, token.text));
+        become(e, *value->type, {.integer = static_cast<Wide>(value->index)});
+        return value->type;
     }
     if (same_name(token.text, "eno") && routine_ && routine_->pou->kind != PouKind::data_block)
         return use(e, eno_of(*routine_));
@@ -264,7 +264,7 @@ const Type* Checker::object_type(const Type& handle) {
 bool Checker::is_object_of(const Expression& member) {
     const Expression& of = *member.operands[0];
     if (of.kind != Expression::Kind::name || of.type || !of.token.quoted) return false;
-    if (find_variable(of.token) || routines_.contains(of.token.text)) return false;
+    if (find_variable(of.token) || find_routine(of.token)) return false;
     const Type* axis = standard_type("axis_ref");
     if (!axis || enumeration_of(member)) return false;
     return find_part(*axis, member.token.text) ||
@@ -276,8 +276,8 @@ bool Checker::is_object_of(const Expression& member) {
 /// What its kind says in Structured Text.
 Routine* Checker::find_part(const Type& type, std::string_view name) {
     if (type.kind != Kind::handle && !type.is_object()) return nullptr;
-    const auto it = routines_.find(fmt::format("{}.{}", type.standard->handle, name));
-    return it == routines_.end() ? nullptr : it->second;
+    const auto it = standards_.routines.find(fmt::format("{}.{}", type.standard->handle, name));
+    return it == standards_.routines.end() ? nullptr : it->second;
 }
 
 /// The function is called with what stands before the point.
@@ -294,11 +294,11 @@ const Type* Checker::check_part(Expression& member, Routine& part) {
 
 const Type* Checker::unknown_name(Expression& e) {
     const std::string_view name = e.token.text;
-    if (const auto it = routines_.find(name); it != routines_.end()) {
-        if (it->second->type)
+    if (const Routine* routine = find_routine(e.token)) {
+        if (routine->type)
             return fail("L0914", e.place, fmt::format("'{}' is a block, and has no value", name),
                         "declare an instance in VAR, and name that");
-        return it->second == routine_
+        return routine == routine_
                    ? fail("L0914", e.place, fmt::format("the function '{}' has no value", name),
                           fmt::format("declare of which type: FUNCTION {} : INT", name))
                    : fail("L0914", e.place, fmt::format("'{}' is a function", name),
@@ -311,8 +311,11 @@ const Type* Checker::unknown_name(Expression& e) {
 const Type* Checker::undeclared(const Token& name, Place place,
                                 const std::vector<std::string>& names) {
     if (!undeclared_[routine_].insert(name.text).second) return nullptr;
+    const auto near = nearest(name.text, names);
+    const auto in_name = [](char c) { return is_letter(c) || is_digit(c) || c == '_'; };
+    const bool is_text = name.quoted && !std::ranges::all_of(name.text, in_name);
     return fail("L0904", place, fmt::format("'{}' is not declared", name.text),
-                suggest(name.text, nearest(name.text, names)));
+                is_text ? "a text stands in '...', a name in \"...\"" : suggest(name.text, near));
 }
 
 std::vector<std::string> Checker::visible_names() const {
@@ -320,8 +323,8 @@ std::vector<std::string> Checker::visible_names() const {
     for (const Routine* r = routine_; r; r = r->owner)
         for (const Variable& variable : r->variables) names.emplace_back(variable.text);
     for (const auto& [name, variable] : globals_) names.emplace_back(name);
-    for (const auto& [name, value] : values_) names.emplace_back(name);
-    for (const auto& [name, routine] : routines_)
+    for (const auto& [name, value] : users_.values) names.emplace_back(name);
+    for (const auto& [name, routine] : users_.routines)
         if (!routine->type) names.emplace_back(name);
     std::ranges::sort(names);
     return names;
@@ -347,8 +350,8 @@ const Type* Checker::enumeration_of(const Expression& member) {
     if (of.kind != Expression::Kind::name || of.token.local) return nullptr;
     const Variable* variable = find_variable(of.token);
     if (variable && !(variable->type && variable->type->is_scalar())) return nullptr;
-    const auto it = named_types_.find(of.token.text);
-    const Type* type = it == named_types_.end() ? nullptr : it->second.type;
+    const NamedType* named = look_up(&Names::types, of.token);
+    const Type* type = named ? named->type : nullptr;
     return type && type->kind == Kind::enumeration ? type : nullptr;
 }
 
@@ -404,7 +407,7 @@ const Type* Checker::check_member(Expression& e) {
         return fail("L0905", e.token.place, fmt::format("{} has no parts", describe(*type)),
                     "'.' takes a part of a structure or of an instance");
     if (type->is_object())
-        for (const auto& [routine, part] : routines_)
+        for (const auto& [routine, part] : standards_.routines)
             if (routine.starts_with(std::string(type->standard->handle) + '.'))
                 names.emplace_back(routine.substr(type->standard->handle.size() + 1));
     std::ranges::sort(names);
@@ -600,6 +603,12 @@ const Type* Checker::unite(Expression& e, const Type* expected) {
     return coerce(left, *common) && coerce(right, *common) ? common : nullptr;
 }
 
+/// A bit string where a number is due.
+void Checker::become_number(Expression*& e) {
+    const Type& type = e->type->plain();
+    if (type.kind == Kind::bits) convert(e, integer_type(type.bits, false));
+}
+
 /// Integers are joined as bit strings of their width. It is reckoned with bit strings as with
 /// integers: with the wanted one, if that is wider.
 void Checker::reinterpret(Expression& e, Kind from, const Type* expected) {
@@ -736,13 +745,15 @@ const Type* Checker::check_date_arithmetic(Expression& e) {
             "L0905", e.token.place,
             fmt::format("'{}' does not go with {} and {}", shown(e.op), describe(a), describe(b)),
             "a TIME is added to a TOD or a DT, and two dates have a TIME between them");
-    e.type = distance ? &time_type : joins ? &moment_type : &a;
+    const bool within_day = moves && a.kind == Kind::clock;
+    e.type = distance ? &time_type : joins || within_day ? &moment_type : &a;
     fold(e);
-    return e.type;
+    return within_day ? convert_result(e, moment_type, clock_type) : e.type;
 }
 
 const Type* Checker::check_power(Expression& e, const Type* expected) {
     Expression *&left = e.operands[0], *&right = e.operands[1];
+    for (Expression*& operand : e.operands) become_number(operand);
     for (Expression* operand : e.operands)
         if (!operand->type->is_number())
             return fail("L0905", operand->place,
@@ -932,7 +943,14 @@ bool Checker::coerce(Expression*& e, const Type& to) {
         convert(e, to);
         return true;
     }
-    if (from.kind == Kind::text && to.kind == Kind::text) return true;
+    if (from.kind == Kind::text && to.kind == Kind::text) {
+        if (is_constant(*e) && e->constant.text.size() > to.length)
+            out_.warn("L0908", e->place.mark(),
+                      fmt::format("the text has {} bytes, and {} keeps {}", e->constant.text.size(),
+                                  describe(to), to.length),
+                      "declare the STRING longer");
+        return true;
+    }
     if (to.is_character && is_constant(*e) && e->constant.text.size() == 1) {
         become(*e, to, {.integer = static_cast<unsigned char>(e->constant.text[0])});
         return true;
@@ -974,7 +992,11 @@ bool Checker::refuse_conversion(const Expression& e, const Type& to) {
         return false;
     }
     if ((from.is_number() || from.is_bits()) && (to.is_number() || to.is_bits())) {
-        const std::string source = from.is_any() ? "LINT" : from.plain().name;
+        const bool counts =
+            from.kind == Kind::bits && to.is_real();  // DWORD_TO_REAL keeps the bits
+        const std::string source = from.is_any() ? "LINT"
+                                   : counts      ? integer_type(from.bits, false).name
+                                                 : from.plain().name;
         fail("L0906", e.place, fmt::format("{} does not hold every {}", describe(to), from.name),
              fmt::format("write {}_TO_{}(...) where it is meant", source, to.plain().name));
         return false;

@@ -31,6 +31,9 @@ struct Location {
     std::optional<std::uint32_t> byte = {};  ///< of a boolean in an instance of the catalogue
 };
 
+/// One class, though large: statements, expressions and calls write into one list of instructions
+/// with the same temporaries, jumps that wait for their targets, and what may be fused with what
+/// comes next.
 class Generator {
   public:
     Generator(Checked& checked, Diagnostics& out, const CodeOptions& options)

@@ -79,6 +79,7 @@ constexpr std::string_view date_prefixes[] = {"d",    "date",         "ld",  "ld
                                               "tod",  "time_of_day",  "dt",  "date_and_time",
                                               "ltod", "ltime_of_day", "ldt", "ldate_and_time"};
 
+/// One class, as each kind of token is a function that moves the same place in the text.
 class Lexer {
   public:
     Lexer(const std::shared_ptr<const SourceFile>& file, Diagnostics& out)

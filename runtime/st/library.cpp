@@ -218,6 +218,9 @@ class FieldWriter {
                 write_elements(type, offset, name + "[", direction, variable);
                 return;
             case Kind::structure:
+                for (const Variable* member : type.members)
+                    write(*member, slot, name + ".", direction);
+                return;
             case Kind::standard:
                 for (const Variable* member : type.members)
                     write(*member, slot, name + ".", inner(direction));
@@ -273,7 +276,7 @@ class FieldWriter {
                                                   : array.element->slots;
     }
 
-    /// Parts of an input are not wired one by one.
+    /// Parts of an instance are not wired one by one.
     static Direction inner(Direction direction) {
         return direction == Direction::output ? direction : Direction::local;
     }
@@ -429,13 +432,13 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     const CodeOptions code_options{.overflow_faults = options.overflow_faults,
                                    .counted = options.times.has_value()};
     if (!compile(*made, standard, out, code_options)) return {};
-    const auto& routines = made->generated.code.routines;
-    std::unordered_map<std::string_view, const CodeRoutine*> codes;
-    for (const CodeRoutine& code : routines) codes.emplace(code.name, &code);
+    std::unordered_map<const Routine*, const CodeRoutine*> codes;
+    const CodeRoutine* code = made->generated.code.routines.data();
+    for (const Routine* routine : made->checked.order) codes.emplace(routine, code++);
     for (const Routine& routine : made->checked.routines)
         if (routine.has_instances() && !routine.owner &&
             !is_standard_source(**routine.pou->place.file))
-            add_routine(*made, routine, *codes.at(routine.name), options);
+            add_routine(*made, routine, *codes.at(&routine), options);
     for (const Global& global : made->checked.globals)
         if (!global.object) add_global(*made, global, options);
     Library library;
@@ -469,10 +472,7 @@ std::span<const std::string_view> retained(const BlockType& kind) {
 
 std::optional<Mark> cut_text(const BlockType& kind, const std::byte* instance) {
     if (kind.scan_blocks != scan_blocks || kind.single) return {};
-    std::uint64_t behind = 0;
-    std::memcpy(&behind, instance + 8 * std::size_t{cut_slot}, sizeof behind);
-    if (behind == 0) return {};
-    return static_cast<const KindContext*>(kind.context)->code->places[behind - 1].mark();
+    return cut_of(*static_cast<const KindContext*>(kind.context)->code, instance);
 }
 
 std::string Library::listing() const {

@@ -294,6 +294,13 @@ struct Frames {
         base = address;
     }
 
+    /// Of a test: false for a time that would go back, or end.
+    bool advance(std::int64_t by, std::int64_t interval) {
+        now.interval = interval;
+        ++now.index;
+        return by >= 0 && !__builtin_add_overflow(now.time, by, &now.time);
+    }
+
     void note_cut(const Instruction* at) const {
         if (word(root, cut_slot) == 0)
             set_word(root, cut_slot, static_cast<std::uint64_t>(at - code.instructions.data()));

@@ -62,7 +62,7 @@
     OP(call_at, call, "rf--", CALL(U(a), b))                                                         \
     OP(call_block, call, "sn--", frames.call_block(at(a), b))                                        \
     OP(call_block_at, call, "rn--", frames.call_block(target(U(a)), b))                              \
-    OP(advance_time, call, "-rr-", frames.now.time += I(b); frames.now.interval = I(c); ++frames.now.index) \
+    OP(advance_time, call, "-rr-", if (!frames.advance(I(b), I(c))) FAIL(out_of_range); fuel = frames.fuel) \
     OP(message, none, "r---", (void)a)                                                                \
     OP(cover, none, "n---", code.hits[a].fetch_add(1, std::memory_order_relaxed))                     \
     OP(stop, jump, "rrr-", FAIL(assertion))                                                           \

@@ -48,13 +48,13 @@ constexpr Unsupported unsupported[] = {
 
 /// Words that are names wherever a name may stand.
 constexpr Word soft_words[] = {
-    Word::version_,   Word::test_,      Word::setup_,         Word::teardown_,
-    Word::action_,    Word::class_,     Word::final_,         Word::at_,
-    Word::internal_,  Word::using_,     Word::property_,      Word::network_,
-    Word::method_,    Word::override_,  Word::interface_,     Word::type_,
-    Word::namespace_, Word::begin_,     Word::pointer_,       Word::private_,
-    Word::public_,    Word::protected_, Word::configuration_, Word::super_,
-    Word::implements_};
+    Word::version_,    Word::test_,      Word::setup_,         Word::teardown_,
+    Word::action_,     Word::class_,     Word::final_,         Word::at_,
+    Word::internal_,   Word::using_,     Word::property_,      Word::network_,
+    Word::method_,     Word::override_,  Word::interface_,     Word::type_,
+    Word::namespace_,  Word::begin_,     Word::pointer_,       Word::private_,
+    Word::public_,     Word::protected_, Word::configuration_, Word::super_,
+    Word::implements_, Word::union_};
 
 struct PouWords {
     Word begin, end;
@@ -135,6 +135,8 @@ const PouWords* find_pou(Word word) {
     return it == std::end(pou_words) ? nullptr : it;
 }
 
+/// One class, though large: each rule of the grammar is a function, and they share the place in the
+/// tokens and whether a mistake is still being recovered from.
 class Parser {
   public:
     Parser(Tokens tokens, Tree& tree, Diagnostics& out, bool is_tests)
@@ -758,7 +760,9 @@ class Parser {
         if (accept(Word::array_))
             read_array(type);
         else if (accept(Word::struct_))
-            read_struct(type, first);
+            read_struct(type, first, Word::end_struct_);
+        else if (is(Word::union_) && is_name(next()))
+            read_union(type, first);
         else if (is(Word::open))
             read_enumeration(type);
         else
@@ -784,12 +788,19 @@ class Parser {
         type.element = read_type();
     }
 
-    void read_struct(TypeText& type, const Token& opener) {
+    void read_struct(TypeText& type, const Token& opener, Word end) {
         type.kind = TypeText::Kind::structure;
         while (!panic_ && !is_spoiled_ && !is_end(here().word) && !is(Word::end_of_file) &&
                !at_pou())
             read_variables(type.members);
-        close(Word::end_struct_, opener);
+        close(end, opener);
+    }
+
+    void read_union(TypeText& type, const Token& opener) {
+        tell("L0903", opener.place, "unions are not supported",
+             "declare a STRUCT, and convert: DWORD_TO_REAL and its like keep the bits");
+        take();
+        read_struct(type, opener, Word::end_union_);
     }
 
     /// `(red, green := 5)`, and behind it the type of the numbers, as CODESYS has it
@@ -815,9 +826,14 @@ class Parser {
             const Word end = take().word == Word::open_bracket ? Word::close_bracket : Word::close;
             type.length = read_expression();
             expect(end, "after the length");
-        } else if (same_name(type.name.text, "wstring") && accept(Word::open_bracket)) {
+        } else if (same_name(type.name.text, "wstring") &&
+                   (is(Word::open_bracket) || is(Word::open))) {
+            const Word end = take().word == Word::open_bracket ? Word::close_bracket : Word::close;
             read_expression();
-            expect(Word::close_bracket, "after the length");
+            expect(end, "after the length");
+        } else if (same_name(type.name.text, "reference") && is(Word::to_)) {
+            fail("L0903", type.name.place, "references are not supported",
+                 "pass the variable as VAR_IN_OUT");
         } else if (is(Word::open)) {
             if (is_name(next()) && (next(2).word == Word::comma || next(2).word == Word::assign ||
                                     next(2).word == Word::close))
@@ -1176,6 +1192,9 @@ class Parser {
         if (target->kind != Expression::Kind::call) {
             if (is(Word::colon) && target->token.word == Word::name)
                 fail("L0903", target->place, "labels are not supported",
+                     "write IF, CASE, EXIT or RETURN");
+            else if (is(Word::name) && same_name(target->token.text, "jmp"))
+                fail("L0903", target->place, "JMP is not supported",
                      "write IF, CASE, EXIT or RETURN");
             else if (is(Word::semicolon) || here().first_in_line)
                 fail("L0902", target->place, "this does nothing",

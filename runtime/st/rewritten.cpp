@@ -41,8 +41,7 @@ bool Checker::rewrite(Statement& s) {
     const Routine* routine = nullptr;
     if (callee.kind == E::name) {
         const Variable* variable = find_variable(callee.token);
-        const auto it = routines_.find(callee.token.text);
-        if (it != routines_.end()) routine = it->second;
+        routine = find_routine(callee.token);
         if (variable && variable->type) routine = variable->type->routine;
         const int number = find_standard_function(callee.token.text);
         const bool is_known = variable || routine || callee.token.quoted || callee.token.local;

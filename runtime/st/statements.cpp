@@ -189,7 +189,7 @@ void Checker::check_case(Statement& s) {
 
 void Checker::check_for(Statement& s) {
     const Type* type = check(*s.target);
-    if (type && type->kind != Type::Kind::integer) {
+    if (type && type->kind != Type::Kind::integer && type->kind != Type::Kind::bits) {
         fail("L0905", s.target->place,
              fmt::format("FOR counts in an integer, not in {}", describe(*type)),
              type->is_real() ? "count in a DINT, and compute the value from it" : "");

@@ -121,6 +121,22 @@ void Checker::check_single(Expression& call) {
 void Checker::check_mocked(Expression& call) {
     Expression& instance = *call.arguments[0].value;
     const TestStatement& known = info(call.test);
+    if (instance.kind == E::name && !find_variable(instance.token)) {
+        const Routine* routine = find_routine(instance.token);
+        if (routine && routine->is_function())
+            fail("L0905", instance.place,
+                 fmt::format("{} takes an instance of a function block, and '{}' is a function",
+                             known.name, instance.token.text),
+                 "MOCK_FUNCTION replaces a function; its calls are not counted");
+        else if (routine || standard_type(instance.token.text))
+            fail("L0905", instance.place,
+                 fmt::format("{} takes an instance, and '{}' is a kind of block", known.name,
+                             instance.token.text),
+                 "name the variable");
+        else
+            check(instance);
+        return;
+    }
     const Type* type = check(instance);
     if (!type) return;
     if (!is_place(instance) || !type->is_instance())
@@ -219,17 +235,18 @@ bool Checker::check_distance(Expression& call) {
 
 void Checker::check_mock_function(Expression& call) {
     const Expression& name = *call.arguments[0].value;
-    const auto it = routines_.find(name.token.text);
-    const bool found = name.kind == E::name && it != routines_.end() && it->second->is_function();
-    if (!found || !it->second->result) {
+    Routine* const named = name.kind == E::name ? find_routine(name.token) : nullptr;
+    if (!named || !named->is_function() || !named->result) {
         const bool standard = find_standard_function(name.token.text) >= 0;
         fail("L0904", name.place,
              fmt::format("'{}' is not a FUNCTION of the sources that has a value",
                          name.place.text()),
-             standard ? "call it in a FUNCTION of your own, and replace that" : "");
+             standard               ? "call it in a FUNCTION of your own, and replace that"
+             : name.kind == E::call ? "write its name alone: the value is that of every call"
+                                    : "");
         return;
     }
-    Routine& function = *it->second;
+    Routine& function = *named;
     const Type* type = function.result->type;
     if (!type) return;
     Expression*& value = call.arguments[1].value;

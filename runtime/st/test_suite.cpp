@@ -1,6 +1,7 @@
 #include "runtime/st/test_suite.hpp"
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <unordered_map>
 
@@ -27,7 +28,7 @@ struct TestSuite::Made : Compiled {
         if (word == Word::setup_) setup = &code;
         if (word == Word::teardown_) teardown = &code;
         if (word == Word::setup_ || word == Word::teardown_) return;
-        tests.push_back({name_of(*routine.pou), routine.pou->place.mark()});
+        tests.push_back({printable(name_of(*routine.pou)), routine.pou->place.mark()});
         codes.push_back(&code);
     }
 
@@ -79,6 +80,8 @@ class Bench {
                 place.mark, true, place.calls};
     }
 
+    std::optional<Mark> cut() { return cut_of(made_.generated.code, bytes(root_)); }
+
   private:
     std::string_view text_at(std::uint64_t address) {
         const std::uint64_t space = address >> 32;
@@ -101,7 +104,7 @@ class Bench {
         TestResult result;
         result.mark = failed.place.mark();
         result.failure = fmt::format("{}: {}", written(failed), what(failed, *stop));
-        if (failed.has_message) result.failure += fmt::format("; {}", text_at(root_[stop[1].a]));
+        if (failed.has_message) result.failure += "; " + printable(text_at(root_[stop[1].a]));
         return result;
     }
 
@@ -146,8 +149,13 @@ class Bench {
                 return fmt::format("expected {} call{}, found {}", root_[stop.b],
                                    root_[stop.b] == 1 ? "" : "s", root_[stop.a]);
             default:
-                return fmt::format("expected {}, found {}", wanted(), found());
+                break;
         }
+        const auto exact = [&](std::uint32_t slot) { return std::bit_cast<double>(root_[slot]); };
+        const bool hides_digits = wanted() == found() && failed.found->is_real() &&
+                                  std::isfinite(exact(stop.a));
+        if (!hides_digits) return fmt::format("expected {}, found {}", wanted(), found());
+        return fmt::format("expected {}, found {}", exact(stop.b), exact(stop.a));
     }
 
     std::string distance(const Assertion& failed, const Instruction& stop) {
@@ -197,7 +205,9 @@ TestResult TestSuite::run(std::size_t test) const {
     TestResult result = bench.run(made_->setup);
     if (result.failure.empty()) result = bench.run(made_->codes[test]);
     TestResult last = bench.run(made_->teardown);
-    return result.failure.empty() ? last : result;
+    if (result.failure.empty()) result = last;
+    result.cut = bench.cut();
+    return result;
 }
 
 }  // namespace lineshaft::st

@@ -21,6 +21,7 @@ struct TestResult {
     Mark mark = {};            ///< of the assertion, or of the statement with the fault
     bool is_fault = false;     ///< a fault while running: bounds, division, a loop without end
     std::vector<std::string> calls = {};  ///< that ran at the fault, the innermost first
+    std::optional<Mark> cut = {};         ///< where a text was first cut short
 };
 
 /// A file with `TEST 'text' VAR ... END_VAR statements END_TEST`, its SETUP and TEARDOWN, and the

@@ -39,23 +39,23 @@ inline bool same_name(std::string_view a, std::string_view b) {
 }
 
 // Every word and sign of the language, as it is shown in messages.
-#define LINESHAFT_ST_WORDS(WORD)                                                                 \
+#define LINESHAFT_ST_WORDS(WORD)                                                                \
     WORD(action) WORD(and) WORD(and_then) WORD(array) WORD(at) WORD(begin) WORD(by) WORD(case)     \
     WORD(class) WORD(configuration) WORD(constant) WORD(continue) WORD(data_block) WORD(do)        \
     WORD(else) WORD(elsif) WORD(end_action) WORD(end_case) WORD(end_class) WORD(end_data_block)    \
     WORD(end_for) WORD(end_function) WORD(end_function_block) WORD(end_if) WORD(end_interface)     \
     WORD(end_method) WORD(end_namespace) WORD(end_network) WORD(end_organization_block)            \
     WORD(end_program) WORD(end_property) WORD(end_region) WORD(end_repeat) WORD(end_setup)         \
-    WORD(end_struct) WORD(end_teardown) WORD(end_test) WORD(end_type) WORD(end_var)                \
-    WORD(end_while) WORD(exit) WORD(extends) WORD(final) WORD(for) WORD(function)                  \
+    WORD(end_struct) WORD(end_teardown) WORD(end_test) WORD(end_type) WORD(end_union)              \
+    WORD(end_var) WORD(end_while) WORD(exit) WORD(extends) WORD(final) WORD(for) WORD(function)    \
     WORD(function_block) WORD(goto) WORD(if) WORD(implements) WORD(interface) WORD(internal)       \
     WORD(method) WORD(mod) WORD(namespace) WORD(network) WORD(non_retain) WORD(not) WORD(of)       \
     WORD(or) WORD(or_else) WORD(organization_block) WORD(override) WORD(pointer) WORD(private)     \
     WORD(program) WORD(property) WORD(protected) WORD(public) WORD(ref_to) WORD(region)            \
     WORD(repeat) WORD(retain) WORD(return) WORD(setup) WORD(struct) WORD(super) WORD(teardown)     \
-    WORD(test) WORD(then) WORD(to) WORD(type) WORD(until) WORD(using) WORD(var) WORD(var_access)   \
-    WORD(var_external) WORD(var_global) WORD(var_in_out) WORD(var_input) WORD(var_output)          \
-    WORD(var_stat) WORD(var_temp) WORD(version) WORD(while) WORD(xor)
+    WORD(test) WORD(then) WORD(to) WORD(type) WORD(union) WORD(until) WORD(using) WORD(var)        \
+    WORD(var_access) WORD(var_external) WORD(var_global) WORD(var_in_out) WORD(var_input)          \
+    WORD(var_output) WORD(var_stat) WORD(var_temp) WORD(version) WORD(while) WORD(xor)
 
 enum class Word : std::uint8_t {
 #define WORD(name) name##_,

@@ -104,18 +104,26 @@ void add_time(fmt::memory_buffer& to, Kind kind, std::int64_t nanoseconds) {
         add_date(std::back_inserter(to), kind, nanoseconds);
 }
 
-std::string text_literal(std::string_view text) {
-    std::string out = "'";
+std::string printable(std::string_view text) {
+    std::string out;
     while (!text.empty()) {
         const Utf8Character c = first_character(text);
-        if (c.code == '$' || c.code == '\'') out += '$';
         if (!c.valid || c.code < 0x20)
             out += fmt::format("${:02X}", static_cast<unsigned char>(text.front()));
         else
             out += text.substr(0, c.bytes);
         text.remove_prefix(c.bytes);
     }
-    return out + "'";
+    return out;
+}
+
+std::string text_literal(std::string_view text) {
+    std::string marked;
+    for (const char c : text) {
+        if (c == '$' || c == '\'') marked += '$';
+        marked += c;
+    }
+    return "'" + printable(marked) + "'";
 }
 
 }  // namespace lineshaft::st

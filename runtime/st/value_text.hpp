@@ -19,6 +19,9 @@ std::string time_literal(std::int64_t nanoseconds);
 /// `DT#2020-02-29-12:30:15`. Allocates nothing.
 void add_time(fmt::memory_buffer& to, Type::Kind kind, std::int64_t nanoseconds);
 
+/// With `$E4` for a byte that is no UTF-8, `$0A` for a new line.
+std::string printable(std::string_view text);
+
 /// `'it$'s'`
 std::string text_literal(std::string_view text);
 

@@ -4,29 +4,32 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/utf8.hpp"
+
 namespace lineshaft {
 
 namespace {
 
-std::string escape(const std::string& text) {
+/// What is no UTF-8, and what XML cannot hold, is '?'.
+std::string escape(std::string_view text) {
     std::string out;
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? '?' : c;
-        }
+    while (!text.empty()) {
+        const Utf8Character c = first_character(text);
+        const std::string_view written = text.substr(0, c.bytes);
+        text.remove_prefix(c.bytes);
+        const bool is_blank = c.code == '\n' || c.code == '\t';
+        if (c.code == '&')
+            out += "&amp;";
+        else if (c.code == '<')
+            out += "&lt;";
+        else if (c.code == '>')
+            out += "&gt;";
+        else if (c.code == '"')
+            out += "&quot;";
+        else if (!c.valid || (c.code < 0x20 && !is_blank) || c.code == 0xFFFE || c.code == 0xFFFF)
+            out += '?';
+        else
+            out += written;
     }
     return out;
 }

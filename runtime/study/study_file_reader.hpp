@@ -14,9 +14,9 @@
 
 namespace lineshaft {
 
-/// Makes a Study of a file, see read_study(). Its functions stand in study_reader.cpp (the file,
-/// identity), study_cases.cpp (cases and their check) and study_claims.cpp (comparisons, bounds,
-/// claims).
+/// Makes a Study of a file, see read_study(), and is as long as that form has parts. Its functions
+/// stand in study_reader.cpp (the file, identity), study_cases.cpp (cases and their check) and
+/// study_claims.cpp (comparisons, bounds, claims).
 class StudyFileReader {
   public:
     StudyFileReader(const LoadOptions& options, const Catalog& catalog, StudyCheck check,

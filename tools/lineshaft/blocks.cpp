@@ -4,8 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/source/yaml.hpp"
-#include "runtime/st/library.hpp"
 #include "tools/lineshaft/block_text.hpp"
 #include "tools/lineshaft/command.hpp"
 
@@ -46,11 +44,7 @@ Exit describe(const Catalog& catalog, const std::string& name, bool json) {
 /// The kinds of block of the files; empty, and reported, when there is a mistake in them.
 std::optional<Catalog> compiled(const std::vector<std::string>& files, bool json) {
     Diagnostics out;
-    std::vector<std::shared_ptr<const SourceFile>> sources;
-    for (const std::string& file : files)
-        if (auto source = read_source(file, out)) sources.push_back(std::move(source));
-    std::optional<st::Library> library;
-    if (out.empty()) library = st::compile(sources, standard_blocks(), out);
+    const auto library = compile_files(files, out);
     if (!out.empty() || !out.warnings().empty()) report(out, json && !out.empty());
     if (!library) return {};
     Catalog kinds;
@@ -61,7 +55,9 @@ std::optional<Catalog> compiled(const std::vector<std::string>& files, bool json
 Exit execute(const BlocksCommand& command) {
     std::vector<std::string> files, types;
     for (const std::string& name : command.names) {
-        const bool is_file = std::filesystem::path(name).has_extension();
+        std::error_code error;
+        const bool is_file = std::filesystem::path(name).has_extension() ||
+                             std::filesystem::is_directory(name, error);
         (is_file ? files : types).push_back(name);
     }
     if (types.size() > 1) {
@@ -72,6 +68,8 @@ Exit execute(const BlocksCommand& command) {
     if (!catalog) return Exit::wrong;
     if (!types.empty()) return describe(*catalog, types[0], command.json);
     if (files.empty() || command.json) return list(*catalog, command.json);
+    if (catalog->types().empty())
+        fmt::print("no PROGRAM or FUNCTION_BLOCK in {}\n", fmt::join(files, ", "));
     for (const BlockType& type : catalog->types())
         fmt::print("{}{}", &type == catalog->types().data() ? "" : "\n", block_text(type));
     return Exit::fine;
@@ -83,8 +81,9 @@ void add_blocks(CLI::App& app, Exit& result) {
     auto command = std::make_shared<BlocksCommand>();
     CLI::App* sub = app.add_subcommand(
         "blocks", "List the function blocks, or describe one, or those of Structured Text");
-    sub->add_option("names", command->names,
-                    "A block type, such as MC_GearIn, and files of Structured Text that have it");
+    sub->add_option(
+        "names", command->names,
+        "A block type, such as MC_GearIn, and files or folders of Structured Text that have it");
     sub->add_flag("--json", command->json, "Print JSON for machines");
     sub->callback([command, &result] { result = execute(*command); });
 }

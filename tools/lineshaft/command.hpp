@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "runtime/model/catalog.hpp"
 #include "runtime/program/program.hpp"
 #include "runtime/source/input_file.hpp"
+#include "runtime/st/library.hpp"
 
 namespace lineshaft {
 
@@ -62,6 +64,9 @@ class ProgressLine {
     bool enabled_;
     std::int64_t start_, shown_ = 0;
 };
+
+/// What files of Structured Text, and all in folders, make together.
+std::optional<st::Library> compile_files(const std::vector<std::string>& files, Diagnostics& out);
 
 /// What `lineshaft report` does, of these signals.
 Exit write_report(std::vector<std::string> inputs, std::vector<std::string> signals,

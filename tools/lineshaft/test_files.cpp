@@ -181,16 +181,6 @@ std::string failure_text(const st::TestResult& result) {
     return text;
 }
 
-std::optional<st::TestSuite> compile(const TestFile& tests,
-                                     const std::shared_ptr<const SourceFile>& file,
-                                     Diagnostics& out) {
-    if (!st::is_test_file(file))
-        out.add("L0904", {file, 0, 0, 1}, "there is no TEST in this file",
-                "write TEST 'text' ... END_TEST");
-    if (!out.empty()) return {};
-    return st::compile_tests(file, tests.sources->needed_by(file), standard_blocks(), out);
-}
-
 std::string full_name(const TestFile& file, const st::Test& test) {
     return file.path + ": " + test.name;
 }
@@ -199,11 +189,16 @@ bool passes(const std::string& name, const TestOptions& options) {
     return !options.filter || std::regex_search(name, *options.filter);
 }
 
+std::string cut_text(const Mark& cut) {
+    return fmt::format("{}:{}:{}: a text was cut short; declare the STRING longer", cut.file->path,
+                       cut.line, cut.column);
+}
+
 std::vector<SuiteEntry> test_structured_text(const TestFile& tests,
                                              const std::shared_ptr<const SourceFile>& file,
                                              const TestOptions& options) {
     Diagnostics out;
-    const auto suite = compile(tests, file, out);
+    const auto suite = compile_tests(tests, file, out);
     if (!suite) return {wrong(file->path, out.render())};
     std::vector<SuiteEntry> entries;
     for (std::size_t i = 0; i < suite->tests().size() && !interrupt_requested; ++i) {
@@ -218,6 +213,11 @@ std::vector<SuiteEntry> test_structured_text(const TestFile& tests,
                          .file = file->path,
                          .line = static_cast<int>(test.mark.line)};
         if (!result.failure.empty()) entry.failures.push_back(failure_text(result));
+        if (result.cut) {
+            const std::string cut = cut_text(*result.cut);
+            if (options.strict) entry.failures.push_back(cut);
+            if (!options.strict) entry.warnings += fmt::format("warning: {}\n", cut);
+        }
         entries.push_back(std::move(entry));
     }
     return entries;
@@ -233,11 +233,21 @@ std::vector<TestFile> find_tests(const std::string& path, const std::vector<std:
     return tests;
 }
 
+std::optional<st::TestSuite> compile_tests(const TestFile& tests,
+                                           const std::shared_ptr<const SourceFile>& file,
+                                           Diagnostics& out) {
+    if (!st::is_test_file(file))
+        out.add("L0904", {file, 0, 0, 1}, "there is no TEST in this file",
+                "write TEST 'text' ... END_TEST");
+    if (!out.empty()) return {};
+    return st::compile_tests(file, tests.sources->needed_by(file), standard_blocks(), out);
+}
+
 std::vector<std::string> test_names(const TestFile& file, const TestOptions& options) {
     std::vector<std::string> names;
     Diagnostics out;
     const auto source = is_structured_text(file.path) ? read_source(file.path, out) : nullptr;
-    const auto suite = source ? compile(file, source, out) : std::nullopt;
+    const auto suite = source ? compile_tests(file, source, out) : std::nullopt;
     if (suite)
         for (const st::Test& test : suite->tests()) names.push_back(full_name(file, test));
     else

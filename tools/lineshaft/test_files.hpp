@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/st/test_sources.hpp"
+#include "runtime/st/test_suite.hpp"
 #include "runtime/study/junit.hpp"
 
 namespace lineshaft {
@@ -28,6 +29,11 @@ struct TestOptions {
 /// The file itself, or all that can be tested below a folder, sorted; with what its TESTs see: of a
 /// folder all below it, of a file its folder, and the one around that if it is `tests`.
 std::vector<TestFile> find_tests(const std::string& path, const std::vector<std::string>& sources);
+
+/// The TESTs of a file, which was read; empty, with what is wrong, if anything is.
+std::optional<st::TestSuite> compile_tests(const TestFile& tests,
+                                           const std::shared_ptr<const SourceFile>& file,
+                                           Diagnostics& out);
 
 /// The names of what a file has under the filter: its path, or `path: name` of its TESTs.
 std::vector<std::string> test_names(const TestFile& file, const TestOptions& options);
