@@ -110,8 +110,10 @@ Routine& Checker::make_routine(Pou& pou, std::string name) {
 bool Checker::is_new_name(Token name, NameMap<Place>& names) {
     const auto [it, added] = names.emplace(name.text, name.place);
     if (added) return true;
+    const Mark first = it->second.mark();
+    const bool beside = first.file == *name.place.file;
     fail("L0909", name.place, fmt::format("{} is declared twice", quoted(name.text)),
-         fmt::format("first in line {}", it->second.mark().line));
+         fmt::format("first in {}{}", beside ? "line " : first.file->path + ":", first.line));
     return false;
 }
 

@@ -152,8 +152,8 @@ class Bench {
                 break;
         }
         const auto exact = [&](std::uint32_t slot) { return std::bit_cast<double>(root_[slot]); };
-        const bool hides_digits = wanted() == found() && failed.found->is_real() &&
-                                  std::isfinite(exact(stop.a));
+        const bool hides_digits =
+            wanted() == found() && failed.found->is_real() && std::isfinite(exact(stop.a));
         if (!hides_digits) return fmt::format("expected {}, found {}", wanted(), found());
         return fmt::format("expected {}, found {}", exact(stop.b), exact(stop.a));
     }
