@@ -103,6 +103,8 @@ class Checker {
     const Type* check_constant(Expression& expression, const Type* expected);
     const Type* check_number(Expression& expression);
     const Type* check_time(Expression& expression);
+    const Type* check_dtl(Expression& expression);
+    Expression* make_call(std::string_view function, Expression* argument);
     const Type* check_text(Expression& expression);
     const Type* check_name(Expression& expression, const Type* expected);
     const Type* use(Expression& expression, Variable& variable);

@@ -136,12 +136,33 @@ const Type* Checker::check_time(Expression& e) {
         e.constant.integer = *value;
         return type;
     }
+    if (same_name(prefix, "dtl")) return check_dtl(e);
     const auto value = read_duration(e.token.text);
     if (!value)
         return fail("L0908", e.place, fmt::format("'{}' is not a time", e.place.text()),
                     "write T#1h2m3.5s, with d, h, m, s, ms, us and ns in this order");
     e.constant.integer = *value;
     return &time_type;
+}
+
+const Type* Checker::check_dtl(Expression& e) {
+    const auto value = read_date(e.token.text, Kind::moment);
+    if (!value)
+        return fail("L0908", e.place, fmt::format("'{}' is not a DTL", e.place.text()),
+                    "write DTL#2020-02-29-12:30:15.25");
+    Expression* moment = make(Expression::Kind::constant, e);
+    become(*moment, moment_type, {.integer = *value});
+    e = *make_call("LDT_TO_DTL", moment);
+    return check(e);
+}
+
+/// Of a function of the standard's own sources.
+Expression* Checker::make_call(std::string_view function, Expression* argument) {
+    Expression* call = make(Expression::Kind::call, *argument);
+    call->operands[0] = make(Expression::Kind::name, *argument);
+    call->operands[0]->token.text = function;
+    call->arguments.push_back({.value = argument});
+    return call;
 }
 
 const Type* Checker::check_text(Expression& e) {
@@ -403,6 +424,10 @@ const Type* Checker::check_member(Expression& e) {
         e.variable = member;
         return member->type;
     }
+    if (type->kind == Kind::array && same_name(name, "this")) {  // "Recipes".THIS[1]
+        e = Expression(*e.operands[0]);
+        return type;
+    }
     if (names.empty())
         return fail("L0905", e.token.place, fmt::format("{} has no parts", describe(*type)),
                     "'.' takes a part of a structure or of an instance");
@@ -662,6 +687,12 @@ const Type* Checker::check_comparison(Expression& e) {
                                    [&](const Expression* o) { return o->type->kind == kind; });
     };
     if (is_kind(Kind::bits) && is_kind(Kind::integer)) reinterpret(e, Kind::bits);
+    const auto is_dtl = [](const Expression* o) {
+        return o->type->kind == Kind::structure && o->type->name == "DTL";
+    };
+    if (is_dtl(e.operands[0]) && is_dtl(e.operands[1]))
+        for (Expression*& operand : e.operands)
+            check(*(operand = make_call("DTL_TO_LDT", operand)));
     const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
     const bool order = e.op != Word::equal && e.op != Word::unequal;
     if (a.kind == Kind::text && b.kind == Kind::text) return &bool_type;

@@ -75,9 +75,9 @@ constexpr Sign signs[] = {{":=", Word::assign},
 constexpr int deepest_comment = 200;
 
 constexpr std::string_view time_prefixes[] = {"t", "time", "lt", "ltime", "s5t", "s5time"};
-constexpr std::string_view date_prefixes[] = {"d",    "date",         "ld",  "ldate",
-                                              "tod",  "time_of_day",  "dt",  "date_and_time",
-                                              "ltod", "ltime_of_day", "ldt", "ldate_and_time"};
+constexpr std::string_view date_prefixes[] = {
+    "d",    "date",         "ld",  "ldate",          "tod", "time_of_day", "dt", "date_and_time",
+    "ltod", "ltime_of_day", "ldt", "ldate_and_time", "dtl"};
 
 /// One class, as each kind of token is a function that moves the same place in the text.
 class Lexer {

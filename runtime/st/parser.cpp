@@ -972,6 +972,7 @@ class Parser {
                 left = call;
             } else if (is(Word::open_bracket)) {
                 Expression* index = make(Expression::Kind::index, take());
+                if (is(Word::close_bracket)) expected("an index", "after '['");
                 read_arguments(*index, Word::close_bracket, false);
                 add_operand(*index, 0, left);
                 left = index;

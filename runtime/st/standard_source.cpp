@@ -180,7 +180,8 @@ const std::shared_ptr<const SourceFile>& standard_source() {
 bool uses_standard_source(const Tokens& tokens) {
     static const NameSet set(std::begin(names), std::end(names));
     return std::ranges::any_of(tokens.tokens, [](const Token& token) {
-        return token.word == Word::name && token.text.size() >= 3 && set.contains(token.text);
+        const bool is_name = token.word == Word::name || token.word == Word::prefix;
+        return is_name && token.text.size() >= 3 && set.contains(token.text);
     });
 }
 
