@@ -23,6 +23,8 @@ struct Argument {
     Expression* value = nullptr;
     Variable* variable = nullptr;  ///< that it goes to or comes from, noted by the checker
     bool is_left_out = false;      ///< in a test: taken only if nothing was given before
+
+    bool is_named() const { return name.word != Word::end_of_file; }
 };
 
 struct Expression {
@@ -65,8 +67,7 @@ struct Expression {
     bool is_nested() const {
         for (const Argument& argument : arguments) {
             const Expression& e = *argument.value;
-            const bool named =
-                !e.arguments.empty() && e.arguments.front().name.word != Word::end_of_file;
+            const bool named = !e.arguments.empty() && e.arguments.front().is_named();
             if (e.kind == Kind::list && !named) return true;
         }
         return false;
