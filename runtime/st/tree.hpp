@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <memory_resource>
 #include <string_view>
 #include <vector>
 
@@ -167,11 +168,12 @@ struct TypeDeclaration {
 
 /// Owns all nodes, so that they need no owners among themselves.
 struct Tree {
-    std::deque<Expression> expressions;
-    std::deque<Statement> statements;
-    std::deque<TypeText> type_texts;
-    std::deque<Declaration> declarations;
-    std::deque<Pou> pous;
+    std::pmr::monotonic_buffer_resource memory;  ///< of the nodes: a deque asks for each
+    std::pmr::deque<Expression> expressions{&memory};
+    std::pmr::deque<Statement> statements{&memory};
+    std::pmr::deque<TypeText> type_texts{&memory};
+    std::pmr::deque<Declaration> declarations{&memory};
+    std::pmr::deque<Pou> pous{&memory};
 
     std::vector<TypeDeclaration> types;  ///< in the order of the sources, as all lists
     std::vector<Pou*> units;             ///< all but methods
