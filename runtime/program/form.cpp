@@ -160,14 +160,14 @@ void apply(const Form& form, const Rule& rule, const Reader& read, const Node& m
 }
 
 void refuse_unknown(const Form& form, const Reader& read, const Node& map, std::string_view what) {
-    std::vector<std::string> known;
-    for (const Key& k : form.keys) known.emplace_back(k.name);
-    for (const auto& [name, value] : map.entries)
-        if (!form.find(name.text))
-            read.fail(form.unknown_code, name,
-                      fmt::format(fmt::runtime(form.unknown), name.text, what),
-                      name.text.find(':') == std::string::npos ? suggest(name.text, known)
-                                                               : "a blank is missing after ':'");
+    for (const auto& [name, value] : map.entries) {
+        if (form.find(name.text)) continue;
+        std::vector<std::string> known;
+        for (const Key& k : form.keys) known.emplace_back(k.name);
+        read.fail(form.unknown_code, name, fmt::format(fmt::runtime(form.unknown), name.text, what),
+                  name.text.find(':') == std::string::npos ? suggest(name.text, known)
+                                                           : "a blank is missing after ':'");
+    }
 }
 
 /// What a reader of its own may rely on.

@@ -130,11 +130,9 @@ auto order(const Diagnostic& d) {
 
 /// Optimal string alignment: insert, remove, replace, exchange of two neighbours cost 1 each.
 std::size_t distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> before_last;
-    std::vector<std::size_t> last(b.size() + 1);
+    std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
     std::iota(last.begin(), last.end(), std::size_t{0});
     for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::vector<std::size_t> row(b.size() + 1);
         row[0] = i;
         for (std::size_t j = 1; j <= b.size(); ++j) {
             const std::size_t replaced = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
@@ -142,8 +140,8 @@ std::size_t distance(std::string_view a, std::string_view b) {
             const bool exchanged = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
             if (exchanged) row[j] = std::min(row[j], before_last[j - 2] + 1);
         }
-        before_last = std::move(last);
-        last = std::move(row);
+        std::swap(before_last, last);
+        std::swap(last, row);
     }
     return last.back();
 }

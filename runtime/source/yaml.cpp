@@ -75,14 +75,12 @@ class Source {
 
   private:
     void number_characters() {
-        characters_.reserve(text_.size() + 1);
+        characters_.resize(text_.size() + 1);
         std::uint32_t count = 0;
-        for (std::string_view rest = text_; !rest.empty(); ++count) {
-            const std::size_t bytes = first_character(rest).bytes;
-            characters_.insert(characters_.end(), bytes, count);
-            rest.remove_prefix(bytes);
-        }
-        characters_.push_back(count);
+        for (std::size_t i = 0; i < text_.size(); ++count)
+            for (std::size_t end = i + first_character(text_.substr(i)).bytes; i < end; ++i)
+                characters_[i] = count;
+        characters_.back() = count;
     }
 
     std::size_t characters(std::size_t begin, std::size_t end) const {

@@ -107,20 +107,21 @@ Variable* Checker::find_parameter(Argument& argument, Routine& routine, std::siz
         return variable.section == Section::input || variable.section == Section::in_out ||
                variable.section == Section::output;
     };
-    std::vector<std::string> names;
+    const bool named = argument.is_named();
+    const bool inner = is_in_test() && named && routine.has_instances();
     std::size_t i = 0;
     for (Variable& variable : routine.variables) {
-        const bool named = argument.name.word != Word::end_of_file;
-        const bool inner = is_in_test() && named && routine.has_instances();
         if (!is_parameter(variable) && !inner) continue;
-        names.emplace_back(variable.text);
         if (named ? same_name(variable.text, argument.name.text) : i == position) return &variable;
         ++i;
     }
     if (argument.is_output && same_name(argument.name.text, "eno")) return &eno_of(routine);
-    if (argument.name.word == Word::end_of_file)
+    if (!named)
         return fail("L0907", argument.value->place,
                     fmt::format("'{}' takes {} argument{}", routine.name, i, i == 1 ? "" : "s"));
+    std::vector<std::string> names;
+    for (const Variable& variable : routine.variables)
+        if (is_parameter(variable) || inner) names.emplace_back(variable.text);
     return fail("L0907", argument.name.place,
                 fmt::format("'{}' has no argument '{}'", routine.name, argument.name.text),
                 same_name(argument.name.text, "en")
@@ -133,7 +134,7 @@ void Checker::check_arguments(Expression& call, Routine& routine) {
     std::vector<const Variable*> given;
     bool by_name = false;
     for (Argument& argument : call.arguments) {
-        by_name |= argument.name.word != Word::end_of_file;
+        by_name |= argument.is_named();
         Variable* parameter = find_parameter(argument, routine, position++);
         argument.variable = parameter;
         if (!parameter) {
@@ -163,12 +164,11 @@ void Checker::check_arguments(Expression& call, Routine& routine) {
 void Checker::check_argument(Expression&, Argument& argument, Variable& parameter) {
     Expression*& value = argument.value;
     const Type* type = parameter.type;
-    const bool is_set = is_in_test() && !argument.is_output &&
-                        argument.name.word != Word::end_of_file &&
+    const bool is_set = is_in_test() && !argument.is_output && argument.is_named() &&
                         parameter.section != Section::in_out;
     const bool is_eno = argument.is_output && parameter.section == Section::temp;
     if (!is_set && !is_eno && argument.is_output != (parameter.section == Section::output) &&
-        argument.name.word != Word::end_of_file) {
+        argument.is_named()) {
         check(*value);
         fail("L0907", argument.name.place,
              fmt::format("'{}' is {} of the call", parameter.text,
@@ -242,7 +242,7 @@ void Checker::check_standard_arguments(Expression& call, const Type& type) {
     std::size_t position = 0;
     for (Argument& argument : call.arguments) {
         Variable* found = nullptr;
-        if (argument.name.word == Word::end_of_file) {
+        if (!argument.is_named()) {
             if (position < type.members.size()) found = type.members[position++];
         } else {
             for (Variable* member : type.members)
@@ -256,7 +256,7 @@ void Checker::check_standard_arguments(Expression& call, const Type& type) {
             ignore(type, argument, ignored->only);
             continue;
         }
-        if (!found && argument.name.word == Word::end_of_file) {
+        if (!found && !argument.is_named()) {
             fail("L0907", argument.value->place,
                  fmt::format("{} takes {} arguments", type.name, names.size()),
                  fmt::format("they are {}", fmt::join(names, ", ")));
@@ -296,6 +296,7 @@ bool Checker::check_count(const Expression& call, const StandardFunction& f) {
 
 /// Arguments by name may stand in any order.
 bool Checker::put_in_order(Expression& call, const StandardFunction& f) {
+    if (std::ranges::none_of(call.arguments, &Argument::is_named)) return true;
     const int count = static_cast<int>(call.arguments.size());
     std::vector<Argument> sorted(call.arguments.size());
     std::vector<std::string> names;
@@ -308,7 +309,7 @@ bool Checker::put_in_order(Expression& call, const StandardFunction& f) {
         const auto is_called = [&](const std::string& name) {
             return same_name(name, argument.name.text);
         };
-        const bool named = argument.name.word != Word::end_of_file;
+        const bool named = argument.is_named();
         const auto it = named ? std::ranges::find_if(names, is_called) : names.begin() + i;
         const char* wrong = it == names.end() ? "not an argument of"
                             : sorted[static_cast<std::size_t>(it - names.begin())].value

@@ -399,11 +399,9 @@ const Type* Checker::check_member(Expression& e) {
         convert(e.operands[0], *type);
     }
     const std::string_view name = standard_name(*type, e.token.text);
-    std::vector<std::string> names;
     if (type->kind == Kind::block) {
         Routine& routine = *type->routine;
         for (Variable& variable : routine.variables) {
-            names.emplace_back(variable.text);
             if (!same_name(variable.text, name)) continue;
             if (variable.space == Space::none && is_in_test()) {
                 become(e, *variable.type, variable.value);
@@ -419,7 +417,6 @@ const Type* Checker::check_member(Expression& e) {
         }
     }
     for (Variable* member : type->members) {
-        names.emplace_back(member->text);
         if (!same_name(member->text, name)) continue;
         e.variable = member;
         return member->type;
@@ -428,6 +425,10 @@ const Type* Checker::check_member(Expression& e) {
         e = Expression(*e.operands[0]);
         return type;
     }
+    std::vector<std::string> names;
+    if (type->kind == Kind::block)
+        for (const Variable& variable : type->routine->variables) names.emplace_back(variable.text);
+    for (const Variable* member : type->members) names.emplace_back(member->text);
     if (names.empty())
         return fail("L0905", e.token.place, fmt::format("{} has no parts", describe(*type)),
                     "'.' takes a part of a structure or of an instance");

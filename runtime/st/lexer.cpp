@@ -99,9 +99,7 @@ class Lexer {
         return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0';
     }
     bool at(std::string_view text) const {
-        std::size_t same = 0;
-        while (same < text.size() && peek(same) == text[same]) ++same;
-        return same == text.size();
+        return peek() == text[0] && text_.substr(at_).starts_with(text);
     }
     Place place(std::size_t begin, std::size_t end) const {
         return {&file_, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
@@ -123,15 +121,17 @@ class Lexer {
 
     void skip_blanks() {
         for (; at_ < text_.size(); ++at_) {
-            if (text_[at_] == '\n')
+            const char c = text_[at_];
+            if (c == ' ' || c == '\t' || c == '\r') continue;
+            if (c == '\n')
                 new_line_ = true;
             else if (at("(*") || at("/*") || is_translated_comment())
                 note_comment(&Lexer::skip_comment);
             else if (at("//"))
                 note_comment(&Lexer::skip_line);
-            else if (text_[at_] == '{')
+            else if (c == '{')
                 skip_pragma();
-            else if (text_[at_] != ' ' && text_[at_] != '\t' && text_[at_] != '\r')
+            else
                 return;
         }
     }
@@ -413,11 +413,14 @@ class Lexer {
 Mark Place::mark() const {
     std::string_view before = std::string_view((*file)->text).substr(0, begin);
     if (before.starts_with(utf8_byte_order_mark)) before.remove_prefix(utf8_byte_order_mark.size());
-    const auto line = std::ranges::count(before, '\n');
-    const std::size_t line_begin = before.rfind('\n') + 1;
+    int line = 1;
+    std::size_t line_begin = 0;
+    for (std::size_t i = before.find('\n'); i != before.npos; i = before.find('\n', line_begin)) {
+        ++line;
+        line_begin = i + 1;
+    }
     const std::string_view marked = text().substr(0, text().find('\n'));
-    return {*file, static_cast<int>(line) + 1,
-            static_cast<int>(count_characters(before.substr(line_begin))) + 1,
+    return {*file, line, static_cast<int>(count_characters(before.substr(line_begin))) + 1,
             std::max(1, static_cast<int>(count_characters(marked)))};
 }
 

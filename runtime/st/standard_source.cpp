@@ -192,6 +192,7 @@ std::shared_ptr<const SourceFile> source_of(const BlockType& type) {
 
 bool uses_source_of(const BlockType& type, const Tokens& tokens) {
     const std::string_view text = type.structured_text;
+    if (text.empty()) return false;
     NameSet said;
     const auto add = [&](const std::string& before, char end) {
         for (std::size_t at = text.find(before); at != text.npos; at = text.find(before, at)) {
@@ -201,7 +202,7 @@ bool uses_source_of(const BlockType& type, const Tokens& tokens) {
     };
     add("FUNCTION \"" + std::string(type.handle) + '.', '"');
     add("FUNCTION_BLOCK ", '\n');
-    return !said.empty() && std::ranges::any_of(tokens.tokens, [&](const Token& token) {
+    return std::ranges::any_of(tokens.tokens, [&](const Token& token) {
         return token.word == Word::name && said.contains(token.text);
     });
 }

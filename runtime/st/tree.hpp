@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <memory_resource>
 #include <string_view>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct Argument {
     Expression* value = nullptr;
     Variable* variable = nullptr;  ///< that it goes to or comes from, noted by the checker
     bool is_left_out = false;      ///< in a test: taken only if nothing was given before
+
+    bool is_named() const { return name.word != Word::end_of_file; }
 };
 
 struct Expression {
@@ -65,8 +68,7 @@ struct Expression {
     bool is_nested() const {
         for (const Argument& argument : arguments) {
             const Expression& e = *argument.value;
-            const bool named =
-                !e.arguments.empty() && e.arguments.front().name.word != Word::end_of_file;
+            const bool named = !e.arguments.empty() && e.arguments.front().is_named();
             if (e.kind == Kind::list && !named) return true;
         }
         return false;
@@ -166,11 +168,12 @@ struct TypeDeclaration {
 
 /// Owns all nodes, so that they need no owners among themselves.
 struct Tree {
-    std::deque<Expression> expressions;
-    std::deque<Statement> statements;
-    std::deque<TypeText> type_texts;
-    std::deque<Declaration> declarations;
-    std::deque<Pou> pous;
+    std::pmr::monotonic_buffer_resource memory;  ///< of the nodes: a deque asks for each
+    std::pmr::deque<Expression> expressions{&memory};
+    std::pmr::deque<Statement> statements{&memory};
+    std::pmr::deque<TypeText> type_texts{&memory};
+    std::pmr::deque<Declaration> declarations{&memory};
+    std::pmr::deque<Pou> pous{&memory};
 
     std::vector<TypeDeclaration> types;  ///< in the order of the sources, as all lists
     std::vector<Pou*> units;             ///< all but methods
