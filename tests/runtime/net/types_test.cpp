@@ -147,13 +147,13 @@ TEST_CASE("a local is seen, forced and retained, and neither set nor wired") {
     Linked program =
         linked("  t: {type: ticker, task: a}\n", out,
                "force: [{from: 4 ms, until: 6 ms, set: {t.ticks: 100}}]\nretain: [t.ticks]\n"
-               "trace: {task: a, signals: [t.ticks]}\nexpect: [{at: end, t.ticks: 10}]\n");
+               "trace: {task: a, signals: [t.ticks]}\nexpect: [{at: end, t.ticks: 105}]\n");
     INFO(out.render());
     REQUIRE(out.empty());
     CHECK(program.machine.retained.size() == 1);
     CHECK(program.traces.front().signals.front().name == "t.ticks");
     Executive(program.machine).run({});
-    CHECK(integer(program.machine, "t.ticks") == 10);
+    CHECK(integer(program.machine, "t.ticks") == 105);  // from 100 on, which it read last
     const std::string t = "  t: {type: ticker, task: a}\n";
     CHECK(mistakes(t + "  p: {type: probe, task: a, number: t.ticks}\n") == "L0203 6:37");
     CHECK(mistakes("  t: {type: ticker, task: a, ticks: 1}\n") == "L0405 5:30");
