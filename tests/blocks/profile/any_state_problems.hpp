@@ -96,10 +96,11 @@ inline Problem dip(Random& r) {
 }
 
 struct Family {
-    const char* name;
+    std::string name;
     Problem (*make)(Random&);
     double bar = 1e-12;  ///< relative, over a limit
     bool outside = false;
+    Entry entry = Entry::gentle;
 };
 
 inline const std::vector<Family>& families() {
@@ -187,6 +188,17 @@ inline const std::vector<Family>& families() {
              Problem p = any(r);
              p.a0 = r.one_in(2) ? p.A * (1 + r.decades(-6, 1)) : -p.D * (1 + r.decades(-6, 1));
              return p;
+         },
+         1e-12, true},
+        {"velocity and acceleration outside",
+         [](Random& r) {
+             Problem p = any(r);
+             p.v0 = p.V * (1 + r.decades(-6, 1));
+             if (r.one_in(2))
+                 p.a0 = r.one_in(2) ? p.A * (1 + r.decades(-6, 1)) : -p.D * (1 + r.decades(-6, 1));
+             else  // about Vmin is passed on the other side
+                 p.a0 = -std::sqrt(2 * p.J * (p.v0 - p.Vmin)) * (1 + r.sign() * r.decades(-6, 0));
+             return r.one_in(2) ? p : mirrored(p);
          },
          1e-12, true},
         {"velocity lowered under way",
