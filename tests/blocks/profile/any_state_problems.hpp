@@ -103,8 +103,8 @@ struct Family {
     Entry entry = Entry::gentle;
 };
 
-inline const std::vector<Family>& families() {
-    static const std::vector<Family> list = {
+inline std::vector<Family> gentle_families() {
+    return {
         {"random", any},
         {"rest target",
          [](Random& r) {
@@ -244,6 +244,20 @@ inline const std::vector<Family>& families() {
          }},
         {"last moments", [](Random& r) { return under_way(any(r), 1 - r.decades(-9, -1)); }},
     };
+}
+
+/// Those that start outside their limits with either way back.
+inline const std::vector<Family>& families() {
+    static const std::vector<Family> list = [] {
+        std::vector<Family> all = gentle_families();
+        for (std::size_t i = 0, count = all.size(); i < count; ++i) {
+            if (!all[i].outside) continue;
+            all.push_back(all[i]);
+            all.back().name += ", soonest";
+            all.back().entry = Entry::soonest;
+        }
+        return all;
+    }();
     return list;
 }
 

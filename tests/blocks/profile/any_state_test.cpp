@@ -448,6 +448,27 @@ TEST_CASE("the example of a dip and of a lowered velocity", "[any_state]") {
     CHECK(soonest.at(1.5).velocity <= 1);
 }
 
+TEST_CASE("a velocity that must fall past the other limit is brought back from there",
+          "[any_state]") {
+    const Family soonest{"", nullptr, 1e-12, true, Entry::soonest};
+    const std::pair<Problem, double> examples[] = {
+        {{0, 1.1, -1.5, -4, -0.5, 1, -1, 1, 1, 0.5}, 6.3639},
+        {{0, 1.1, -2.2, -20, 0, 1, -1, 3, 3, 1}, 22.2517},
+        {{0, 1.1, -1.5, 0, 0.3, 1, -1, 1, 1, 0.5}, 9.4995},
+    };
+    for (const auto& [example, duration] : examples) {
+        for (const Problem& p : {example, mirrored(example)}) {
+            INFO(line(p));
+            Figures figures;
+            check(p, soonest, figures);
+            CHECK(figures.failed == 0);
+            MotionPlan out;
+            REQUIRE(plan_of(p, out, {Entry::soonest, 64}) == PlanResult::ok);
+            CHECK(out.duration == Approx(duration).margin(1e-4));
+        }
+    }
+}
+
 TEST_CASE("a plan is evaluated from state to state without jumps, to its exact end",
           "[any_state]") {
     Random random{26};
