@@ -481,7 +481,9 @@ MotionState enter(const MotionLimits& limits, const MotionState& from, const Pla
             excess(limits, back.s, sign) <= room)
             back.run((sign * back.s.acceleration - side.A) * limits.per_J, -sign * limits.J);
     }
-    for (const double sign : {1.0, -1.0}) {
+    // The limit that it will pass comes before the one that it has passed and is leaving.
+    const double towards = std::copysign(1.0, back.s.acceleration);
+    for (const double sign : {towards, -towards}) {
         const double V = limits.side[sign < 0].V;
         const double room = slack * std::max(V, std::abs(from.velocity));
         const double over = excess(limits, back.s, sign);

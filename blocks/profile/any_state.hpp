@@ -63,7 +63,10 @@ namespace lineshaft {
 
 /// How a state outside its limits comes back: `gentle` joins the velocity limit tangentially and
 /// does not fall below it on the way to a far goal; `soonest` brakes until the limit is kept, from
-/// where the velocity may fall further.
+/// where the velocity may fall further. Soonest is when the limits are kept again for good, not the
+/// arrival, which may be later than the gentle one. An acceleration outside its limits comes back
+/// first, unless a velocity limit is passed by that; a velocity above V that must fall past Vmin is
+/// brought back from there.
 enum class Entry : std::int64_t { gentle, soonest };
 
 struct Goal {

@@ -426,7 +426,8 @@ void add_plan(CLI::App& app, Exit& result) {
     PlanOptions& options = command->options;
     sub->add_flag_callback(
         "--soonest", [&options] { options.entry = Entry::soonest; },
-        "Bring a state outside its limits back as soon as possible, not tangentially");
+        "Bring a state outside its limits back as soon as possible, not tangentially; it may "
+        "arrive later");
     sub->add_option("--tolerance", options.tolerance,
                     "How near the end of the direct ramp counts as the goal")
         ->type_name("ULP")

@@ -96,14 +96,15 @@ inline Problem dip(Random& r) {
 }
 
 struct Family {
-    const char* name;
+    std::string name;
     Problem (*make)(Random&);
     double bar = 1e-12;  ///< relative, over a limit
     bool outside = false;
+    Entry entry = Entry::gentle;
 };
 
-inline const std::vector<Family>& families() {
-    static const std::vector<Family> list = {
+inline std::vector<Family> gentle_families() {
+    return {
         {"random", any},
         {"rest target",
          [](Random& r) {
@@ -189,6 +190,17 @@ inline const std::vector<Family>& families() {
              return p;
          },
          1e-12, true},
+        {"velocity and acceleration outside",
+         [](Random& r) {
+             Problem p = any(r);
+             p.v0 = p.V * (1 + r.decades(-6, 1));
+             if (r.one_in(2))
+                 p.a0 = r.one_in(2) ? p.A * (1 + r.decades(-6, 1)) : -p.D * (1 + r.decades(-6, 1));
+             else  // about Vmin is passed on the other side
+                 p.a0 = -std::sqrt(2 * p.J * (p.v0 - p.Vmin)) * (1 + r.sign() * r.decades(-6, 0));
+             return r.one_in(2) ? p : mirrored(p);
+         },
+         1e-12, true},
         {"velocity lowered under way",
          [](Random& r) {
              Problem p = under_way(any(r), r.unit());
@@ -232,6 +244,20 @@ inline const std::vector<Family>& families() {
          }},
         {"last moments", [](Random& r) { return under_way(any(r), 1 - r.decades(-9, -1)); }},
     };
+}
+
+/// Those that start outside their limits with either way back.
+inline const std::vector<Family>& families() {
+    static const std::vector<Family> list = [] {
+        std::vector<Family> all = gentle_families();
+        for (std::size_t i = 0, count = all.size(); i < count; ++i) {
+            if (!all[i].outside) continue;
+            all.push_back(all[i]);
+            all.back().name += ", soonest";
+            all.back().entry = Entry::soonest;
+        }
+        return all;
+    }();
     return list;
 }
 

@@ -126,45 +126,98 @@ inline State mirrored(const State& s) {
     return {-s.x, -s.v, -s.a};
 }
 
-/// The brake that brings a state back inside, to the tangential point (gentle).
-inline State inside(const State& s0, const Limit& up, const Limit& down, Real& time) {
-    State s = s0;
-    const auto over = [](const State& x, const Limit& l) {
-        return x.v + x.a * std::abs(x.a) / (2 * l.J) > l.V;
+/// A state on its way back inside the limits.
+struct Return {
+    State state;
+    Real time = 0;  ///< from when on it is planned to the goal [s]
+    Real kept = 0;  ///< from when on all limits are kept, at the latest [s]
+
+    void run(Real duration, Real jerk) {
+        state = state.after(duration, jerk);
+        time += duration;
+    }
+};
+
+inline bool passes(const State& s, const Limit& l) {
+    return s.v + s.a * std::abs(s.a) / (2 * l.J) > l.V;
+}
+
+/// Until V is joined tangentially.
+inline void brake_gently(Return& back, const Limit& l, Real sign) {
+    const std::array<Piece, 3> pieces = ramp(back.state, sign * l.V, {l.V, l.D, l.D, l.J});
+    for (int i = 0; i < 2; ++i) back.run(pieces[i].time, pieces[i].jerk);
+}
+
+/// The hardest brake, found by halving: until V is kept, or the limit of the other side is so only
+/// by turning back at once.
+inline void brake_soon(Return& back, const Limit& l, Real other, Real sign) {
+    const auto goes_on = [&](const State& s) {
+        const Real v = sign * s.v, a = sign * s.a;
+        return a >= 0 || (v > l.V && v - a * a / (2 * l.J) > -other);
     };
-    const auto run = [&](std::array<Piece, 3> pieces) {
-        for (int i = 0; i < 2; ++i) {
-            s = s.after(pieces[i].time, pieces[i].jerk);
-            time += pieces[i].time;
+    const auto run = [&](Real longest, Real jerk) {
+        if (!(longest > 0) || !goes_on(back.state)) return;
+        Real low = 0, high = longest;
+        if (goes_on(back.state.after(high, jerk))) low = high;
+        for (int i = 0; i < 90 && low < high; ++i) {
+            const Real middle = (low + high) / 2;
+            (goes_on(back.state.after(middle, jerk)) ? low : high) = middle;
         }
+        back.run(high, jerk);
     };
-    if (s.a < -up.D && !over(mirrored(s), down)) {
-        time += (-up.D - s.a) / up.J;
-        s = s.after((-up.D - s.a) / up.J, up.J);
-        s.a = -up.D;
+    run((sign * back.state.a + l.D) / l.J, -sign * l.J);
+    run((sign * back.state.v - l.V) / l.D, 0);
+}
+
+/// How long v stays above V while it is turned back.
+inline Real above(const State& s, const Limit& l) {
+    if (!(s.v > l.V)) return 0;
+    const Real square = s.a * s.a - 2 * l.J * (s.v - l.V);
+    return 2 * (s.v - l.V) / (std::sqrt(std::max(square, Real(0))) - s.a);
+}
+
+/// The acceleration comes back first, then a velocity that goes on to pass its limit; by soonest
+/// also one that has passed it and comes back by itself.
+inline Return inside(const State& s0, const Limit& up, const Limit& down, Entry entry) {
+    Return back{s0};
+    const bool passes_up = passes(s0, up), passes_down = passes(mirrored(s0), down);
+    if (s0.a < -up.D && !passes_down) {
+        back.run((-up.D - s0.a) / up.J, up.J);
+        back.state.a = -up.D;
     }
-    if (s.a > up.A && !over(s, up)) {
-        time += (s.a - up.A) / up.J;
-        s = s.after((s.a - up.A) / up.J, -up.J);
-        s.a = up.A;
+    if (s0.a > up.A && !passes_up) {
+        back.run((s0.a - up.A) / up.J, -up.J);
+        back.state.a = up.A;
     }
-    if (over(s, up))
-        run(ramp(s, up.V, up));
-    else if (over(mirrored(s), down))
-        run(ramp(s, -down.V, up));
-    return s;
+    const auto brake = [&](const Limit& l, Real other, Real sign) {
+        if (entry == Entry::gentle)
+            brake_gently(back, l, sign);
+        else
+            brake_soon(back, l, other, sign);
+    };
+    const bool soon = entry == Entry::soonest;
+    if (passes_up || (soon && !passes_down && back.state.v > up.V))
+        brake(up, down.V, 1);
+    else if (passes_down || (soon && -back.state.v > down.V))
+        brake(down, up.V, -1);
+    back.kept = back.time + std::max(above(back.state, up), above(mirrored(back.state), down));
+    return back;
+}
+
+inline Return inside(const Problem& p, Entry entry) {
+    return inside({0, p.v0, p.a0}, {p.V, p.A, p.D, p.J}, {-Real(p.Vmin), p.D, p.A, p.J}, entry);
 }
 
 /// The least duration that is no less than `least` [s].
-inline double duration(const Problem& p, double least = 0) {
+inline double duration(const Problem& p, double least = 0, Entry entry = Entry::gentle) {
     const Limit up{p.V, p.A, p.D, p.J}, down{-Real(p.Vmin), p.D, p.A, p.J};
-    Real before = 0;
-    const State s = inside({0, p.v0, p.a0}, up, down, before);
+    const Return back = inside(p, entry);
+    const State& s = back.state;
     const Real way = Real(p.pf) - p.p0;
-    const Real rest = std::max(Real(0), least - before);
+    const Real rest = std::max(Real(0), least - back.time);
     const Real ahead = first(s, way, p.vf, up, rest);
-    const Real back = first(mirrored(s), -way, -p.vf, down, rest);
-    return static_cast<double>(before + std::min(ahead, back));
+    const Real behind = first(mirrored(s), -way, -p.vf, down, rest);
+    return static_cast<double>(back.time + std::min(ahead, behind));
 }
 
 }  // namespace lineshaft::reference
