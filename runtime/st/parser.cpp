@@ -926,9 +926,23 @@ class Parser {
                 argument.value = initial ? read_initial() : read_expression();
                 if (panic_) return;
                 grow(to, *argument.value);
-            } while (accept(Word::comma));
+            } while (accept(Word::comma) || at_wrong_comma());
         to.place = to.place.to(here().place);
         if (!expect(end)) to.place.end = last().place.end;
+    }
+
+    /// `t(IN := x; PT := y)`
+    bool at_wrong_comma() {
+        const Word behind = next(2).word;
+        const bool is_wrong = is(Word::semicolon) && is_name(next()) && !next().first_in_line &&
+                              (behind == Word::assign || behind == Word::output);
+        if (!is_wrong) return false;
+        for (std::size_t i = 3; next(i).word != Word::close; ++i)  // else the call was not closed
+            if (next(i).word == Word::end_of_file || next(i).first_in_line) return false;
+        tell("L0902", here().place, "expected ')' or ',', found ';'",
+             "arguments are joined by ','");
+        take();
+        return true;
     }
 
     Expression* read_expression(int binding = 1) {
