@@ -780,7 +780,11 @@ const Type* Checker::check_date_arithmetic(Expression& e) {
     const bool within_day = moves && a.kind == Kind::clock;
     e.type = distance ? &time_type : joins || within_day ? &moment_type : &a;
     fold(e);
-    return within_day ? convert_result(e, moment_type, clock_type) : e.type;
+    if (!within_day) return e.type;
+    if (!is_constant(e)) return convert_result(e, moment_type, clock_type);
+    constexpr Wide day = 86'400'000'000'000;
+    become(e, clock_type, {.integer = (e.constant.integer % day + day) % day});
+    return &clock_type;
 }
 
 const Type* Checker::check_power(Expression& e, const Type* expected) {
