@@ -472,6 +472,7 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
     if (f.rule == Rule::time) return &time_type;
     if (f.rule == Rule::multiplex || f.rule == Rule::decode) become_number(arguments[0].value);
     if (f.rule == Rule::shift) become_number(arguments[1].value);
+    if (f.rule == Rule::shift || f.rule == Rule::swap) take_width(arguments[0].value, expected);
     const Type& first = *arguments[0].value->type;
     switch (f.rule) {
         case Rule::real:

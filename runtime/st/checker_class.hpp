@@ -123,6 +123,8 @@ class Checker {
     const Type* check_unary(Expression& expression, const Type* expected);
     const Type* check_binary(Expression& expression, const Type* expected);
     void become_number(Expression*& e);
+    void take_width(Expression*& e, const Type* expected);
+    void check_masks(Expression& expression, const Type* expected);
     void reinterpret(Expression& expression, Kind from, const Type* expected = nullptr);
     const Type* check_logic(Expression& expression);
     void unite_texts(Expression*& a, Expression*& b);

@@ -515,6 +515,7 @@ const Type* Checker::check_unary(Expression& e, const Type* expected) {
     const Type* type = check(*operand, expected);
     if (!type) return nullptr;
     reinterpret(e, e.op == Word::not_ ? Kind::integer : Kind::bits, expected);
+    if (e.op == Word::not_) take_width(operand, expected);
     type = operand->type;
     const bool fits = e.op == Word::not_ ? type->kind == Kind::boolean || type->is_bits()
                                          : type->is_integer() || type->is_real() ||
@@ -544,6 +545,19 @@ void Checker::fold_unary(Expression& e, const Constant& value) {
     become(e, type, result);
 }
 
+/// `w AND NOT 16#FF`: the mask is as wide as what it is for.
+void Checker::check_masks(Expression& e, const Type* expected) {
+    const auto is_mask = [](const Expression& o) {
+        return o.kind == Expression::Kind::unary && o.op == Word::not_ &&
+               o.operands[0]->kind == Expression::Kind::constant;
+    };
+    for (const int i : {0, 1}) {
+        if (!is_mask(*e.operands[i]) || is_mask(*e.operands[1 - i])) continue;
+        const Type* other = check(*e.operands[1 - i]);
+        check(*e.operands[i], other && other->kind == Kind::bits ? other : expected);
+    }
+}
+
 const Type* Checker::check_binary(Expression& e, const Type* expected) {
     Expression *&left = e.operands[0], *&right = e.operands[1];
     const Type* wanted = is_comparison(e.op) || is_logic(e.op) ? nullptr : expected;
@@ -552,6 +566,7 @@ const Type* Checker::check_binary(Expression& e, const Type* expected) {
         check(*right);
         check(*left, right->type);
     }
+    if (is_logic(e.op)) check_masks(e, expected);
     check(*left, wanted);
     check(*right, is_comparison(e.op) ? left->type : wanted);
     if (!left->type || !right->type) return nullptr;
@@ -627,6 +642,12 @@ const Type* Checker::unite(Expression& e, const Type* expected) {
                 : "");
     }
     return coerce(left, *common) && coerce(right, *common) ? common : nullptr;
+}
+
+/// `16#FF` has that of the bit string that is wanted.
+void Checker::take_width(Expression*& e, const Type* expected) {
+    if (e->type->kind == Kind::any_bits && expected && expected->kind == Kind::bits)
+        coerce(e, *expected);
 }
 
 /// A bit string where a number is due.
