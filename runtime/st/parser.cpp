@@ -271,7 +271,7 @@ class Parser {
             return fmt::format("write 0.{}", next().text);
         if (is(Word::name) && last().word == Word::integer && touches) {
             const std::string_view number = last().text, behind = here().text;
-            if (number == "0" && (behind[0] == 'x' || behind[0] == 'X'))
+            if (number == "0" && (behind.starts_with('x') || behind.starts_with('X')))
                 return fmt::format("write 16#{}", behind.substr(1));
             if (read_duration(fmt::format("{}{}", number, behind)))
                 return fmt::format("write T#{}{}", number, behind);
