@@ -1,6 +1,7 @@
 #include "blocks/circle/arc.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include <catch2/catch.hpp>
 
@@ -11,7 +12,7 @@ using namespace lineshaft::test;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// Two ulps a function call, at most three calls a value.
 double rounding(double size) {

@@ -1,6 +1,7 @@
 #include "blocks/circle/circle_fit.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -12,7 +13,7 @@ using namespace lineshaft::test;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 struct Sample {
     double x, y;

@@ -13,7 +13,7 @@ using namespace lineshaft::test;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 PathCircle circle(double radius) {
     PathCircle path;
