@@ -21,11 +21,19 @@ def used():
     return usage.ru_utime + usage.ru_stime
 
 
-def check(compiler, path, update):
-    """What is wrong with the answer about one file, as lines."""
+def ask(compiler, path):
+    """The answer about one file, and the seconds that it took."""
     start = used()
     answer = subprocess.run([compiler, path.name], cwd=path.parent, capture_output=True, timeout=60)
-    seconds = used() - start
+    return answer, used() - start
+
+
+def check(compiler, path, update):
+    """What is wrong with the answer about one file, as lines."""
+    answer, seconds = ask(compiler, path)
+    for _ in range(4):  # a busy machine takes longer for the same
+        if seconds > LONGEST_SECONDS:
+            seconds = ask(compiler, path)[1]
     said = answer.stderr.decode("utf-8", errors="replace")
     golden = path.with_suffix(".txt")
     if update:
