@@ -355,7 +355,7 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
     const Token& name = call.operands[0]->token;
     call.standard = find_standard_function(name.text);
     const std::string_view instead = instead_of_function(name.text);
-    if (call.standard < 0 && !instead.empty())
+    if (call.standard < 0 && !instead.empty() && !tree_.lost.contains(name.text))
         return fail("L0903", name.place, fmt::format("the function {} is not supported", name.text),
                     std::string(instead));
     if (call.standard >= 0 &&

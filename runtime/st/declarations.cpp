@@ -521,6 +521,7 @@ const Type* Checker::resolve_name(const Token& name) {
                     "call it; only function blocks have instances");
     }
     if (const Type* type = standard_type(name.text)) return type;
+    if (tree_.lost.contains(name.text)) return nullptr;
     if (const std::string_view instead = instead_of_type(name.text); !instead.empty())
         return fail("L0903", name.place, fmt::format("the type {} is not supported", name.text),
                     std::string(instead));

@@ -328,10 +328,11 @@ const Type* Checker::unknown_name(Expression& e) {
     return undeclared(e.token, e.place, visible_names());
 }
 
-/// Told once in a block.
+/// Told once in a block, unless it may be declared in what was not understood.
 const Type* Checker::undeclared(const Token& name, Place place,
                                 const std::vector<std::string>& names) {
-    if (!undeclared_[routine_].insert(name.text).second) return nullptr;
+    if (tree_.lost.contains(name.text) || !undeclared_[routine_].insert(name.text).second)
+        return nullptr;
     const auto near = nearest(name.text, names);
     const auto in_name = [](char c) { return is_letter(c) || is_digit(c) || c == '_'; };
     const bool is_text = name.quoted && !std::ranges::all_of(name.text, in_name);

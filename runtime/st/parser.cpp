@@ -149,10 +149,8 @@ class Parser {
           out_(out) {}
 
     void read() {
-        while (here().word != Word::end_of_file) {
-            read_declaration();
-            if (panic_) skip_to_declaration();
-        }
+        do read_or_lose();
+        while (!is(Word::end_of_file));
         if (fixture_) tree_.units.push_back(fixture_);
     }
 
@@ -230,6 +228,7 @@ class Parser {
 
     void expected(std::string_view what, std::string_view where = {}) {
         if (panic_ || refuse_unsupported()) return;
+        is_wrong_ = true;
         panic_ = unclosed_at_ == at_ || follows_mistake();
         const char first = what.front();
         const bool is_word = (first >= 'A' && first <= 'Z') || (first >= 'a' && first <= 'z');
@@ -311,6 +310,7 @@ class Parser {
     }
 
     void tell(const char* code, Place place, std::string message, std::string help = {}) {
+        is_wrong_ = true;
         out_.add(code, place.mark(), std::move(message), std::move(help));
     }
 
@@ -386,6 +386,37 @@ class Parser {
     }
 
     // Declarations.
+
+    /// What has a mistake is lost, and its names are noted.
+    void read_or_lose() {
+        const std::size_t first = at_;
+        const std::uint32_t begin = first == 0 ? 0 : here().place.begin;
+        const std::size_t types = tree_.types.size(), units = tree_.units.size(),
+                          globals = tree_.globals.size();
+        const Pou tests = fixture_ ? *fixture_ : Pou();
+        is_wrong_ = false;
+        if (!is(Word::end_of_file)) read_declaration();
+        if (panic_) skip_to_declaration();
+        const std::uint32_t end = here().place.begin;
+        const auto is_within = [&](std::uint32_t at) { return at >= begin && at < end; };
+        if (!is_wrong_ && std::ranges::none_of(mistakes_, is_within)) return;
+        for (std::size_t i = types; i < tree_.types.size(); ++i) tree_.types[i].is_lost = true;
+        for (std::size_t i = units; i < tree_.units.size(); ++i) tree_.units[i]->is_lost = true;
+        for (std::size_t i = globals; i < tree_.globals.size(); ++i)
+            tree_.globals[i].is_lost = true;
+        if (fixture_) fixture_->blocks = tests.blocks, fixture_->methods = tests.methods;
+        for (std::size_t i = first; i < at_; ++i) tree_.lost.insert(tokens_[i].text);
+        lose(std::string_view((*here().place.file)->text).substr(begin, end - begin));
+    }
+
+    void lose(std::string_view text) {
+        const auto is_part = [](char c) { return is_letter(c) || is_digit(c); };
+        for (auto it = text.begin(); it != text.end();) {
+            const auto name = std::find_if(it, text.end(), is_part);
+            it = std::find_if_not(name, text.end(), is_part);
+            tree_.lost.insert(std::string_view(name, it));
+        }
+    }
 
     void read_declaration() {
         if (const PouWords* words = find_pou(here().word); words && !is(Word::method_))
@@ -1427,6 +1458,7 @@ class Parser {
     std::vector<Place> else_ifs_;                             ///< within the IFs that are open
     int depth_ = 0;
     bool panic_ = false;
+    bool is_wrong_ = false;      ///< what is being read
     bool section_left_ = false;  ///< a VAR ended without END_VAR
     bool is_spoiled_ = false;    ///< the POU, by a variable that cannot be
     bool is_in_body_ = false;    ///< of a POU
