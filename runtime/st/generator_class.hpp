@@ -134,7 +134,7 @@ class Generator {
     Location method_base(const Expression& e);
     std::uint32_t standard_number(const BlockType& kind);
     void call_instance(const Expression& e);
-    void call_routine(const Expression& e);
+    Location call_routine(const Expression& e);
     void give_left_out(const Location& frame, const Expression& e);
     void give(const Location& frame, const Expression& e, const Routine& routine);
     void take(const Location& frame, const Expression& e);
