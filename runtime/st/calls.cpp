@@ -25,6 +25,13 @@ bool is_own_input(const Expression& e) {
 
 }  // namespace
 
+bool has_call(const Expression& e) {
+    if (e.kind == Expression::Kind::call && e.routine) return true;
+    for (const Expression* operand : e.operands)
+        if (operand && has_call(*operand)) return true;
+    return std::ranges::any_of(e.arguments, [](const Argument& a) { return has_call(*a.value); });
+}
+
 const Type* Checker::check_call(Expression& call, bool as_statement, const Type* expected) {
     Expression& callee = *call.operands[0];
     if (callee.kind == Expression::Kind::member) {
@@ -587,21 +594,38 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         case Rule::to_bcd:
             return nullptr;
         case Rule::operation: {
-            Expression* left = arguments[0].value;
-            for (std::size_t i = 1; i < arguments.size(); ++i) {
-                Expression* made = make(Expression::Kind::binary, call);
-                made->op = f.word;
-                made->token.place = call.operands[0]->place;
-                made->operands[0] = left;
-                made->operands[1] = arguments[i].value;
-                left = made;
-            }
-            const Type* type = check(*left, expected);
-            call = *left;
+            Expression* joined = join(call, f.word);
+            const Type* type = joined ? check(*joined, expected) : nullptr;
+            if (joined) call = *joined;
             return type;
         }
     }
     return nullptr;
+}
+
+/// `ADD(a, b, c)` is `a + b + c`, `GT(a, b, c)` is `a > b AND b > c`.
+Expression* Checker::join(Expression& call, Word op) {
+    const auto joined = [&](Word word, Expression* left, Expression* right) {
+        Expression* made = make(Expression::Kind::binary, call);
+        made->op = word;
+        made->token.place = call.operands[0]->place;
+        made->operands[0] = left;
+        made->operands[1] = right;
+        return made;
+    };
+    const bool compares = op >= Word::less && op <= Word::unequal;
+    const auto& arguments = call.arguments;
+    Expression* all = joined(op, arguments[0].value, arguments[1].value);
+    for (std::size_t i = 2; i < arguments.size(); ++i) {
+        Expression *before = arguments[i - 1].value, *value = arguments[i].value;
+        if (compares && has_call(*before))
+            return fail("L0903", before->place, "a function between others is not supported here",
+                        "assign its value to a variable, and compare that");
+        Expression* again = make(before->kind, *before);
+        *again = *before;
+        all = compares ? joined(Word::and_, all, joined(op, again, value)) : joined(op, all, value);
+    }
+    return all;
 }
 
 /// SCALE_X of a REAL or LREAL; into an integer, which MIN and MAX are then, it rounds.

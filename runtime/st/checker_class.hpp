@@ -174,6 +174,7 @@ class Checker {
     const Type* check_scale(Expression& call, const Type* expected);
     const Type* standard_result(Expression& call, const Type* expected);
     const Type* check_bound(Expression& call);
+    Expression* join(Expression& call, Word op);
 
     // test_statements.cpp
     const Type* check_test_statement(Expression& call, bool as_statement);

@@ -17,13 +17,6 @@ bool is_set(const Argument& argument) {
 
 }  // namespace
 
-bool has_call(const Expression& e) {
-    if (e.kind == E::call && e.routine) return true;
-    for (const Expression* operand : e.operands)
-        if (operand && has_call(*operand)) return true;
-    return std::ranges::any_of(e.arguments, [](const Argument& a) { return has_call(*a.value); });
-}
-
 Slot Generator::call(const Expression& e, Slot wanted) {
     if (!e.routine) return standard(e, wanted);
     const Location frame = call_routine(e);

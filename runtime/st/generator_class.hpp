@@ -201,9 +201,6 @@ class Generator {
     std::vector<Loop> loops_;
 };
 
-/// A function or a method is called in it, which may write variables.
-bool has_call(const Expression& e);
-
 /// An opcode of a family, for a type: `add_sint` and DINT give `add_dint`.
 Op of_type(Op first, const Type& type);
 
