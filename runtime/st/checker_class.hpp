@@ -151,6 +151,9 @@ class Checker {
     std::vector<std::string> visible_names() const;
     Variable* find_variable(const Token& token);
 
+    // evaluated.cpp
+    bool evaluate(Expression& expression);
+
     // calls.cpp
     void check_call(Statement& statement);
     const Type* check_call(Expression& call, bool as_statement, const Type* expected);

@@ -431,8 +431,9 @@ void Checker::check_initial(Expression*& value, const Type& type) {
     }
     if (value->type) return;  // of `a, b : INT := 5`, seen before
     if (!check(*value, &type)) return;
+    evaluate(*value);
     if (!coerce(value, type)) return;
-    if (value->kind != Expression::Kind::constant)
+    if (!evaluate(*value) && value->type)
         fail("L0913", value->place, "an initial value is a constant",
              "assign it in the body, behind IF NOT started");
 }

@@ -1119,8 +1119,9 @@ bool Checker::fold_conversion(Expression& e, const Type& to) {
 
 std::optional<Wide> Checker::check_whole(Expression*& e, const Type& type) {
     if (!check(*e, &type)) return {};
-    if (!is_constant(*e)) {
-        fail("L0913", e->place, "a constant is due here", "declare it in VAR CONSTANT");
+    if (!evaluate(*e)) {
+        if (e->type)
+            fail("L0913", e->place, "a constant is due here", "declare it in VAR CONSTANT");
         return {};
     }
     if (!coerce(e, type)) return {};
