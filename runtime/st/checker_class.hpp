@@ -103,7 +103,11 @@ class Checker {
     const Type* check_constant(Expression& expression, const Type* expected);
     const Type* check_number(Expression& expression);
     const Type* check_time(Expression& expression);
+    std::optional<Wide> read_dtl(const Expression& expression);
     const Type* check_dtl(Expression& expression);
+    Expression* list_of_dtl(const Expression& literal, const Type& type);
+    void become_moments(Expression& expression);
+    const Type* check_dtl_arithmetic(Expression& expression);
     Expression* make_call(std::string_view function, Expression* argument);
     const Type* check_text(Expression& expression);
     const Type* check_name(Expression& expression, const Type* expected);
@@ -233,6 +237,11 @@ class Checker {
     Names& names_beside(const Token& name) { return is_standards(name) ? standards_ : users_; }
     static bool is_standards(const Token& name) {
         return name.place.file && is_standard_source(**name.place.file);
+    }
+
+    static bool is_dtl(const Type& type) {
+        return type.kind == Kind::structure && type.name == "DTL" &&
+               std::ranges::any_of(type.members, is_standards, &Variable::name);
     }
 
     Expression* make(Expression::Kind kind, const Expression& like) {

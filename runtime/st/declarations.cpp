@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 
 #include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
@@ -412,6 +413,8 @@ bool Checker::is_constant_place(const Expression& place) const {
 }
 
 void Checker::check_initial(Expression*& value, const Type& type) {
+    if (is_dtl(type) && value->token.word == Word::duration)
+        if (!(value = list_of_dtl(*value, type))) return;
     if (value->kind == Expression::Kind::list) {
         value->type = &type;
         const bool named =
@@ -436,6 +439,28 @@ void Checker::check_initial(Expression*& value, const Type& type) {
     if (!evaluate(*value) && value->type)
         fail("L0913", value->place, "an initial value is a constant",
              "assign it in the body, behind IF NOT started");
+}
+
+/// `DTL#2020-02-29-12:30:15` as its parts.
+Expression* Checker::list_of_dtl(const Expression& literal, const Type& type) {
+    const auto value = read_dtl(literal);
+    if (!value) return nullptr;
+    using namespace std::chrono;
+    const sys_time<nanoseconds> moment(nanoseconds(static_cast<std::int64_t>(*value)));
+    const auto day = floor<days>(moment);
+    const year_month_day date(day);
+    const hh_mm_ss clock(moment - day);
+    const Wide parts[] = {int{date.year()},        unsigned{date.month()},
+                          unsigned{date.day()},    weekday(day).c_encoding() + 1,
+                          clock.hours().count(),   clock.minutes().count(),
+                          clock.seconds().count(), clock.subseconds().count()};
+    Expression* list = make(Expression::Kind::list, literal);
+    for (std::size_t i = 0; i < type.members.size(); ++i) {
+        Expression* part = make(Expression::Kind::constant, literal);
+        become(*part, *type.members[i]->type, {.integer = parts[i]});
+        list->arguments.push_back({.name = type.members[i]->name, .value = part});
+    }
+    return list;
 }
 
 /// Of several dimensions either a list of lists, or all elements in one, the last index first.
