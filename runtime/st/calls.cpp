@@ -194,8 +194,10 @@ void Checker::check_argument(Expression&, Argument& argument, Variable& paramete
         if (coerce(value, *type)) return;
     }
     const bool is_read = parameter.section == Section::in_out && is_own_input(*value);
-    if (!is_variable(*value) || (!is_read && !check_target(*value, "given here"))) {
-        if (!is_variable(*value))
+    const bool is_place =
+        is_variable(*value) || (argument.is_output && value->kind == Expression::Kind::bit);
+    if (!is_place || (!is_read && !check_target(*value, "given here"))) {
+        if (!is_place)
             fail("L0907", value->place,
                  fmt::format("'{}' takes a variable, not a value", parameter.text),
                  "declare one and give it here");

@@ -197,8 +197,12 @@ void Generator::take(const Location& frame, const Expression& e) {
         const bool is_taken = argument.is_output || variable.section == Section::output;
         if (!is_taken || is_set(argument)) continue;
         const Location from = part(frame, variable);
-        const Location to = locate(*argument.value);
         const Type &given = *variable.type, &wanted = *argument.value->type;
+        if (argument.value->kind == E::bit) {
+            store_bits(*argument.value, convert(load(from), given, wanted, false, none));
+            continue;
+        }
+        const Location to = locate(*argument.value);
         if (!given.is_scalar())
             copy(to, from, slots_of(given));
         else

@@ -127,7 +127,7 @@ class Generator {
     Slot text_conversion(const Expression& e);
     void append(Slot to, Slot from, Slot first, Slot count);
     Slot character(const Expression& e, Slot wanted);
-    void store_bits(const Expression& target, const Expression& from);
+    void store_bits(const Expression& target, Slot bits);
 
     // generator_calls.cpp
     Slot call(const Expression& e, Slot wanted);
