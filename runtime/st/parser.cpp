@@ -514,6 +514,8 @@ class Parser {
         accept(Word::begin_);
         is_in_body_ = true;
         read_body(pou, words.end);
+        for (const Token& region : std::exchange(regions_, {}))
+            tell("L0902", region.place, "the REGION does not end", "it ends with END_REGION");
         close(words.end, opener);
         is_in_body_ = false;
         accept(Word::semicolon);
@@ -1163,12 +1165,12 @@ class Parser {
             case Word::network_:
             case Word::end_region_:
             case Word::end_network_:
-                if (first.word != Word::network_ || !is_assigned(next())) {
-                    take();
-                    accept(Word::semicolon);
-                    return nullptr;
-                }
-                return read_simple();
+                if (first.word == Word::network_ && is_assigned(next())) return read_simple();
+                take();
+                if (first.word == Word::region_) regions_.push_back(first);
+                if (first.word == Word::end_region_ && !regions_.empty()) regions_.pop_back();
+                accept(Word::semicolon);
+                return nullptr;
             case Word::if_:
                 return closed(read_if());
             case Word::case_:
@@ -1455,6 +1457,7 @@ class Parser {
     std::size_t at_ = 0;
     std::size_t unclosed_at_ = static_cast<std::size_t>(-1);  ///< where an end was missed last
     Block before_statement_;                                  ///< of a chain of assignments
+    std::vector<Token> regions_;                              ///< that are open
     std::vector<Place> else_ifs_;                             ///< within the IFs that are open
     int depth_ = 0;
     bool panic_ = false;
