@@ -60,10 +60,10 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
         for (const Routine* r = routine_; r; r = r->owner)
             if (const auto it = r->methods.find(name); it != r->methods.end())
                 return check_routine_call(call, *it->second, as_statement);
-        if (Routine* routine = find_routine(callee.token); routine && !routine->type)
-            return check_routine_call(call, *routine, as_statement);
+        Routine* routine = find_routine(callee.token);
+        if (routine && !routine->type) return check_routine_call(call, *routine, as_statement);
         const bool is_function =
-            !callee.token.quoted && !callee.token.local &&
+            (routine || !callee.token.quoted) && !callee.token.local &&
             (find_standard_function(name) >= 0 || !find_variable(callee.token));
         if (is_function && find_test_statement(name) != TestCall::none)
             return check_test_statement(call, as_statement);

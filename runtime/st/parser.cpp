@@ -266,6 +266,9 @@ class Parser {
         if (is(Word::comma) && expected == ")" && !is_in_body_)
             return "name the members: (name := value, ...)";
         if (same_name(here().text, "step")) return "write BY";
+        const bool is_joined = last().word == Word::and_ || last().word == Word::or_;
+        if (is_joined && here().word >= Word::less && here().word <= Word::unequal)
+            return "repeat what is compared: a > 1 AND a < 5";
         if (is(Word::dot) && next().word == Word::integer && touches_next)
             return fmt::format("write 0.{}", next().text);
         if (is(Word::name) && last().word == Word::integer && touches) {
@@ -1332,7 +1335,9 @@ class Parser {
     Expression* read_condition(Word end, std::string_view where) {
         Expression* condition = read_expression();
         if (!panic_ && is(Word::assign)) compared_by_assignment();
-        if (!panic_ && !expect(end, where)) panic_ = false;
+        if (panic_ || expect(end, where)) return condition;
+        panic_ = false;
+        if (is(Word::then_) || is(Word::do_) || is(Word::of_)) take();
         return condition;
     }
 
