@@ -13,7 +13,8 @@ constexpr Wide most_elements = 1 << 24;
 constexpr Wide longest_text = 65534;
 
 std::string quoted(std::string_view name) {
-    return fmt::format("'{}'", name);
+    const bool is_test = name.find_first_of("'\"") != name.npos;
+    return is_test ? std::string(name) : fmt::format("'{}'", name);
 }
 
 /// Names of the standard for a kind of the catalogue, with the type that it counts in.
@@ -139,7 +140,7 @@ void Checker::collect_names() {
             made.owner = &routine;
             const bool is_test = pou->is_tests && method->name.word != Word::setup_ &&
                                  method->name.word != Word::teardown_;
-            if (!is_test && is_new_name(method->name, names))
+            if (is_new_name(method->name, names) && !is_test)
                 routine.methods.emplace(method->name.text, &made);
         }
     }
