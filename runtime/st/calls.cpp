@@ -362,6 +362,7 @@ const Type* Checker::check_typed_function(Expression& call) {
 
 const Type* Checker::check_standard_function(Expression& call, const Type* expected) {
     const Token& name = call.operands[0]->token;
+    if (is_lost(name)) return nullptr;
     call.standard = find_standard_function(name.text);
     const std::string_view instead = instead_of_function(name.text);
     if (call.standard < 0 && !instead.empty() && !tree_.lost.contains(name.text))
@@ -696,6 +697,7 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
         if (const Type* type = find_elementary(text)) return type;
         Token named = call.token;
         named.text = text;
+        if (is_lost(named)) call.standard = -2;
         const NamedType* type = look_up(&Names::types, named);
         return type ? type->type : nullptr;
     };

@@ -239,6 +239,12 @@ class Checker {
         return name.place.file && is_standard_source(**name.place.file);
     }
 
+    /// A type, block or function of the user's that was not understood.
+    bool is_lost(const Token& name) const {
+        const auto it = tree_.lost.find(name.text);
+        return it != tree_.lost.end() && it->second && !is_standards(name);
+    }
+
     static bool is_dtl(const Type& type) {
         return type.kind == Kind::structure && type.name == "DTL" &&
                std::ranges::any_of(type.members, is_standards, &Variable::name);

@@ -540,6 +540,7 @@ const Type* Checker::resolve(const TypeText& text) {
 }
 
 const Type* Checker::resolve_name(const Token& name) {
+    if (is_lost(name)) return nullptr;
     if (const Type* type = find_elementary(name.text); type && !name.quoted) return type;
     if (NamedType* type = look_up(&Names::types, name)) return resolve_declared(*type);
     if (const Routine* routine = find_routine(name)) {

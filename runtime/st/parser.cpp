@@ -408,7 +408,7 @@ class Parser {
         for (std::size_t i = globals; i < tree_.globals.size(); ++i)
             tree_.globals[i].is_lost = true;
         if (fixture_) fixture_->blocks = tests.blocks, fixture_->methods = tests.methods;
-        for (std::size_t i = first; i < at_; ++i) tree_.lost.insert(tokens_[i].text);
+        for (std::size_t i = first; i < at_; ++i) tree_.lost.try_emplace(tokens_[i].text);
         lose(std::string_view((*here().place.file)->text).substr(begin, end - begin));
     }
 
@@ -417,7 +417,7 @@ class Parser {
         for (auto it = text.begin(); it != text.end();) {
             const auto name = std::find_if(it, text.end(), is_part);
             it = std::find_if_not(name, text.end(), is_part);
-            tree_.lost.insert(std::string_view(name, it));
+            tree_.lost.try_emplace(std::string_view(name, it));
         }
     }
 
@@ -778,10 +778,8 @@ class Parser {
             declared.type = read_type();
             if (accept(Word::assign)) declared.initial = read_initial();
             if (!accept(Word::semicolon) && !panic_ && !is(Word::end_type_)) end_of_statement();
-            if (panic_)
-                skip_declaration();
-            else
-                tree_.types.push_back(declared);
+            if (panic_) skip_declaration();
+            tree_.types.push_back(declared);
         }
         close(Word::end_type_, opener);
         accept(Word::semicolon);

@@ -181,9 +181,13 @@ struct Tree {
     std::vector<TypeDeclaration> types;  ///< in the order of the sources, as all lists
     std::vector<Pou*> units;             ///< all but methods
     std::vector<DeclarationBlock> globals;
-    NameSet lost;  ///< names in declarations that were not understood, and in what they hide
+    NameMap<bool> lost;  ///< what stands in those not understood; true: their names
 
     void leave_lost_out() {
+        for (const TypeDeclaration& type : types)
+            if (type.is_lost) lost[type.name.text] = true;
+        for (const Pou* unit : units)
+            if (unit->is_lost) lost[unit->name.text] = true;
         std::erase_if(types, [](const auto& type) { return type.is_lost; });
         std::erase_if(units, [](const auto* unit) { return unit->is_lost; });
         std::erase_if(globals, [](const auto& block) { return block.is_lost; });
