@@ -85,6 +85,9 @@ with tempfile.TemporaryDirectory() as folder:
     compare(root / "fail/expected.txt", said)
     suite = xml.parse(junit).getroot()
     expect("failures and errors", (suite.get("failures"), suite.get("errors")), ("19", "4"))
+    run(root / "bad", "test_twice.st", "--junit", str(junit))
+    case = xml.parse(junit).getroot().find("testcase")
+    expect("a file that is refused", [case.get(key) for key in ("classname", "file", "name")], ["test_twice.st"] * 3)
 
 code, said, _ = run(root, "pass", "--filter", "mocked function")
 expect("--filter", (code, said.splitlines()[-1]), (0, "1 of 1 passed"))

@@ -25,6 +25,13 @@ bool is_own_input(const Expression& e) {
 
 }  // namespace
 
+bool has_call(const Expression& e) {
+    if (e.kind == Expression::Kind::call && e.routine) return true;
+    for (const Expression* operand : e.operands)
+        if (operand && has_call(*operand)) return true;
+    return std::ranges::any_of(e.arguments, [](const Argument& a) { return has_call(*a.value); });
+}
+
 const Type* Checker::check_call(Expression& call, bool as_statement, const Type* expected) {
     Expression& callee = *call.operands[0];
     if (callee.kind == Expression::Kind::member) {
@@ -53,10 +60,10 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
         for (const Routine* r = routine_; r; r = r->owner)
             if (const auto it = r->methods.find(name); it != r->methods.end())
                 return check_routine_call(call, *it->second, as_statement);
-        if (Routine* routine = find_routine(callee.token); routine && !routine->type)
-            return check_routine_call(call, *routine, as_statement);
+        Routine* routine = find_routine(callee.token);
+        if (routine && !routine->type) return check_routine_call(call, *routine, as_statement);
         const bool is_function =
-            !callee.token.quoted && !callee.token.local &&
+            (routine || !callee.token.quoted) && !callee.token.local &&
             (find_standard_function(name) >= 0 || !find_variable(callee.token));
         if (is_function && find_test_statement(name) != TestCall::none)
             return check_test_statement(call, as_statement);
@@ -187,8 +194,10 @@ void Checker::check_argument(Expression&, Argument& argument, Variable& paramete
         if (coerce(value, *type)) return;
     }
     const bool is_read = parameter.section == Section::in_out && is_own_input(*value);
-    if (!is_variable(*value) || (!is_read && !check_target(*value, "given here"))) {
-        if (!is_variable(*value))
+    const bool is_place =
+        is_variable(*value) || (argument.is_output && value->kind == Expression::Kind::bit);
+    if (!is_place || (!is_read && !check_target(*value, "given here"))) {
+        if (!is_place)
             fail("L0907", value->place,
                  fmt::format("'{}' takes a variable, not a value", parameter.text),
                  "declare one and give it here");
@@ -353,9 +362,10 @@ const Type* Checker::check_typed_function(Expression& call) {
 
 const Type* Checker::check_standard_function(Expression& call, const Type* expected) {
     const Token& name = call.operands[0]->token;
+    if (is_lost(name)) return nullptr;
     call.standard = find_standard_function(name.text);
     const std::string_view instead = instead_of_function(name.text);
-    if (call.standard < 0 && !instead.empty())
+    if (call.standard < 0 && !instead.empty() && !tree_.lost.contains(name.text))
         return fail("L0903", name.place, fmt::format("the function {} is not supported", name.text),
                     std::string(instead));
     if (call.standard >= 0 &&
@@ -587,21 +597,38 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         case Rule::to_bcd:
             return nullptr;
         case Rule::operation: {
-            Expression* left = arguments[0].value;
-            for (std::size_t i = 1; i < arguments.size(); ++i) {
-                Expression* made = make(Expression::Kind::binary, call);
-                made->op = f.word;
-                made->token.place = call.operands[0]->place;
-                made->operands[0] = left;
-                made->operands[1] = arguments[i].value;
-                left = made;
-            }
-            const Type* type = check(*left, expected);
-            call = *left;
+            Expression* joined = join(call, f.word);
+            const Type* type = joined ? check(*joined, expected) : nullptr;
+            if (joined) call = *joined;
             return type;
         }
     }
     return nullptr;
+}
+
+/// `ADD(a, b, c)` is `a + b + c`, `GT(a, b, c)` is `a > b AND b > c`.
+Expression* Checker::join(Expression& call, Word op) {
+    const auto joined = [&](Word word, Expression* left, Expression* right) {
+        Expression* made = make(Expression::Kind::binary, call);
+        made->op = word;
+        made->token.place = call.operands[0]->place;
+        made->operands[0] = left;
+        made->operands[1] = right;
+        return made;
+    };
+    const bool compares = op >= Word::less && op <= Word::unequal;
+    const auto& arguments = call.arguments;
+    Expression* all = joined(op, arguments[0].value, arguments[1].value);
+    for (std::size_t i = 2; i < arguments.size(); ++i) {
+        Expression *before = arguments[i - 1].value, *value = arguments[i].value;
+        if (compares && has_call(*before))
+            return fail("L0903", before->place, "a function between others is not supported here",
+                        "assign its value to a variable, and compare that");
+        Expression* again = make(before->kind, *before);
+        *again = *before;
+        all = compares ? joined(Word::and_, all, joined(op, again, value)) : joined(op, all, value);
+    }
+    return all;
 }
 
 /// SCALE_X of a REAL or LREAL; into an integer, which MIN and MAX are then, it rounds.
@@ -670,6 +697,7 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
         if (const Type* type = find_elementary(text)) return type;
         Token named = call.token;
         named.text = text;
+        if (is_lost(named)) call.standard = -2;
         const NamedType* type = look_up(&Names::types, named);
         return type ? type->type : nullptr;
     };

@@ -103,7 +103,11 @@ class Checker {
     const Type* check_constant(Expression& expression, const Type* expected);
     const Type* check_number(Expression& expression);
     const Type* check_time(Expression& expression);
+    std::optional<Wide> read_dtl(const Expression& expression);
     const Type* check_dtl(Expression& expression);
+    Expression* list_of_dtl(const Expression& literal, const Type& type);
+    void become_moments(Expression& expression);
+    const Type* check_dtl_arithmetic(Expression& expression);
     Expression* make_call(std::string_view function, Expression* argument);
     const Type* check_text(Expression& expression);
     const Type* check_name(Expression& expression, const Type* expected);
@@ -151,6 +155,9 @@ class Checker {
     std::vector<std::string> visible_names() const;
     Variable* find_variable(const Token& token);
 
+    // evaluated.cpp
+    bool evaluate(Expression& expression);
+
     // calls.cpp
     void check_call(Statement& statement);
     const Type* check_call(Expression& call, bool as_statement, const Type* expected);
@@ -174,6 +181,7 @@ class Checker {
     const Type* check_scale(Expression& call, const Type* expected);
     const Type* standard_result(Expression& call, const Type* expected);
     const Type* check_bound(Expression& call);
+    Expression* join(Expression& call, Word op);
 
     // test_statements.cpp
     const Type* check_test_statement(Expression& call, bool as_statement);
@@ -229,6 +237,17 @@ class Checker {
     Names& names_beside(const Token& name) { return is_standards(name) ? standards_ : users_; }
     static bool is_standards(const Token& name) {
         return name.place.file && is_standard_source(**name.place.file);
+    }
+
+    /// A type, block or function of the user's that was not understood.
+    bool is_lost(const Token& name) const {
+        const auto it = tree_.lost.find(name.text);
+        return it != tree_.lost.end() && it->second && !is_standards(name);
+    }
+
+    static bool is_dtl(const Type& type) {
+        return type.kind == Kind::structure && type.name == "DTL" &&
+               std::ranges::any_of(type.members, is_standards, &Variable::name);
     }
 
     Expression* make(Expression::Kind kind, const Expression& like) {

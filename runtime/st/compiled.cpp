@@ -28,7 +28,7 @@ bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOption
             if (uses_source_of(type, tokens)) used.insert(&type);
         parse(std::move(tokens), to.tree, out, source.get() == tests);
     }
-    if (!out.empty()) return false;
+    to.tree.leave_lost_out();
     if (uses_standard) parse(read_tokens(standard_source(), out), to.tree, out);
     for (const BlockType& type : standard.types())
         if (used.contains(&type))

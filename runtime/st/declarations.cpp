@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 
 #include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
@@ -12,7 +13,8 @@ constexpr Wide most_elements = 1 << 24;
 constexpr Wide longest_text = 65534;
 
 std::string quoted(std::string_view name) {
-    return fmt::format("'{}'", name);
+    const bool is_test = name.find_first_of("'\"") != name.npos;
+    return is_test ? std::string(name) : fmt::format("'{}'", name);
 }
 
 /// Names of the standard for a kind of the catalogue, with the type that it counts in.
@@ -138,7 +140,7 @@ void Checker::collect_names() {
             made.owner = &routine;
             const bool is_test = pou->is_tests && method->name.word != Word::setup_ &&
                                  method->name.word != Word::teardown_;
-            if (!is_test && is_new_name(method->name, names))
+            if (is_new_name(method->name, names) && !is_test)
                 routine.methods.emplace(method->name.text, &made);
         }
     }
@@ -412,6 +414,8 @@ bool Checker::is_constant_place(const Expression& place) const {
 }
 
 void Checker::check_initial(Expression*& value, const Type& type) {
+    if (is_dtl(type) && value->token.word == Word::duration)
+        if (!(value = list_of_dtl(*value, type))) return;
     if (value->kind == Expression::Kind::list) {
         value->type = &type;
         const bool named =
@@ -431,10 +435,33 @@ void Checker::check_initial(Expression*& value, const Type& type) {
     }
     if (value->type) return;  // of `a, b : INT := 5`, seen before
     if (!check(*value, &type)) return;
+    evaluate(*value);
     if (!coerce(value, type)) return;
-    if (value->kind != Expression::Kind::constant)
+    if (!evaluate(*value) && value->type)
         fail("L0913", value->place, "an initial value is a constant",
              "assign it in the body, behind IF NOT started");
+}
+
+/// `DTL#2020-02-29-12:30:15` as its parts.
+Expression* Checker::list_of_dtl(const Expression& literal, const Type& type) {
+    const auto value = read_dtl(literal);
+    if (!value) return nullptr;
+    using namespace std::chrono;
+    const sys_time<nanoseconds> moment(nanoseconds(static_cast<std::int64_t>(*value)));
+    const auto day = floor<days>(moment);
+    const year_month_day date(day);
+    const hh_mm_ss clock(moment - day);
+    const Wide parts[] = {int{date.year()},        unsigned{date.month()},
+                          unsigned{date.day()},    weekday(day).c_encoding() + 1,
+                          clock.hours().count(),   clock.minutes().count(),
+                          clock.seconds().count(), clock.subseconds().count()};
+    Expression* list = make(Expression::Kind::list, literal);
+    for (std::size_t i = 0; i < type.members.size(); ++i) {
+        Expression* part = make(Expression::Kind::constant, literal);
+        become(*part, *type.members[i]->type, {.integer = parts[i]});
+        list->arguments.push_back({.name = type.members[i]->name, .value = part});
+    }
+    return list;
 }
 
 /// Of several dimensions either a list of lists, or all elements in one, the last index first.
@@ -513,6 +540,7 @@ const Type* Checker::resolve(const TypeText& text) {
 }
 
 const Type* Checker::resolve_name(const Token& name) {
+    if (is_lost(name)) return nullptr;
     if (const Type* type = find_elementary(name.text); type && !name.quoted) return type;
     if (NamedType* type = look_up(&Names::types, name)) return resolve_declared(*type);
     if (const Routine* routine = find_routine(name)) {
@@ -521,6 +549,7 @@ const Type* Checker::resolve_name(const Token& name) {
                     "call it; only function blocks have instances");
     }
     if (const Type* type = standard_type(name.text)) return type;
+    if (tree_.lost.contains(name.text)) return nullptr;
     if (const std::string_view instead = instead_of_type(name.text); !instead.empty())
         return fail("L0903", name.place, fmt::format("the type {} is not supported", name.text),
                     std::string(instead));

@@ -164,6 +164,13 @@ bool same_type(const Type& a, const Type& b) {
             return a.length == b.length;
         case Kind::array:
             return a.lower == b.lower && a.upper == b.upper && same_type(*a.element, *b.element);
+        case Kind::structure:
+            return a.name == "STRUCT" && b.name == "STRUCT" &&
+                   std::ranges::equal(a.members, b.members,
+                                      [](const Variable* x, const Variable* y) {
+                                          return same_name(x->text, y->text) && x->type &&
+                                                 y->type && same_type(*x->type, *y->type);
+                                      });
         default:
             return false;
     }

@@ -145,11 +145,17 @@ const Type* Checker::check_time(Expression& e) {
     return &time_type;
 }
 
-const Type* Checker::check_dtl(Expression& e) {
+std::optional<Wide> Checker::read_dtl(const Expression& e) {
     const auto value = read_date(e.token.text, Kind::moment);
     if (!value)
-        return fail("L0908", e.place, fmt::format("'{}' is not a DTL", e.place.text()),
-                    "write DTL#2020-02-29-12:30:15.25");
+        fail("L0908", e.place, fmt::format("'{}' is not a DTL", e.place.text()),
+             "write DTL#2020-02-29-12:30:15.25");
+    return value;
+}
+
+const Type* Checker::check_dtl(Expression& e) {
+    const auto value = read_dtl(e);
+    if (!value) return nullptr;
     Expression* moment = make(Expression::Kind::constant, e);
     become(*moment, moment_type, {.integer = *value});
     e = *make_call("LDT_TO_DTL", moment);
@@ -328,10 +334,11 @@ const Type* Checker::unknown_name(Expression& e) {
     return undeclared(e.token, e.place, visible_names());
 }
 
-/// Told once in a block.
+/// Told once in a block, unless it may be declared in what was not understood.
 const Type* Checker::undeclared(const Token& name, Place place,
                                 const std::vector<std::string>& names) {
-    if (!undeclared_[routine_].insert(name.text).second) return nullptr;
+    if (tree_.lost.contains(name.text) || !undeclared_[routine_].insert(name.text).second)
+        return nullptr;
     const auto near = nearest(name.text, names);
     const auto in_name = [](char c) { return is_letter(c) || is_digit(c) || c == '_'; };
     const bool is_text = name.quoted && !std::ranges::all_of(name.text, in_name);
@@ -702,6 +709,11 @@ void Checker::unite_texts(Expression*& a, Expression*& b) {
     single ? coerce(text, char_type) : coerce(character, string_type);
 }
 
+void Checker::become_moments(Expression& e) {
+    for (Expression*& operand : e.operands)
+        if (is_dtl(*operand->type)) check(*(operand = make_call("DTL_TO_LDT", operand)));
+}
+
 const Type* Checker::check_comparison(Expression& e) {
     unite_texts(e.operands[0], e.operands[1]);
     const auto is_kind = [&](Kind kind) {
@@ -709,12 +721,7 @@ const Type* Checker::check_comparison(Expression& e) {
                                    [&](const Expression* o) { return o->type->kind == kind; });
     };
     if (is_kind(Kind::bits) && is_kind(Kind::integer)) reinterpret(e, Kind::bits);
-    const auto is_dtl = [](const Expression* o) {
-        return o->type->kind == Kind::structure && o->type->name == "DTL";
-    };
-    if (is_dtl(e.operands[0]) && is_dtl(e.operands[1]))
-        for (Expression*& operand : e.operands)
-            check(*(operand = make_call("DTL_TO_LDT", operand)));
+    if (is_dtl(*e.operands[0]->type) && is_dtl(*e.operands[1]->type)) become_moments(e);
     const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
     const bool order = e.op != Word::equal && e.op != Word::unequal;
     if (a.kind == Kind::text && b.kind == Kind::text) return &bool_type;
@@ -739,6 +746,7 @@ const Type* Checker::check_comparison(Expression& e) {
 }
 
 const Type* Checker::check_arithmetic(Expression& e, const Type* expected) {
+    if (is_dtl(*e.operands[0]->type)) return check_dtl_arithmetic(e);
     const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
     if (a.is_time() || b.is_time()) return check_time_arithmetic(e);
     reinterpret(e, Kind::bits, expected);
@@ -784,6 +792,18 @@ const Type* Checker::check_time_arithmetic(Expression& e) {
     e.type = &time_type;
     fold(e);
     return e.type;
+}
+
+/// DTL + TIME, DTL - TIME, and DTL - DTL, a TIME.
+const Type* Checker::check_dtl_arithmetic(Expression& e) {
+    become_moments(e);
+    const Type* type = check_time_arithmetic(e);
+    if (!type || type->kind != Kind::moment) return type;
+    Expression* moved = make(e.kind, e);
+    *moved = e;
+    moved->type = type;
+    e = *make_call("LDT_TO_DTL", moved);
+    return check(e);
 }
 
 /// DATE - DATE, TOD - TOD and DT - DT are a TIME; one is added to a TOD and a DT.
@@ -1118,8 +1138,9 @@ bool Checker::fold_conversion(Expression& e, const Type& to) {
 
 std::optional<Wide> Checker::check_whole(Expression*& e, const Type& type) {
     if (!check(*e, &type)) return {};
-    if (!is_constant(*e)) {
-        fail("L0913", e->place, "a constant is due here", "declare it in VAR CONSTANT");
+    if (!evaluate(*e)) {
+        if (e->type)
+            fail("L0913", e->place, "a constant is due here", "declare it in VAR CONSTANT");
         return {};
     }
     if (!coerce(e, type)) return {};

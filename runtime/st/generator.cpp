@@ -348,7 +348,8 @@ void Generator::write_statement(const Statement& s) {
 }
 
 void Generator::write_assignment(const Statement& s) {
-    if (s.target->kind == Expression::Kind::bit) return store_bits(*s.target, *s.value);
+    if (s.target->kind == Expression::Kind::bit)
+        return store_bits(*s.target, value_before(*s.value, *s.target));
     if (s.target->is_character()) {
         const Slot from = value_before(*s.value, *s.target);
         const Slot text = text_address(*s.target->operands[0]);

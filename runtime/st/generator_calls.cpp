@@ -17,21 +17,14 @@ bool is_set(const Argument& argument) {
 
 }  // namespace
 
-bool has_call(const Expression& e) {
-    if (e.kind == E::call && e.routine) return true;
-    for (const Expression* operand : e.operands)
-        if (operand && has_call(*operand)) return true;
-    return std::ranges::any_of(e.arguments, [](const Argument& a) { return has_call(*a.value); });
-}
-
 Slot Generator::call(const Expression& e, Slot wanted) {
     if (!e.routine) return standard(e, wanted);
-    call_routine(e);
+    const Location frame = call_routine(e);
     const Routine& routine = *e.routine;
     const Type& type = *routine.result->type;
     const std::uint32_t slots = slots_of(type);
     if (routine.is_function()) {
-        const Slot from = Region::window + routine.result->slot;
+        const Slot from = frame.slot + routine.result->slot;
         const Slot to = slots == 1 ? result(wanted) : new_temporary(slots);
         if (slots == 1)
             put(Op::move, to, from);
@@ -55,8 +48,9 @@ Location Generator::method_base(const Expression& e) {
     return {Mode::slot, 0};
 }
 
-/// A call whose arguments call functions themselves has them first, for they use the same memory.
-void Generator::call_routine(const Expression& e) {
+/// A call whose arguments call functions themselves has them first, for they use the same memory;
+/// where the places of outputs do, what the function has made is kept from them.
+Location Generator::call_routine(const Expression& e) {
     const Routine& routine = *e.routine;
     const bool is_function = routine.is_function();
     Location frame = is_function ? Location{Mode::slot, Region::window} : method_base(e);
@@ -68,7 +62,15 @@ void Generator::call_routine(const Expression& e) {
     else
         put(Op::call_at, address_of(frame), routine_number(routine));
     if (is_function) windows_ = std::max(windows_, routine.frame);
+    const auto is_called_for = [](const Argument& a) {
+        return (a.is_output || a.variable->section == Section::output) && has_call(*a.value);
+    };
+    if (is_function && std::ranges::any_of(e.arguments, is_called_for)) {
+        frame.slot = new_temporary(routine.variables_end);
+        put(Op::copy, frame.slot, Region::window, routine.variables_end);
+    }
     take(frame, e);
+    return frame;
 }
 
 std::uint32_t Generator::standard_number(const BlockType& kind) {
@@ -195,8 +197,12 @@ void Generator::take(const Location& frame, const Expression& e) {
         const bool is_taken = argument.is_output || variable.section == Section::output;
         if (!is_taken || is_set(argument)) continue;
         const Location from = part(frame, variable);
-        const Location to = locate(*argument.value);
         const Type &given = *variable.type, &wanted = *argument.value->type;
+        if (argument.value->kind == E::bit) {
+            store_bits(*argument.value, convert(load(from), given, wanted, false, none));
+            continue;
+        }
+        const Location to = locate(*argument.value);
         if (!given.is_scalar())
             copy(to, from, slots_of(given));
         else

@@ -127,14 +127,14 @@ class Generator {
     Slot text_conversion(const Expression& e);
     void append(Slot to, Slot from, Slot first, Slot count);
     Slot character(const Expression& e, Slot wanted);
-    void store_bits(const Expression& target, const Expression& from);
+    void store_bits(const Expression& target, Slot bits);
 
     // generator_calls.cpp
     Slot call(const Expression& e, Slot wanted);
     Location method_base(const Expression& e);
     std::uint32_t standard_number(const BlockType& kind);
     void call_instance(const Expression& e);
-    void call_routine(const Expression& e);
+    Location call_routine(const Expression& e);
     void give_left_out(const Location& frame, const Expression& e);
     void give(const Location& frame, const Expression& e, const Routine& routine);
     void take(const Location& frame, const Expression& e);
@@ -200,9 +200,6 @@ class Generator {
     };
     std::vector<Loop> loops_;
 };
-
-/// A function or a method is called in it, which may write variables.
-bool has_call(const Expression& e);
 
 /// An opcode of a family, for a type: `add_sint` and DINT give `add_dint`.
 Op of_type(Op first, const Type& type);

@@ -149,10 +149,8 @@ class Parser {
           out_(out) {}
 
     void read() {
-        while (here().word != Word::end_of_file) {
-            read_declaration();
-            if (panic_) skip_to_declaration();
-        }
+        do read_or_lose();
+        while (!is(Word::end_of_file));
         if (fixture_) tree_.units.push_back(fixture_);
     }
 
@@ -230,6 +228,7 @@ class Parser {
 
     void expected(std::string_view what, std::string_view where = {}) {
         if (panic_ || refuse_unsupported()) return;
+        is_wrong_ = true;
         panic_ = unclosed_at_ == at_ || follows_mistake();
         const char first = what.front();
         const bool is_word = (first >= 'A' && first <= 'Z') || (first >= 'a' && first <= 'z');
@@ -267,6 +266,9 @@ class Parser {
         if (is(Word::comma) && expected == ")" && !is_in_body_)
             return "name the members: (name := value, ...)";
         if (same_name(here().text, "step")) return "write BY";
+        const bool is_joined = last().word == Word::and_ || last().word == Word::or_;
+        if (is_joined && here().word >= Word::less && here().word <= Word::unequal)
+            return "repeat what is compared: a > 1 AND a < 5";
         if (is(Word::dot) && next().word == Word::integer && touches_next)
             return fmt::format("write 0.{}", next().text);
         if (is(Word::name) && last().word == Word::integer && touches) {
@@ -311,6 +313,7 @@ class Parser {
     }
 
     void tell(const char* code, Place place, std::string message, std::string help = {}) {
+        is_wrong_ = true;
         out_.add(code, place.mark(), std::move(message), std::move(help));
     }
 
@@ -386,6 +389,37 @@ class Parser {
     }
 
     // Declarations.
+
+    /// What has a mistake is lost, and its names are noted.
+    void read_or_lose() {
+        const std::size_t first = at_;
+        const std::uint32_t begin = first == 0 ? 0 : here().place.begin;
+        const std::size_t types = tree_.types.size(), units = tree_.units.size(),
+                          globals = tree_.globals.size();
+        const Pou tests = fixture_ ? *fixture_ : Pou();
+        is_wrong_ = false;
+        if (!is(Word::end_of_file)) read_declaration();
+        if (panic_) skip_to_declaration();
+        const std::uint32_t end = here().place.begin;
+        const auto is_within = [&](std::uint32_t at) { return at >= begin && at < end; };
+        if (!is_wrong_ && std::ranges::none_of(mistakes_, is_within)) return;
+        for (std::size_t i = types; i < tree_.types.size(); ++i) tree_.types[i].is_lost = true;
+        for (std::size_t i = units; i < tree_.units.size(); ++i) tree_.units[i]->is_lost = true;
+        for (std::size_t i = globals; i < tree_.globals.size(); ++i)
+            tree_.globals[i].is_lost = true;
+        if (fixture_) fixture_->blocks = tests.blocks, fixture_->methods = tests.methods;
+        for (std::size_t i = first; i < at_; ++i) tree_.lost.try_emplace(tokens_[i].text);
+        lose(std::string_view((*here().place.file)->text).substr(begin, end - begin));
+    }
+
+    void lose(std::string_view text) {
+        const auto is_part = [](char c) { return is_letter(c) || is_digit(c); };
+        for (auto it = text.begin(); it != text.end();) {
+            const auto name = std::find_if(it, text.end(), is_part);
+            it = std::find_if_not(name, text.end(), is_part);
+            tree_.lost.try_emplace(std::string_view(name, it));
+        }
+    }
 
     void read_declaration() {
         if (const PouWords* words = find_pou(here().word); words && !is(Word::method_))
@@ -483,6 +517,8 @@ class Parser {
         accept(Word::begin_);
         is_in_body_ = true;
         read_body(pou, words.end);
+        for (const Token& region : std::exchange(regions_, {}))
+            tell("L0902", region.place, "the REGION does not end", "it ends with END_REGION");
         close(words.end, opener);
         is_in_body_ = false;
         accept(Word::semicolon);
@@ -742,10 +778,8 @@ class Parser {
             declared.type = read_type();
             if (accept(Word::assign)) declared.initial = read_initial();
             if (!accept(Word::semicolon) && !panic_ && !is(Word::end_type_)) end_of_statement();
-            if (panic_)
-                skip_declaration();
-            else
-                tree_.types.push_back(declared);
+            if (panic_) skip_declaration();
+            tree_.types.push_back(declared);
         }
         close(Word::end_type_, opener);
         accept(Word::semicolon);
@@ -1132,12 +1166,12 @@ class Parser {
             case Word::network_:
             case Word::end_region_:
             case Word::end_network_:
-                if (first.word != Word::network_ || !is_assigned(next())) {
-                    take();
-                    accept(Word::semicolon);
-                    return nullptr;
-                }
-                return read_simple();
+                if (first.word == Word::network_ && is_assigned(next())) return read_simple();
+                take();
+                if (first.word == Word::region_) regions_.push_back(first);
+                if (first.word == Word::end_region_ && !regions_.empty()) regions_.pop_back();
+                accept(Word::semicolon);
+                return nullptr;
             case Word::if_:
                 return closed(read_if());
             case Word::case_:
@@ -1299,7 +1333,9 @@ class Parser {
     Expression* read_condition(Word end, std::string_view where) {
         Expression* condition = read_expression();
         if (!panic_ && is(Word::assign)) compared_by_assignment();
-        if (!panic_ && !expect(end, where)) panic_ = false;
+        if (panic_ || expect(end, where)) return condition;
+        panic_ = false;
+        if (is(Word::then_) || is(Word::do_) || is(Word::of_)) take();
         return condition;
     }
 
@@ -1424,9 +1460,11 @@ class Parser {
     std::size_t at_ = 0;
     std::size_t unclosed_at_ = static_cast<std::size_t>(-1);  ///< where an end was missed last
     Block before_statement_;                                  ///< of a chain of assignments
+    std::vector<Token> regions_;                              ///< that are open
     std::vector<Place> else_ifs_;                             ///< within the IFs that are open
     int depth_ = 0;
     bool panic_ = false;
+    bool is_wrong_ = false;      ///< what is being read
     bool section_left_ = false;  ///< a VAR ended without END_VAR
     bool is_spoiled_ = false;    ///< the POU, by a variable that cannot be
     bool is_in_body_ = false;    ///< of a POU

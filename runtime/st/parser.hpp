@@ -6,7 +6,7 @@
 namespace lineshaft::st {
 
 /// Adds what stands in a source to `tree`. After a mistake it goes on at the next `;` or `END_...`,
-/// so that all of a file is told at once:
+/// so that all of a file is told at once; a declaration with a mistake is lost:
 ///   L0902  what is expected, and stands there instead; a block that does not end
 ///   L0903  a part of the language that is not supported
 ///   L0912  nested too deep

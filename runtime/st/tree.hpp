@@ -140,6 +140,7 @@ enum class Section : std::uint8_t { input, output, in_out, local, temp, global, 
 struct DeclarationBlock {
     Section section = Section::local;
     bool constant = false, retain = false;
+    bool is_lost = false;  ///< not understood
     std::vector<Declaration*> declarations = {};
 };
 
@@ -154,6 +155,7 @@ struct Pou {
     TypeText* base = nullptr;    ///< of a data block that is an instance, or a structure
     std::string_view doc = {};   ///< the comments before it, else below its first line
     bool is_private = false;
+    bool is_lost = false;   ///< not understood
     bool is_tests = false;  ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it
     std::vector<DeclarationBlock> blocks = {};
     Block body = {};
@@ -164,6 +166,7 @@ struct TypeDeclaration {
     Token name = {};
     TypeText* type = nullptr;
     Expression* initial = nullptr;
+    bool is_lost = false;  ///< not understood
 };
 
 /// Owns all nodes, so that they need no owners among themselves.
@@ -178,6 +181,17 @@ struct Tree {
     std::vector<TypeDeclaration> types;  ///< in the order of the sources, as all lists
     std::vector<Pou*> units;             ///< all but methods
     std::vector<DeclarationBlock> globals;
+    NameMap<bool> lost;  ///< what stands in those not understood; true: their names
+
+    void leave_lost_out() {
+        for (const TypeDeclaration& type : types)
+            if (type.is_lost) lost[type.name.text] = true;
+        for (const Pou* unit : units)
+            if (unit->is_lost) lost[unit->name.text] = true;
+        std::erase_if(types, [](const auto& type) { return type.is_lost; });
+        std::erase_if(units, [](const auto* unit) { return unit->is_lost; });
+        std::erase_if(globals, [](const auto& block) { return block.is_lost; });
+    }
 };
 
 }  // namespace lineshaft::st

@@ -92,6 +92,9 @@ inline bool Expression::is_character() const {
     return kind == Kind::index && operands[0]->type && operands[0]->type->kind == Type::Kind::text;
 }
 
+/// A function or a method is called in it, which may write variables.
+bool has_call(const Expression& expression);
+
 /// Where a variable is.
 enum class Space : std::uint8_t {
     frame,      ///< of its routine, or of the block that a method belongs to

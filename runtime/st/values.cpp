@@ -190,8 +190,7 @@ Slot Generator::character(const Expression& e, Slot wanted) {
     return to;
 }
 
-void Generator::store_bits(const Expression& target, const Expression& from) {
-    const Slot bits = value_before(from, target);
+void Generator::store_bits(const Expression& target, Slot bits) {
     const Location whole = locate(*target.operands[0]);
     land();
     const Type& type = *target.operands[0]->type;

@@ -56,10 +56,9 @@ std::string junit_xml(const std::vector<SuiteEntry>& entries) {
         "time=\"{:.3f}\">\n",
         entries.size(), failures, errors, seconds);
     for (const SuiteEntry& e : entries) {
-        xml += "  <testcase";
-        if (!e.file.empty())
-            xml +=
-                fmt::format(" classname=\"{0}\" file=\"{0}\" line=\"{1}\"", escape(e.file), e.line);
+        const std::string file = escape(e.file.empty() ? e.name : e.file);
+        xml += fmt::format("  <testcase classname=\"{0}\" file=\"{0}\"", file);
+        if (e.line > 0) xml += fmt::format(" line=\"{}\"", e.line);
         xml += fmt::format(" name=\"{}\" time=\"{:.3f}\"", escape(e.name), e.wall_seconds);
         if (e.failures.empty()) {
             xml += "/>\n";

@@ -13,12 +13,12 @@ TEST_CASE("a suite is counted, and passed cases are empty elements") {
                      {.name = "c.yaml", .failures = {"no such file"}, .error = true}}) ==
           "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
           "<testsuite name=\"lineshaft\" tests=\"3\" failures=\"1\" errors=\"1\" time=\"1.750\">\n"
-          "  <testcase name=\"a.yaml\" time=\"0.250\"/>\n"
-          "  <testcase name=\"b.yaml\" time=\"1.500\">\n"
+          "  <testcase classname=\"a.yaml\" file=\"a.yaml\" name=\"a.yaml\" time=\"0.250\"/>\n"
+          "  <testcase classname=\"b.yaml\" file=\"b.yaml\" name=\"b.yaml\" time=\"1.500\">\n"
           "    <failure message=\"x is 1\">x is 1\nrepeat it by: lineshaft run b.yaml</failure>\n"
           "    <failure message=\"y is 2\">y is 2\nrepeat it by: lineshaft run b.yaml</failure>\n"
           "  </testcase>\n"
-          "  <testcase name=\"c.yaml\" time=\"0.000\">\n"
+          "  <testcase classname=\"c.yaml\" file=\"c.yaml\" name=\"c.yaml\" time=\"0.000\">\n"
           "    <error message=\"no such file\">no such file</error>\n"
           "  </testcase>\n"
           "</testsuite>\n");
