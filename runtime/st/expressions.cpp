@@ -504,7 +504,11 @@ const Type* Checker::check_bit(Expression& e) {
                                 : bits == 16 ? "words"
                                              : "double words",
                                 type->bits / bits - 1));
-    e.constant.integer = *number * bits + (Wide{bits} << 6);
+    const Expression& part = *e.operands[0];
+    const bool of_part = part.kind == Expression::Kind::bit;
+    const Wide first = *number * bits + (of_part ? part.constant.integer & 63 : 0);
+    e.constant.integer = first + (Wide{bits} << 6);
+    if (of_part) e.operands[0] = part.operands[0];
     return bits == 1 ? &bool_type : &bits_type(bits);
 }
 
