@@ -794,8 +794,10 @@ const Type* Checker::check_time_arithmetic(Expression& e) {
     return e.type;
 }
 
-/// DATE - DATE, TOD - TOD and DT - DT are a TIME; one is added to a TOD and a DT.
+/// DATE - DATE, TOD - TOD and DT - DT are a TIME; one is added to a TOD and a DT, on either side.
 const Type* Checker::check_date_arithmetic(Expression& e) {
+    if (e.op == Word::plus && e.operands[0]->type->kind == Kind::time)
+        std::swap(e.operands[0], e.operands[1]);
     const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
     const bool joins = e.op == Word::plus && a.kind == Kind::date && b.kind == Kind::clock;
     const bool distance = e.op == Word::minus && same_type(a, b);
