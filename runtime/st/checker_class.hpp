@@ -24,6 +24,7 @@ double as_real(const Expression& constant);
 
 /// By the name of its file: all but the standard's ST.
 bool is_scl(const Expression& expression);
+bool is_scl(const Place& place);
 
 /// What check() keeps while it works: declarations.cpp, expressions.cpp, calls.cpp, statements.cpp.
 /// One class, though large: a type asks for a constant, that for an expression, and that for a call

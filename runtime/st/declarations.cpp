@@ -334,6 +334,8 @@ void Checker::make_constant(Variable& variable) {
     if (!variable.type || !variable.type->is_scalar()) return;
     variable.space = Space::none;
     if (!variable.initial) {
+        variable.value = variable.type->initial;
+        if (is_scl(variable.name.place)) return;
         fail("L0913", variable.name.place,
              fmt::format("the constant {} has no value", quoted(variable.text)),
              "write ':= value' behind its type");

@@ -16,9 +16,13 @@ double as_real(const Expression& constant) {
                                     : static_cast<double>(constant.constant.integer);
 }
 
-bool is_scl(const Expression& e) {
-    const std::string_view path = (*e.place.file)->path;
+bool is_scl(const Place& place) {
+    const std::string_view path = (*place.file)->path;
     return !path.ends_with(".st") && !path.ends_with(".ST");
+}
+
+bool is_scl(const Expression& e) {
+    return is_scl(e.place);
 }
 
 namespace {
@@ -511,7 +515,11 @@ const Type* Checker::check_bit(Expression& e) {
                                 : bits == 16 ? "words"
                                              : "double words",
                                 type->bits / bits - 1));
-    e.constant.integer = *number * bits + (Wide{bits} << 6);
+    const Expression& part = *e.operands[0];
+    const bool of_part = part.kind == Expression::Kind::bit;
+    const Wide first = *number * bits + (of_part ? part.constant.integer & 63 : 0);
+    e.constant.integer = first + (Wide{bits} << 6);
+    if (of_part) e.operands[0] = part.operands[0];
     return bits == 1 ? &bool_type : &bits_type(bits);
 }
 
@@ -746,7 +754,8 @@ const Type* Checker::check_comparison(Expression& e) {
 }
 
 const Type* Checker::check_arithmetic(Expression& e, const Type* expected) {
-    if (is_dtl(*e.operands[0]->type)) return check_dtl_arithmetic(e);
+    if (is_dtl(*e.operands[0]->type) || is_dtl(*e.operands[1]->type))
+        return check_dtl_arithmetic(e);
     const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
     if (a.is_time() || b.is_time()) return check_time_arithmetic(e);
     reinterpret(e, Kind::bits, expected);
@@ -794,7 +803,7 @@ const Type* Checker::check_time_arithmetic(Expression& e) {
     return e.type;
 }
 
-/// DTL + TIME, DTL - TIME, and DTL - DTL, a TIME.
+/// DTL + TIME, TIME + DTL, DTL - TIME, and DTL - DTL, a TIME.
 const Type* Checker::check_dtl_arithmetic(Expression& e) {
     become_moments(e);
     const Type* type = check_time_arithmetic(e);
@@ -806,8 +815,10 @@ const Type* Checker::check_dtl_arithmetic(Expression& e) {
     return check(e);
 }
 
-/// DATE - DATE, TOD - TOD and DT - DT are a TIME; one is added to a TOD and a DT.
+/// DATE - DATE, TOD - TOD and DT - DT are a TIME; one is added to a TOD and a DT, on either side.
 const Type* Checker::check_date_arithmetic(Expression& e) {
+    if (e.op == Word::plus && e.operands[0]->type->kind == Kind::time)
+        std::swap(e.operands[0], e.operands[1]);
     const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
     const bool joins = e.op == Word::plus && a.kind == Kind::date && b.kind == Kind::clock;
     const bool distance = e.op == Word::minus && same_type(a, b);

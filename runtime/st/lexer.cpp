@@ -311,8 +311,11 @@ class Lexer {
 
     void read_text() {
         ++at_;
-        while (at_ < text_.size() && text_[at_] != '\'' && text_[at_] != '\n')
-            at_ += text_[at_] == '$' && peek(1) != '\n' && peek(1) != '\0' ? 2 : 1;
+        const auto is_pair = [&] {
+            return peek() == '$' ? peek(1) != '\n' && peek(1) != '\0' : at("''");
+        };
+        while (at_ < text_.size() && text_[at_] != '\n' && (text_[at_] != '\'' || is_pair()))
+            at_ += is_pair() ? 2 : 1;
         const bool ends = peek() == '\'';
         if (!ends) fail(place(start_, start_ + 1), "the text does not end", "it ends with \"'\"");
         if (ends) ++at_;

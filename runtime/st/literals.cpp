@@ -178,6 +178,7 @@ std::optional<std::string> read_text(std::string_view text) {
     for (std::size_t i = 0; i < text.size(); ++i) {
         if (text[i] != '$') {
             out += text[i];
+            if (text[i] == '\'') ++i;
             continue;
         }
         if (++i == text.size()) return {};
