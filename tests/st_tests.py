@@ -85,9 +85,12 @@ with tempfile.TemporaryDirectory() as folder:
     compare(root / "fail/expected.txt", said)
     suite = xml.parse(junit).getroot()
     expect("failures and errors", (suite.get("failures"), suite.get("errors")), ("19", "4"))
-    run(root / "bad", "test_twice.st", "--junit", str(junit))
+    run(root / "bad", "no_test.st", "--junit", str(junit))
     case = xml.parse(junit).getroot().find("testcase")
-    expect("a file that is refused", [case.get(key) for key in ("classname", "file", "name")], ["test_twice.st"] * 3)
+    expect("a file that is refused", [case.get(key) for key in ("classname", "file", "name")], ["no_test.st"] * 3)
+    pathlib.Path(folder, "twice_test.st").write_text("TEST 'a' ASSERT_TRUE(TRUE); END_TEST\n" * 2, encoding="utf-8")
+    said = subprocess.run([lineshaft, "check", "twice_test.st"], cwd=folder, capture_output=True, timeout=60).stderr
+    expect("two TESTs of one name", said.splitlines()[:1], [b"twice_test.st:2:6: warning[L0909]: two TESTs have one name"])
 
 code, said, _ = run(root, "pass", "--filter", "mocked function")
 expect("--filter", (code, said.splitlines()[-1]), (0, "1 of 1 passed"))

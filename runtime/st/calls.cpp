@@ -741,7 +741,7 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
         return fail(
             "L0905", call.place,
             fmt::format("there is no conversion of {} to {}", describe(from), describe(*target)));
-    if (same_type(from, *target)) {
+    if (same_type(from, *target) && from.is_character == target->is_character) {
         Expression copy = *value;
         call = copy;
         return target;

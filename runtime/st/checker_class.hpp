@@ -22,9 +22,7 @@ bool is_constant(const Expression& expression);
 /// The number of a constant.
 double as_real(const Expression& constant);
 
-/// By the name of its file: all but the standard's ST.
 bool is_scl(const Expression& expression);
-bool is_scl(const Place& place);
 
 /// What check() keeps while it works: declarations.cpp, expressions.cpp, calls.cpp, statements.cpp.
 /// One class, though large: a type asks for a constant, that for an expression, and that for a call
@@ -74,7 +72,7 @@ class Checker {
     void make_constant(Variable& variable);
     void declare_result(Routine& routine);
     Variable* add(std::deque<Variable>& to, const Declaration& declared, const Type* type);
-    bool is_new_name(Token name, NameMap<Place>& names);
+    bool is_new_name(Token name, NameMap<Place>& names, bool is_test = false);
     void check_unit(Variable& variable, const Declaration& declared);
     void check_initial_values();
     void check_data_block(const Global& global);

@@ -13,8 +13,7 @@ constexpr Wide most_elements = 1 << 24;
 constexpr Wide longest_text = 65534;
 
 std::string quoted(std::string_view name) {
-    const bool is_test = name.find_first_of("'\"") != name.npos;
-    return is_test ? std::string(name) : fmt::format("'{}'", name);
+    return fmt::format("'{}'", name);
 }
 
 /// Names of the standard for a kind of the catalogue, with the type that it counts in.
@@ -109,13 +108,17 @@ Routine& Checker::make_routine(Pou& pou, std::string name) {
     return routine;
 }
 
-bool Checker::is_new_name(Token name, NameMap<Place>& names) {
+bool Checker::is_new_name(Token name, NameMap<Place>& names, bool is_test) {
     const auto [it, added] = names.emplace(name.text, name.place);
     if (added) return true;
     const Mark first = it->second.mark();
     const bool beside = first.file == *name.place.file;
-    fail("L0909", name.place, fmt::format("{} is declared twice", quoted(name.text)),
-         fmt::format("first in {}{}", beside ? "line " : first.file->path + ":", first.line));
+    const std::string help =
+        fmt::format("first in {}{}", beside ? "line " : first.file->path + ":", first.line);
+    if (is_test)
+        out_.warn("L0909", name.place.mark(), "two TESTs have one name", help);
+    else
+        fail("L0909", name.place, fmt::format("{} is declared twice", quoted(name.text)), help);
     return false;
 }
 
@@ -140,7 +143,7 @@ void Checker::collect_names() {
             made.owner = &routine;
             const bool is_test = pou->is_tests && method->name.word != Word::setup_ &&
                                  method->name.word != Word::teardown_;
-            if (is_new_name(method->name, names) && !is_test)
+            if (is_new_name(method->name, names, is_test) && !is_test)
                 routine.methods.emplace(method->name.text, &made);
         }
     }

@@ -16,11 +16,6 @@ double as_real(const Expression& constant) {
                                     : static_cast<double>(constant.constant.integer);
 }
 
-bool is_scl(const Place& place) {
-    const std::string_view path = (*place.file)->path;
-    return !path.ends_with(".st") && !path.ends_with(".ST");
-}
-
 bool is_scl(const Expression& e) {
     return is_scl(e.place);
 }

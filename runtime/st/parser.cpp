@@ -116,15 +116,25 @@ struct Binary {
 };
 
 // IEC 61131-3:2013, table 71.
-constexpr Binary binaries[] = {{Word::power, 8},     {Word::times, 7},
-                               {Word::divided, 7},   {Word::mod_, 7},
-                               {Word::plus, 6},      {Word::minus, 6},
-                               {Word::less, 5},      {Word::less_or_equal, 5},
-                               {Word::greater, 5},   {Word::greater_or_equal, 5},
-                               {Word::equal, 4},     {Word::unequal, 4},
-                               {Word::and_, 3},      {Word::ampersand, 3},
-                               {Word::and_then_, 3}, {Word::xor_, 2},
-                               {Word::or_, 1},       {Word::or_else_, 1}};
+constexpr int power_binding = 8;
+constexpr Binary binaries[] = {{Word::power, power_binding},
+                               {Word::times, 7},
+                               {Word::divided, 7},
+                               {Word::mod_, 7},
+                               {Word::plus, 6},
+                               {Word::minus, 6},
+                               {Word::less, 5},
+                               {Word::less_or_equal, 5},
+                               {Word::greater, 5},
+                               {Word::greater_or_equal, 5},
+                               {Word::equal, 4},
+                               {Word::unequal, 4},
+                               {Word::and_, 3},
+                               {Word::ampersand, 3},
+                               {Word::and_then_, 3},
+                               {Word::xor_, 2},
+                               {Word::or_, 1},
+                               {Word::or_else_, 1}};
 
 bool is_end(Word word) {
     return word >= Word::end_action_ && word <= Word::end_while_;
@@ -998,12 +1008,14 @@ class Parser {
         return divides ? Word::divided : here().word;
     }
 
+    /// A sign comes before a power, in Siemens' SCL behind it: -2 ** 2 is 4, and -4.
     Expression* read_unary() {
         if (!is(Word::minus) && !is(Word::plus) && !is(Word::not_)) return read_postfix();
         const Level level(*this);
         Expression* made = make(Expression::Kind::unary, take());
         made->op = made->token.word;
-        Expression* operand = read_unary();
+        const bool is_below_power = made->op != Word::not_ && is_scl(made->place);
+        Expression* operand = is_below_power ? read_expression(power_binding) : read_unary();
         made->operands[0] = operand;
         made->place = made->place.to(operand->place);
         grow(*made, *operand);

@@ -21,6 +21,12 @@ struct Place {
     Mark mark() const;
 };
 
+/// By the name of its file: all but the standard's ST.
+inline bool is_scl(const Place& place) {
+    const std::string_view path = (*place.file)->path;
+    return !path.ends_with(".st") && !path.ends_with(".ST");
+}
+
 /// Names are found without regard to case (ASCII).
 struct SameName {
     using is_transparent = void;
