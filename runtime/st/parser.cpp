@@ -116,25 +116,16 @@ struct Binary {
 };
 
 // IEC 61131-3:2013, table 71.
-constexpr int power_binding = 8;
-constexpr Binary binaries[] = {{Word::power, power_binding},
-                               {Word::times, 7},
-                               {Word::divided, 7},
-                               {Word::mod_, 7},
-                               {Word::plus, 6},
-                               {Word::minus, 6},
-                               {Word::less, 5},
-                               {Word::less_or_equal, 5},
-                               {Word::greater, 5},
-                               {Word::greater_or_equal, 5},
-                               {Word::equal, 4},
-                               {Word::unequal, 4},
-                               {Word::and_, 3},
-                               {Word::ampersand, 3},
-                               {Word::and_then_, 3},
-                               {Word::xor_, 2},
-                               {Word::or_, 1},
-                               {Word::or_else_, 1}};
+constexpr Binary binaries[] = {{Word::power, 8},     {Word::times, 7},
+                               {Word::divided, 7},   {Word::mod_, 7},
+                               {Word::plus, 6},      {Word::minus, 6},
+                               {Word::less, 5},      {Word::less_or_equal, 5},
+                               {Word::greater, 5},   {Word::greater_or_equal, 5},
+                               {Word::equal, 4},     {Word::unequal, 4},
+                               {Word::and_, 3},      {Word::ampersand, 3},
+                               {Word::and_then_, 3}, {Word::xor_, 2},
+                               {Word::or_, 1},       {Word::or_else_, 1}};
+constexpr int power_binding = binaries[0].binding;
 
 bool is_end(Word word) {
     return word >= Word::end_action_ && word <= Word::end_while_;

@@ -23,13 +23,6 @@ std::string small(std::string_view name) {
     return text;
 }
 
-bool has_call(const Expression& e) {
-    if (e.kind == E::call && e.routine) return true;
-    for (const Expression* operand : e.operands)
-        if (operand && has_call(*operand)) return true;
-    return std::ranges::any_of(e.arguments, [](const Argument& a) { return has_call(*a.value); });
-}
-
 std::string quoted(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) out += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
