@@ -397,7 +397,8 @@ class Parser {
         const std::uint32_t begin = first == 0 ? 0 : here().place.begin;
         const std::size_t types = tree_.types.size(), units = tree_.units.size(),
                           globals = tree_.globals.size();
-        const Pou tests = fixture_ ? *fixture_ : Pou();
+        const std::size_t blocks = fixture_ ? fixture_->blocks.size() : 0,
+                          methods = fixture_ ? fixture_->methods.size() : 0;
         is_wrong_ = false;
         if (!is(Word::end_of_file)) read_declaration();
         if (panic_) skip_to_declaration();
@@ -408,7 +409,7 @@ class Parser {
         for (std::size_t i = units; i < tree_.units.size(); ++i) tree_.units[i]->is_lost = true;
         for (std::size_t i = globals; i < tree_.globals.size(); ++i)
             tree_.globals[i].is_lost = true;
-        if (fixture_) fixture_->blocks = tests.blocks, fixture_->methods = tests.methods;
+        if (fixture_) fixture_->blocks.resize(blocks), fixture_->methods.resize(methods);
         for (std::size_t i = first; i < at_; ++i) tree_.lost.try_emplace(tokens_[i].text);
         lose(std::string_view((*here().place.file)->text).substr(begin, end - begin));
     }
