@@ -11,6 +11,7 @@ struct Checked {
     std::deque<Variable> variables;  ///< of structures, data blocks and the catalogue
     std::vector<Global> globals;     ///< `VAR_GLOBAL` and data blocks, by number
     std::vector<Routine*> order;     ///< each behind all that it calls or holds
+    std::deque<std::string> names;   ///< of variables that no source declares
 };
 
 /// Checks `tree` and notes in it what it found. With a mistake in `out` the result is of no use.

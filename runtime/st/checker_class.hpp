@@ -70,6 +70,7 @@ class Checker {
     void declare(Routine& routine, const DeclarationBlock& block);
     void make_object(Variable& variable);
     void make_constant(Variable& variable);
+    void declare_edge(Routine& routine, Variable& variable, const Token& edge);
     void declare_result(Routine& routine);
     Variable* add(std::deque<Variable>& to, const Declaration& declared, const Type* type);
     bool is_new_name(Token name, NameMap<Place>& names, bool is_test = false);
@@ -200,6 +201,8 @@ class Checker {
     void rewrite_enabled(Statement& statement, bool has_eno);
     void rewrite_bits(Statement& statement, bool scatters);
     Variable& eno_of(Routine& routine);
+    void call_edges(Routine& routine);
+    const Type* use_edge(Expression& name, Variable& edge);
     void check_special(Statement& statement);
     void check_timer(Expression& timer, std::string_view function);
 

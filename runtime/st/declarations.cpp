@@ -318,7 +318,30 @@ void Checker::declare(Routine& routine, const DeclarationBlock& block) {
         depend(type, declared->name.place);
         if (routine.pou->is_tests || routine.is_test()) make_object(*variable);
         if (block.constant && block.section != Section::input) make_constant(*variable);
+        if (declared->edge.word != Word::end_of_file)
+            declare_edge(routine, *variable, declared->edge);
     }
+}
+
+/// `go : BOOL R_EDGE` has an instance beside it, which nobody can name.
+void Checker::declare_edge(Routine& routine, Variable& variable, const Token& edge) {
+    const bool fits = variable.type && variable.type->kind == Kind::boolean &&
+                      variable.section == Section::input && routine.has_instances();
+    if (!fits) {
+        fail("L0914", edge.place,
+             fmt::format("{} is for a BOOL of VAR_INPUT of a function block or a program",
+                         edge.text),
+             "declare an instance of R_TRIG or F_TRIG, and call it");
+        return;
+    }
+    Variable& instance = routine.variables.emplace_back();
+    instance.name = edge;
+    instance.text = checked_.names.emplace_back(fmt::format("{}.{}", variable.text, edge.text));
+    instance.type = standard_type(same_name(edge.text, "r_edge") ? "r_trig" : "f_trig");
+    instance.of = routine.pou;
+    instance.used = true;
+    routine.names.emplace(instance.text, &instance);
+    variable.edge = &instance;
 }
 
 /// What a test has of a kind that others refer to, such as an axis, is a block of its own.

@@ -237,7 +237,8 @@ const Type* Checker::check_name(Expression& e, const Type* expected) {
             return expected;
         }
     }
-    if (Variable* variable = find_variable(token)) return use(e, *variable);
+    if (Variable* variable = find_variable(token))
+        return variable->edge ? use_edge(e, *variable) : use(e, *variable);
     if (same_name(token.text, "true") || same_name(token.text, "false")) {
         become_boolean(e, same_name(token.text, "true"));
         return &bool_type;

@@ -690,9 +690,8 @@ class Parser {
         if (accept(Word::at_)) refuse_place();
         expect(Word::colon, "after the name");
         TypeText* type = read_type();
-        if (same_name(here().text, "r_edge") || same_name(here().text, "f_edge"))
-            fail("L0903", here().place, fmt::format("{} is not supported", here().text),
-                 "declare an instance of R_TRIG or F_TRIG, and call it");
+        const bool is_edge = same_name(here().text, "r_edge") || same_name(here().text, "f_edge");
+        const Token edge = is_edge ? take() : Token{};
         Expression* initial = accept(Word::assign) ? read_initials() : nullptr;
         if (!panic_) end_of_statement();
         if (panic_) return skip_declaration();
@@ -700,7 +699,7 @@ class Parser {
         const std::string_view doc = comment_before(at_, false);
         for (const Token& name : names)
             to.push_back(&tree_.declarations.emplace_back(
-                Declaration{name, type, initial, unit, place, doc}));
+                Declaration{name, type, initial, edge, unit, place, doc}));
     }
 
     /// Behind AT: `%IX0.0`, or another variable.

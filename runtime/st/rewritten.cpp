@@ -110,6 +110,40 @@ Variable& Checker::eno_of(Routine& routine) {
     return variable;
 }
 
+/// At the beginning of a body: `go.R_EDGE(CLK := go);`.
+void Checker::call_edges(Routine& routine) {
+    Block calls;
+    for (Variable& variable : routine.variables) {
+        if (!variable.edge) continue;
+        Expression* input = &tree_.expressions.emplace_back();
+        input->kind = E::name;
+        input->token = variable.name;
+        input->place = variable.name.place;
+        input->type = use(*input, variable);
+        Statement& statement = tree_.statements.emplace_back();
+        statement.kind = S::call;
+        statement.place = input->place;
+        statement.value = make(E::call, *input);
+        statement.value->operands[0] = make(E::name, *input);
+        statement.value->operands[0]->token.text = variable.edge->text;
+        const Token clk{.word = Word::name, .place = input->place, .text = "clk"};
+        statement.value->arguments.push_back({.name = clk, .value = input});
+        calls.push_back(&statement);
+    }
+    Block& body = const_cast<Pou*>(routine.pou)->body;
+    body.insert(body.begin(), calls.begin(), calls.end());
+}
+
+/// `go` in a body is `go.R_EDGE.Q`.
+const Type* Checker::use_edge(Expression& e, Variable& input) {
+    input.used = true;
+    e.operands[0] = make(E::name, e);
+    e.operands[0]->token.text = input.edge->text;
+    e.kind = E::member;
+    e.token.text = "q";
+    return check_member(e);
+}
+
 void Checker::check_special(Statement& s) {
     Expression& call = *s.value;
     const StandardFunction& f = standard_functions()[static_cast<std::size_t>(call.standard)];

@@ -20,6 +20,7 @@ bool leaves(const Statement& statement) {
 void Checker::check_body(Routine& routine) {
     routine_ = &routine;
     loops_ = 0;
+    call_edges(routine);
     check(const_cast<Pou*>(routine.pou)->body);
     routine_ = nullptr;
 }

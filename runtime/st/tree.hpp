@@ -130,6 +130,7 @@ struct Declaration {
     Token name = {};
     TypeText* type = nullptr;
     Expression* initial = nullptr;
+    Token edge = {};  ///< R_EDGE or F_EDGE behind the type; else `end_of_file`
     std::string_view unit = {};
     Place unit_place = {};
     std::string_view doc = {};  ///< the comments behind it

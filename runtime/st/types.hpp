@@ -118,6 +118,7 @@ struct Variable {
     std::string unit = {};
     const Pou* of = nullptr;  ///< null: a member of a structure, or of the catalogue
     bool used = false;
+    Variable* edge = nullptr;    ///< of `x : BOOL R_EDGE`: the R_TRIG whose Q its name means inside
     std::string_view text = {};  ///< its name
     std::string_view doc = {};   ///< comments, as they are written
 };
