@@ -203,14 +203,16 @@ void Checker::check_argument(Expression&, Argument& argument, Variable& paramete
                  "declare one and give it here");
         return;
     }
+    const bool texts = given->kind == Kind::text && type->kind == Kind::text;
     const bool fits =
-        parameter.section == Section::in_out
-            ? same_type(*given, *type)
-            : same_type(*given, *type) || (type->is_scalar() && widens(*type, *given));
+        same_type(*given, *type) || (parameter.section == Section::in_out
+                                         ? texts && type->is_open
+                                         : texts || (type->is_scalar() && widens(*type, *given)));
     if (!fits)
         fail("L0905", value->place,
              fmt::format("'{}' is {}, and {} is given", parameter.text, describe(*type),
-                         describe(*given)));
+                         describe(*given)),
+             texts ? "a VAR_IN_OUT of type STRING, without a length, takes any" : "");
 }
 
 /// Of a block that commands an axis, inputs that vendors add to PLCopen's: an axis without a real
@@ -568,7 +570,7 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
             if (first.kind != Kind::text)
                 return fail("L0905", arguments[0].value->place,
                             fmt::format("expected a STRING, found {}", describe(first)));
-            become(call, int_type, {.integer = first.length});
+            if (!first.is_open) become(call, int_type, {.integer = first.length});
             return &int_type;
         case Rule::bound:
             return check_bound(call);

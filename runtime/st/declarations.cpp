@@ -296,6 +296,7 @@ void Checker::declare_result(Routine& routine) {
 void Checker::declare(Routine& routine, const DeclarationBlock& block) {
     for (const Declaration* declared : block.declarations) {
         const Type* type = resolve(*declared->type);
+        if (block.section == Section::in_out && type == &string_type) type = &open_string_type;
         Variable* variable = add(routine.variables, *declared, type);
         variable->section = block.section;
         variable->constant = block.constant;

@@ -23,10 +23,11 @@ Type character() {
     return type;
 }
 
-Type text_type() {
+Type text_type(bool is_open = false) {
     Type type = elementary(Kind::text, "STRING");
     type.length = 254;
     type.slots = 0;
+    type.is_open = is_open;
     return type;
 }
 
@@ -61,6 +62,7 @@ const Type table[] = {elementary(Kind::boolean, "BOOL", 1),
                       elementary(Kind::moment, "LDATE_AND_TIME", 64, true),
                       character()};
 
+const Type open_string = text_type(true);
 const Type any_integer = elementary(Kind::any_integer, "a whole number", 64, true);
 const Type any_real = elementary(Kind::any_real, "a real number");
 const Type any_bits = elementary(Kind::any_bits, "a whole number");
@@ -89,7 +91,7 @@ const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &lreal_type = table[14], &time_type = table[15], &date_type = table[18],
            &clock_type = table[20], &moment_type = table[24], &any_integer_type = any_integer,
            &any_real_type = any_real, &any_bits_type = any_bits, &string_type = table[17],
-           &char_type = table[28];
+           &open_string_type = open_string, &char_type = table[28];
 
 const Type* find_prefix(std::string_view name) {
     static constexpr std::pair<std::string_view, std::string_view> shorter[] = {
@@ -161,7 +163,7 @@ bool same_type(const Type& a, const Type& b) {
             return a.bits == b.bits && a.is_signed == b.is_signed && !a.is_subrange &&
                    !b.is_subrange;
         case Kind::text:
-            return a.length == b.length;
+            return a.length == b.length && a.is_open == b.is_open;
         case Kind::array:
             return a.lower == b.lower && a.upper == b.upper && same_type(*a.element, *b.element);
         case Kind::structure:

@@ -18,7 +18,7 @@ const Type* find_prefix(std::string_view name);
 
 extern const Type &bool_type, &int_type, &dint_type, &lint_type, &ulint_type, &real_type,
     &lreal_type, &time_type, &date_type, &clock_type, &moment_type, &any_integer_type,
-    &any_real_type, &any_bits_type, &string_type, &char_type;
+    &any_real_type, &any_bits_type, &string_type, &open_string_type, &char_type;
 
 /// The integer or bit string of that width.
 const Type& integer_type(int bits, bool is_signed);

@@ -124,43 +124,30 @@ void Generator::give(const Location& frame, const Expression& e, const Routine& 
     give_left_out(frame, e);
     const bool nested = std::ranges::any_of(
         e.arguments, [&](const Argument& a) { return is_given(a) && has_call(*a.value); });
-    std::vector<std::pair<Location, Slot>> later;
+    std::vector<Later> later;
     for (const Argument& argument : e.arguments) {
         if (!is_given(argument)) continue;
         const Variable& variable = *argument.variable;
+        const Type& type = *variable.type;
         const Location to = part(frame, variable.slot);
         if (variable.space == Space::reference) {
-            const Slot address = address_of(locate(*argument.value));
-            later.emplace_back(to, address);
-        } else if (!variable.type->is_scalar()) {
-            const Type& type = *variable.type;
-            if (!nested) {
-                assign(to, type, *argument.value);
-                continue;
-            }
-            const Location kept{Mode::slot, new_temporary(slots_of(type))};
-            assign(kept, type, *argument.value);
-            later.emplace_back(to, kept.slot);
-        } else if (nested) {
-            const Slot kept = new_temporary();
-            value_to(*argument.value, kept);
-            later.emplace_back(to, kept);
+            refer(to, variable, *argument.value, later);
+        } else if (!nested) {
+            assign(to, type, *argument.value);
+        } else if (type.is_scalar()) {
+            later.push_back({to, new_temporary()});
+            value_to(*argument.value, later.back().slot);
         } else {
-            assign(to, *variable.type, *argument.value);
+            const std::uint32_t slots = slots_of(type);
+            later.push_back({to, new_temporary(slots), slots});
+            assign({Mode::slot, later.back().slot}, type, *argument.value);
         }
     }
-    std::size_t next_later = 0;
-    for (const Argument& argument : e.arguments) {
-        if (!is_given(argument) || next_later == later.size()) continue;
-        const Variable& variable = *argument.variable;
-        const auto& [to, slot] = later[next_later];
-        const bool now = variable.space == Space::reference || nested;
-        if (!now) continue;
-        ++next_later;
-        if (variable.space != Space::reference && !variable.type->is_scalar())
-            copy(to, {Mode::slot, slot}, slots_of(*variable.type));
+    for (const Later& value : later) {
+        if (value.slots > 0)
+            copy(value.to, {Mode::slot, value.slot}, value.slots);
         else
-            store(to, slot);
+            store(value.to, value.slot);
     }
     if (routine.has_instances()) return;
     for (const Variable& variable : routine.variables) {
@@ -179,13 +166,23 @@ void Generator::give(const Location& frame, const Expression& e, const Routine& 
     }
 }
 
+/// Where the value of a VAR_IN_OUT is, and what it holds if any length may be given.
+void Generator::refer(const Location& to, const Variable& variable, const Expression& value,
+                      std::vector<Later>& later) {
+    const Location at = locate(value);
+    later.push_back({to, address_of(at)});
+    if (variable.type->is_open) later.push_back({part(to, 1), capacity_of(at, *value.type)});
+}
+
 void Generator::give_left_out(const Location& frame, const Expression& e) {
     for (const Argument& argument : e.arguments) {
         if (!argument.is_left_out) continue;
         const Location reference = part(frame, argument.variable->slot);
         std::vector<std::uint32_t> given;
         jump(Op::jump_if, 0, load(reference), given);
-        store(reference, address_of(locate(*argument.value)));
+        std::vector<Later> later;
+        refer(reference, *argument.variable, *argument.value, later);
+        for (const Later& value : later) store(value.to, value.slot);
         land(given);
     }
 }
@@ -203,7 +200,9 @@ void Generator::take(const Location& frame, const Expression& e) {
             continue;
         }
         const Location to = locate(*argument.value);
-        if (!given.is_scalar())
+        if (given.kind == Kind::text)
+            put(Op::text_copy, address_of(to), address_of(from), capacity_of(to, wanted));
+        else if (!given.is_scalar())
             copy(to, from, slots_of(given));
         else
             store(to, convert(load(from), given, wanted, false, none));
@@ -323,7 +322,10 @@ Slot Generator::standard(const Expression& e, Slot wanted) {
         }
         case Rule::statement:
             return reset_timer(*e.arguments[0].value);
-        case Rule::capacity:
+        case Rule::capacity: {
+            const Expression& text = *e.arguments[0].value;
+            return capacity_of(locate(text), *text.type);
+        }
         case Rule::bound:
         case Rule::move:
         case Rule::operation:

@@ -29,6 +29,14 @@ struct Location {
     Slot slot = 0, index = 0;
     std::uint32_t offset = 0;
     std::optional<std::uint32_t> byte = {};  ///< of a boolean in an instance of the catalogue
+    Slot capacity = none;  ///< of a text of any length: what it holds is in that slot
+};
+
+/// What a call is given only when all its arguments are known.
+struct Later {
+    Location to;
+    Slot slot;
+    std::uint32_t slots = 0;  ///< of an array, a structure or a text
 };
 
 /// One class, though large: statements, expressions and calls write into one list of instructions
@@ -113,6 +121,7 @@ class Generator {
     Location locate_element(const Expression& e);
     Location as_address(Location location);
     Slot address_of(Location location);
+    Slot capacity_of(const Location& text, const Type& type);
     Location locate_object(const Expression& e);
     Location part(Location of, const Variable& member);
     Location part(Location of, std::uint32_t slots);
@@ -136,6 +145,8 @@ class Generator {
     void call_instance(const Expression& e);
     Location call_routine(const Expression& e);
     void give_left_out(const Location& frame, const Expression& e);
+    void refer(const Location& to, const Variable& variable, const Expression& value,
+               std::vector<Later>& later);
     void give(const Location& frame, const Expression& e, const Routine& routine);
     void take(const Location& frame, const Expression& e);
     Slot standard(const Expression& e, Slot wanted);

@@ -53,7 +53,9 @@ void Generator::place_variables(Routine& routine, std::uint32_t& at, auto condit
         place_ = variable.name.place;
         variable.slot = at;
         const std::uint64_t own = slots_of(*variable.type);  // also lays out what is referred to
-        const std::uint64_t slots = variable.space == Space::reference ? 1 : own;
+        const std::uint64_t slots = variable.space != Space::reference ? own
+                                    : variable.type->is_open           ? 2
+                                                                       : 1;
         check_size(at + slots, variable.name.place, variable.text);
         if (at + slots > most_slots) return;
         at += static_cast<std::uint32_t>(slots);

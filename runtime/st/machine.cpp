@@ -159,8 +159,8 @@ std::string_view text_at(const std::byte* place) {
     return {reinterpret_cast<const char*>(place + 8), static_cast<std::size_t>(word(place, 0))};
 }
 
-void copy_text(std::byte* to, const std::byte* from, std::uint32_t room) {
-    const std::uint64_t length = std::min<std::uint64_t>(word(from, 0), room);
+void copy_text(std::byte* to, const std::byte* from, std::uint64_t room) {
+    const std::uint64_t length = std::min(word(from, 0), room);
     std::memmove(to + 8, from + 8, length);
     set_word(to, 0, length);
 }

@@ -260,7 +260,7 @@ void Checker::check_mock_function(Expression& call) {
 void Checker::leave_out(Expression& call, Variable& parameter) {
     if (!parameter.type) return;
     Variable& own = routine_->variables.emplace_back();
-    own.type = parameter.type;
+    own.type = parameter.type->is_open ? &string_type : parameter.type;
     own.of = routine_->pou;
     Expression* value = make(E::name, call);
     value->variable = &own;

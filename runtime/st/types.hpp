@@ -53,6 +53,7 @@ struct Type {
     const Type* element = nullptr;             ///< of an array
     bool has_inner = false;                    ///< of an array: its element is its next dimension
     std::uint32_t length = 0;                  ///< of a text, in characters
+    bool is_open = false;                      ///< VAR_IN_OUT STRING: of what length is given
     std::vector<Variable*> members = {};       ///< of a structure
     std::vector<std::string> values = {};      ///< of an enumeration
     std::vector<std::int64_t> numbers = {};    ///< of its values

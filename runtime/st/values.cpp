@@ -331,7 +331,7 @@ Location Generator::locate(const Expression& e) {
     if (variable.space == Space::reference) {
         const bool of_block = routine_->owner && variable.of != routine_->pou;
         if (of_block) put(Op::bound, 0, variable.slot);
-        return {Mode::address, 0, variable.slot, 0};
+        return {.mode = Mode::address, .index = variable.slot, .capacity = variable.slot + 1};
     }
     if (variable.space == Space::global) {
         const Slot address = new_temporary();
@@ -357,7 +357,9 @@ Location Generator::part(Location of, const Variable& member) {
     if (member.space == Space::reference) {
         const Slot address = load(part(of, member.slot));
         put(Op::bound, 0, address);
-        return {Mode::address, 0, address, 0};
+        Location made{.mode = Mode::address, .index = address};
+        if (member.type->is_open) made.capacity = load(part(of, member.slot + 1));
+        return made;
     }
     return part(of, member.slot);
 }
@@ -412,6 +414,10 @@ Slot Generator::address_of(Location location) {
     return at.offset == 0 ? at.index : emit(Op::offset, none, at.index, at.offset);
 }
 
+Slot Generator::capacity_of(const Location& text, const Type& type) {
+    return type.is_open ? text.capacity : constant_slot(type.length);
+}
+
 Slot Generator::load(const Location& from, Slot wanted) {
     if (from.byte && from.mode == Mode::slot)
         return emit(Op::get_byte, wanted, from.slot, *from.byte);
@@ -447,7 +453,7 @@ void Generator::assign(const Location& to, const Type& type, const Expression& f
 void Generator::copy_value(const Location& to, const Type& type, const Expression& from) {
     if (type.kind == Kind::text) {
         const Slot text = text_address(from);
-        return put(Op::text_copy, address_of(to), text, type.length);
+        return put(Op::text_copy, address_of(to), text, capacity_of(to, type));
     }
     if (from.kind == E::call) {
         const Location made = from.routine ? Location{Mode::slot, call(from, none)}
