@@ -91,6 +91,10 @@ with tempfile.TemporaryDirectory() as folder:
     pathlib.Path(folder, "twice_test.st").write_text("TEST 'a' ASSERT_TRUE(TRUE); END_TEST\n" * 2, encoding="utf-8")
     said = subprocess.run([lineshaft, "check", "twice_test.st"], cwd=folder, capture_output=True, timeout=60).stderr
     expect("two TESTs of one name", said.splitlines()[:1], [b"twice_test.st:2:6: warning[L0909]: two TESTs have one name"])
+    pathlib.Path(folder, "twice_test.st").write_text("TEST 'a' ASSERT_TRUE(TRUE); END_TEST\n", encoding="utf-8")
+    pathlib.Path(folder, "large_test.st").write_text("// so many words\n" * (1 << 16), encoding="utf-8")
+    code, said, _ = run(pathlib.Path(folder), ".")
+    expect("a file of a folder that is too large is told", (code, "large_test.st' has more than" in said), (1, True))
 
 code, said, _ = run(root, "pass", "--filter", "mocked function")
 expect("--filter", (code, said.splitlines()[-1]), (0, "1 of 1 passed"))

@@ -358,6 +358,10 @@ void Checker::make_object(Variable& variable) {
 
 /// A constant scalar takes no memory.
 void Checker::make_constant(Variable& variable) {
+    if (variable.type && variable.type->is_instance())
+        fail("L0914", variable.name.place,
+             "an instance changes when it is called, so it is no constant",
+             "declare it in VAR, without CONSTANT");
     if (!variable.type || !variable.type->is_scalar()) return;
     variable.space = Space::none;
     if (!variable.initial) {

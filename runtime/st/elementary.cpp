@@ -81,6 +81,9 @@ constexpr Foreign foreign[] = {{"wstring", "write STRING; texts are bytes"},
                                {"hw_io", "wire an input of the program"},
                                {"hw_any", "wire an input of the program"},
                                {"pid_compact", "write the controller as a FUNCTION_BLOCK"},
+                               {"program_alarm", "write a BOOL output, and expect it"},
+                               {"mb_client", "serve the machine: lineshaft serve --modbus"},
+                               {"mb_server", "serve the machine: lineshaft serve --modbus"},
                                {"counter", "declare an instance of CTU, CTD or CTUD"},
                                {"timer", "declare an instance of TON, TOF or TP"}};
 

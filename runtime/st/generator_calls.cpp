@@ -348,10 +348,12 @@ Slot Generator::reset_timer(const Expression& timer) {
     put(Op::initialise, made, 0, slots);
     Location at = locate(timer);
     if (at.mode == Mode::indexed) at = as_address(at);
-    for (const Variable* member : type.members)
-        if (same_name(member->text, "pt"))
-            put(Op::move, made + member->slot, load(part(at, *member)));
-    copy(at, {Mode::slot, made}, slots - (has_tests_ ? 1 : 0));
+    const auto keep = [&](const Variable& member) {
+        if (same_name(member.text, "pt")) put(Op::move, made + member.slot, load(part(at, member)));
+    };
+    for (const Variable* member : type.members) keep(*member);
+    if (type.kind == Kind::block) std::ranges::for_each(type.routine->variables, keep);
+    copy(at, {Mode::slot, made}, slots - (has_tests_ && type.kind == Kind::standard ? 1 : 0));
     return none;
 }
 

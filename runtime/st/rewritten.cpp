@@ -17,6 +17,8 @@ Argument* find_argument(Expression& call, std::string_view name) {
 }
 
 bool is_timer(const Type& type) {
+    if (type.kind == Type::Kind::block)
+        return type.name == "TONR" && is_standard_source(**type.routine->pou->place.file);
     return type.kind == Type::Kind::standard &&
            std::ranges::any_of(type.members, [](const Variable* m) { return m->text == "pt"; });
 }
@@ -166,7 +168,7 @@ void Checker::check_timer(Expression& timer, std::string_view function) {
     const Type* type = check(timer);
     if (!type || is_timer(*type)) return;
     fail("L0905", timer.place, fmt::format("{} takes a timer, not {}", function, describe(*type)),
-         "timers are instances of TON, TOF and TP");
+         "timers are instances of TON, TOF, TP and TONR");
 }
 
 /// SCATTER and GATHER: an assignment for each bit.
