@@ -13,7 +13,7 @@ constexpr AxisState Dis = AxisState::disabled, Std = AxisState::standstill, Hom 
                     Err = AxisState::error_stop;
 
 // clang-format off
-constexpr StateRow table[] = {
+constexpr StateRow rows[] = {
     //                                                          in Dis  Std  Hom  Stp  Dsc  Con  Syn  Err
     {C::power_on,                 "MC_Power, Enable",              {Std, Std, Hom, Stp, Dsc, Con, Syn, Err}},
     {C::power_off,                "MC_Power, not Enable",          {Dis, Dis, Dis, Dis, Dis, Dis, Dis, Err}},
@@ -47,8 +47,8 @@ constexpr StateRow table[] = {
 // clang-format on
 
 constexpr bool in_order() {
-    for (std::size_t i = 0; i < std::size(table); ++i)
-        if (static_cast<std::size_t>(table[i].command) != i + 1) return false;
+    for (std::size_t i = 0; i < std::size(rows); ++i)
+        if (static_cast<std::size_t>(rows[i].command) != i + 1) return false;
     return true;
 }
 static_assert(in_order());
@@ -56,11 +56,11 @@ static_assert(in_order());
 }  // namespace
 
 std::span<const StateRow> state_table() {
-    return table;
+    return rows;
 }
 
 std::optional<AxisState> next_state(Command command, AxisState now) {
-    return table[static_cast<std::size_t>(command) - 1].next[static_cast<std::size_t>(now)];
+    return rows[static_cast<std::size_t>(command) - 1].next[static_cast<std::size_t>(now)];
 }
 
 }  // namespace lineshaft

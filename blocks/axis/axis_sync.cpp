@@ -19,13 +19,13 @@ Law law_of(Command command) {
     return command == Command::cam_in ? Law::cammed : Law::geared;
 }
 
-MotionError error_of(CurveFault fault) {
+MotionError sync_error(CurveFault fault) {
     if (fault == CurveFault::none) return MotionError::none;
     return fault == CurveFault::standing_master ? MotionError::master_stands
                                                 : MotionError::sync_limits;
 }
 
-MotionError error_of(PlanResult result) {
+MotionError sync_error(PlanResult result) {
     if (result == PlanResult::ok) return MotionError::none;
     if (result == PlanResult::velocity_above_limit) return MotionError::sync_limits;
     return result == PlanResult::not_finite ? MotionError::not_finite
@@ -134,7 +134,7 @@ MotionError Axis::get_onto_guide(const Context& context, const Moment& at,
     const MotionState guide = sync.guide(master(context), led_by(context, sync.coupling.second))
                                   .after(-at.until(scan_time));
     sync.goal_offset = from.position - guide.position;
-    return error_of(sync.get_onto(from, guide, at));
+    return sync_error(sync.get_onto(from, guide, at));
 }
 
 MotionError Axis::join_law(const Context& context, const Moment& at, const MotionState& from) {
@@ -152,10 +152,10 @@ MotionError Axis::join_law(const Context& context, const Moment& at, const Motio
     const double left = sync.distance(leader), start = sync.coupling.start_distance;
     if (!(left > 0)) return MotionError::sync_passed;
     sync.start = at;
-    if (start == 0 || left <= start) return error_of(approach(from, leader, table));
+    if (start == 0 || left <= start) return sync_error(approach(from, leader, table));
     sync.stage = Stage::waiting;
     const double rest = from.acceleration * std::abs(from.acceleration) / (2 * sync.dynamics.jerk);
-    return error_of(velocity_motion.begin(from, from.velocity + rest, sync.dynamics, at));
+    return sync_error(velocity_motion.begin(from, from.velocity + rest, sync.dynamics, at));
 }
 
 CurveFault Axis::approach(const MotionState& from, const MotionState& leader, const Cam& table) {
@@ -201,7 +201,7 @@ void Axis::begin_phasing(const Context& context, Job& job) {
     const double to = request.position + (relative ? sync.shift.position : 0);
     const PlanResult planned = d.valid() ? sync.shifting.begin(sync.shift, to, 0, d, {scan_time})
                                          : PlanResult::limit_not_positive;
-    if (planned != PlanResult::ok) return tell(job, Progress::failed, error_of(planned));
+    if (planned != PlanResult::ok) return tell(job, Progress::failed, sync_error(planned));
     const std::int64_t place = context.place_of(job);
     if (phased.place != place || phased.ticket != job.ticket)
         end(context, phased, Progress::aborted);
@@ -236,7 +236,7 @@ void Axis::follow_guide(const Context& context) {
         base = sync.transition.at(t);
         double left = sync.transition.plan.duration - t;
         if (left > one_nanosecond && !sync.transition.foresees(guide, t)) {
-            const MotionError why = error_of(sync.get_onto(base, guide, {scan_time}));
+            const MotionError why = sync_error(sync.get_onto(base, guide, {scan_time}));
             if (why != MotionError::none) return fail(context, {scan_time}, why);
             left = sync.transition.plan.duration -
                    (is_measured(sync.coupling) ? seconds(scan_interval) : 0);
@@ -265,7 +265,7 @@ void Axis::follow_law(const Context& context) {
         if (sync.distance(leader) > sync.coupling.start_distance) return;
         sync.start = {scan_time};
         const CurveFault fault = approach(base, leader, table);
-        if (fault != CurveFault::none) return fail(context, {scan_time}, error_of(fault));
+        if (fault != CurveFault::none) return fail(context, {scan_time}, sync_error(fault));
         return tell(context, active, Progress::approaching);
     }
     if (sync.stage == Stage::approaching && sync.distance(leader) > 0) {
@@ -284,7 +284,7 @@ void Axis::foresee(const Context& context, const MotionState& leader) {
     sync.start = {scan_time};
     const CurveFault fault =
         sync.foresee(sync.curve, leader, sync.limits(base.velocity), foreseen());
-    if (fault != CurveFault::none) fail(context, {scan_time}, error_of(fault));
+    if (fault != CurveFault::none) fail(context, {scan_time}, sync_error(fault));
 }
 
 /// EndOfProfile: the command sees by the number that a period has ended. What waits begins there.

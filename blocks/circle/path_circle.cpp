@@ -8,8 +8,6 @@ namespace lineshaft {
 namespace {
 
 constexpr std::string_view turn_names[] = {"clockwise", "counter_clockwise"};
-constexpr std::string_view error_names[] = {"none", "not_finite"};
-
 }  // namespace
 
 std::span<const Field> PathCircle::fields() {
@@ -31,7 +29,7 @@ std::span<const Field> PathCircle::fields() {
         output("acceleration_x", &P::acceleration_x, "mm/s^2", "of x"),
         output("acceleration_y", &P::acceleration_y, "mm/s^2", "of y"),
         output("error", &P::error, "", "an input cannot be followed; outputs are held"),
-        output("error_id", &P::error_id, "", "why").one_of(error_names),
+        output("error_id", &P::error_id, "", "why").one_of(input_error_names),
     };
     return table;
 }

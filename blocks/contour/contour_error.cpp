@@ -6,12 +6,6 @@
 
 namespace lineshaft {
 
-namespace {
-
-constexpr std::string_view error_names[] = {"none", "not_finite"};
-
-}  // namespace
-
 std::span<const Field> ContourError::fields() {
     using C = ContourError;
     static const Field table[] = {
@@ -29,7 +23,7 @@ std::span<const Field> ContourError::fields() {
         output("out_of_reach", &C::out_of_reach, "",
                "the nearest point may have left the memory; the estimate is held"),
         output("error", &C::error, "", "an input is not a number; the estimate is held"),
-        output("error_id", &C::error_id, "", "why").one_of(error_names),
+        output("error_id", &C::error_id, "", "why").one_of(input_error_names),
     };
     return table;
 }

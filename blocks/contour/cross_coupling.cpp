@@ -7,12 +7,6 @@
 
 namespace lineshaft {
 
-namespace {
-
-constexpr std::string_view error_names[] = {"none", "not_finite"};
-
-}  // namespace
-
 std::span<const Field> CrossCoupling::fields() {
     using C = CrossCoupling;
     static const Field table[] = {
@@ -29,7 +23,7 @@ std::span<const Field> CrossCoupling::fields() {
         output("y", &C::y, "mm", "set-point for the drive"),
         output("correction", &C::correction, "mm", "w, to the right of the path"),
         output("error", &C::error, "", "an input is not a number; no correction"),
-        output("error_id", &C::error_id, "", "why").one_of(error_names),
+        output("error_id", &C::error_id, "", "why").one_of(input_error_names),
     };
     return table;
 }

@@ -13,8 +13,6 @@ namespace lineshaft {
 
 namespace {
 
-constexpr std::string_view error_names[] = {"none", "not_finite"};
-
 /// A point of the path and the unit vector along it.
 struct Place {
     Point at, along;
@@ -53,7 +51,7 @@ std::span<const Field> PathRectangle::fields() {
         output("velocity_y", &P::velocity_y, "mm/s", "of y"),
         output("perimeter", &P::perimeter, "mm", "length of the whole path"),
         output("error", &P::error, "", "an input is not a number; outputs are held"),
-        output("error_id", &P::error_id, "", "why").one_of(error_names),
+        output("error_id", &P::error_id, "", "why").one_of(input_error_names),
     };
     return table;
 }

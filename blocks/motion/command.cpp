@@ -6,8 +6,6 @@
 
 namespace lineshaft {
 
-using B = CommandBlock;
-
 void CommandBlock::run(const Scan& now, const Context& context) {
     send(now, context);
     show(context);
@@ -93,66 +91,69 @@ MotionError CommandBlock::check() const {
 namespace pin {
 
 Field axis() {
-    return in_out("Axis", &B::axis, Axis::type, "that is commanded").one_of(axis_unit_names);
+    return in_out("Axis", &CommandBlock::axis, Axis::type, "that is commanded")
+        .one_of(axis_unit_names);
 }
 
 Field execute() {
-    return input("Execute", &B::execute, "", "rising edge: the command begins");
+    return input("Execute", &CommandBlock::execute, "", "rising edge: the command begins");
 }
 
 Field continuous_update() {
-    return input("ContinuousUpdate", &B::continuous_update, "",
+    return input("ContinuousUpdate", &CommandBlock::continuous_update, "",
                  "pins that change while Execute is true count at once");
 }
 
 Field position(std::string_view doc) {
-    return input("Position", &B::pins, &Request::position, "{Axis}", doc);
+    return input("Position", &CommandBlock::pins, &Request::position, "{Axis}", doc);
 }
 
 Field distance() {
-    return input("Distance", &B::pins, &Request::position, "{Axis}", "way, with its sign");
+    return input("Distance", &CommandBlock::pins, &Request::position, "{Axis}",
+                 "way, with its sign");
 }
 
 Field velocity(std::string_view doc) {
-    return input("Velocity", &B::pins, &Request::velocity, "{Axis}/s", doc);
+    return input("Velocity", &CommandBlock::pins, &Request::velocity, "{Axis}/s", doc);
 }
 
 Field end_velocity() {
-    return input("EndVelocity", &B::pins, &Request::end_velocity, "{Axis}/s",
+    return input("EndVelocity", &CommandBlock::pins, &Request::end_velocity, "{Axis}/s",
                  "at the end, and from there on; above 0 in the direction of the move");
 }
 
 Field acceleration() {
-    return input("Acceleration", &B::pins, &Request::acceleration, "{Axis}/s^2",
+    return input("Acceleration", &CommandBlock::pins, &Request::acceleration, "{Axis}/s^2",
                  "limit where the speed grows; below 0: the axis' own");
 }
 
 Field deceleration() {
-    return input("Deceleration", &B::pins, &Request::deceleration, "{Axis}/s^2",
+    return input("Deceleration", &CommandBlock::pins, &Request::deceleration, "{Axis}/s^2",
                  "limit where the speed falls; below 0: the axis' own");
 }
 
 Field jerk() {
-    return input("Jerk", &B::pins, &Request::jerk, "{Axis}/s^3",
+    return input("Jerk", &CommandBlock::pins, &Request::jerk, "{Axis}/s^3",
                  "limit; 0: a trapezoid; below 0: the axis' own");
 }
 
 Field direction() {
-    return input("Direction", &B::pins, &Request::direction, "", "of a modulo axis")
+    return input("Direction", &CommandBlock::pins, &Request::direction, "", "of a modulo axis")
         .one_of(move_direction_names);
 }
 
 Field buffer_mode() {
-    return input("BufferMode", &B::pins, &Request::mode, "", "what becomes of the command at work")
+    return input("BufferMode", &CommandBlock::pins, &Request::mode, "",
+                 "what becomes of the command at work")
         .one_of(buffer_mode_names);
 }
 
 Field done(std::string_view doc) {
-    return output("Done", &B::done, "", doc);
+    return output("Done", &CommandBlock::done, "", doc);
 }
 
 Field reached(std::string_view name, std::string_view doc) {
-    return output(name, &B::reached, "", doc);
+    return output(name, &CommandBlock::reached, "", doc);
 }
 
 std::vector<Field> table(std::initializer_list<Field> inputs, const Field& first_output) {
@@ -160,11 +161,13 @@ std::vector<Field> table(std::initializer_list<Field> inputs, const Field& first
     fields.insert(fields.end(), inputs);
     fields.insert(
         fields.end(),
-        {first_output, output("Busy", &B::busy, "", "the command has not ended yet"),
-         output("Active", &B::active, "", "it controls the axis"),
-         output("CommandAborted", &B::command_aborted, "", "another command has taken over"),
-         output("Error", &B::error, "", "the command is refused, or the axis has failed"),
-         output("ErrorID", &B::error_id, "", "why").one_of(motion_error_names)});
+        {first_output, output("Busy", &CommandBlock::busy, "", "the command has not ended yet"),
+         output("Active", &CommandBlock::active, "", "it controls the axis"),
+         output("CommandAborted", &CommandBlock::command_aborted, "",
+                "another command has taken over"),
+         output("Error", &CommandBlock::error, "",
+                "the command is refused, or the axis has failed"),
+         output("ErrorID", &CommandBlock::error_id, "", "why").one_of(motion_error_names)});
     return fields;
 }
 

@@ -8,13 +8,12 @@ namespace lineshaft {
 
 namespace {
 
-using B = CommandBlock;
 using C = Coupling;
 
 template <class T>
 Field coupled(std::string_view name, T C::*member, std::string_view unit, std::string_view doc) {
     Field f = detail::field(Direction::input, name, member, unit, doc);
-    f.offset += detail::offset_of(&B::pins) + detail::offset_of(&Request::coupling);
+    f.offset += detail::offset_of(&CommandBlock::pins) + detail::offset_of(&Request::coupling);
     return f;
 }
 
@@ -22,7 +21,7 @@ template <class T>
 Field linked(MasterLink C::*link, std::string_view name, T MasterLink::*member,
              std::string_view unit, std::string_view doc) {
     Field f = detail::field(Direction::input, name, member, unit, doc);
-    f.offset += detail::offset_of(&B::pins) + detail::offset_of(&Request::coupling) +
+    f.offset += detail::offset_of(&CommandBlock::pins) + detail::offset_of(&Request::coupling) +
                 detail::offset_of(link);
     return f;
 }
@@ -81,7 +80,8 @@ std::vector<Field> slave_table(std::initializer_list<Field> inputs, const Field&
 std::vector<Field> phasing_table() {
     return slave_table(
         {master(),
-         input("PhaseShift", &B::pins, &Request::position, "{Master}", "above 0: the slave leads"),
+         input("PhaseShift", &CommandBlock::pins, &Request::position, "{Master}",
+               "above 0: the slave leads"),
          of_master(pin::velocity()), of_master(pin::acceleration()), of_master(pin::deceleration()),
          of_master(pin::jerk()), pin::buffer_mode()},
         pin::done("the shift is reached"),
