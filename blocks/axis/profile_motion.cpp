@@ -22,12 +22,12 @@ MotionState ProfileMotion::end(const Cam& cam) const {
 }
 
 bool ProfileMotion::keeps(const Dynamics& limits, const Cam& cam) const {
-    constexpr double rounding = 1 + 1e-12;
+    constexpr double slightly_more = 1 + 1e-12;
     constexpr double nanosecond = 1e-9;
     const CamExtremes most = cam.extremes();
     const double k = std::abs(scale), T = time_scale;
-    const double a = std::min(limits.acceleration, limits.deceleration) * rounding;
-    const double v = limits.velocity * rounding, j = limits.jerk * rounding;
+    const double a = std::min(limits.acceleration, limits.deceleration) * slightly_more;
+    const double v = limits.velocity * slightly_more, j = limits.jerk * slightly_more;
     if (of_velocity != 0)
         return k * most.y + std::abs(offset) <= v && k * most.slope / T <= a &&
                k * most.bend / (T * T) <= j && k * most.slope_jump / T <= j * nanosecond;
