@@ -64,12 +64,14 @@ struct Expression {
     /// `s[3]` of a text, which is no place of its own.
     bool is_character() const;
 
-    /// Of a list: it has lists of elements again, `[[1, 2], [3, 4]]`, not structures, `[(x := 1)]`.
+    /// Of a list: it has lists of elements again, `[[1, 2], 2([3, 4])]`, not structures,
+    /// `[(x := 1)]`.
     bool is_nested() const {
         for (const Argument& argument : arguments) {
             const Expression& e = *argument.value;
             const bool named = !e.arguments.empty() && e.arguments.front().is_named();
             if (e.kind == Kind::list && !named) return true;
+            if (e.kind == Kind::repeated && e.is_nested()) return true;
         }
         return false;
     }
