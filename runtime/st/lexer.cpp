@@ -152,7 +152,7 @@ class Lexer {
     /// TIA's comment in several languages: `(/* ... */)`. Behind a name that is a call.
     bool is_translated_comment() const {
         const auto& tokens = tokens_.tokens;
-        if (!at("(/*") || tokens.empty() || tokens.back().word == Word::name) return false;
+        if (!at("(/*") || (!tokens.empty() && tokens.back().word == Word::name)) return false;
         const std::size_t end = text_.find("*/", at_);
         return end != std::string_view::npos && text_.substr(end).starts_with("*/)");
     }
