@@ -84,8 +84,9 @@ const Type* Checker::check(Expression& e, const Type* expected) {
             break;
         case E::list:
         case E::repeated:
-            return fail("L0905", e.place, "a list of values stands in a declaration only",
-                        "assign the elements one by one");
+            return fail(
+                "L0905", e.place, "a list of values stands in a declaration only",
+                "declare a variable that begins with it, or assign the elements one by one");
         case E::converted:
             type = e.type;
     }

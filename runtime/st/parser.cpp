@@ -1054,6 +1054,8 @@ class Parser {
                     return make(Expression::Kind::constant, take());
                 case Word::prefix:
                     return read_typed();
+                case Word::open_bracket:
+                    return read_initial();  // which is refused here
                 case Word::open: {
                     take();
                     Expression* inner = read_expression();
