@@ -105,6 +105,18 @@ expect("--source", code, 1)
 code, _, errors = run(root, "pass/counter.st")
 expect("a file without a TEST", code, 1)
 
+with tempfile.TemporaryDirectory() as folder:
+    readme = (root / "../../programs/README.md").read_text(encoding="utf-8")
+    block, test = [text for text in re.findall(r"^```pascal\n(.*?)^```", readme, re.M | re.S) if "Filler" in text]
+    program = re.search(r"^```yaml\n(sources: filler.st\n.*?)^```", readme, re.M | re.S)[1]
+    pathlib.Path(folder, "filler.st").write_text(block, encoding="utf-8")
+    pathlib.Path(folder, "filler_test.st").write_text(test, encoding="utf-8")
+    pathlib.Path(folder, "filler.yaml").write_text(
+        "lineshaft: 1\ntitle: Filler\ntasks: {main: {every: 1 ms}}\ninputs: {go: true}\nrun: {for: 100 ms}\n" + program,
+        encoding="utf-8")
+    code, said, errors = run(pathlib.Path(folder), ".")
+    expect("the examples of programs/README.md", (code, said.splitlines()[-1], errors), (0, "2 of 2 passed", ""))
+
 for path in sorted((root / "bad").glob("*.st")):
     code, said, errors = run(path.parent, path.name)
     expect(f"exit code of {path.name}", (code, errors), (1, ""))
