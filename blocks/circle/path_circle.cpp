@@ -8,6 +8,7 @@ namespace lineshaft {
 namespace {
 
 constexpr std::string_view turn_names[] = {"clockwise", "counter_clockwise"};
+
 }  // namespace
 
 std::span<const Field> PathCircle::fields() {

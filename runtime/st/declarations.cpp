@@ -10,7 +10,7 @@ namespace lineshaft::st {
 namespace {
 
 constexpr Wide most_elements = 1 << 24;
-constexpr Wide longest_text = 65534;
+constexpr Wide longest_text = 32767;  // LEN, FIND and MAX_LEN are INT
 
 std::string quoted(std::string_view name) {
     return fmt::format("'{}'", name);
@@ -714,7 +714,7 @@ const Type* Checker::resolve_text(const TypeText& text) {
     const auto whole = check_whole(length, lint_type);
     if (!whole) return nullptr;
     if (*whole < 1 || *whole > longest_text)
-        return fail("L0908", length->place, "a STRING has between 1 and 65534 characters");
+        return fail("L0908", length->place, "a STRING has between 1 and 32767 characters");
     Type& type = make_type(Kind::text, fmt::format("STRING[{}]", static_cast<int>(*whole)));
     type.length = static_cast<std::uint32_t>(*whole);
     return &type;
