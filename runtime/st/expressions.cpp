@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/st/checker_class.hpp"
 #include "runtime/st/literals.hpp"
