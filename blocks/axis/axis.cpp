@@ -118,8 +118,7 @@ void Axis::advance(const Context& context, std::int64_t now) {
 
 bool Axis::has_ended(std::int64_t now) const {
     if (doing == Doing::moving_to_point) return point_motion.has_ended(now);
-    if (doing == Doing::following_profile)
-        return profile_motion.start.until(now) >= profile_motion.duration;
+    if (doing == Doing::following_profile) return profile_motion.has_ended(now);
     return doing == Doing::following_velocity && velocity_motion.has_ended(now);
 }
 
@@ -141,10 +140,11 @@ std::pair<MotionState, Moment> Axis::end_of_motion(const Context& context) const
             profile_motion.start.after(profile_motion.duration)};
 }
 
-/// What comes next begins at that very moment.
+/// What comes next begins at that very moment; from standstill with the scan that it belongs to.
 void Axis::end_motion(const Context& context) {
-    const auto [end_state, at] = end_of_motion(context);
+    auto [end_state, at] = end_of_motion(context);
     if (leg.exists != 0) return end_leg(at);
+    if (end_state.velocity == 0 && at.until(scan_time) < 0) at = {scan_time};
     const bool pauses = paused != 0;
     hold(end_state, at);
     if (added.exists()) extra = added_motion.at(at.time);
@@ -152,7 +152,7 @@ void Axis::end_motion(const Context& context) {
     if (pauses) return;
     if (state == AxisState::error_stop || state == AxisState::disabled)
         return come_to_rest(context);
-    if (state == AxisState::stopping) return end_stop(context);
+    if (state == AxisState::stopping) return end_stop(context, at);
     if (!active.exists()) return settle();
     if (state == AxisState::homing && active.request.option == homing_on_signal) return;
     if (state == AxisState::continuous_motion && active.request.command != Command::gear_out &&
@@ -169,12 +169,17 @@ void Axis::end_done(const Context& context) {
     end(context, active, Progress::done);
 }
 
-/// MC_Stop is done, and goes on to hold the axis.
-void Axis::end_stop(const Context& context) {
+/// MC_Stop is done, and goes on to hold the axis while its Execute is true.
+void Axis::end_stop(const Context& context, const Moment& at) {
     tell(context, active, Progress::done);
     active.told_end = 1;
-    if (active.request.option == 0) active = {};
-    settle();
+    if (active.request.option == 0) end_hold(context, at);
+}
+
+/// What waits for Done AND NOT Execute of MC_Stop begins.
+void Axis::end_hold(const Context& context, const Moment& at) {
+    active = {};
+    begin_next(context, at);
 }
 
 void Axis::end_leg(const Moment& at) {

@@ -147,7 +147,8 @@ struct Axis {
     Cam profile_table(const Context& context) const;
     void end_motion(const Context& context);
     void end_done(const Context& context);
-    void end_stop(const Context& context);
+    void end_stop(const Context& context, const Moment& at);
+    void end_hold(const Context& context, const Moment& at);
     void end_leg(const Moment& at);
     void end_added(const Context& context);
     void watch_drive(const Context& context, const Scan& now);
@@ -185,9 +186,11 @@ struct Axis {
     Progress begun() const;
     void wait(const Context& context, const Moment& at, Job& job);
     void begin(const Context& context, const Moment& at, Job& job);
+    void stop_again(const Context& context, const Moment& at, Job& job);
     void begin_added(const Context& context, const Moment& at, Job& job);
     void begin_next(const Context& context, const Moment& at);
     void abort_all(const Context& context, MotionError why = MotionError::none);
+    void end_waiting(const Context& context, Progress how, MotionError why = MotionError::none);
     void end(const Context& context, Running& running, Progress how,
              MotionError why = MotionError::none);
     void tell(const Context& context, const Running& running, Progress how,

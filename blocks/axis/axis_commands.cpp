@@ -98,6 +98,27 @@ void Axis::come_to_rest(const Context& context) {
     leave_error();
 }
 
+/// The MC_Stop that holds the axis, begun anew: it goes on to hold it, and stands no later.
+void Axis::stop_again(const Context& context, const Moment& at, Job& job) {
+    if (doing != Doing::holding) {
+        const MotionState from = total();
+        VelocityMotion anew;
+        const PlanResult planned = anew.begin(from, 0, dynamics_of(job.request), at);
+        if (planned != PlanResult::ok) return tell(job, Progress::failed, error_of(planned));
+        const double left = velocity_motion.ramp.duration - velocity_motion.start.until(at.time);
+        if (anew.ramp.duration < left) {
+            velocity_motion = anew;
+            base = from;
+            offset = 0;
+            goal = velocity_motion.end_state().position;
+        }
+    }
+    end_waiting(context, Progress::aborted);
+    active = {context.place_of(job), job.ticket, job.request, 0};
+    tell(job, Progress::active);
+    if (doing == Doing::holding) end_stop(context, at);
+}
+
 void Axis::leave_error() {
     error = false;
     error_id = MotionError::none;

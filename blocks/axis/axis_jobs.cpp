@@ -2,14 +2,6 @@
 
 namespace lineshaft {
 
-namespace {
-
-bool is_moving(AxisState state) {
-    return state >= AxisState::discrete_motion && state <= AxisState::synchronized_motion;
-}
-
-}  // namespace
-
 void Axis::send(const Context& context, const Scan& now, Job& job) {
     if (job.in == JobPlace::queue) unlink(context, job, queue);
     job.task = context.task;
@@ -74,7 +66,10 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
             return change(context, at, *running, job);
     if (is_end(job.progress)) return;
     const Request& request = job.request;
-    const bool waits = request.mode != BufferMode::aborting && active.exists() && is_moving(state);
+    if (state == AxisState::stopping && active.place == place && request.command == Command::stop)
+        return stop_again(context, at, job);
+    const bool waits =
+        request.mode != BufferMode::aborting && active.exists() && can_be_followed(state);
     if ((!waits || is_phasing(request.command)) && !next_state(request.command, state))
         return tell(job, Progress::failed, refusal());
     if (request.command == Command::reset && state == AxisState::error_stop &&
@@ -102,8 +97,7 @@ void Axis::change(const Context& context, const Moment& at, Running& running, co
     running.request = job.request;
     if (job.request.command == Command::stop) {
         if (running.told_end == 0 || job.request.option != 0) return;
-        active = {};
-        return settle();
+        return end_hold(context, at);
     }
     if (&running == &phased) return begin_phasing(context, context.at<Job>(running.place));
     if (&running == &added) {
@@ -188,10 +182,14 @@ void Axis::abort_all(const Context& context, MotionError why) {
     end(context, active, how, why);
     end(context, added, how, why);
     end(context, phased, how, why);
+    end_waiting(context, how, why);
+}
+
+void Axis::end_waiting(const Context& context, Progress how, MotionError why) {
     while (queue.first != nowhere) {
         Job& job = front(context);
         unlink(context, job, queue);
-        tell(job, Progress::aborted);
+        tell(job, how, why);
     }
 }
 
@@ -210,6 +208,7 @@ void Axis::tell(const Context& context, const Running& running, Progress how,
 void Axis::tell(Job& job, Progress how, MotionError why) const {
     if (job.told_by != task || job.told_in != scan_index) job.before = job.progress;
     job.progress = how;
+    if (how == Progress::reached) job.has_reached = 1;
     job.error = why;
     job.told_by = task;
     job.told_in = scan_index;

@@ -44,6 +44,11 @@ Moment Moment::after(double duration) const {
     return {time + static_cast<std::int64_t>(whole), std::max(0.0, sum - whole / 1e9)};
 }
 
+MotionState before_start(MotionState state, double t) {
+    state.position += std::min(t, 0.0) * state.velocity;
+    return state;
+}
+
 bool Dynamics::valid() const {
     const auto good = [](double x) { return x > 0 && std::isfinite(x); };
     return good(velocity) && good(acceleration) && good(deceleration) && good(jerk);
@@ -72,6 +77,11 @@ PlanResult PointMotion::begin(const MotionState& from, double goal, double end_v
     start = at;
     phase = 0;
     return result;
+}
+
+MotionState PointMotion::at(std::int64_t now) {
+    const double t = start.until(now);
+    return before_start(plan.at(t, phase), t);
 }
 
 bool PointMotion::turns(double direction) const {
@@ -107,7 +117,8 @@ void VelocityMotion::hold(const MotionState& state, const Moment& at) {
 }
 
 MotionState VelocityMotion::at(std::int64_t now) const {
-    MotionState state = ramp.at(start.until(now));
+    const double t = start.until(now);
+    MotionState state = before_start(ramp.at(t), t);
     state.position += start_position;
     return state;
 }

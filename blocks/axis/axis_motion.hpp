@@ -15,7 +15,19 @@ struct Moment {
 
     double until(std::int64_t now) const { return seconds(now - time) - later; }  ///< [s]
     Moment after(double duration) const;                                          ///< [s], >= 0
+
+    /// What begins now and takes `duration` [s] has ended at the scan: also if it ends so soon
+    /// after that it belongs to it. Virtual time counts whole nanoseconds, sums of doubles round,
+    /// and a trapezoid takes a nanosecond longer a ramp, two where it turns round (effective_jerk).
+    bool has_passed(double duration, std::int64_t now) const {
+        return until(now) + same_scan >= duration;
+    }
+    static constexpr double same_scan = 2e-9;  ///< [s]
 };
+
+/// Of a motion that begins t < 0 seconds ago, so soon after the scan that the one before has ended
+/// with it (Moment::has_passed): its first state, on the way there. For t >= 0 the state as it is.
+MotionState before_start(MotionState state, double t);
 
 /// How fast an axis may be in a motion: all above 0. `acceleration` where the speed grows,
 /// `deceleration` where it falls, whichever the direction; through standstill the lesser of both.
@@ -45,8 +57,8 @@ struct PointMotion {
     /// Whether it runs against the direction (its sign) at some time.
     bool turns(double direction) const;
 
-    MotionState at(std::int64_t now) { return plan.at(start.until(now), phase); }
-    bool has_ended(std::int64_t now) const { return start.until(now) >= plan.duration; }
+    MotionState at(std::int64_t now);
+    bool has_ended(std::int64_t now) const { return start.has_passed(plan.duration, now); }
     Moment end() const { return start.after(plan.duration); }
 };
 
@@ -62,7 +74,7 @@ struct VelocityMotion {
     void hold(const MotionState& state, const Moment& at);
 
     MotionState at(std::int64_t now) const;
-    bool has_ended(std::int64_t now) const { return start.until(now) >= ramp.duration; }
+    bool has_ended(std::int64_t now) const { return start.has_passed(ramp.duration, now); }
     Moment end() const { return start.after(ramp.duration); }
     /// When the ramp ends.
     MotionState end_state() const;

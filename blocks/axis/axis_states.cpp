@@ -19,7 +19,7 @@ constexpr StateRow rows[] = {
     {C::power_off,                "MC_Power, not Enable",          {Dis, Dis, Dis, Dis, Dis, Dis, Dis, Err}},
     {C::reset,                    "MC_Reset",                      {Dis, Std, Hom, Stp, Dsc, Con, Syn, Std}},
     {C::home,                     "MC_Home",                       {no,  Hom, no,  no,  no,  no,  no,  no }},
-    {C::stop,                     "MC_Stop",                       {no,  Stp, Stp, Stp, Stp, Stp, Stp, no }},
+    {C::stop,                     "MC_Stop",                       {no,  Stp, Stp, no,  Stp, Stp, Stp, no }},
     {C::halt,                     "MC_Halt",                       {no,  Dsc, no,  no,  Dsc, Dsc, Dsc, no }},
     {C::move_absolute,            "MC_MoveAbsolute",               {no,  Dsc, no,  no,  Dsc, Dsc, Dsc, no }},
     {C::move_relative,            "MC_MoveRelative",               {no,  Dsc, no,  no,  Dsc, Dsc, Dsc, no }},
@@ -57,6 +57,31 @@ static_assert(in_order());
 
 std::span<const StateRow> state_table() {
     return rows;
+}
+
+bool can_be_buffered(Command command) {
+    switch (command) {
+        case C::halt:
+        case C::move_absolute:
+        case C::move_relative:
+        case C::move_additive:
+        case C::move_velocity:
+        case C::move_continuous_absolute:
+        case C::move_continuous_relative:
+        case C::position_profile:
+        case C::velocity_profile:
+        case C::gear_in:
+        case C::gear_in_pos:
+        case C::cam_in:
+        case C::combine_axes:
+            return true;
+        default:
+            return false;
+    }
+}
+
+bool can_be_followed(AxisState state) {
+    return state >= AxisState::homing && state <= AxisState::synchronized_motion;
 }
 
 std::optional<AxisState> next_state(Command command, AxisState now) {

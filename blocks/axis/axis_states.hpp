@@ -69,6 +69,14 @@ struct StateRow {
 /// All commands, in the order of the enumeration.
 std::span<const StateRow> state_table();
 
+/// Whether the command has a BufferMode, and waits by it for one before (table 4; of MC_Phasing,
+/// which waits for another MC_Phasing alone, see Axis::take).
+bool can_be_buffered(Command command);
+
+/// Whether a command at work in the state may be waited for: of MC_Stop until it is done AND its
+/// Execute false (table 4).
+bool can_be_followed(AxisState state);
+
 /// Empty: the command is refused.
 std::optional<AxisState> next_state(Command command, AxisState now);
 

@@ -11,9 +11,6 @@ namespace {
 using Law = SyncMotion::Law;
 using Stage = SyncMotion::Stage;
 
-/// Virtual time counts whole nanoseconds: a transition that ends within one has ended.
-constexpr double one_nanosecond = 1e-9;
-
 Law law_of(Command command) {
     if (command == Command::gear_in_pos) return Law::positioned;
     return command == Command::cam_in ? Law::cammed : Law::geared;
@@ -235,13 +232,13 @@ void Axis::follow_guide(const Context& context) {
         const double t = sync.start.until(scan_time);
         base = sync.transition.at(t);
         double left = sync.transition.plan.duration - t;
-        if (left > one_nanosecond && !sync.transition.foresees(guide, t)) {
+        if (left > Moment::same_scan && !sync.transition.foresees(guide, t)) {
             const MotionError why = sync_error(sync.get_onto(base, guide, {scan_time}));
             if (why != MotionError::none) return fail(context, {scan_time}, why);
             left = sync.transition.plan.duration -
                    (is_measured(sync.coupling) ? seconds(scan_interval) : 0);
         }
-        if (left > one_nanosecond) return;
+        if (left > Moment::same_scan) return;
         sync.offset = sync.transition.plan.end.position;
         reach(context);
         if (doing != Doing::following_axes || sync.stage != Stage::in_sync) return;

@@ -137,6 +137,8 @@ struct Job {
     std::int64_t next = nowhere;      ///< place of the job behind it in a list of the axis
     JobPlace in = JobPlace::no_list;
     Progress progress = Progress::sent, before = Progress::sent;
+    std::int64_t has_reached =
+        0;  ///< `progress` has been `reached`, though it may have ended since
     std::int64_t told_by = nowhere, told_in = 0;
     MotionError error = MotionError::none;  ///< of `failed`
     double told_value = 0;                  ///< what the axis answers beside the progress

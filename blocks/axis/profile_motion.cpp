@@ -6,6 +6,7 @@
 namespace lineshaft {
 
 MotionState ProfileMotion::at(double t, const Cam& cam) const {
+    if (t < 0) return before_start(at(0, cam), t);
     const double x = cam.begin() + t / time_scale;
     const CurvePoint p = t < duration ? cam.at(x) : cam.last();
     const double k = scale / time_scale;

@@ -18,6 +18,8 @@ struct ProfileMotion {
     double start_position = 0;     ///< of velocities
     double duration = 0;           ///< [s]
 
+    bool has_ended(std::int64_t now) const { return start.has_passed(duration, now); }
+
     /// t seconds after the start, up to `duration`.
     MotionState at(double t, const Cam& cam) const;
     /// What is kept from there on: rest at the last position, or the last velocity.

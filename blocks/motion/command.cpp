@@ -13,7 +13,8 @@ void CommandBlock::run(const Scan& now, const Context& context) {
 
 void CommandBlock::send(const Scan& now, const Context& context) {
     if (rising_edge(execute, last_execute)) return start(now, context);
-    if (!continuous_update || !execute || !started || refusal != MotionError::none) return;
+    updating = updating && continuous_update;
+    if (!updating || refusal != MotionError::none) return;
     const Progress now_at = progress(context);
     const bool at_work = now_at >= Progress::active && now_at <= Progress::reached;
     if (at_work && job.in == JobPlace::no_list && pins != job.request) update(now, context);
@@ -21,11 +22,13 @@ void CommandBlock::send(const Scan& now, const Context& context) {
 
 void CommandBlock::start(const Scan& now, const Context& context) {
     started = true;
-    told = false;
+    told = reached_shown = false;
+    updating = continuous_update;
     refusal = check();
     if (refusal != MotionError::none) return;
     ++job.ticket;
     job.progress = job.before = Progress::sent;
+    job.has_reached = 0;
     job.told_by = nowhere;
     job.request = pins;
     context.instance<Axis>(axis).send(context, now, job);
@@ -39,14 +42,17 @@ void CommandBlock::update(const Scan& now, const Context& context) {
 }
 
 void CommandBlock::show(const Context& context) {
-    const Progress now_at = progress(context);
+    Progress now_at = progress(context);
+    const bool missed = now_at == Progress::aborted && job.has_reached != 0 && !reached_shown;
+    if (missed) now_at = Progress::reached;
     const bool refused = refusal != MotionError::none;
     const bool ended = started && (refused || is_end(now_at));
     const bool shown = ended && (execute || !told);
     told = ended;
     busy = started && !ended;
     reached = busy && now_at == Progress::reached;
-    active = busy && now_at >= Progress::active;
+    reached_shown = reached_shown || reached;
+    active = busy && now_at >= Progress::active && !missed;
     error = shown && (refused || now_at == Progress::failed);
     done = shown && !error && now_at == Progress::done;
     command_aborted = shown && !error && now_at == Progress::aborted;
@@ -100,8 +106,10 @@ Field execute() {
 }
 
 Field continuous_update() {
-    return input("ContinuousUpdate", &CommandBlock::continuous_update, "",
-                 "pins that change while Execute is true count at once");
+    return input(
+        "ContinuousUpdate", &CommandBlock::continuous_update, "",
+        "pins that change count at once, if it is true at the edge, until it goes false or "
+        "the command ends");
 }
 
 Field position(std::string_view doc) {

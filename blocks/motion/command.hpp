@@ -17,7 +17,8 @@ namespace lineshaft {
 /// the axis, and the outputs by the rules of PLCopen Part 1 v2.0, 2.4.1: Busy, Done, CommandAborted
 /// and Error exclude each other; Busy comes with the edge; what ends it stays while Execute is
 /// true, one scan at least. A block that is started anew while it is at work shows the new job
-/// alone.
+/// alone. What has been reached is shown for one scan at least, also where a buffered command has
+/// taken over since.
 struct CommandBlock {
     std::int64_t axis = nowhere;
     bool execute = false, continuous_update = false;
@@ -29,6 +30,8 @@ struct CommandBlock {
 
     bool last_execute = false;
     bool told = false;                        ///< the end has been shown
+    bool reached_shown = false;               ///< `reached` has
+    bool updating = false;                    ///< ContinuousUpdate, from the edge on
     bool started = false;                     ///< at least once
     MotionError refusal = MotionError::none;  ///< of the pins: the axis has not got them
     Job job;
@@ -36,7 +39,8 @@ struct CommandBlock {
     /// One scan: send(), then show().
     void run(const Scan& now, const Context& context);
 
-    /// Sends the pins at a rising edge of Execute, and with ContinuousUpdate what has changed.
+    /// Sends the pins at a rising edge of Execute, and with ContinuousUpdate what has changed: from
+    /// an edge at which it is true on, until it goes false or the command has ended (2.4.6).
     void send(const Scan& now, const Context& context);
     /// Sets the outputs by what the axis has told.
     void show(const Context& context);

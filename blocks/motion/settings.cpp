@@ -64,8 +64,8 @@ std::span<const Field> Home::fields() {
     static const auto table = pin::table(
         {pin::position("that is known then"),
          input("HomingMode", &Home::mode, "", "how").one_of(home_mode_names),
-         input("Signal", &Home::signal, "", "of a switch, for mcOnSignal"), pin::velocity(),
-         pin::direction(), pin::acceleration(), pin::deceleration(), pin::jerk()},
+         input("Signal", &Home::signal, "", "of a switch, for mcOnSignal: its rising edge"),
+         pin::velocity(), pin::direction(), pin::acceleration(), pin::deceleration(), pin::jerk()},
         pin::done("the position is known"));
     return table;
 }
@@ -74,7 +74,8 @@ void Home::scan(const Scan& now, const Context& context) {
     pins.option = static_cast<std::int64_t>(mode);
     if (execute && !last_execute) signalled = false;
     run(now, context);
-    if (!active || signalled || !signal || mode != Mode::on_signal) return;
+    const bool rises = rising_edge(signal, last_signal);
+    if (!active || signalled || !rises || mode != Mode::on_signal) return;
     signalled = true;
     pins.option = homing_signalled;
     update(now, context);

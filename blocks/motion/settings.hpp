@@ -36,12 +36,12 @@ struct SetOverride : CommandBlock {
 };
 
 /// MC_Home (3.2). `mcDirect`: the position is Position at once. `mcToPosition`: the axis moves to
-/// Position. `mcOnSignal`: it moves in Direction until Signal is true; there Position is, and it
-/// stops.
+/// Position. `mcOnSignal`: it moves in Direction until Signal rises; there Position is, and it
+/// stops. A Signal that is true from the beginning must fall first.
 struct Home : CommandBlock {
     enum class Mode : std::int64_t { direct, to_position, on_signal };
     Mode mode = Mode::direct;
-    bool signal = false, signalled = false;
+    bool signal = false, last_signal = false, signalled = false;
 
     static constexpr std::string_view type = "MC_Home";
     static constexpr std::string_view doc = "makes the position of an axis known";

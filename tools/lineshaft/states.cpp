@@ -8,11 +8,24 @@ namespace lineshaft {
 namespace {
 
 constexpr const char* notes =
-    "'-': the command is refused, with an error of the block alone.\n"
-    "A buffered command waits for the end of the motion; its row counts then.\n"
+    "'-': the command is refused, with an error of the block alone; '- (waits)': refused too with\n"
+    "BufferMode mcAborting, while a buffered one waits.\n"
+    "A buffered command waits for the end of what is at work; its row counts then. Of MC_Stop that "
+    "is\n"
+    "when it is done and its Execute false. A second MC_Stop is refused: it could only lengthen "
+    "the\n"
+    "stop or let go of it; the same one, begun anew, goes on to hold the axis and stands no "
+    "later.\n"
     "MC_Reset leads to disabled where the power is off, and waits until the axis stands.\n"
     "Without a command: a motion that ends at rest leads to standstill; MC_Stop does when it is\n"
     "done and its Execute false; an error of the axis leads from any state to error_stop.\n";
+
+std::string_view answer(const StateRow& row, std::size_t state) {
+    if (row.next[state]) return axis_state_names[static_cast<std::size_t>(*row.next[state])];
+    const bool waits =
+        can_be_buffered(row.command) && can_be_followed(static_cast<AxisState>(state));
+    return waits ? "- (waits)" : "-";
+}
 
 }  // namespace
 
@@ -25,9 +38,8 @@ void add_states(CLI::App& app, Exit&) {
         fmt::print("\n");
         for (const StateRow& row : state_table()) {
             fmt::print("{:26}", row.name);
-            for (const auto& next : row.next)
-                fmt::print(" {:19}",
-                           next ? axis_state_names[static_cast<std::size_t>(*next)] : "-");
+            for (std::size_t state = 0; state < axis_state_count; ++state)
+                fmt::print(" {:19}", answer(row, state));
             fmt::print("\n");
         }
         fmt::print("\n{}", notes);

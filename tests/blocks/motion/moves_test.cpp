@@ -35,8 +35,8 @@ TEST_CASE("MC_MoveAbsolute in sequence: the second begins at the Done of the fir
     2     .           .           | 1        1          0        0                  0        0        discrete_motion 0
     102   .           .           | 1        1          0        0                  0        0        discrete_motion 5
     502   .           .           | 1        1          0        0                  0        0        discrete_motion 45
-    602   .           .           | 1        1          0        0                  0        0        discrete_motion 50
-    603   .           .           | 0        0          1        0                  0        0        standstill      50
+    601   .           .           | 1        1          0        0                  0        0        discrete_motion 49.9995
+    602   .           .           | 0        0          1        0                  0        0        standstill      50
     604   .           1           | 0        0          1        0                  1        0        standstill      50
     605   0           .           | 0        0          0        0                  1        0        discrete_motion 50
     1260  .           0           | 0        0          0        0                  0        0        standstill      80 )");
@@ -54,8 +54,8 @@ TEST_CASE("MC_MoveAbsolute in sequence: the second aborts the first") {
     254   .           .           | 0        0        0                  1        1          0        50         18.95
     1450  .           .           | 0        0        0                  1        1          0        50         78.75
     1475  .           .           | 0        0        0                  1        1          0        25         79.6875
-    1500  .           .           | 0        0        0                  1        1          0        0          80
-    1501  .           .           | 0        0        0                  0        0          1        0          80
+    1499  .           .           | 0        0        0                  1        1          0        1          79.9995
+    1500  .           .           | 0        0        0                  0        0          1        0          80
     1502  .           0           | 0        0        0                  0        0          0        0          80 )");
 }
 
@@ -70,8 +70,8 @@ TEST_CASE("MC_Stop holds the axis as long as Execute is true, and is done when i
     31    .                .            .           | 0                   1                       1         0         0         none          stopping          20
     40    .                .            1           | 0                   1                       1         0         0         none          stopping          11
     41    .                .            .           | 0                   1                       1         0         1         axis_stopping stopping          10
-    51    .                .            .           | 0                   1                       1         0         1         axis_stopping stopping          0
-    52    .                .            0           | 0                   1                       0         1         0         none          stopping          0
+    50    .                .            .           | 0                   1                       1         0         1         axis_stopping stopping          1
+    51    .                .            0           | 0                   1                       0         1         0         none          stopping          0
     60    0                .            .           | 0                   0                       0         1         0         none          stopping          0
     61    .                0            .           | 0                   0                       0         0         0         none          stopping          0
     62    .                .            .           | 0                   0                       0         0         0         none          standstill        0 )");
@@ -87,8 +87,8 @@ TEST_CASE("MC_MoveSuperimposed adds its distance to the motion beneath") {
     103   .                .             | 1                   1          1            0          continuous_motion 20         1.82
     153   .                .             | 1                   1          1            0          continuous_motion 70         4.07
     303   .                .             | 1                   1          1            0          continuous_motion 70         14.57
-    353   .                .             | 1                   1          1            0          continuous_motion 20         16.82
-    354   .                .             | 1                   0          0            1          continuous_motion 20         16.84
+    352   .                .             | 1                   1          1            0          continuous_motion 21         16.7995
+    353   .                .             | 1                   0          0            1          continuous_motion 20         16.82
     355   .                0             | 1                   0          0            0          continuous_motion 20         16.86 )");
 }
 

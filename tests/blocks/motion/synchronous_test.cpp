@@ -212,7 +212,8 @@ TEST_CASE("MC_PhasingAbsolute and MC_PhasingRelative shift the master that the s
     400   1             0            | 1          0          0         0         0                        100        synchronized_motion
     451   .             .            | 1          0          0         0         1.25                        150           synchronized_motion
     501   .             .            | 1          0          0         0         5                           . synchronized_motion
-    601   .             .            | 1          0          0         0         10                       100           synchronized_motion
+    600   .             .            | 1          0          0         0         9.9995                   101           synchronized_motion
+    601   .             .            | 0          1          0         0         10                       100           synchronized_motion
     603   0             1            | 0          0          1         0         10                       100        synchronized_motion
     806   .             0            | 0          0          0         0         20                       100        synchronized_motion )");
     CHECK(relative(bench) - before == Approx(20).margin(1e-9));
