@@ -4,8 +4,12 @@
 usage: suite.py LINESHAFT
 """
 
+import json
+import os
 import pathlib
+import pty
 import re
+import select
 import subprocess
 import sys
 import tempfile
@@ -60,4 +64,83 @@ failed = xml.parse(folder / "out.xml").getroot().find("testcase[@name='b.yaml']"
 assert len(failed) == 2 and all("lineshaft run b.yaml --trace traces/b.csv" in f.text for f in failed), failed
 (folder / "file").write_text("")
 assert "cannot make" in test(".", "--trace-failed", "file/below", code=2)[1]
+
+
+def write(name, text):
+    path = folder / name
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(text)
+    return str(path)
+
+
+def run(*arguments, code):
+    answer = subprocess.run([lineshaft, *arguments], cwd=folder, capture_output=True, text=True, timeout=60)
+    assert answer.returncode == code, (arguments, answer)
+    return answer.stdout
+
+
+# What a run is too short for is undecided, and that is not ok.
+EXPECTATIONS = """
+  - {at: end, n.cv: 1}
+  - {at: 2 ms, n.cv: 1}
+  - {at: 50 ms, n.cv: 1}
+  - {between: [1 ms, 3 ms], n.cv: 1}
+  - {between: [1 ms, 50 ms], n.cv: 1}
+  - {always: n.cv, at_most: 1}
+  - {never: n.q}
+  - {rising: inputs.on, at_least: 1}
+  - {rising: inputs.on, count: 1}
+  - {within 1 s of inputs.on: n.q}
+  - {within 1 s of inputs.on: inputs.on}
+"""
+undecided = write("short/program.yaml", "lineshaft: 1\ntasks: {t: {every: 1 ms}}\nsources: fault.st\nparameters: {fault: 100}\n"
+                  "blocks:\n  n: {type: ctu, task: t, cu: inputs.on, pv: 3}\n  f: {type: Fault, task: t, at: $fault}\n"
+                  "inputs: {on: false}\nstimulus: [{at: 1 ms, set: {inputs.on: true}}]\nrun: {for: 6 ms}\nexpect:" + EXPECTATIONS)
+write("short/fault.st", "FUNCTION_BLOCK Fault\nVAR_INPUT CONSTANT at : INT; END_VAR VAR scans, x : INT; END_VAR\n"
+      "scans := scans + 1; x := 10 / (at - scans);\nEND_FUNCTION_BLOCK\n")
+
+
+def words(text):
+    return [line.split()[0] for line in text.splitlines() if re.match("ok|FAILED|UNDECIDED", line)]
+
+
+said = run("run", undecided, code=1)
+assert words(said) == ["ok"] * 2 + ["UNDECIDED", "ok", "UNDECIDED"] + ["ok"] * 4 + ["UNDECIDED", "ok"], said
+assert "inputs.on rises at 0.001 s, and whether n.q follows until 1.001 s is undecided: the run ended at 0.006 s; let it run longer" in said
+judged = json.loads(run("run", undecided, "--json", code=1))["expect"]
+assert [e.get("undecided", False) for e in judged] == [word == "UNDECIDED" for word in words(said)], judged
+failed, _ = test("short", code=1)
+assert len([line for line in failed if "is undecided" in line]) == 3 and failed[-1] == "0 of 1 passed", failed
+# The fifth scan fails, at 4 ms: only what was judged to its end is ok.
+said = run("run", undecided, "--set", "fault=5", code=3)
+assert [i for i, word in enumerate(words(said)) if word == "ok"] == [1, 3, 7] and "FAILED" not in words(said), said
+write("broken/fault.st", pathlib.Path(folder / "short/fault.st").read_text())
+write("broken/program.yaml", pathlib.Path(undecided).read_text().replace("fault: 100", "fault: 5"))
+failed, _ = test("broken", code=1)
+assert len(failed) == 3 and "division_by_zero" in failed[1], failed  # the fault, not what it left undecided
+
+# What takes minutes is marked, and runs when it is asked for.
+quick = "lineshaft: 1\ntasks: {t: {every: 1 ms}}\nblocks: {n: {type: ctu, task: t, cu: inputs.on, pv: 3}}\ninputs: {on: false}\nexpect: [{at: end, n.cv: 0}]\n"
+write("marked/a.yaml", quick + "run: {for: 1 ms}\n")
+write("marked/b.yaml", quick + "run: {for: 1 ms}\nslow: true\n")
+write("marked/c.yaml", "lineshaft_study: 1\nprogram: a.yaml\nslow: true\ncases: [{compare: [n.cv]}]\n")
+write("marked/d.yaml", quick + "run: {for: 1 ms}\nslow: false\n")
+said, _ = test("--junit", "marked.xml", "marked")
+assert said[-2:] == ["2 of 2 passed", "skipped as slow, --slow runs them: marked/b.yaml, marked/c.yaml"], said
+assert "skipped marked/b.yaml: slow, --slow runs it" in said, said
+assert len(xml.parse(folder / "marked.xml").getroot().findall("testcase/skipped")) == 2
+assert test("--slow", "marked")[0][-1] == "4 of 4 passed"
+assert test("marked/b.yaml")[0][-1] == "1 of 1 passed", "what is named runs"
+
+# A terminal shows what is at work.
+write("long/a.yaml", quick + "run: {for: 1 ms}\n")
+write("long/b.yaml", quick + "run: {for: 100000 h}\n")
+terminal, other = pty.openpty()
+running = subprocess.Popen([lineshaft, "test", "long"], cwd=folder, stdout=subprocess.PIPE, stderr=other)
+shown = ""
+while not re.search(r"1 of 2 files, at work: long/b\.yaml \([1-9]\d* s\)", shown):
+    assert select.select([terminal], [], [], 20)[0], shown
+    shown += os.read(terminal, 1000).decode()
+running.kill()
+running.wait()
 print("ok")

@@ -14,6 +14,7 @@
 #include "runtime/csv/csv_cells.hpp"
 #include "runtime/source/input_file.hpp"
 #include "runtime/source/utf8.hpp"
+#include "runtime/source/yaml.hpp"
 
 namespace lineshaft {
 
@@ -105,6 +106,7 @@ class CsvReader {
     std::optional<CsvTable> read();
 
   private:
+    bool is_yaml();
     bool header();
     void add_column(std::string_view cell);
     void select();
@@ -134,12 +136,38 @@ class CsvReader {
 
 std::optional<CsvTable> CsvReader::read() {
     const std::size_t before = out_.list().size();
+    if (is_yaml()) return {};
     table_.metadata = read_metadata(path_, out_);
     if (lines_.next(line_) && header()) rows();
     check_file();
     table_.crc32 = lines_.checksum();
     if (out_.list().size() != before) return {};
     return std::move(table_);
+}
+
+/// Whether it is a program, say, for which its trace is often taken; that is told.
+bool CsvReader::is_yaml() {
+    struct Kind {
+        std::string_view key, name, command;
+    };
+    static constexpr Kind kinds[] = {
+        {"lineshaft:", "a program", "lineshaft run {} --trace out.csv"},
+        {"lineshaft_study:", "a study", "lineshaft study {} --traces DIR"},
+        {"lineshaft_fit:", "a fit", ""},
+        {"lineshaft_controller:", "a controller", ""},
+        {"lineshaft_recording:", "a recording", ""}};
+    if (!path_.ends_with(".yaml") && !path_.ends_with(".yml")) return false;
+    Diagnostics unread;
+    const auto file = read_source(path_, unread);
+    if (!file) return false;
+    const auto kind =
+        std::ranges::find_if(kinds, [&](const Kind& k) { return file->has_key(k.key); });
+    if (kind == std::end(kinds)) return false;
+    std::string command(kind->command);
+    if (!command.empty()) command.replace(command.find("{}"), 2, path_);
+    out_.add("L0701", {file, 0, 0, 1}, fmt::format("this is {}, not a trace", kind->name),
+             command.empty() ? "" : "a trace is written by: " + command);
+    return true;
 }
 
 void CsvReader::check_file() {

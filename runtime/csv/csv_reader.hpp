@@ -52,7 +52,7 @@ struct CsvOptions {
 /// may be a comma. A pipe will do. Empty when anything is wrong; then `out` says what, at most 20
 /// mistakes:
 ///   L0001  the file cannot be read
-///   L0701  empty file, or a first line that names no columns
+///   L0701  empty file, a first line that names no columns, or a program (YAML)
 ///   L0702  a column that was asked for is not there
 ///   L0703  two columns of one name
 ///   L0704  a row with more or fewer cells than the header

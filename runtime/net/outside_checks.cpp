@@ -47,6 +47,33 @@ void check_block(Connecting& to, int number, const Places& set) {
         to.read.fail("L0305", place, fmt::format("'{}' is not used", misfit->field), misfit->why);
 }
 
+/// A command, which refers to an axis, begins at a rising edge: where nothing makes one, it never
+/// does. Other blocks with such an input may have other ways to begin.
+void warn_of_idle_command(const Connecting& to, int number, const Places& set) {
+    constexpr std::string_view execute = "Execute";
+    const Instance& block = to.net.instance(number);
+    const Field* pin = block.known() ? block.type->find_settable(execute) : nullptr;
+    if (!pin || pin->direction != Direction::input || pin->type != Type::boolean) return;
+    const auto& fields = block.type->fields;
+    if (std::ranges::count(fields, Direction::in_out, &Field::direction) == 0) return;
+    const BlockPlan& plan = to.program.blocks[static_cast<std::size_t>(number)];
+    const std::byte* place = to.machine.blocks[static_cast<std::size_t>(number)].live + pin->offset;
+    const bool is_said = std::ranges::any_of(
+        plan.ports, [&](const auto& port) { return same_letters(port.first.text, execute); });
+    const std::string signal = fmt::format("{}.{}", block.name, pin->name);
+    const bool is_mapped = std::ranges::any_of(to.program.registers, [&](const RegisterPlan& r) {
+        return same_letters(r.signal.text, signal);
+    });
+    if (is_said || is_mapped || set.contains(place) || as_real(load(Type::boolean, place)) != 0)
+        return;
+    to.read.diagnostics().warn(
+        "L0807", plan.name.mark,
+        fmt::format("nothing in the program sets '{}' of {}, so it never begins", pin->name,
+                    block.described()),
+        fmt::format("write {0}: inputs.start, for instance, or {0}: true to begin at once",
+                    pin->name));
+}
+
 /// The soonest, where it is that of a scan.
 std::int64_t begin_of(const Net& net, const StimulusPlan& plan) {
     if (!plan.task) return plan.at;
@@ -61,7 +88,10 @@ std::int64_t begin_of(const Net& net, const StimulusPlan& plan) {
 
 void check_constants(Connecting& to) {
     const Places set = set_from_outside(to.machine);
-    for (int i = 0; i < static_cast<int>(to.net.instances.size()); ++i) check_block(to, i, set);
+    for (int i = 0; i < static_cast<int>(to.net.instances.size()); ++i) {
+        check_block(to, i, set);
+        warn_of_idle_command(to, i, set);
+    }
 }
 
 /// The run may end sooner still, by `until`.
@@ -80,7 +110,10 @@ void warn_of_what_comes_late(const Connecting& to) {
     for (const ForcePlan& plan : to.program.forces)
         if (plan.from > end) warn("L0801", plan.mark, "the force begins");
     for (const ExpectPlan& plan : to.program.expectations)
-        if (plan.from > end) warn("L0802", plan.mark, "the expectation would be looked at");
+        if (plan.from > end)
+            warn("L0802", plan.mark, "the expectation would be looked at");
+        else if (plan.when == ExpectPlan::When::always && plan.until != never && plan.until > end)
+            warn("L0802", plan.mark, "the expectation would be decided");
 }
 
 }  // namespace lineshaft

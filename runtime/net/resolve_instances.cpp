@@ -142,14 +142,17 @@ void refuse_port(Resolving& to, const Instance& block, const Node& key) {
             fmt::format("'lineshaft blocks {}' lists its inputs", block.type->name));
     if (!st::find_text(*block.type, key.text).empty())
         return (void)to.net.find(to.read, key, fmt::format("{}.{}", block.name, key.text));
+    const std::string message =
+        fmt::format("{} has no parameter or input '{}'", block.described(), key.text);
+    if (key.text == "on_error")
+        return to.read.fail("L0203", key, message,
+                            "it is said of the whole run: run: {for: 2 s, on_error: continue}");
     std::vector<std::string> settable{"type", "task"};
     for (const Field& f : block.type->fields)
         if (block.type->find_settable(f.name) == &f && f.global.empty())
             settable.emplace_back(f.name);
     for (const TableField& t : block.type->tables) settable.emplace_back(t.name);
-    to.read.fail("L0203", key,
-                 fmt::format("{} has no parameter or input '{}'", block.described(), key.text),
-                 suggest(to.net.misspelt(key.text), settable));
+    to.read.fail("L0203", key, message, suggest(to.net.misspelt(key.text), settable));
 }
 
 void check_required(const Resolving& to, const BlockPlan& plan, const Instance& block) {

@@ -96,7 +96,7 @@ class Canonical {
 };
 
 /// Keys of a program that make no other run, or are told beside its meaning.
-const Canonical::Keys without_meaning{"title",      "notes", "parameters",
+const Canonical::Keys without_meaning{"title",      "notes", "slow",  "parameters",
                                       "controller", "force", "report"};
 
 std::string hash_of_form(const Program& program) {

@@ -735,6 +735,12 @@ const Form& run_form() {
 
 }  // namespace
 
+Key slow_key() {
+    return key("slow", a_boolean,
+               "takes minutes: 'lineshaft test' runs it with --slow, or when it is named")
+        .by_default("false");
+}
+
 const Form& block_form() {
     static const Form form = form_of<BlockPlan>(
         {.name = "block",
@@ -851,6 +857,7 @@ const Form& program_form() {
               key<&Program::title>("title", a_value.as("the title"),
                                    "shown in messages and reports"),
               key("notes", one_or_list(a_value.as("a note")), "said in reports of its traces"),
+              slow_key(),
               key("parameters", named("a parameter", a_value),
                   "names and values; $NAME stands for the value, --set and studies change it"),
               key("controller", a_value, "a file with tasks, relative to this one"),

@@ -14,4 +14,7 @@ const Form& controller_form();
 const Form& block_form();
 const Form& use_form();  ///< of a UsePlan
 
+/// `slow: true`, of whatever `lineshaft test` runs.
+Key slow_key();
+
 }  // namespace lineshaft

@@ -23,6 +23,11 @@ bool is_whole_run(const Expectation& e) {
     return e.when != When::at_end && e.when != When::at && e.from == 0 && e.until == never;
 }
 
+/// In the middle of an instant, so that some of what was due then has not run.
+bool broke_off(const RunResult& result) {
+    return result.outcome == Outcome::block_error || result.outcome == Outcome::overrun;
+}
+
 bool is_true(const Signal& signal) {
     return as_real(signal.value()) != 0;
 }
@@ -151,26 +156,58 @@ void Judge::judge(std::size_t index, std::int64_t time, std::optional<std::int64
     fail(index, deviation + fmt::format("; expected {}", e.wanted));
 }
 
+/// Why it cannot be said of a run so short whether the expectation holds; empty when it can.
+std::string Judge::undecided(std::size_t index, const RunResult& result) const {
+    const Expectation& e = expectations_[index];
+    const Watch& watch = watches_[index];
+    const bool stopped = result.outcome != Outcome::completed;
+    const std::int64_t judged_until = result.time - (broke_off(result) ? 1 : 0);
+    const std::string ended =
+        fmt::format("is undecided: the run {} at {}{}", stopped ? "stopped" : "ended",
+                    format_time(result.time), stopped ? "" : "; let it run longer");
+    if (e.when == When::at)
+        return e.from <= judged_until
+                   ? ""
+                   : fmt::format("{} at {} {}", e.signal.name, format_time(e.from), ended);
+    if (e.when == When::always && !is_whole_run(e))
+        return e.until <= judged_until
+                   ? ""
+                   : fmt::format("{} until {} {}", e.signal.name, format_time(e.until), ended);
+    if (e.when == When::answered && watch.awaits != never)
+        return fmt::format("{} rises at {}, and whether {} follows until {} {}", e.cause->name,
+                           format_time(watch.awaits), e.signal.name,
+                           format_time(later(watch.awaits, e.until)), ended);
+    const bool has_all_edges = e.when == When::counted && compare(watch.edges, e.low) >= 0 &&
+                               as_real(e.high) == std::numeric_limits<double>::infinity();
+    return stopped && !has_all_edges ? e.signal.name + " " + ended : "";
+}
+
 void Judge::finish(const RunResult& result) {
-    for (; next_timed_ < timed_.size(); ++next_timed_) {
-        const std::size_t i = timed_[next_timed_];
-        fail(i, fmt::format("{}: the run ended at {}, before it", expectations_[i].text,
-                            format_time(result.time)));
-    }
     for (std::size_t i = 0; i < expectations_.size(); ++i) {
-        const Expectation& e = expectations_[i];
-        const std::int64_t edges = watches_[i].edges;
-        if (e.when == When::at_end)
-            judge(i, result.time,
-                  e.signal.task < 0 ? std::optional<std::int64_t>{}
-                                    : result.scans[static_cast<std::size_t>(e.signal.task)] - 1);
-        if (e.when == When::counted && compare(edges, e.low) < 0)
-            fail(i, fmt::format("{} rises {} times until the end at {}; expected {}", e.signal.name,
-                                edges, format_time(result.time), e.wanted));
-        if (e.when == When::answered && edges == 0)
-            fail(i, fmt::format("{} never rises, so that {} is never awaited", e.cause->name,
-                                e.signal.name));
+        Verdict& verdict = verdicts_[i];
+        if (!verdict.deviation.empty()) continue;
+        std::string why = undecided(i, result);
+        if (why.empty())
+            conclude(i, result);
+        else
+            verdict = {.ok = false, .undecided = true, .deviation = std::move(why)};
     }
+}
+
+/// What only the whole run decides.
+void Judge::conclude(std::size_t index, const RunResult& result) {
+    const Expectation& e = expectations_[index];
+    const std::int64_t edges = watches_[index].edges;
+    if (e.when == When::at_end)
+        judge(index, result.time,
+              e.signal.task < 0 ? std::optional<std::int64_t>{}
+                                : result.scans[static_cast<std::size_t>(e.signal.task)] - 1);
+    if (e.when == When::counted && compare(edges, e.low) < 0)
+        fail(index, fmt::format("{} rises {} times until the end at {}; expected {}", e.signal.name,
+                                edges, format_time(result.time), e.wanted));
+    if (e.when == When::answered && edges == 0)
+        fail(index, fmt::format("{} never rises, so that {} is never awaited", e.cause->name,
+                                e.signal.name));
 }
 
 bool Judge::ok() const {
@@ -189,6 +226,7 @@ nlohmann::ordered_json verdicts_json(const Judge& judge) {
         const bool is_drawn = is_always || e.when == When::at || e.when == When::at_end;
         if (is_drawn && std::isfinite(as_real(e.low))) object["low"] = number_json(e.low);
         if (is_drawn && std::isfinite(as_real(e.high))) object["high"] = number_json(e.high);
+        if (verdict.undecided) object["undecided"] = true;
         if (!verdict.ok) object["deviation"] = verdict.deviation;
         list.push_back(std::move(object));
     }

@@ -18,8 +18,14 @@ namespace lineshaft {
 ///
 /// Counted are rising edges in the scans of the signal's task; a value that is true from the start
 /// is no edge. An answer is awaited from each rising edge of the cause on: the signal has to be
-/// true then, or in a scan up to `until` later. A run may end before that is over; that there was
-/// no cause at all is a failure.
+/// true then, or in a scan up to `until` later. That there was no cause at all is a failure.
+///
+/// What the run is too short for is undecided, and that is not ok: an instant, the end of a span,
+/// an answer that still has time. What a run that stopped before its end (a fault, a limit, ^C) has
+/// not judged to its end is undecided, too. So whatever is ok of a run that stopped stays so,
+/// however much longer it might run. Of a run that ended as planned that holds of instants, spans
+/// and of edges that are at least so many; the end, `always`, `never`, the most edges and answers
+/// are of the run as long as it was.
 struct Expectation {
     using When = ExpectPlan::When;
 
@@ -43,7 +49,8 @@ struct Watch {
 
 struct Verdict {
     bool ok = false;
-    std::string deviation;  ///< of the first failure: scan, time, both values; empty when ok
+    bool undecided = false;  ///< not ok because the run ended too early to say
+    std::string deviation;   ///< of the first failure: scan, time, both values; empty when ok
 };
 
 /// Watches a run and judges its expectations.
@@ -59,7 +66,7 @@ class Judge : public Observer {
     void save(StateWriter& out) const override;
     void restore(StateReader& in) override;
 
-    /// Judges what is due at the end; what was due later has failed.
+    /// Judges what is due at the end; what would be decided later is undecided.
     void finish(const RunResult& result);
 
     const std::vector<Expectation>& expectations() const { return expectations_; }
@@ -72,6 +79,8 @@ class Judge : public Observer {
     void count(std::size_t index, std::int64_t time);
     void await(std::size_t index, std::int64_t time, std::int64_t next);
     void fail(std::size_t index, std::string deviation);
+    std::string undecided(std::size_t index, const RunResult& result) const;
+    void conclude(std::size_t index, const RunResult& result);
 
     std::vector<Expectation> expectations_;
     std::vector<Verdict> verdicts_;
@@ -84,7 +93,7 @@ class Judge : public Observer {
 
 /// For a trace's sidecar: `[{"text", "signal", "always", "ok"}...]`, with "at" [s] where an instant
 /// is meant (the end has none), "low" and "high" where there are bounds that hold always or at it,
-/// "deviation" where it failed.
+/// "deviation" where it failed, "undecided" where the run was too short to say.
 nlohmann::ordered_json verdicts_json(const Judge& judge);
 
 }  // namespace lineshaft

@@ -629,9 +629,13 @@ void report(const YAML::Exception& fault, const Source& source, const Builder& b
         return;
     }
     const bool unclosed = in_brackets && known->message.starts_with("expected");
+    const Mark here = source.mark(offset);
     std::string help(known->help);
     if (const std::string_view name = indexed_name(source.text(), offset); !name.empty())
         help = fmt::format("a name with an index stands in quotes here: '{}'", name);
+    else if (unclosed && opened.line != here.line)
+        return out.add("L0101", opened, fmt::format("this '{}' is not closed", bracket),
+                       fmt::format("{} before line {}", known->message, here.line));
     else if (unclosed)
         help = fmt::format("the '{}' of line {} is still open", bracket, opened.line);
     out.add(known->code, source.mark(offset), std::string(known->message), std::move(help));

@@ -48,23 +48,27 @@ std::string junit_xml(const std::vector<SuiteEntry>& entries) {
     const auto failures = std::ranges::count_if(
         entries, [](const SuiteEntry& e) { return !e.failures.empty() && !e.error; });
     const auto errors = std::ranges::count_if(entries, &SuiteEntry::error);
+    const auto skipped =
+        std::ranges::count_if(entries, [](const SuiteEntry& e) { return !e.skipped.empty(); });
     double seconds = 0;
     for (const SuiteEntry& e : entries) seconds += e.wall_seconds;
     std::string xml = fmt::format(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-        "<testsuite name=\"lineshaft\" tests=\"{}\" failures=\"{}\" errors=\"{}\" "
+        "<testsuite name=\"lineshaft\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" "
         "time=\"{:.3f}\">\n",
-        entries.size(), failures, errors, seconds);
+        entries.size(), failures, errors, skipped, seconds);
     for (const SuiteEntry& e : entries) {
         const std::string file = escape(e.file.empty() ? e.name : e.file);
         xml += fmt::format("  <testcase classname=\"{0}\" file=\"{0}\"", file);
         if (e.line > 0) xml += fmt::format(" line=\"{}\"", e.line);
         xml += fmt::format(" name=\"{}\" time=\"{:.3f}\"", escape(e.name), e.wall_seconds);
-        if (e.failures.empty()) {
+        if (e.failures.empty() && e.skipped.empty()) {
             xml += "/>\n";
             continue;
         }
         xml += ">\n";
+        if (!e.skipped.empty())
+            xml += fmt::format("    <skipped message=\"{}\"/>\n", escape(e.skipped));
         for (const std::string& failure : e.failures) xml += failure_element(e, failure);
         xml += "  </testcase>\n";
     }

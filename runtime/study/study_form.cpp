@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/program/program_form.hpp"
+
 // clang-format off: tables are laid out by hand
 
 namespace lineshaft {
@@ -259,6 +261,7 @@ const Form& study_head() {
                       .must(),
                   key<&StudyPlan::notes>("notes", one_or_list(a_value.as("a note")),
                                          "said below the table"),
+                  slow_key(),
                   key<&StudyPlan::settings>("set", settings_shape(),
                                             "parameters of the program and values, in all cases"),
                   key<&StudyPlan::repeat>(

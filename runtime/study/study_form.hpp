@@ -68,7 +68,7 @@ struct StudyPlan {
 const Form& study_form();
 
 // Parts that a fit has as well.
-const Form& study_head();  ///< of a StudyPlan: title, program, notes, set, repeat
+const Form& study_head();  ///< of a StudyPlan: title, program, notes, slow, set, repeat
 const Form& case_head();   ///< of a CasePlan: name, set, repeat
 const Form& bounds_form();
 Key spread_key(FormOf spread);

@@ -107,7 +107,8 @@ bool CaseRunner::judge(const RunReport& report, CaseResult& result) {
         result.faults.push_back(report.output_error.empty() ? report.result.message
                                                             : report.output_error);
     for (const Verdict& verdict : report.verdicts)
-        if (!verdict.ok) result.deviations.push_back(verdict.deviation);
+        if (!verdict.ok && !(report.faulted() && verdict.undecided))  // the fault says why
+            result.deviations.push_back(verdict.deviation);
     return !report.faulted();
 }
 

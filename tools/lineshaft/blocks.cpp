@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/source/letters.hpp"
 #include "tools/lineshaft/block_text.hpp"
 #include "tools/lineshaft/command.hpp"
 
@@ -12,27 +14,55 @@ namespace lineshaft {
 namespace {
 
 struct BlocksCommand {
-    std::vector<std::string> names;  ///< a type, and files of Structured Text
+    std::vector<std::string> names;  ///< a type or words, and files of Structured Text
     bool json = false;
 };
 
-Exit list(const Catalog& catalog, bool json) {
+using Types = std::vector<const BlockType*>;
+
+void list(const Types& types, bool json) {
     auto all = nlohmann::ordered_json::array();
-    for (const BlockType& type : catalog.types()) {
+    for (const BlockType* type : types) {
         if (json)
-            all.push_back(block_json(type));
+            all.push_back(block_json(*type));
         else
-            fmt::print("{:18} {}\n", type.name, type.doc);
+            fmt::print("{:18} {}\n", type->name, type->doc);
     }
     if (json) fmt::print("{}\n", all.dump(2));
-    return Exit::fine;
 }
 
-Exit describe(const Catalog& catalog, const std::string& name, bool json) {
-    const BlockType* type = catalog.find(name);
+bool has(std::string_view text, const std::string& word) {
+    return lower(text).find(lower(word)) != std::string::npos;
+}
+
+/// Those whose name and description have all of the words; of none those whose pins have them, too.
+Types found(const Catalog& catalog, const std::vector<std::string>& words) {
+    const auto with = [&](bool pins) {
+        Types types;
+        for (const BlockType& type : catalog.types()) {
+            std::string text = fmt::format("{} {}", type.name, type.doc);
+            for (const Field& f : type.fields)
+                if (pins) text += fmt::format(" {} {}", f.name, f.doc);
+            if (std::ranges::all_of(words, [&](const auto& word) { return has(text, word); }))
+                types.push_back(&type);
+        }
+        return types;
+    };
+    Types types = with(false);
+    return types.empty() ? with(true) : types;
+}
+
+/// The type of that name, or all that have to do with the words.
+Exit describe(const Catalog& catalog, const std::vector<std::string>& words, bool json) {
+    const BlockType* type = words.size() == 1 ? catalog.find(words.front()) : nullptr;
     if (!type) {
-        spdlog::error("there is no block type '{}'; {}", name, suggest(name, catalog.names()));
-        return Exit::wrong;
+        const Types types = found(catalog, words);
+        if (types.empty())
+            spdlog::error("there is no block type '{0}', and none has to do with that; {1}",
+                          fmt::join(words, " "), suggest(words.front(), catalog.names()));
+        else
+            list(types, json);
+        return types.empty() ? Exit::wrong : Exit::fine;
     }
     if (json)
         fmt::print("{}\n", block_json(*type).dump(2));
@@ -60,14 +90,13 @@ Exit execute(const BlocksCommand& command) {
                              std::filesystem::is_directory(name, error);
         (is_file ? files : types).push_back(name);
     }
-    if (types.size() > 1) {
-        spdlog::error("'{}' and '{}' are two types; name one", types[0], types[1]);
-        return Exit::wrong;
-    }
     const auto catalog = files.empty() ? standard_blocks() : compiled(files, command.json);
     if (!catalog) return Exit::wrong;
-    if (!types.empty()) return describe(*catalog, types[0], command.json);
-    if (files.empty() || command.json) return list(*catalog, command.json);
+    if (!types.empty()) return describe(*catalog, types, command.json);
+    if (files.empty() || command.json) {
+        list(found(*catalog, {}), command.json);
+        return Exit::fine;
+    }
     if (catalog->types().empty())
         fmt::print("no PROGRAM or FUNCTION_BLOCK in {}\n", fmt::join(files, ", "));
     for (const BlockType& type : catalog->types())
@@ -80,10 +109,11 @@ Exit execute(const BlocksCommand& command) {
 void add_blocks(CLI::App& app, Exit& result) {
     auto command = std::make_shared<BlocksCommand>();
     CLI::App* sub = app.add_subcommand(
-        "blocks", "List the function blocks, or describe one, or those of Structured Text");
-    sub->add_option(
-        "names", command->names,
-        "A block type, such as MC_GearIn, and files or folders of Structured Text that have it");
+        "blocks",
+        "List the function blocks, search them, describe one, or those of Structured Text");
+    sub->add_option("names", command->names,
+                    "A block type, such as MC_GearIn, or words to look for, such as gear; and "
+                    "files or folders of Structured Text that have it");
     sub->add_flag("--json", command->json, "Print JSON for machines");
     sub->callback([command, &result] { result = execute(*command); });
 }

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include <fmt/core.h>
 
@@ -19,7 +21,9 @@ struct CheckCommand {
     bool strict = false;
 };
 
-void check(const std::string& path, const LoadOptions& options, Diagnostics& out) {
+/// `sources` gets the paths of what a program has of Structured Text.
+void check(const std::string& path, const LoadOptions& options, Diagnostics& out,
+           std::set<std::string>* sources = nullptr) {
     const auto file = read_source(path, out);
     if (!file) return;
     const Catalog& catalog = standard_blocks();
@@ -27,8 +31,80 @@ void check(const std::string& path, const LoadOptions& options, Diagnostics& out
         read_study(file, options, catalog, out);
     else if (is_fit(*file))
         read_fit(file, options, catalog, out);
-    else
-        link(read_program(file, options, out), catalog, out);
+    else {
+        const Program program = read_program(file, options, out);
+        link(program, catalog, out);
+        for (const auto& text : program.texts)
+            if (sources)
+                sources->insert(std::filesystem::path(text->path).lexically_normal().string());
+    }
+}
+
+/// Tells once what several programs find in a source that they share.
+class Once {
+  public:
+    explicit Once(Diagnostics& out) : out_(out) {}
+    void add(const Diagnostics& found) {
+        for (const Diagnostic& d : found.list())
+            if (is_new(d)) out_.add(d.code, d.mark, d.message, d.help);
+        for (const Diagnostic& d : found.warnings())
+            if (is_new(d)) out_.warn(d.code, d.mark, d.message, d.help);
+    }
+
+  private:
+    bool is_new(const Diagnostic& d) {
+        const std::string path = d.mark.file ? d.mark.file->path : "";
+        return told_
+            .insert(fmt::format("{}:{}:{}: {}", path, d.mark.line, d.mark.column, d.message))
+            .second;
+    }
+
+    Diagnostics& out_;
+    std::set<std::string> told_;
+};
+
+/// All below a folder: programs, studies, fits, TESTs, and what is left of Structured Text, a file
+/// with those that declare what it names: two programs may have different ones of a name. How many
+/// files there were.
+std::size_t check_folder(const std::string& folder, const LoadOptions& options, Diagnostics& out) {
+    std::size_t files = 0;
+    std::set<std::string> seen;  // sources that a program has
+    st::SourcePool pool;
+    Once once(out);
+    for (const TestFile& test : find_tests(folder, {})) {
+        ++files;
+        Diagnostics found;
+        const auto source = is_structured_text(test.path) ? read_source(test.path, found) : nullptr;
+        if (source)
+            compile_tests(test, source, found);
+        else if (found.empty())
+            check(test.path, options, found, &seen);
+        once.add(found);
+    }
+    std::error_code error;
+    std::vector<std::shared_ptr<const SourceFile>> texts;
+    for (const std::string& path : structured_text_below(folder, error))
+        if (auto source = read_source(path, out)) texts.push_back(std::move(source));
+    for (const auto& text : texts) pool.add(text);
+    for (const auto& text : texts) {
+        ++files;
+        if (seen.contains(std::filesystem::path(text->path).lexically_normal().string())) continue;
+        std::vector<std::shared_ptr<const SourceFile>> together = pool.needed_by(text);
+        together.push_back(text);
+        Diagnostics found;
+        st::compile(together, standard_blocks(), found);
+        once.add(found);
+    }
+    return files;
+}
+
+/// Whether a folder has more than Structured Text.
+bool has_programs(const std::string& path) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(path, error)) return false;
+    const auto tests = find_tests(path, {});
+    return std::ranges::any_of(tests,
+                               [](const TestFile& test) { return !is_structured_text(test.path); });
 }
 
 /// Those that are no tests together.
@@ -48,20 +124,23 @@ void check_structured_text(const std::vector<std::string>& paths, Diagnostics& o
 Exit execute(const CheckCommand& command) {
     Diagnostics out;
     const LoadOptions options = command.common.load_options(out);
-    std::vector<std::string> sources;
-    for (const std::string& path : command.files)
-        if (std::error_code error;
-            is_structured_text(path) || std::filesystem::is_directory(path, error))
+    std::vector<std::string> sources, checked;
+    for (const std::string& path : command.files) {
+        checked.push_back(path);
+        if (std::error_code error; has_programs(path))
+            checked.back() += fmt::format(": {} files", check_folder(path, options, out));
+        else if (is_structured_text(path) || std::filesystem::is_directory(path, error))
             sources.push_back(path);
         else
             check(path, options, out);
+    }
     check_structured_text(sources, out);
     if (command.strict) out.be_strict();
     const bool speaks = !out.empty() || command.common.json || !out.warnings().empty();
     const Exit said = speaks ? report(out, command.common.json) : Exit::fine;
     if (!out.empty()) return said;
     if (!command.common.json && !command.common.quiet)
-        for (const std::string& path : command.files) fmt::print("ok  {}\n", path);
+        for (const std::string& path : checked) fmt::print("ok  {}\n", path);
     return Exit::fine;
 }
 
@@ -71,8 +150,10 @@ void add_check(CLI::App& app, Exit& result) {
     auto command = std::make_shared<CheckCommand>();
     CLI::App* sub =
         app.add_subcommand("check", "Say what is wrong with programs, studies and sources");
-    sub->add_option("files", command->files,
-                    "Programs, studies, fits (YAML), and files or folders of Structured Text")
+    sub->add_option(
+           "files", command->files,
+           "Programs, studies, fits (YAML), files of Structured Text, and folders of all of "
+           "them")
         ->required();
     add_strict(*sub, command->strict);
     command->common.add_to(*sub);

@@ -495,6 +495,14 @@ in the light barrier is counted once more after the restart. Keep the whole bloc
 else than what is run now, so that something else may come of it. With the same program and
 --set as 'lineshaft serve' had, the trace has the same bytes.)"},
 
+    {"L0807", "a command that nothing begins",
+     R"(A warning. A command begins at a rising edge of Execute, and nothing in the program sets it: no
+wire, no value, no stimulus, force or replay, no register of Modbus. Wire it, or let it be true from
+the first scan on:
+    inputs: {start: false}
+    blocks:
+      feed: {type: MC_MoveVelocity, task: servo, Axis: shaft, Velocity: 10 mm/s, Execute: inputs.start})"},
+
     {"L0901", "a character of no word",
      R"(The Structured Text has a character that begins no name, number, text or sign, or a comment
 or text that does not end. Comments are // to the end of the line, (* *) and /* */, which

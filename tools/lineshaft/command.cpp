@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include <fmt/core.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include "blocks/catalog.hpp"
@@ -38,6 +39,11 @@ bool is_same_file(const std::string& a, const std::string& b) {
 }
 
 }  // namespace
+
+bool is_unread() {
+    pollfd output{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
+    return ::poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+}
 
 double wall_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();

@@ -23,7 +23,11 @@ enum class Exit : int {
     wrong = 2,   ///< the program or the command line is wrong
     fault = 3,   ///< something went wrong while running: a block's error, a full disk
     interrupted = 130,
+    unread = 141,  ///< nobody reads the standard output any more
 };
+
+/// Whether the standard output is a pipe whose reader has ended, as `head` does.
+bool is_unread();
 
 /// Since the command began, what it read included [s].
 double wall_seconds();

@@ -124,6 +124,7 @@ int run_command(int argc, char** argv) {
         return app.exit(error) == 0 ? 0 : static_cast<int>(Exit::wrong);
     }
     if (std::fflush(stdout) != 0) {
+        if (is_unread()) return static_cast<int>(Exit::unread);
         spdlog::error("cannot write to the standard output: {}", std::strerror(errno));
         return static_cast<int>(Exit::fault);
     }
@@ -142,6 +143,7 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         std::fputs(out_of_memory, stderr);
     } catch (const std::exception& error) {
+        if (lineshaft::is_unread()) return static_cast<int>(lineshaft::Exit::unread);
         std::fprintf(stderr, "lineshaft: error: %s\n", error.what());
     }
     return static_cast<int>(lineshaft::Exit::fault);

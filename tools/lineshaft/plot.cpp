@@ -106,6 +106,8 @@ class Script {
     std::string data(const std::string& points);
     void plot(const PlotGroup& group);
     void axis(const PlotGroup& group);
+    std::string title_of(const std::string& signal, std::size_t run) const;
+    std::pair<std::size_t, std::size_t> margins(const std::vector<PlotGroup>& groups) const;
 
     const PlotCommand& command_;
     const std::vector<ReportRun>& runs_;
@@ -158,8 +160,7 @@ void Script::plot(const PlotGroup& group) {
             const double base =
                 strips ? static_cast<double>(group.signals.size() - 1 - i) + 0.2 : 0;
             const std::string points = curve(*runs_[run].time, signal, strips ? 0.6 : 1, base);
-            const std::string title =
-                runs_.size() == 1 ? signal.name : signal.name + " of " + runs_[run].path;
+            const std::string title = title_of(signal.name, run);
             curves +=
                 fmt::format("{} {} with {} linetype {} dashtype {} {}", curves.empty() ? "" : ",",
                             data(points), group.type == Type::real ? "lines" : "steps", i + 1,
@@ -169,11 +170,31 @@ void Script::plot(const PlotGroup& group) {
     line("plot {}", curves);
 }
 
+std::string Script::title_of(const std::string& signal, std::size_t run) const {
+    return runs_.size() == 1 ? signal : signal + " of " + runs_[run].path;
+}
+
+/// In characters: on the left what stands beside the axes, on the right the longest title.
+std::pair<std::size_t, std::size_t> Script::margins(const std::vector<PlotGroup>& groups) const {
+    constexpr std::size_t number = 8, label = 6, sample = 7;
+    std::size_t left = number, right = 0;
+    for (const PlotGroup& group : groups) {
+        const bool strips = group.type == Type::boolean;
+        for (const std::string& name : strips ? group.signals : group.names)
+            left = std::max(left, name.size());
+        for (std::size_t run = 0; run < runs_.size() && !strips; ++run)
+            for (const std::string& signal : group.signals)
+                right = std::max(right, title_of(signal, run).size());
+    }
+    return {left + label, right + sample};
+}
+
 std::string Script::over_time() {
     const std::vector<PlotGroup> groups = group_signals(runs_.front());
     begin(static_cast<int>(groups.size()) * 220 + 60);
     line("set multiplot layout {},1 title {}", groups.size(), gnuplot_text(command_.title));
-    line("set lmargin 16\nset rmargin {}", runs_.size() == 1 ? 24 : 40);
+    const auto [left, right] = margins(groups);
+    line("set lmargin {}\nset rmargin {}", left, right);
     for (const PlotGroup& group : groups) {
         if (&group == &groups.back()) line("set xlabel 'time [s]'");
         plot(group);

@@ -239,6 +239,7 @@ Json make_report(const ReportCommand& command, Json studies, const std::vector<s
     Json report{{"title", ""},
                 {"runs", Json::array()},
                 {"studies", std::move(studies)},
+                {"runs_first", !runs.empty() && runs.size() > cases.size()},
                 {"paths", paths_json(command, runs, said, out)},
                 {"while", condition_json(command, runs, said, out)},
                 {"circle", said.value("circle", Json())},

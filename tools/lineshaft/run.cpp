@@ -27,6 +27,7 @@ void print_json(const Loaded& loaded, const RunReport& report, const Json& more)
     for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
         expect.push_back(
             {{"text", loaded.linked.expectations[i].text}, {"ok", report.verdicts[i].ok}});
+        if (report.verdicts[i].undecided) expect.back()["undecided"] = true;
         if (!report.verdicts[i].ok) expect.back()["deviation"] = report.verdicts[i].deviation;
     }
     nlohmann::ordered_json object{{"program", loaded.program.file->path},
@@ -59,8 +60,8 @@ void print_text(const RunCommand& command, const Loaded& loaded, const RunReport
     std::FILE* const out = writes_to_stdout(command) ? stderr : stdout;
     for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
         const Verdict& verdict = report.verdicts[i];
-        fmt::print(out, "{}  {}\n", verdict.ok ? "ok    " : "FAILED",
-                   loaded.linked.expectations[i].text);
+        const char* word = verdict.ok ? "ok    " : verdict.undecided ? "UNDECIDED" : "FAILED";
+        fmt::print(out, "{}  {}\n", word, loaded.linked.expectations[i].text);
         if (!verdict.ok) fmt::print(out, "        {}\n", verdict.deviation);
     }
     if (command.common.quiet) return;
@@ -82,6 +83,7 @@ void print_text(const RunCommand& command, const Loaded& loaded, const RunReport
 
 Exit exit_code(const RunReport& report) {
     const bool files_failed = !report.output_error.empty() || !report.restart_error.empty();
+    if (files_failed && report.restart_error.empty() && is_unread()) return Exit::unread;
     if (files_failed) return Exit::fault;
     if (report.result.outcome == Outcome::interrupted) return Exit::interrupted;
     if (report.faulted()) return Exit::fault;
@@ -128,11 +130,43 @@ void check_files(const RunCommand& command, const Loaded& loaded, Diagnostics& o
     if (writes_to_stdout(command)) check_stdout(command, loaded, out);
 }
 
+bool is_output(const Net& net, const Signal& signal) {
+    return signal.port.instance >= 0 && net.field(signal.port).direction == Direction::output;
+}
+
+/// What `--show` names: signals, or a block with all of its outputs.
+std::vector<Signal> shown_signals(const RunCommand& command, Loaded& loaded, Diagnostics& out) {
+    std::vector<Signal> shown;
+    Machine& machine = loaded.linked.machine;
+    for (const std::string& name : command.shown) {
+        const std::size_t before = shown.size();
+        for (const Signal& signal : machine.signals)
+            if (signal.name.starts_with(name + ".") && is_output(loaded.linked.net, signal))
+                shown.push_back(signal);
+        if (shown.size() != before) continue;
+        Node node;
+        node.text = name;
+        if (const auto signal = loaded.linked.net.find(Reader(out), node, name))
+            shown.push_back(machine.placed(*signal));
+    }
+    return shown;
+}
+
+/// The values at the end.
+void print_shown(const RunCommand& command, const std::vector<Signal>& shown) {
+    std::FILE* const out = writes_to_stdout(command) ? stderr : stdout;
+    for (const Signal& signal : shown)
+        fmt::print(out, "{:28} {}\n", signal.name, signal.describe(signal.value()));
+}
+
 Exit execute(const RunCommand& command) {
     Diagnostics out;
     RunOptions how = run_options(command, out);
     auto loaded = load(command, {}, out);
     if (!loaded) return report(out, command.common.json);
+
+    const std::vector<Signal> shown = shown_signals(command, *loaded, out);
+    if (!out.empty()) return report(out, command.common.json);
 
     ProgressLine line(command.common.quiet || command.common.json);
     const Machine& machine = loaded->linked.machine;
@@ -143,7 +177,14 @@ Exit execute(const RunCommand& command) {
                                seconds(time), whole, seconds(time) / elapsed);
         });
     };
-    return tell(command, *loaded, run(*loaded, how));
+    const RunReport result = run(*loaded, how);
+    const bool has_run = result.refused.empty();
+    Json more;
+    for (const Signal& signal : shown)
+        if (has_run) more["show"][signal.name] = to_json(signal, signal.value());
+    const Exit exit = tell(command, *loaded, result, more);
+    if (has_run && !command.common.json) print_shown(command, shown);
+    return exit;
 }
 
 }  // namespace
@@ -207,10 +248,11 @@ Exit tell(const RunCommand& command, const Loaded& loaded, const RunReport& resu
     for (const std::string& text : result.never_looked_at)
         spdlog::log(command.strict ? spdlog::level::err : spdlog::level::warn,
                     "'{}' is never looked at: its task never scans", text);
+    const Exit exit = exit_code(result);
+    if (exit == Exit::unread) return exit;
     if (!result.result.message.empty()) spdlog::error("{}", result.result.message);
     if (!result.output_error.empty()) spdlog::error("{}", result.output_error);
     if (!result.restart_error.empty()) spdlog::error("{}", result.restart_error);
-    const Exit exit = exit_code(result);
     const bool unseen = command.strict && !result.never_looked_at.empty();
     return exit == Exit::fine && unseen ? Exit::failed : exit;
 }
@@ -242,7 +284,7 @@ void RunCommand::add_to(CLI::App& sub) {
     sub.add_option("--restart", restart,
                    "cold: all initial values; warm: retained ones kept; hot: go on from the "
                    "checkpoint")
-        ->transform(CLI::CheckedTransformer(restarts))
+        ->transform(CLI::CheckedTransformer(restarts).description(""))
         ->type_name("cold|warm|hot");
     sub.add_flag("--resume", resume, "Short for --restart hot");
     sub.add_option("--checkpoint", checkpoint,
@@ -262,6 +304,11 @@ void add_run(CLI::App& app, Exit& result) {
     sub->add_option("--recording", command->recording,
                     "Play back what 'lineshaft serve' recorded, and end where that ends")
         ->type_name("FILE.yaml");
+    sub->add_option("--show", command->shown,
+                    "Print what these signals are at the end, or all of a block's: "
+                    "x.position,move")
+        ->type_name("SIGNALS")
+        ->delimiter(',');
     sub->callback([command, &result] { result = execute(*command); });
 }
 

@@ -13,7 +13,7 @@ namespace lineshaft {
 struct RunCommand {
     CommonOptions common;
     std::string program, trace, pulses, retain, checkpoint, checkpoint_every, recording;
-    std::vector<std::string> forces;
+    std::vector<std::string> forces, shown;
     CsvStyle style;
     Restart restart = Restart::warm;
     bool resume = false, strict = false;

@@ -30,6 +30,8 @@ struct Drawing {
     std::string_view value(const Wire& wire) const;
     std::string_view input(const Wire& wire) const { return net.field(wire.to).name; }
     std::string text(const Wire& wire) const;
+    /// The names of a block's references and of the blocks that they name: `Axis`, `x`.
+    std::vector<std::pair<std::string_view, std::string_view>> references_of(int block) const;
 };
 
 std::vector<int> Drawing::blocks_of(const Task& task) const {
@@ -58,6 +60,14 @@ std::string Drawing::text(const Wire& wire) const {
                        source(wire), value(wire), previous ? ")" : "");
 }
 
+std::vector<std::pair<std::string_view, std::string_view>> Drawing::references_of(int block) const {
+    std::vector<std::pair<std::string_view, std::string_view>> found;
+    for (const Reference& reference : net.references)
+        if (reference.from.instance == block && reference.to >= 0)
+            found.emplace_back(net.field(reference.from).name, net.instance(reference.to).name);
+    return found;
+}
+
 /// Below a second in ms, as tasks are thought of.
 std::string interval(std::int64_t time) {
     constexpr std::int64_t second = 1'000'000'000;
@@ -84,6 +94,8 @@ std::string timing(const Drawing& drawing, const Task& task) {
 void print_block(const Drawing& drawing, int number, std::size_t place) {
     const Instance& block = drawing.net.instance(number);
     fmt::print("  {:>2} {:18} {}\n", place, block.name, block.type->name);
+    for (const auto& [name, target] : drawing.references_of(number))
+        fmt::print("       {:18} -> {}\n", name, target);
     for (const Wire& wire : drawing.net.wires_to(number)) {
         const int from = wire.from.instance < 0 ? -1 : drawing.net.instance(wire.from).task;
         const std::string task =
@@ -138,6 +150,12 @@ void print_dot(const Drawing& drawing) {
         fmt::print("  }}\n");
     }
     if (!drawing.program.inputs.empty()) fmt::print("  inputs [shape=cds];\n");
+    for (const Reference& reference : drawing.net.references)
+        if (reference.to >= 0)
+            fmt::print("  {} -> {} [label={}, style=dotted, arrowhead=open];\n",
+                       dot_text(drawing.net.instance(reference.from).name),
+                       dot_text(drawing.net.instance(reference.to).name),
+                       dot_text(drawing.net.field(reference.from).name));
     for (const Wire& wire : drawing.net.wires) {
         const std::string value(drawing.value(wire)), input(drawing.input(wire));
         fmt::print("  {} -> {} [label={}{}];\n", dot_text(drawing.source(wire)),
@@ -163,6 +181,8 @@ nlohmann::ordered_json to_json(const Drawing& drawing) {
             for (const Wire& wire : drawing.net.wires_to(number))
                 wires[std::string(drawing.input(wire))] = drawing.text(wire);
             blocks.push_back({{"name", block.name}, {"type", block.type->name}, {"wires", wires}});
+            for (const auto& [name, target] : drawing.references_of(number))
+                blocks.back()["references"][std::string(name)] = target;
         }
         tasks.push_back(
             {{"name", task.name}, {"timing", timing(drawing, task)}, {"blocks", blocks}});

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <thread>
 
@@ -20,18 +23,23 @@ constexpr const char* test_help =
     "A program passes when its expectations hold, a study when its bounds and claims do, a fit\n"
     "when what it finds is within its bounds. A file of Structured Text with a TEST is a file of\n"
     "tests: it sees those files of the folder that declare what it names, x.st first for\n"
-    "test_x.st. The answer stands in the order of the files, however many run side by side.\n"
+    "test_x.st. The answer stands in the order of the files, however many run side by side. What\n"
+    "is marked 'slow: true' is skipped, and named at the end.\n"
     "programs/README.md says more.";
 
 struct TestCommand {
     std::vector<std::string> paths, sources;
     std::string junit, coverage, filter;
     TestOptions options;
-    unsigned jobs = 1;
+    unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
     bool list = false, fail_fast = false;
 };
 
 void print(const SuiteEntry& entry) {
+    if (!entry.skipped.empty()) {
+        fmt::print("skipped {}: {}\n", entry.name, entry.skipped);
+        return;
+    }
     fmt::print("{}  {}{}{} ({:.2f} s)\n", entry.failures.empty() ? "ok    " : "FAILED", entry.file,
                entry.file.empty() ? "" : ": ", entry.name, entry.wall_seconds);
     for (const std::string& failure : entry.failures) fmt::print("        {}\n", failure);
@@ -56,6 +64,7 @@ class Suite {
         : files_(files), command_(command), results_(files.size()) {}
 
     std::vector<SuiteEntry> run() {
+        const std::jthread telling([this](const std::stop_token& stop) { keep_telling(stop); });
         side_by_side(
             std::min<std::int64_t>(command_.jobs, std::ssize(files_)), [this] { work(); },
             [this] { stopped_ = true; });
@@ -65,22 +74,51 @@ class Suite {
   private:
     void work() {
         for (std::size_t i = 0; (i = next_++) < files_.size() && !stopped_;) {
-            tell(i);
-            auto entries = run_tests(files_[i], command_.options);
+            TestOptions options = command_.options;
+            options.jobs = cores_for(i);
+            begun(i);
+            auto entries = run_tests(files_[i], options);
             if (interrupt_requested) return;
             done(i, std::move(entries));
         }
     }
 
-    void tell(std::size_t i) {
+    /// The last files share the cores that no other file needs any more.
+    unsigned cores_for(std::size_t i) const {
+        const auto left = static_cast<unsigned>(files_.size() - i);
+        return std::max(1u, std::thread::hardware_concurrency() / std::min(left, command_.jobs));
+    }
+
+    void begun(std::size_t i) {
         const std::lock_guard lock(mutex_);
-        progress_.show([&](double) {
-            return fmt::format("{} of {} files, {}", printed_, files_.size(), files_[i].path);
-        });
+        at_work_[i] = wall_seconds();
+    }
+
+    /// Rewrites the line of progress until all is done.
+    void keep_telling(const std::stop_token& stop) {
+        constexpr std::chrono::milliseconds pause(100);
+        std::unique_lock lock(mutex_);
+        while (!stop.stop_requested()) {
+            progress_.show([this](double) { return at_work(); });
+            tick_.wait_for(lock, stop, pause, [] { return false; });
+        }
+    }
+
+    /// `12 of 40 files, at work: a.yaml (35 s), b.yaml (2 s)`
+    std::string at_work() const {
+        std::string text = fmt::format("{} of {} files", finished_, files_.size());
+        const char* between = ", at work: ";
+        for (const auto& [i, since] : at_work_) {
+            text += fmt::format("{}{} ({:.0f} s)", between, files_[i].path, wall_seconds() - since);
+            between = ", ";
+        }
+        return text;
     }
 
     void done(std::size_t i, std::vector<SuiteEntry> entries) {
         const std::lock_guard lock(mutex_);
+        at_work_.erase(i);
+        ++finished_;
         results_[i] = std::move(entries);
         for (; printed_ < files_.size() && results_[printed_]; ++printed_) {
             progress_.clear();
@@ -98,7 +136,10 @@ class Suite {
     std::vector<std::optional<std::vector<SuiteEntry>>> results_;
     std::vector<SuiteEntry> entries_;
     ProgressLine progress_{false};
+    std::map<std::size_t, double> at_work_;  ///< files and when they began [s]
+    std::size_t finished_ = 0;
     std::mutex mutex_;
+    std::condition_variable_any tick_;
     std::atomic<std::size_t> next_ = 0;
     std::atomic<bool> stopped_ = false;
     std::size_t printed_ = 0;
@@ -107,7 +148,6 @@ class Suite {
 /// L0502 for a filter that is not a regular expression; the folder for traces is made.
 bool prepare(TestCommand& command) {
     TestOptions& options = command.options;
-    options.jobs = std::max(1u, std::thread::hardware_concurrency() / command.jobs);
     try {
         if (!command.filter.empty()) options.filter.emplace(command.filter);
     } catch (const std::regex_error& error) {
@@ -127,7 +167,14 @@ bool prepare(TestCommand& command) {
 Exit finish(const TestCommand& command, const std::vector<SuiteEntry>& entries) {
     const auto failed =
         std::ranges::count_if(entries, [](const SuiteEntry& e) { return !e.failures.empty(); });
-    fmt::print("{} of {} passed\n", std::ssize(entries) - failed, entries.size());
+    std::vector<std::string> skipped;
+    for (const SuiteEntry& e : entries)
+        if (!e.skipped.empty()) skipped.push_back(e.name);
+    const auto ran = std::ssize(entries) - std::ssize(skipped);
+    fmt::print("{} of {} passed\n", ran - failed, ran);
+    if (!skipped.empty())
+        fmt::print("skipped as slow, --slow runs {}: {}\n", skipped.size() == 1 ? "it" : "them",
+                   fmt::join(skipped, ", "));
     const bool written =
         write(command.junit, junit_xml(entries)) && write(command.coverage, st::lcov_text());
     if (!written) return Exit::fault;
@@ -161,13 +208,14 @@ void add_test(CLI::App& app, Exit& result) {
     CLI::App* sub = app.add_subcommand(
         "test", "Run programs, studies, fits and TESTs of Structured Text as a test suite");
     sub->add_option("paths", command->paths, "Files, or folders to search")->required();
-    sub->add_option("-j,--jobs", command->jobs, "Files side by side")
-        ->check(CLI::Range(1u, 1024u))
-        ->capture_default_str();
+    sub->add_option("-j,--jobs", command->jobs, "Files side by side; as many as there are cores")
+        ->check(CLI::Range(1u, 1024u));
     sub->add_option("--filter", command->filter,
                     "Run only what this regular expression finds in FILE, or in 'FILE: NAME' of a "
                     "TEST")
         ->type_name("REGEX");
+    sub->add_flag("--slow", command->options.slow,
+                  "Run those that are marked 'slow: true', too; one that is named runs anyway");
     sub->add_flag("--list", command->list, "Print the names only");
     sub->add_flag("--fail-fast", command->fail_fast, "End with the first that fails");
     sub->add_option("--trace-failed", command->options.traces_folder,

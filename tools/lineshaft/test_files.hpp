@@ -16,12 +16,14 @@ namespace lineshaft {
 struct TestFile {
     std::string path;
     std::shared_ptr<const st::SourcePool> sources;  ///< among which its TESTs find what they test
+    bool is_named = false;                          ///< by the command, not found in a folder
 };
 
 struct TestOptions {
     std::vector<std::string> include_dirs;
     std::optional<std::regex> filter;  ///< searched in `path` or `path: name of a TEST`
     bool strict = false;
+    bool slow = false;          ///< files marked `slow: true`, too
     unsigned jobs = 1;          ///< of a study's or fit's runs
     std::string traces_folder;  ///< where failed programs are traced; empty: nowhere
 };

@@ -96,6 +96,7 @@ async function testCursors(page) {
   assert.equal(after[3], before[3], "and leaves B");
   await line.focus();
   const shown = await readout(page);
+  assert.doesNotMatch(shown, /\de[+-]/, "people write no exponents");
   await page.keyboard.press("ArrowRight");
   await page.evaluate(frame);
   assert.notEqual(await readout(page), shown, "an arrow key moves the cursor by a sample");
@@ -187,6 +188,18 @@ async function testStudy(browser) {
   assert.ok(await page.locator(".bar.ours").count() > 3);
   assert.ok(await page.locator(".bar.paper").count() > 3);
   await page.screenshot({ path: file("study.png") });
+  assert.deepEqual(page.problems, []);
+  await testTablesBelow(browser, results);
+}
+
+/** Of a trace and a study the trace comes first, the tables below it are folded. */
+async function testTablesBelow(browser, results) {
+  const page = await open(browser, report("trace_and_study.html", file("early.csv"), results));
+  assert.ok(!(await page.locator("table.study").first().isVisible()), "tables are folded");
+  const [plot, table] = await Promise.all(["canvas", ".folded summary"].map((part) => page.locator(part).first().boundingBox()));
+  assert.ok(plot.y < table.y, "plots come first");
+  await page.click(".folded summary");
+  assert.ok(await page.locator("table.study").first().isVisible());
   assert.deepEqual(page.problems, []);
 }
 

@@ -112,7 +112,8 @@ TEST_CASE("an expectation beyond the end of the run has failed") {
     Counted c;
     Judge judge = c.judged({c.at(11, 6), c.at(10, 6), c.at(500, 6)});
     CHECK_FALSE(judge.verdicts()[0].ok);
-    CHECK(judge.verdicts()[0].deviation == "the count: the run ended at 0.01 s, before it");
+    CHECK(judge.verdicts()[0].deviation ==
+          "a.output at 0.011 s is undecided: the run ended at 0.01 s; let it run longer");
     CHECK(judge.verdicts()[1].ok);
     CHECK_FALSE(judge.verdicts()[2].ok);
     Counted stopped;
@@ -197,23 +198,46 @@ struct RandomRun {
         return e;
     }
 
-    void run(Judge& judge) {
-        judge.begin();
-        begin = levels;
+    /// Draws what happens.
+    void draw() {
+        auto values = levels;
         std::int64_t time = 0;
         for (int instants = 1 + static_cast<int>(below(12)); instants > 0; --instants) {
-            for (auto n = below(4); n > 0; --n) scan(judge, time);
-            if (below(3) == 0) levels[2] = !levels[2];
-            seen.push_back({time, -1, levels[2]});
-            const std::int64_t next = time + 1 + below(8);
-            judge.settled(time, next);
-            ends.push_back(next);
-            time = next;
+            for (auto n = below(4); n > 0; --n) {
+                const auto task = static_cast<std::size_t>(below(2));
+                if (below(2) == 0) values[task] = !values[task];
+                seen.push_back({time, static_cast<int>(task), values[task]});
+            }
+            if (below(3) == 0) values[2] = !values[2];
+            seen.push_back({time, -1, values[2]});
+            time += 1 + below(8);
+            ends.push_back(time);
         }
+    }
+
+    /// The first instants of it, at most all; one that stops within an instant has not seen its
+    /// last scans. Gives when it ended.
+    std::int64_t play(Judge& judge, std::size_t instants, Outcome outcome = Outcome::completed) {
+        levels = begin;
+        judge.begin();
         RunResult result;
-        result.time = ends.back() - 1;
-        result.scans = {scans[0], scans[1]};
+        result.outcome = outcome;
+        result.scans = {0, 0};
+        std::size_t done = 0;
+        for (const Seen& look : seen) {
+            levels[look.task < 0 ? 2 : static_cast<std::size_t>(look.task)] = look.value;
+            const bool breaks_off = outcome == Outcome::block_error && done + 1 == instants;
+            if (look.task >= 0) {
+                auto& scan = result.scans[static_cast<std::size_t>(look.task)];
+                judge.scanned(look.task, {.time = look.time, .index = scan++});
+            }
+            if (look.task >= 0 && !breaks_off) continue;
+            result.time = breaks_off ? look.time : ends[done] - 1;
+            judge.settled(look.time, result.time + 1);
+            if (++done == instants) break;
+        }
         judge.finish(result);
+        return result.time;
     }
 
     std::int64_t below(std::uint64_t limit) { return static_cast<std::int64_t>(random() % limit); }
@@ -232,15 +256,8 @@ struct RandomRun {
                 .slot = reinterpret_cast<const std::byte*>(&levels[n]),
                 .task = i == 2 ? -1 : i};
     }
-    void scan(Judge& judge, std::int64_t time) {
-        const auto task = static_cast<std::size_t>(below(2));
-        if (below(2) == 0) levels[task] = !levels[task];
-        seen.push_back({time, static_cast<int>(task), levels[task]});
-        judge.scanned(static_cast<int>(task), {.time = time, .index = scans[task]++});
-    }
 
     std::mt19937_64 random;
-    std::array<std::int64_t, 2> scans{};
 };
 
 /// Judges by looking at all that was seen, again and again.
@@ -274,7 +291,7 @@ struct SlowJudge {
     }
     bool answered(const Expectation& e, std::int64_t from) const {
         const std::int64_t until = from + e.until;
-        if (level(e.signal, from) || until > end()) return true;
+        if (level(e.signal, from)) return true;
         return std::ranges::any_of(run.seen, [&](const Seen& look) {
             return look.task == e.signal.task && look.value && look.time >= from &&
                    look.time <= until;
@@ -290,8 +307,8 @@ struct SlowJudge {
             return !times.empty() &&
                    std::ranges::all_of(times, [&](auto t) { return this->answered(e, t); });
         }
-        if (e.from > end()) return false;
         const bool bounded = e.until != never;
+        if (bounded && e.until > end()) return false;
         if (bounded && !within(e, level(e.signal, e.from))) return false;
         return std::ranges::all_of(run.seen, [&](const Seen& look) {
             const bool meant =
@@ -310,11 +327,61 @@ TEST_CASE("each way to expect is judged as by one who looks at all of the run") 
         const int signal = static_cast<int>(run.below(3));
         const int cause = static_cast<int>(run.below(3));
         const Expectation e = run.expect(when, signal, cause);
+        run.draw();
         Judge judge({e});
-        run.run(judge);
+        run.play(judge, run.ends.size());
         INFO("seed " << seed << ", kind " << static_cast<int>(when) << ": "
                      << judge.verdicts()[0].deviation);
         REQUIRE(judge.ok() == SlowJudge{run}(e));
         REQUIRE(judge.ok() == judge.verdicts()[0].deviation.empty());
     }
+}
+
+namespace {
+
+/// Whether what was ok of a shorter run may not be of a longer one: these are of the run so far.
+bool is_of_the_time_so_far(const Expectation& e) {
+    using enum Expectation::When;
+    const bool is_whole = e.from == 0 && e.until == never;
+    if (e.when == counted) return as_real(e.high) < std::numeric_limits<double>::infinity();
+    return e.when == at_end || e.when == answered || e.when == excluded ||
+           (e.when == always && is_whole);
+}
+
+}  // namespace
+
+TEST_CASE("what is ok when a run is cut stays so, unless it is of the time so far") {
+    using enum Outcome;
+    std::array<int, 6> kept{};  // per kind: ok of a run that stopped
+    for (std::uint64_t seed = 1; seed <= 20'000; ++seed) {
+        RandomRun run(seed);
+        const auto when = static_cast<Expectation::When>(run.below(6));
+        Expectation e =
+            run.expect(when, static_cast<int>(run.below(3)), static_cast<int>(run.below(3)));
+        if (run.below(2) == 0 && when == Expectation::When::counted)
+            e.high = std::numeric_limits<double>::infinity();
+        run.draw();
+        Judge whole({e});
+        run.play(whole, run.ends.size());
+        const auto instants = 1 + static_cast<std::size_t>(run.below(run.ends.size()));
+        for (const Outcome outcome : {completed, block_error, limit, interrupted}) {
+            Judge cut({e});
+            run.play(cut, instants, outcome);
+            INFO("seed " << seed << ", kind " << static_cast<int>(when) << ", outcome "
+                         << static_cast<int>(outcome) << ", " << instants << " of "
+                         << run.ends.size() << " instants: " << whole.verdicts()[0].deviation);
+            const bool may_turn = outcome == completed && is_of_the_time_so_far(e);
+            if (cut.ok() && !may_turn) REQUIRE(whole.ok());
+            if (outcome != completed) kept[static_cast<std::size_t>(when)] += cut.ok();
+            REQUIRE(cut.ok() == cut.verdicts()[0].deviation.empty());
+            if (cut.verdicts()[0].undecided)
+                REQUIRE_THAT(cut.verdicts()[0].deviation,
+                             Catch::Contains("is undecided: the run "));
+        }
+    }
+    using When = Expectation::When;
+    for (const When when : {When::at_end, When::excluded, When::answered})
+        CHECK(kept[static_cast<std::size_t>(when)] == 0);
+    for (const When when : {When::at, When::always, When::counted})
+        CHECK(kept[static_cast<std::size_t>(when)] > 100);
 }

@@ -251,9 +251,11 @@ TEST_CASE("L0101: what is no YAML is told in words") {
     CHECK(errors("a: \"\\ud800\"\n").starts_with("L0101 1:"));
     CHECK(errors("a: |0\n  x\n").starts_with("L0101 1:"));
     CHECK(errors("a: 'x\n---\ny'\n") == "L0101 2:1+1");
-    CHECK(rendered("a: [1, 2\nb: 3\n").find("expected ',' or ']'") != std::string::npos);
-    CHECK(rendered("a: [1, 2\nb: 3\n").find("the '[' of line 1 is still open") !=
+    CHECK(errors("a: [1, 2\nb: 3\n") == "L0101 1:4+1");
+    CHECK(rendered("a: [1, 2\nb: 3\n").find("this '[' is not closed") != std::string::npos);
+    CHECK(rendered("a: [1, 2\nb: 3\n").find("expected ',' or ']' before line 2") !=
           std::string::npos);
+    CHECK(rendered("a: {b: [1}\n").find("the '[' of line 1 is still open") != std::string::npos);
     CHECK(rendered("%YAML 3.0\n---\na: 1\n").find("YAML major version") != std::string::npos);
 }
 

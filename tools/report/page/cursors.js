@@ -1,5 +1,5 @@
 import { element } from "#page/dom";
-import { duration } from "#page/format";
+import { duration, frequency } from "#page/format";
 import { firstAtOrAfter, lastAtOrBefore } from "#page/samples";
 
 const names = ["A", "B"];
@@ -57,6 +57,6 @@ export class CursorLines {
 /** Times of the cursors and what lies between, in words. */
 export function readout([a, b]) {
   const between = b - a;
-  const rate = between === 0 ? "" : ` (${(1 / Math.abs(between)).toPrecision(4)} Hz)`;
+  const rate = between === 0 ? "" : ` (${frequency(1 / Math.abs(between))})`;
   return `A ${duration(a)}   B ${duration(b)}   B − A ${duration(between)}${rate}`;
 }

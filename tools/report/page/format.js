@@ -8,7 +8,8 @@ const rounded = format(6);
 export function number(value, formatted = rounded) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-4 || size >= 1e12)) return value.toExponential(3).replace("-", "−");
+  if (size !== 0 && (size < 1e-4 || size >= 1e12))
+    return (+value.toPrecision(4)).toExponential().replaceAll("-", "−");
   return formatted.format(value).replace("-", "−");
 }
 
@@ -25,6 +26,12 @@ export function duration(seconds) {
   if (size === 0 || size >= 1) return `${number(seconds, exact)} s`;
   if (size >= 1e-3) return `${number(seconds * 1e3, exact)} ms`;
   return size >= 1e-6 ? `${number(seconds * 1e6, exact)} µs` : `${number(seconds * 1e9, exact)} ns`;
+}
+
+/** A rate in the unit that suits it, to four digits. */
+export function frequency(hertz) {
+  const [unit, factor] = [["MHz", 1e6], ["kHz", 1e3], ["Hz", 1]].find(([, f]) => hertz >= f) ?? ["mHz", 1e-3];
+  return `${number(+(hertz / factor).toPrecision(4))} ${unit}`;
 }
 
 const secondsIn = { s: 1, ms: 1e-3, us: 1e-6, µs: 1e-6, ns: 1e-9 };

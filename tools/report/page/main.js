@@ -163,12 +163,14 @@ async function start() {
   shortenLabels(runs);
   byId("runs").append(...describeRuns(runs, () => view?.tell("runs")));
   main.replaceChildren();
-  for (const study of report.studies) showStudy(main, study);
+  const showStudies = (isFolded) => report.studies.forEach((study) => showStudy(main, study, isFolded));
+  if (!report.runs_first) showStudies(false);
   if (runs.length > 0) {
     view = showRuns(main, report, runs);
     connectToolbar(view);
     view.listen((change) => markFrame(`lineshaft:${change}`));
   }
+  if (report.runs_first) showStudies(true);
   markFrame("lineshaft:drawn");
 }
 

@@ -72,11 +72,18 @@ function key(rows) {
   return element("p", { className: "key" }, ...parts);
 }
 
+/** A study's title and whether it holds; of one that is folded the tables appear when that is clicked. */
+function head(study, isFolded) {
+  const said = { className: study.ok ? "good" : "bad" };
+  const verdict = study.ok ? "all bounds hold" : "some bounds do not hold";
+  if (!isFolded) return element("section", { className: "wide" }, element("h2", {}, study.title), element("p", said, verdict));
+  return element("details", { className: "wide folded" },
+                 element("summary", {}, element("b", {}, study.title), ": ", element("span", said, verdict)));
+}
+
 /** A study's matrices, or its rows with the paper's figures beside ours and as bars; then its claims. */
-export function showStudy(parent, study) {
-  const section = element("section", { className: "wide" }, element("h2", {}, study.title),
-    element("p", { className: study.ok ? "good" : "bad" },
-            study.ok ? "all bounds hold" : "some bounds do not hold"));
+export function showStudy(parent, study, isFolded) {
+  const section = head(study, isFolded);
   for (const note of study.notes ?? []) section.append(element("p", { className: "note" }, note));
   const tables = matrices(study.rows);
   section.append(...tables);
