@@ -112,7 +112,7 @@ MotionState Axis::total() const {
 
 void Axis::advance(const Context& context, std::int64_t now) {
     while (has_ended(now)) end_motion(context);
-    if (added.exists() && added_motion.has_ended(now)) end_added(context);
+    if (added.exists() && added_paused == 0 && added_motion.has_ended(now)) end_added(context);
     look(context, now);
 }
 
@@ -145,8 +145,9 @@ void Axis::end_motion(const Context& context) {
     auto [end_state, at] = end_of_motion(context);
     if (leg.exists != 0) return end_leg(at);
     if (end_state.velocity == 0 && at.until(scan_time) < 0) at = {scan_time};
-    const bool pauses = paused != 0;
+    const bool pauses = paused != 0, of_profile = doing == Doing::following_profile;
     hold(end_state, at);
+    if (of_profile) lasting = end_state.velocity;
     if (added.exists()) extra = added_motion.at(at.time);
     paused = pauses ? 1 : 0;
     if (pauses) return;
@@ -154,14 +155,20 @@ void Axis::end_motion(const Context& context) {
         return come_to_rest(context);
     if (state == AxisState::stopping) return end_stop(context, at);
     if (!active.exists()) return settle();
+    if (of_profile && base.velocity != lasting * factors.velocity) return replan(context, at);
     if (state == AxisState::homing && active.request.option == homing_on_signal) return;
     if (state == AxisState::continuous_motion && active.request.command != Command::gear_out &&
         active.request.command != Command::cam_out)
         tell(context, active, Progress::reached);
     else
         end_done(context);
-    if (queue.first != nowhere) return begin_next(context, at);
+    if (queue.first != nowhere && !is_held()) return begin_next(context, at);
     settle();
+}
+
+/// By an override of 0, before it could go on: what waits for that goes on waiting.
+bool Axis::is_held() const {
+    return paused != 0 || (factors.velocity == 0 && lasting != 0);
 }
 
 void Axis::end_done(const Context& context) {
@@ -189,13 +196,6 @@ void Axis::end_leg(const Moment& at) {
     leg.exists = 0;
 }
 
-void Axis::end_added(const Context& context) {
-    offset += added_motion.plan.end.position;
-    extra = {};
-    end(context, added, Progress::done);
-    settle();
-}
-
 /// A motion that does not know where it ends: it stops with the defaults, in time.
 void Axis::keep_limits(const Context& context, const Scan& now) {
     if (doing == Doing::moving_to_point && !added.exists()) return;
@@ -209,7 +209,7 @@ void Axis::keep_limits(const Context& context, const Scan& now) {
 /// Standing, with nothing to do.
 void Axis::settle() {
     if (active.exists() || added.exists() || doing != Doing::holding) return;
-    if (velocity_motion.ramp.end.velocity != 0) return;
+    if (velocity_motion.ramp.end.velocity != 0 || lasting != 0) return;
     if (state != AxisState::disabled && state != AxisState::error_stop)
         state = AxisState::standstill;
 }

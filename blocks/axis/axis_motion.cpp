@@ -88,6 +88,11 @@ bool PointMotion::turns(double direction) const {
     return runs_against(plan.phases, plan.count, direction, rounding * plan.greatest_velocity());
 }
 
+void PointMotion::move(double by) {
+    for (std::size_t i = 0; i < plan.count; ++i) plan.phases[i].start.position += by;
+    plan.end.position += by;
+}
+
 PlanResult VelocityMotion::begin(const MotionState& from, double velocity, const Dynamics& dynamics,
                                  const Moment& at) {
     const double direction = velocity != 0 ? velocity : from.velocity;

@@ -57,6 +57,9 @@ struct PointMotion {
     /// Whether it runs against the direction (its sign) at some time.
     bool turns(double direction) const;
 
+    /// The same motion, all its positions further by so much.
+    void move(double by);
+
     MotionState at(std::int64_t now);
     bool has_ended(std::int64_t now) const { return start.has_passed(plan.duration, now); }
     Moment end() const { return start.after(plan.duration); }
