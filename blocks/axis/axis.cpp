@@ -21,16 +21,13 @@ std::span<const Field> Axis::fields() {
                   "of commands with an acceleration below 0")
             .above(0),
         parameter("default_deceleration", &A::default_deceleration, "{unit}/s^2",
-                  "of commands with a deceleration below 0, and of the axis when it must stop; in "
-                  "front of a software limit it stops harder where that is too weak")
+                  "of commands with a deceleration below 0, and of the axis when it must stop")
             .above(0),
         parameter("default_jerk", &A::default_jerk, "{unit}/s^3",
                   "of commands with a jerk below 0; 0: trapezoids")
             .at_least(0),
-        parameter(
-            "software_limits", &A::software_limits, "",
-            "the position stays in `lowest_position`..`highest_position`; an axis that was put "
-            "outside only comes in"),
+        parameter("software_limits", &A::software_limits, "",
+                  "the position stays in `lowest_position`..`highest_position`"),
         parameter("lowest_position", &A::lowest_position, "{unit}", "with `software_limits`"),
         parameter("highest_position", &A::highest_position, "{unit}", "with `software_limits`"),
         parameter("start_position", &A::start_position, "{unit}", "position at the first scan"),
@@ -70,7 +67,6 @@ double within_period(double position, double period) {
 
 void Axis::scan(const Scan& now, const Context& context) {
     if (started == 0) start(now);
-    watch_limits();
     task = context.task;
     scan_index = now.index;
     scan_time = now.time;
@@ -81,7 +77,7 @@ void Axis::scan(const Scan& now, const Context& context) {
         take_up(context, now);
         advance(context, now.time);
     }
-    if (software_limits) keep_limits(context);
+    if (software_limits) keep_limits(context, now);
     publish();
 }
 
@@ -96,7 +92,6 @@ void Axis::shift(std::int64_t by) {
     for (Moment* moment : {&velocity_motion.start, &point_motion.start, &added_motion.start,
                            &profile_motion.start, &sync.start, &sync.shifting.start})
         moment->time += by;
-    shown.time += by;
 }
 
 void Axis::watch_drive(const Context& context, const Scan& now) {
@@ -117,7 +112,7 @@ MotionState Axis::total() const {
 
 void Axis::advance(const Context& context, std::int64_t now) {
     while (has_ended(now)) end_motion(context);
-    if (added.exists() && added_motion.has_ended(now)) end_added(context);
+    if (added.exists() && added_paused == 0 && added_motion.has_ended(now)) end_added(context);
     look(context, now);
 }
 
@@ -150,8 +145,9 @@ void Axis::end_motion(const Context& context) {
     auto [end_state, at] = end_of_motion(context);
     if (leg.exists != 0) return end_leg(at);
     if (end_state.velocity == 0 && at.until(scan_time) < 0) at = {scan_time};
-    const bool pauses = paused != 0;
+    const bool pauses = paused != 0, of_profile = doing == Doing::following_profile;
     hold(end_state, at);
+    if (of_profile) lasting = end_state.velocity;
     if (added.exists()) extra = added_motion.at(at.time);
     paused = pauses ? 1 : 0;
     if (pauses) return;
@@ -159,14 +155,20 @@ void Axis::end_motion(const Context& context) {
         return come_to_rest(context);
     if (state == AxisState::stopping) return end_stop(context, at);
     if (!active.exists()) return settle();
+    if (of_profile && base.velocity != lasting * factors.velocity) return replan(context, at);
     if (state == AxisState::homing && active.request.option == homing_on_signal) return;
     if (state == AxisState::continuous_motion && active.request.command != Command::gear_out &&
         active.request.command != Command::cam_out)
         tell(context, active, Progress::reached);
     else
         end_done(context);
-    if (queue.first != nowhere) return begin_next(context, at);
+    if (queue.first != nowhere && !is_held()) return begin_next(context, at);
     settle();
+}
+
+/// By an override of 0, before it could go on: what waits for that goes on waiting.
+bool Axis::is_held() const {
+    return paused != 0 || (factors.velocity == 0 && lasting != 0);
 }
 
 void Axis::end_done(const Context& context) {
@@ -194,17 +196,20 @@ void Axis::end_leg(const Moment& at) {
     leg.exists = 0;
 }
 
-void Axis::end_added(const Context& context) {
-    offset += added_motion.plan.end.position;
-    extra = {};
-    end(context, added, Progress::done);
-    settle();
+/// A motion that does not know where it ends: it stops with the defaults, in time.
+void Axis::keep_limits(const Context& context, const Scan& now) {
+    if (doing == Doing::moving_to_point && !added.exists()) return;
+    if (state == AxisState::error_stop || state == AxisState::standstill) return;
+    const MotionState next = total().after(seconds(now.interval));
+    const double stop = stopping_position(next, defaults());
+    const bool beyond = next.velocity > 0 ? stop > highest_position : stop < lowest_position;
+    if (beyond && next.velocity != 0) fail(context, {now.time}, MotionError::software_limit);
 }
 
 /// Standing, with nothing to do.
 void Axis::settle() {
     if (active.exists() || added.exists() || doing != Doing::holding) return;
-    if (velocity_motion.ramp.end.velocity != 0) return;
+    if (velocity_motion.ramp.end.velocity != 0 || lasting != 0) return;
     if (state != AxisState::disabled && state != AxisState::error_stop)
         state = AxisState::standstill;
 }
@@ -216,9 +221,7 @@ void Axis::publish() {
         error_id = MotionError::not_finite;
         return;
     }
-    position = modulo            ? within_period(now.position, period)
-               : software_limits ? shown.state.position
-                                 : now.position;
+    position = modulo ? within_period(now.position, period) : now.position;
     velocity = now.velocity;
     acceleration = now.acceleration;
     jerk = now.jerk;

@@ -11,7 +11,6 @@
 #include "blocks/axis/job.hpp"
 #include "blocks/axis/profile_motion.hpp"
 #include "blocks/axis/sync_motion.hpp"
-#include "blocks/axis/way.hpp"
 #include "runtime/model/catalog.hpp"
 #include "runtime/model/field.hpp"
 #include "runtime/model/scan.hpp"
@@ -56,6 +55,10 @@ struct Axis {
     struct JobList {
         std::int64_t first = nowhere, last = nowhere;
     };
+    /// What MC_SetOverride makes of velocities, accelerations both ways, and jerks.
+    struct Factors {
+        double velocity = 1, acceleration = 1, jerk = 1;
+    };
     /// What the set-point does.
     enum class Doing : std::int64_t {
         holding,
@@ -72,17 +75,10 @@ struct Axis {
         Dynamics dynamics;
     };
 
-    /// The set-point that was shown last, as long as software limits count.
-    struct Shown {
-        std::int64_t exists = 0;
-        MotionState state;
-        std::int64_t time = 0;  ///< [ns]
-        double relocated = 0;   ///< of the axis then
-    };
-
     JobList inbox, queue;
-    Running active;  ///< on the axis' motion
-    Running added;   ///< MC_MoveSuperimposed, on top of it
+    Running active;      ///< on the axis' motion
+    Running added;       ///< MC_MoveSuperimposed, on top of it
+    Running overriding;  ///< the MC_SetOverride whose factors count
     Doing doing = Doing::holding;
     Running phased;  ///< MC_Phasing, on the master as the axis sees it
     SyncMotion sync;
@@ -90,20 +86,23 @@ struct Axis {
     PointMotion point_motion;
     ProfileMotion profile_motion;
     Leg leg;
-    PointMotion added_motion;  ///< from 0 on
-    MotionState base;          ///< of the motion without what is added
-    MotionState extra;         ///< of added_motion
+    PointMotion added_motion;  ///< of `extra`
+    MotionState base;          ///< of the motion beneath, without what is added (README.md)
+    MotionState extra;         ///< of what is added on top; while nothing is, at rest at added_goal
     double offset = 0;         ///< what the position is further than both
-    double relocated = 0;      ///< by MC_SetPosition and MC_Home: followers do not see it
-    double goal = 0;           ///< of `active`, as a position; where it ended
-    double origin = 0;         ///< from where the distance of `active` counts
-    double velocity_factor = 1, acceleration_factor = 1, jerk_factor = 1;  ///< MC_SetOverride
-    std::int64_t paused = 0;                      ///< on the way to `goal`, by an override of 0
-    std::int64_t powered = 1;                     ///< what MC_Power wants
+    double added_goal = 0;     ///< where `extra` ends, once no override of 0 holds it
+    std::int64_t added_paused = 0;   ///< on the way there, by an override of 0
+    std::int64_t added_counted = 0;  ///< the target of `active` counts on all of `added`
+    double relocated = 0;            ///< by MC_SetPosition and MC_Home: followers do not see it
+    double goal = 0;                 ///< of `active`, as a position beneath; where it ended
+    double origin = 0;               ///< from where the distance of `active` counts, likewise
+    double lasting = 0;        ///< velocity that the motion goes on with, but for the override
+    Factors factors;           ///< of MC_SetOverride
+    std::int64_t paused = 0;   ///< on the way to `goal`, by an override of 0
+    std::int64_t powered = 1;  ///< what MC_Power wants
     double actual_velocity = 0, last_actual = 0;  ///< of the drive
     std::int64_t renamed = 0;                     ///< times that the place got another position
     std::int64_t trigger_aborts = 0;
-    Shown shown;
     std::int64_t started = 0;
     std::int64_t task = 0, scan_index = 0;  ///< of the scan under way, to stamp what is told
     std::int64_t scan_time = 0, scan_interval = 0;  ///< [ns]
@@ -123,7 +122,9 @@ struct Axis {
     void send(const Context& context, const Scan& now, Job& job);
 
     Dynamics defaults() const;
-    /// Of a request: with the defaults where it is below 0, and the override.
+    /// Of a request: with the defaults where it is below 0, as it says.
+    Dynamics asked_of(const Request& request) const;
+    /// The same with the override, where that counts.
     Dynamics dynamics_of(const Request& request) const;
 
     /// A parameter by PLCopen's number, in the unit of the axis; empty for one that it has not.
@@ -140,14 +141,16 @@ struct Axis {
     MotionState total() const;  ///< as it is shown, but for the modulo
 
   private:
-    /// Where a motion begins, and what still comes on top of it.
+    /// Where a motion beneath begins.
     struct Start {
         MotionState state;
-        double origin = 0;   ///< of distances
-        double to_come = 0;  ///< of `added`, which goes on
-        bool keeps_added = false;
+        double origin = 0;  ///< of distances
+        double taken = 0;   ///< way of `extra` that is in both, and no longer on top
     };
     Start start_of(const Request& request, bool keeps_added) const;
+    Start start_again() const;
+    bool is_overridden() const;
+    Dynamics dynamics_with(const Request& request, const Factors& by) const;
 
     // axis.cpp: time passes.
     void start(const Scan& now);
@@ -157,38 +160,14 @@ struct Axis {
     std::pair<MotionState, Moment> end_of_motion(const Context& context) const;
     Cam profile_table(const Context& context) const;
     void end_motion(const Context& context);
+    bool is_held() const;
     void end_done(const Context& context);
     void end_stop(const Context& context, const Moment& at);
     void end_hold(const Context& context, const Moment& at);
     void end_leg(const Moment& at);
-    void end_added(const Context& context);
     void watch_drive(const Context& context, const Scan& now);
+    void keep_limits(const Context& context, const Scan& now);
     void publish();
-
-    // axis_limits.cpp: the position stays within software limits.
-    struct Bounds {
-        double lowest = 0, highest = 0;
-        double below = 0, above = 0;  ///< tolerances
-
-        bool contain(const Range& positions) const;
-        /// False for a position outside; one within the tolerance is put onto its limit.
-        bool take_in(double& position) const;
-    };
-    Bounds bounds() const;
-    void watch_limits();
-    void keep_limits(const Context& context);
-    void show();
-    bool is_safe(const MotionState& next) const;
-    bool can_brake(const MotionState& from) const;
-    bool leads_inside(const Way& way, double further) const;
-    bool goes_on_inside() const;
-    bool turns_inside(const MotionState& from) const;
-    void stop_inside(const Context& context, MotionError why);
-    void stop_at_limit(const Moment& at);
-    bool may_begin(const PointMotion& next, const Start& from) const;
-    bool may_begin(const VelocityMotion& next, const Start& from) const;
-    bool may_add(const PointMotion& next) const;
-    bool may_wait(const Context& context, const Request& request) const;
 
     // axis_sync.cpp: other axes are followed.
     MotionState led_by(const Context& context, const MasterLink& link) const;
@@ -222,7 +201,6 @@ struct Axis {
     void wait(const Context& context, const Moment& at, Job& job);
     void begin(const Context& context, const Moment& at, Job& job);
     void stop_again(const Context& context, const Moment& at, Job& job);
-    void begin_added(const Context& context, const Moment& at, Job& job);
     void begin_next(const Context& context, const Moment& at);
     void abort_all(const Context& context, MotionError why = MotionError::none);
     void end_waiting(const Context& context, Progress how, MotionError why = MotionError::none);
@@ -236,6 +214,17 @@ struct Axis {
     void unlink(const Context& context, Job& job, JobList& list) const;
     void settle();
     MotionError refusal() const;
+
+    // axis_superimposed.cpp: what comes on top.
+    void begin_added(const Context& context, const Moment& at, Job& job);
+    void change_added(const Context& context, const Moment& at, const Request& before);
+    void replan_added(const Context& context, const Moment& at);
+    MotionError plan_added(const Context& context, const Moment& at, const Request& request,
+                           double covered, double to);
+    void make_up_for(double missing);
+    void take_in(double way);
+    void end_added(const Context& context);
+    void clear_added();
 
     // axis_commands.cpp: what each command does.
     MotionError administer(const Context& context, const Moment& at, const Request& request);
@@ -256,10 +245,11 @@ struct Axis {
     MotionError plan(const Request& request, const Moment& at, const Start& from);
     MotionError plan_velocity(const Request& request, const Moment& at, const Start& from);
     MotionError plan_point(const Request& request, double to, const Moment& at, const Start& from);
-    MotionError plan_added(const Request& request, const Moment& at);
-    MotionError pause(double to, const Dynamics& d, const Moment& at, const Start& from);
+    MotionError go_to(double to, double end_velocity, const Dynamics& d, const Moment& at,
+                      const Start& from);
+    MotionError go_on(double with, const Dynamics& d, const Moment& at, const Start& from);
     MotionError plan_homing(const Request& request, const Moment& at, const Start& from);
-    void replan(const Moment& at);
+    void replan(const Context& context, const Moment& at);
     double target_of(const Request& request, const Start& from) const;
     double modulo_target(const Request& request, const Start& from) const;
 
@@ -270,10 +260,17 @@ struct Axis {
                           Leg& rest, const Moment& at) const;
     bool goes_on(const Request& next, const Junction& junction, double velocity_there) const;
     double direction_of(const Request& next) const;
+    Start start_of_next() const;
 };
 
 /// Whether the axis does it at once, whatever it is doing.
 bool is_administrative(Command command);
+
+/// Whether it moves to a position, wherever it begins.
+bool is_absolute(Command command);
+
+/// Whether it acts on what is on top of the motion.
+bool is_superimposed(Command command);
 
 /// Whether the axis follows others by it; whether it shifts the master that the axis follows.
 bool is_synchronous(Command command);
@@ -281,6 +278,8 @@ bool is_phasing(Command command);
 
 /// Whether a table gives the motion over time.
 bool is_profile(Command command);
+
+MotionError motion_error_of(PlanResult result);
 
 /// From 0 up to `period`.
 double within_period(double position, double period);

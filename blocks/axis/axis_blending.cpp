@@ -58,13 +58,12 @@ bool Axis::plan_to_junction(const Junction& junction, double end_velocity, Point
 /// Whether the next command can go on from the goal with the velocity without turning round.
 bool Axis::goes_on(const Request& next, const Junction& junction, double velocity_there) const {
     if (next.command == Command::move_velocity) return true;
-    Start there;
-    there.state.position = there.origin = goal;
+    Start there = start_of_next();
     const double target = target_of(next, there);
     there.state.velocity = junction.direction * velocity_there;
     const bool continuous = next.command == Command::move_continuous_absolute ||
                             next.command == Command::move_continuous_relative;
-    const double end = continuous ? junction.direction * next.end_velocity : 0;
+    const double end = continuous ? junction.direction * next.end_velocity * factors.velocity : 0;
     PointMotion motion;
     return motion.begin(there.state, target, end, dynamics_of(next), {}) == PlanResult::ok &&
            !motion.turns(junction.direction);
@@ -78,9 +77,15 @@ double Axis::direction_of(const Request& next) const {
     if (!ends_standing(next.command) && next.command != move_continuous_absolute &&
         next.command != move_continuous_relative)
         return 0;
+    const Start there = start_of_next();
+    return target_of(next, there) - there.origin;
+}
+
+/// At the goal, where the next command takes in what is on top.
+Axis::Start Axis::start_of_next() const {
     Start there;
-    there.state.position = there.origin = goal;
-    return target_of(next, there) - goal;
+    there.state.position = there.origin = goal + added_goal;
+    return there;
 }
 
 /// The end of `active` is passed with the velocity that the mode of the next command wants, or the
@@ -89,18 +94,17 @@ void Axis::blend(const Context& context, const Moment& at) {
     const Request& next = front(context).request;
     if (next.mode < BufferMode::blending_low || doing != Doing::moving_to_point) return;
     if (!ends_standing(active.request.command)) return;
-    Junction junction{start_of(active.request, true), dynamics_of(active.request)};
+    Junction junction{start_again(), dynamics_of(active.request)};
     junction.direction = goal < junction.from.state.position ? -1 : 1;
     if (direction_of(next) * junction.direction <= 0) return;
     const double v2 = next.command == Command::move_velocity
-                          ? std::abs(next.velocity) * velocity_factor
+                          ? std::abs(next.velocity) * factors.velocity
                           : dynamics_of(next).velocity;
     const double wanted = wanted_velocity(next.mode, junction.dynamics.velocity, v2);
     PointMotion motion;
     Leg rest;
     const auto is_possible = [&](double v) {
-        return plan_to_junction(junction, v, motion, rest, at) && goes_on(next, junction, v) &&
-               (!software_limits || can_brake({goal, junction.direction * v}));
+        return plan_to_junction(junction, v, motion, rest, at) && goes_on(next, junction, v);
     };
     if (!is_possible(wanted)) {
         double low = 0, high = wanted;

@@ -9,12 +9,6 @@ namespace lineshaft {
 
 namespace {
 
-MotionError error_of(PlanResult result) {
-    if (result == PlanResult::ok) return MotionError::none;
-    return result == PlanResult::not_finite ? MotionError::not_finite
-                                            : MotionError::limit_not_positive;
-}
-
 bool is_continuous(Command command) {
     return command == Command::move_continuous_absolute ||
            command == Command::move_continuous_relative;
@@ -25,6 +19,12 @@ double sign_of(double x) {
 }
 
 }  // namespace
+
+MotionError motion_error_of(PlanResult result) {
+    if (result == PlanResult::ok) return MotionError::none;
+    return result == PlanResult::not_finite ? MotionError::not_finite
+                                            : MotionError::limit_not_positive;
+}
 
 bool is_administrative(Command command) {
     using enum Command;
@@ -38,17 +38,37 @@ Dynamics Axis::defaults() const {
             effective_jerk(default_jerk, default_acceleration, default_deceleration)};
 }
 
-Dynamics Axis::dynamics_of(const Request& request) const {
+bool is_absolute(Command command) {
+    using enum Command;
+    return command == move_absolute || command == move_continuous_absolute || command == home;
+}
+
+Dynamics Axis::dynamics_with(const Request& request, const Factors& by) const {
     const auto chosen = [](double asked, double otherwise) {
         return asked < 0 ? otherwise : asked;
     };
     Dynamics d;
-    d.velocity = chosen(request.velocity, default_velocity) * velocity_factor;
-    d.acceleration = chosen(request.acceleration, default_acceleration) * acceleration_factor;
-    d.deceleration = chosen(request.deceleration, default_deceleration) * acceleration_factor;
-    d.jerk = effective_jerk(chosen(request.jerk, default_jerk) * jerk_factor, d.acceleration,
+    d.velocity = chosen(request.velocity, default_velocity) * by.velocity;
+    d.acceleration = chosen(request.acceleration, default_acceleration) * by.acceleration;
+    d.deceleration = chosen(request.deceleration, default_deceleration) * by.acceleration;
+    d.jerk = effective_jerk(chosen(request.jerk, default_jerk) * by.jerk, d.acceleration,
                             d.deceleration);
     return d;
+}
+
+Dynamics Axis::asked_of(const Request& request) const {
+    return dynamics_with(request, {});
+}
+
+Dynamics Axis::dynamics_of(const Request& request) const {
+    const bool of_slave = is_synchronous(request.command) || is_phasing(request.command) ||
+                          (is_superimposed(request.command) && !is_overridden());
+    return of_slave ? asked_of(request) : dynamics_with(request, factors);
+}
+
+/// MC_SetOverride does not act on a slave.
+bool Axis::is_overridden() const {
+    return state != AxisState::synchronized_motion;
 }
 
 // Administrative commands.
@@ -104,7 +124,7 @@ void Axis::stop_again(const Context& context, const Moment& at, Job& job) {
         const MotionState from = total();
         VelocityMotion anew;
         const PlanResult planned = anew.begin(from, 0, dynamics_of(job.request), at);
-        if (planned != PlanResult::ok) return tell(job, Progress::failed, error_of(planned));
+        if (planned != PlanResult::ok) return tell(job, Progress::failed, motion_error_of(planned));
         const double left = velocity_motion.ramp.duration - velocity_motion.start.until(at.time);
         if (anew.ramp.duration < left) {
             velocity_motion = anew;
@@ -142,11 +162,9 @@ MotionError Axis::set_override(const Context& context, const Moment& at, const R
     if (!(request.velocity_factor >= 0) || !(request.acceleration_factor > 0) ||
         !(request.jerk_factor > 0))
         return MotionError::out_of_range;
-    velocity_factor = request.velocity_factor;
-    acceleration_factor = request.acceleration_factor;
-    jerk_factor = request.jerk_factor;
-    if (active.exists()) replan(at);
-    if (queue.first != nowhere && active.exists()) blend(context, at);
+    factors = {request.velocity_factor, request.acceleration_factor, request.jerk_factor};
+    replan_added(context, at);
+    replan(context, at);
     return MotionError::none;
 }
 
@@ -170,8 +188,8 @@ void Axis::hold(const MotionState& as, const Moment& at) {
 
 void Axis::brake(const Moment& at) {
     const MotionState from = total();
-    offset = 0;
-    extra = {};
+    offset = lasting = 0;
+    clear_added();
     leg.exists = paused = 0;
     base = from;
     if (from.velocity == 0 && from.acceleration == 0) return hold(from, at);
@@ -179,16 +197,22 @@ void Axis::brake(const Moment& at) {
     doing = Doing::following_velocity;
 }
 
+/// With all the way that is on top: of what it aborts as far as that has come, else to its end.
 Axis::Start Axis::start_of(const Request& request, bool keeps_added) const {
-    Start from;
-    from.state = base;
-    from.state.position += offset;
+    Start from = start_again();
+    from.taken = keeps_added ? added_goal : extra.position;
+    from.state.position += from.taken;
     if (!keeps_added) from.state = total();
-    from.keeps_added = keeps_added && added.exists();
-    if (from.keeps_added) from.to_come = added_motion.plan.end.position;
     const bool from_goal =
         request.command == Command::move_additive && state == AxisState::discrete_motion;
-    from.origin = from_goal ? goal : from.state.position;
+    from.origin = from_goal ? goal + from.taken : from.state.position;
+    return from;
+}
+
+/// Of `active`, to plan it anew.
+Axis::Start Axis::start_again() const {
+    Start from{base, origin};
+    from.state.position += offset;
     return from;
 }
 
@@ -237,6 +261,7 @@ MotionError Axis::plan_profile(const Context& context, const Request& request, c
     profile_motion = next;
     doing = Doing::following_profile;
     leg.exists = paused = 0;
+    lasting = 0;
     origin = goal = of_velocity ? from.origin : next.end(cam).position;
     offset = 0;
     base = from.state;
@@ -271,63 +296,55 @@ MotionError Axis::plan_velocity(const Request& request, const Moment& at, const 
         wanted = now.velocity +
                  now.acceleration * std::abs(now.acceleration) / (2 * dynamics_of(request).jerk);
     if (request.command == Command::move_velocity) {
-        wanted = request.velocity * velocity_factor;
+        wanted = request.velocity;
         if (request.direction == MoveDirection::negative) wanted = -wanted;
         if (request.direction == MoveDirection::current)
-            wanted = std::copysign(wanted, sign_of(from.state.velocity));
+            wanted = std::copysign(wanted, sign_of(now.velocity != 0 ? now.velocity : lasting));
     }
-    VelocityMotion next;
-    const MotionError why = error_of(next.begin(from.state, wanted, dynamics_of(request), at));
+    return go_on(wanted, dynamics_of(request), at, from);
+}
+
+/// To a velocity and on with it, both with the override.
+MotionError Axis::go_on(double with, const Dynamics& d, const Moment& at, const Start& from) {
+    const MotionError why =
+        motion_error_of(velocity_motion.begin(from.state, with * factors.velocity, d, at));
     if (why != MotionError::none) return why;
-    if (request.command != Command::stop && !may_begin(next, from))
-        return MotionError::software_limit;
-    velocity_motion = next;
     doing = Doing::following_velocity;
     leg.exists = paused = 0;
+    lasting = with;
     goal = velocity_motion.end_state().position;
     return why;
 }
 
 MotionError Axis::plan_point(const Request& request, double to, const Moment& at,
                              const Start& from) {
-    const Dynamics d = dynamics_of(request);
-    if (software_limits && !bounds().take_in(to)) return MotionError::software_limit;
-    if (velocity_factor == 0) return pause(to, d, at, from);
-    if (!d.valid()) return MotionError::limit_not_positive;
-    const double way = to - from.state.position;
+    if (!asked_of(request).valid()) return MotionError::limit_not_positive;
+    if (software_limits && (to < lowest_position || to > highest_position))
+        return MotionError::software_limit;
+    const double direction = sign_of(to - from.state.position);
     const double end_velocity =
-        is_continuous(request.command) ? sign_of(way) * request.end_velocity : 0;
-    PointMotion next;
-    const MotionError why =
-        error_of(next.begin(from.state, to - from.to_come, end_velocity, d, at));
-    if (why != MotionError::none) return why;
-    if (!may_begin(next, from)) return MotionError::software_limit;
-    point_motion = next;
-    doing = Doing::moving_to_point;
-    leg.exists = paused = 0;
-    goal = to;
-    return why;
+        is_continuous(request.command) ? direction * request.end_velocity : 0;
+    return go_to(to, end_velocity, dynamics_of(request), at, from);
 }
 
-/// An override of 0: the way to the goal is left for later.
-MotionError Axis::pause(double to, const Dynamics& d, const Moment& at, const Start& from) {
-    VelocityMotion next;
-    const MotionError why = error_of(next.begin(from.state, 0, d, at));
+/// To a position and on with a velocity, with the override.
+MotionError Axis::go_to(double to, double end_velocity, const Dynamics& d, const Moment& at,
+                        const Start& from) {
+    const bool pauses = factors.velocity == 0;
+    const MotionError why = motion_error_of(
+        pauses ? velocity_motion.begin(from.state, 0, d, at)
+               : point_motion.begin(from.state, to, end_velocity * factors.velocity, d, at));
     if (why != MotionError::none) return why;
-    if (!may_begin(next, from)) return MotionError::software_limit;
-    velocity_motion = next;
-    doing = Doing::following_velocity;
+    doing = pauses ? Doing::following_velocity : Doing::moving_to_point;
     leg.exists = 0;
-    paused = 1;
+    paused = pauses ? 1 : 0;
+    lasting = end_velocity;
     goal = to;
     return why;
 }
 
 double Axis::target_of(const Request& request, const Start& from) const {
-    const bool is_absolute = request.command == Command::move_absolute ||
-                             request.command == Command::move_continuous_absolute ||
-                             request.command == Command::home;
-    if (!is_absolute) return from.origin + request.position;
+    if (!is_absolute(request.command)) return from.origin + request.position;
     return modulo ? modulo_target(request, from) : request.position;
 }
 
@@ -355,7 +372,7 @@ MotionError Axis::plan_homing(const Request& request, const Moment& at, const St
         return plan_point(request, target_of(request, from), at, from);
     Request search = request;
     search.command = request.option == homing_on_signal ? Command::move_velocity : Command::stop;
-    search.velocity = dynamics_of(request).velocity;
+    search.velocity = asked_of(request).velocity;
     Start known = from;
     if (request.option != homing_on_signal) {
         relocated += request.position - known.state.position;
@@ -365,33 +382,23 @@ MotionError Axis::plan_homing(const Request& request, const Moment& at, const St
     return plan_velocity(search, at, known);
 }
 
-/// Other limits for the motion under way.
-void Axis::replan(const Moment& at) {
-    Start from = start_of(active.request, true);
-    from.to_come = 0;
+/// The motion under way with other limits, or with another way left, and what is blended into it.
+void Axis::replan(const Context& context, const Moment& at) {
+    if (state == AxisState::disabled || state == AxisState::error_stop) return;
+    const Start from = start_again();
+    const Dynamics d = dynamics_of(active.request);
     if (doing == Doing::moving_to_point || paused != 0) {
-        if (plan_point(active.request, goal, at, from) != MotionError::none) return;
-    } else if (active.request.command == Command::move_velocity) {
-        if (plan_velocity(active.request, at, from) != MotionError::none) return;
+        if (go_to(goal, lasting, d, at, from) != MotionError::none) return;
+    } else if (doing == Doing::following_velocity ||
+               (doing == Doing::holding && base.velocity != lasting * factors.velocity)) {
+        if (go_on(lasting, d, at, from) != MotionError::none) return;
+        if (active.exists()) tell(context, active, Progress::active);
     } else {
         return;
     }
     base = from.state;
     offset = 0;
-}
-
-MotionError Axis::plan_added(const Request& request, const Moment& at) {
-    Dynamics d = dynamics_of(request);
-    if (!d.valid()) return MotionError::limit_not_positive;
-    const bool halts = request.command == Command::halt_superimposed;
-    const double to = halts ? stopping_position(extra, d) : request.position;
-    if (!added.exists()) extra = {};
-    PointMotion next;
-    const MotionError why = error_of(next.begin(extra, to, 0, d, at));
-    if (why != MotionError::none) return why;
-    if (!may_add(next)) return MotionError::software_limit;
-    added_motion = next;
-    return why;
+    if (queue.first != nowhere) blend(context, at);
 }
 
 }  // namespace lineshaft

@@ -77,11 +77,13 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
         return wait(context, at, job);
     if (is_administrative(request.command)) {
         const MotionError why = administer(context, at, request);
+        if (request.command == Command::set_override && why == MotionError::none) {
+            end(context, overriding, Progress::aborted);
+            overriding = {place, job.ticket, request, 0};
+        }
         return tell(job, why == MotionError::none ? Progress::done : Progress::failed, why);
     }
-    if (request.command == Command::move_superimposed ||
-        request.command == Command::halt_superimposed)
-        return begin_added(context, at, job);
+    if (is_superimposed(request.command)) return begin_added(context, at, job);
     if (is_phasing(request.command)) {
         if (request.mode == BufferMode::aborting || !phased.exists())
             return begin_phasing(context, job);
@@ -94,23 +96,20 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
 
 /// Continuous update, or the end of MC_Stop's Execute.
 void Axis::change(const Context& context, const Moment& at, Running& running, const Job& job) {
+    const Request before = running.request;
     running.request = job.request;
     if (job.request.command == Command::stop) {
         if (running.told_end == 0 || job.request.option != 0) return;
         return end_hold(context, at);
     }
     if (&running == &phased) return begin_phasing(context, context.at<Job>(running.place));
-    if (&running == &added) {
-        plan_added(job.request, at);
-    } else {
-        Start from = start_of(job.request, true);
-        from.origin = origin;
-        from.to_come = 0;
-        const MotionError why = plan_any(context, job.request, at, from);
-        if (why != MotionError::none) return;
-        if (queue.first != nowhere) blend(context, at);
+    if (&running == &added) return change_added(context, at, before);
+    if (plan_any(context, job.request, at, start_again()) != MotionError::none) {
+        running.request = before;
+        return;
     }
-    tell(context, running, &running == &active ? begun() : Progress::active);
+    if (queue.first != nowhere) blend(context, at);
+    tell(context, running, begun());
 }
 
 /// StartSync: a slave may leave to meet its master at once.
@@ -121,13 +120,12 @@ Progress Axis::begun() const {
 }
 
 void Axis::wait(const Context& context, const Moment& at, Job& job) {
-    if (!may_wait(context, job.request))
-        return tell(job, Progress::failed, MotionError::software_limit);
     link(context, job, queue, JobPlace::queue);
     tell(job, Progress::waiting);
     if (&front(context) != &job || job.request.command == Command::reset) return;
-    const bool holds = (state == AxisState::continuous_motion && doing == Doing::holding) ||
-                       (doing == Doing::following_axes && sync.holds());
+    const bool holds =
+        (state == AxisState::continuous_motion && doing == Doing::holding && !is_held()) ||
+        (doing == Doing::following_axes && sync.holds());
     if (holds) return begin_next(context, at);
     blend(context, at);
 }
@@ -143,13 +141,17 @@ void Axis::begin(const Context& context, const Moment& at, Job& job) {
     const Start from = start_of(request, !aborts);
     const MotionError why = plan_any(context, request, at, from);
     if (why != MotionError::none) return tell(job, Progress::failed, why);
+    take_in(from.taken);
     if (aborts) {
-        extra = {};
+        clear_added();
         abort_all(context);
     }
     end(context, active, Progress::aborted);
     active = {context.place_of(job), job.ticket, request, 0};
+    const bool was_overridden = is_overridden();
     state = *next;
+    added_counted = added.exists() && is_absolute(request.command) ? 1 : 0;
+    if (is_overridden() != was_overridden) replan_added(context, at);
     tell(job, begun());
 }
 
@@ -164,18 +166,6 @@ void Axis::begin_next(const Context& context, const Moment& at) {
         return;
     }
     settle();
-}
-
-void Axis::begin_added(const Context& context, const Moment& at, Job& job) {
-    if (job.request.command == Command::halt_superimposed && !added.exists())
-        return tell(job, Progress::done);
-    if (const MotionError why = plan_added(job.request, at); why != MotionError::none)
-        return tell(job, Progress::failed, why);
-    end(context, added, Progress::aborted);
-    added = {context.place_of(job), job.ticket, job.request, 0};
-    state = *next_state(job.request.command, state);
-    if (!active.exists() && state == AxisState::standstill) state = AxisState::discrete_motion;
-    tell(job, Progress::active);
 }
 
 /// What waits is aborted, and what is at work, or else it fails.

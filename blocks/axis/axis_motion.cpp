@@ -88,6 +88,11 @@ bool PointMotion::turns(double direction) const {
     return runs_against(plan.phases, plan.count, direction, rounding * plan.greatest_velocity());
 }
 
+void PointMotion::move(double by) {
+    for (std::size_t i = 0; i < plan.count; ++i) plan.phases[i].start.position += by;
+    plan.end.position += by;
+}
+
 PlanResult VelocityMotion::begin(const MotionState& from, double velocity, const Dynamics& dynamics,
                                  const Moment& at) {
     const double direction = velocity != 0 ? velocity : from.velocity;
@@ -114,19 +119,6 @@ void VelocityMotion::hold(const MotionState& state, const Moment& at) {
     ramp.count = 0;
     ramp.duration = 0;
     ramp.end = {0, state.velocity, 0, 0};
-}
-
-bool VelocityMotion::stand_at(double position, const MotionState& from, const Moment& at) {
-    const double way = position - from.position;
-    const double time = 2 * way / from.velocity, deceleration = from.velocity / time;
-    if (!(time > 0) || !std::isfinite(time) || !std::isfinite(deceleration)) return false;
-    start = at;
-    start_position = from.position;
-    ramp.phases[0] = {time, {0, from.velocity, -deceleration, 0}};
-    ramp.count = 1;
-    ramp.duration = time;
-    ramp.end = {way, 0, 0, 0};
-    return true;
 }
 
 MotionState VelocityMotion::at(std::int64_t now) const {

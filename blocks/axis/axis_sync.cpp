@@ -120,6 +120,7 @@ MotionError Axis::plan_sync(const Context& context, const Request& request, cons
     }
     doing = Doing::following_axes;
     leg.exists = paused = 0;
+    lasting = 0;
     origin = goal = from.origin;
     offset = 0;
     base = from.state;

@@ -42,7 +42,7 @@ std::span<const Field> SetOverride::fields() {
               "of accelerations and decelerations")
             .above(0),
         input("JerkFactor", &B::pins, &Request::jerk_factor, "", "of jerks").above(0),
-        output("Enabled", &B::done, "", "the axis has taken the factors"),
+        output("Enabled", &B::done, "", "the factors are those of the axis"),
         output("Busy", &B::busy, "", "the axis has not taken them yet"),
         output("Error", &B::error, "", "the factors are refused"),
         output("ErrorID", &B::error_id, "", "why").one_of(motion_error_names),

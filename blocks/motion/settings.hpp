@@ -24,8 +24,8 @@ struct WriteParameter : CommandBlock {
     void scan(const Scan& now, const Context& context) { run(now, context); }
 };
 
-/// MC_SetOverride (3.12): sent when Enable comes, and at each change of a factor while it is true.
-/// The factors stay when it falls.
+/// MC_SetOverride (3.18): sent when Enable comes, and at each change of a factor while it is true.
+/// The factors stay when it falls. Of several the last one that spoke counts, and is Enabled alone.
 struct SetOverride : CommandBlock {
     static constexpr std::string_view type = "MC_SetOverride";
     static constexpr std::string_view doc =
