@@ -151,6 +151,17 @@ def broken_merges(c):
     assert result.stderr.count("L0612") == 3, result.stderr
     (c.folder / "program.yaml").write_text(program)
     (c.folder / "none").mkdir()
+    sidecar = c.folder / "parts_3" / "part_1.csv-metadata.json"
+    text = sidecar.read_text()
+    for index, of in ((1, 0), (0, 3), (4, 3), (-1, 3), (1, 10**30), (1, 1.5), ('"1"', 3), (1, "null"), ("[]", 3)):
+        sidecar.write_text(re.sub(r'"index": 1,\s*"of": 3', f'"index": {index}, "of": {of}', text))
+        assert sidecar.read_text() != text
+        assert "L0612" in c.run("--merge", "parts_3", "-o", "m.csv", expect=2).stderr, (index, of)
+    sidecar.write_text("[" * 900000)
+    assert "L0611" in c.run("--merge", "parts_3", "-o", "m.csv", expect=2).stderr
+    sidecar.write_text(text)
+    result = c.run("--merge", "parts_3", "-o", "parts_3/part_1.csv", expect=2)
+    assert "L0509" in result.stderr, result.stderr
     assert "no chunk in" in c.run("--merge", "none", "-o", "none.csv", expect=2).stderr
     assert not list(c.folder.glob("none.csv*"))
 

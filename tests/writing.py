@@ -204,7 +204,39 @@ def outputs_over_inputs(c):
     c.check_whole("t.csv")
     c.path("moves.csv").write_text("Vs,Ve,Vm,A,J,L\n0,0,1,1,1,1\n")
     c.run("plan", "moves.csv", "-o", "moves.csv", expect=2, says="L0509")
+    source = "FUNCTION_BLOCK Own\nVAR_OUTPUT n : LINT; END_VAR\nn := n + 1;\nEND_FUNCTION_BLOCK\n"
+    c.path("own.st").write_text(source)
+    c.path("uses.yaml").write_text(PROGRAM.replace("blocks:", "sources: own.st\nblocks:\n  own: {type: Own, task: main}"))
+    c.path("uses_plan.yaml").write_text(c.path("plan.yaml").read_text().replace("program.yaml", "uses.yaml"))
+    c.run("run", "uses.yaml", "--set", "time=1 s", "--trace", "own.st", expect=2, says="L0509")
+    c.run("study", "uses_plan.yaml", "-o", "own.st", expect=2, says="L0509")
+    c.run("test", "program.yaml", "--junit", "program.yaml", expect=2, says="L0509")
+    for option in ("--junit", "--coverage"):
+        c.run("test", "uses_plan.yaml", option, "own.st", expect=2, says="L0509")
+    assert c.path("own.st").read_text() == source
+    c.path("fit.yaml").write_text(
+        "lineshaft_fit: 1\nprogram: uses.yaml\nparameters: {speed: {from: 1 mm/s, to: 20 mm/s}}\n"
+        "cases: [{set: {time: 1 s}, compare: {axis.velocity: {paper: 10 mm/s}}}]\n")
+    for name in ("fit.yaml", "uses.yaml", "own.st"):
+        c.run("fit", "fit.yaml", "-o", name, expect=2, says="L0509")
+    c.path("no_header.csv").write_text("a,b\n1,2\n")
+    c.run("plan", "no_header.csv", "-o", "planned.csv", expect=2, says="the column 'a' is not known")
+    assert not list(c.folder.glob("planned*")), list(c.folder.glob("planned*"))
     assert c.path("program.yaml").read_text() == PROGRAM
+
+
+def linked_folders(c):
+    """`..` of a folder that is a link is the folder around what it links to."""
+    (c.folder / "project" / "config").mkdir(parents=True)
+    (c.folder / "project" / "programs").mkdir()
+    (c.folder / "elsewhere").mkdir()
+    c.path("project/config/own.st").write_text(
+        "FUNCTION_BLOCK Own\nVAR_OUTPUT n : LINT; END_VAR\nn := n + 1;\nEND_FUNCTION_BLOCK\n")
+    c.path("project/programs/p.yaml").write_text(
+        PROGRAM.replace("blocks:", "sources: ../config/own.st\nblocks:\n  own: {type: Own, task: main}"))
+    os.symlink("../project/programs", c.path("elsewhere/link"))
+    for name in ("project/programs/p.yaml", "elsewhere/link/p.yaml"):
+        c.run("check", name, expect=0)
 
 
 def signals(c):
@@ -372,7 +404,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         c = Checks(os.path.abspath(sys.argv[1]), pathlib.Path(folder), int(sys.argv[2]) if len(sys.argv) > 2 else 10)
         for check in (full_disks, small_file_systems, folders, standard_output, trace_to_standard_output,
-                      no_verdicts_without_files, outputs_over_inputs, signals, second_signals, idle_inputs,
+                      no_verdicts_without_files, outputs_over_inputs, linked_folders, signals, second_signals, idle_inputs,
                       pipes_that_files_name, writers_at_once, little_memory, kills):
             check(c)
             print("ok ", check.__name__, flush=True)

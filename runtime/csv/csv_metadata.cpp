@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "runtime/csv/checksum.hpp"
+#include "runtime/source/json_text.hpp"
 #include "runtime/source/yaml.hpp"
 
 namespace lineshaft {
@@ -14,12 +16,6 @@ namespace lineshaft {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// The text at `key`, empty when there is none.
-std::string text_at(const Json& object, const char* key) {
-    const auto it = object.find(key);
-    return it != object.end() && it->is_string() ? it->get<std::string>() : std::string();
-}
 
 Type type_of(const Json& column) {
     const auto datatype = column.find("datatype");
@@ -120,7 +116,7 @@ std::optional<CsvMetadata> read_metadata(const std::string& csv_path, Diagnostic
     if (!std::filesystem::is_regular_file(path, unknown)) return {};
     const auto file = read_source(path, out);
     if (!file) return {};
-    const Json json = Json::parse(file->text, nullptr, false);
+    const Json json = parse_json(file->text);
     const Json::json_pointer pointer("/tableSchema/columns");
     if (!json.is_object() || !json.contains(pointer) || !json[pointer].is_array()) {
         out.add("L0707", {file, 0, 0, 1}, "this is not a CSVW description of a table",
@@ -141,9 +137,7 @@ std::optional<CsvMetadata> read_metadata(const std::string& csv_path, Diagnostic
         metadata.form = text_at(*run, "form");
         metadata.made_by = made_by(*run);
     }
-    if (const auto rows = json.find("lineshaft:rows");
-        rows != json.end() && rows->is_number_integer())
-        metadata.rows = rows->get<std::int64_t>();
+    metadata.rows = integer_at(json, "lineshaft:rows", 0, std::numeric_limits<std::int64_t>::max());
     for (const Json& column : json[pointer])
         if (column.is_object()) metadata.columns.push_back(column_of(column));
     return metadata;

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <unordered_map>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -31,51 +33,72 @@ class Lines {
         buffer_.resize(2 * chunk);
     }
 
-    /// The next line without its end; false at the end of the file, or after an error.
+    /// The next line without its end (LF, CR LF or CR); false at the end of the file, or after an
+    /// error.
     bool next(std::string_view& line);
-    bool is_ended() const { return ended_; }                   ///< the last line had a newline
+    bool is_ended() const { return ended_; }                   ///< the last line had an end
     int error() const { return error_; }                       ///< errno, 0 when all is well
     std::string checksum() const { return checksum_.text(); }  ///< of all that was read
 
   private:
     void fill();
+    bool find_end();
 
     InputFile file_;
     Checksum checksum_;
     std::string buffer_;
     std::size_t begin_ = 0, end_ = 0;
+    std::size_t stop_ = 0;     ///< up to here there is no line end behind begin_
+    std::size_t newline_ = 0;  ///< the next LF of what has been read; end_: none
+    bool searched_ = false;    ///< for it
     bool ended_ = true;
+    bool after_return_ = false;  ///< the line before ended with CR: an LF belongs to it
     int error_;
 };
 
 void Lines::fill() {
     std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
     end_ -= begin_;
+    stop_ -= begin_;
     begin_ = 0;
     char* const to = buffer_.data() + end_;
     const std::size_t count = file_.read(to, std::min(chunk, buffer_.size() - end_));
     checksum_.add({to, count});
     end_ += count;
+    searched_ = false;
     if (file_.error() != 0) error_ = file_.error();
+}
+
+/// Of the line at begin_, in what has been read; each byte is looked at once.
+bool Lines::find_end() {
+    const auto find = [this](char wanted, std::size_t from, std::size_t to) {
+        const void* found = std::memchr(buffer_.data() + from, wanted, to - from);
+        return found ? static_cast<std::size_t>(static_cast<const char*>(found) - buffer_.data())
+                     : to;
+    };
+    if (!searched_ || newline_ < stop_) newline_ = find('\n', stop_, end_);
+    searched_ = true;
+    stop_ = find('\r', stop_, newline_);
+    return stop_ < end_;
 }
 
 bool Lines::next(std::string_view& line) {
     if (error_ != 0) return false;
-    const auto newline = [this] {
-        return static_cast<const char*>(std::memchr(buffer_.data() + begin_, '\n', end_ - begin_));
-    };
-    const char* stop = newline();
-    while (!stop && !file_.is_ended() && error_ == 0) {
+    if (after_return_ && begin_ == end_ && !file_.is_ended()) fill();
+    if (after_return_ && begin_ < end_ && buffer_[begin_] == '\n') ++begin_;
+    after_return_ = false;
+    stop_ = begin_;
+    bool found = find_end();
+    while (!found && !file_.is_ended() && error_ == 0) {
         if (end_ - begin_ > chunk) error_ = EFBIG;
         fill();
-        stop = newline();
+        found = find_end();
     }
-    if (error_ != 0 || (!stop && begin_ == end_)) return false;
-    ended_ = stop != nullptr;
-    const char* const first = buffer_.data() + begin_;
-    line = {first, static_cast<std::size_t>((stop ? stop : buffer_.data() + end_) - first)};
-    begin_ += line.size() + (stop ? 1 : 0);
-    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (error_ != 0 || (!found && begin_ == end_)) return false;
+    ended_ = found;
+    after_return_ = found && buffer_[stop_] == '\r';
+    line = {buffer_.data() + begin_, stop_ - begin_};
+    begin_ = stop_ + (found ? 1 : 0);
     return true;
 }
 
@@ -121,6 +144,7 @@ class CsvReader {
 
     /// A mistake in a part of the line under way.
     void fail(const char* code, std::string_view part, std::string message, std::string help = {});
+    bool is_enough() const { return mistakes_ >= most_mistakes; }
 
     const std::string& path_;
     Diagnostics& out_;
@@ -131,17 +155,20 @@ class CsvReader {
     std::size_t mistakes_ = 0;
     char separator_ = ',';
     std::vector<CsvColumn*> order_;  ///< of the file's columns; null: not wanted
+    std::unordered_set<std::string> names_;  ///< and titles, of the columns so far
+    std::unordered_map<std::string_view, const CsvMetadata::Column*> described_;  ///< by title
+    std::shared_ptr<const SourceFile> shown_;  ///< the last line with a mistake, alone
     CsvTable table_;
 };
 
 std::optional<CsvTable> CsvReader::read() {
-    const std::size_t before = out_.list().size();
+    const std::size_t before = out_.count();
     if (is_yaml()) return {};
     table_.metadata = read_metadata(path_, out_);
     if (lines_.next(line_) && header()) rows();
     check_file();
     table_.crc32 = lines_.checksum();
-    if (out_.list().size() != before) return {};
+    if (out_.count() != before) return {};
     return std::move(table_);
 }
 
@@ -187,10 +214,13 @@ bool CsvReader::header() {
     if (line_.starts_with(utf8_byte_order_mark)) line_.remove_prefix(utf8_byte_order_mark.size());
     table_.header = std::make_shared<const SourceFile>(SourceFile{path_, std::string(line_)});
     line_ = table_.header->text;
+    if (table_.metadata)
+        for (const CsvMetadata::Column& column : table_.metadata->columns)
+            described_.emplace(column.title, &column);
     if (line_.find(',') == std::string_view::npos && line_.find(';') != std::string_view::npos)
         separator_ = ';';
     const char* const end = line_.data() + line_.size();
-    for (const char* at = line_.data();; ++at) {
+    for (const char* at = line_.data(); !is_enough(); ++at) {
         const char* const stop = cell_end(at, end, separator_);
         add_column({at, stop});
         at = stop;
@@ -215,14 +245,15 @@ void CsvReader::add_column(std::string_view cell) {
         column.unit = column.title.substr(bracket + 2, column.title.size() - bracket - 3);
         column.name = column.title.substr(0, bracket);
     }
-    const auto* known = table_.metadata ? table_.metadata->find(column.title) : nullptr;
-    if (known) {
+    if (const auto it = described_.find(column.title); it != described_.end()) {
+        const CsvMetadata::Column* known = it->second;
         column.name = known->signal;
         column.unit = known->unit;
         column.type = known->type;
         column.names = known->values;
     }
-    if (table_.find(column.name) || table_.find(column.title))
+    const bool is_new = names_.insert(column.name).second;
+    if (!is_new || (column.title != column.name && !names_.insert(column.title).second))
         fail("L0703", cell, fmt::format("two columns are called '{}'", column.title));
     table_.columns.push_back(std::move(column));
 }
@@ -252,7 +283,7 @@ void CsvReader::rows() {
                                         "allowed for them",
                                         options_.most_rows));
         row();
-        if (mistakes_ < most_mistakes) continue;
+        if (!is_enough()) continue;
         return out_.add(
             "L0705", {table_.header, 0, 0, 1},
             fmt::format("there are {} mistakes; the rest of the file is not read", mistakes_));
@@ -269,7 +300,7 @@ void CsvReader::row() {
         CsvColumn* const column = count < order_.size() ? order_[count] : nullptr;
         at = column ? cell(*column, at, end) : cell_end(at, end, separator_);
         ++count;
-        if (at == end) break;
+        if (at == end || is_enough()) break;
     }
     ++table_.rows;
     const bool cut = !lines_.is_ended() && options_.last_row_may_be_cut;
@@ -357,11 +388,11 @@ void CsvReader::fail(const char* code, std::string_view part, std::string messag
     ++mistakes_;
     const std::string_view before =
         line_.substr(0, static_cast<std::size_t>(part.data() - line_.data()));
-    // Messages find their line by counting: empty ones stand for those before it.
-    const auto file = std::make_shared<const SourceFile>(
-        SourceFile{path_, std::string(number_ - 1, '\n') + std::string(line_)});
+    if (!shown_ || shown_->first_line != static_cast<int>(number_))
+        shown_ = std::make_shared<const SourceFile>(
+            SourceFile{path_, std::string(line_), static_cast<int>(number_)});
     out_.add(code,
-             {file, static_cast<int>(number_), static_cast<int>(count_characters(before)) + 1,
+             {shown_, static_cast<int>(number_), static_cast<int>(count_characters(before)) + 1,
               std::max(1, static_cast<int>(count_characters(part)))},
              std::move(message), std::move(help));
 }

@@ -192,13 +192,13 @@ void set_table(Resolving& to, Instance& block, const TableField& table, const No
     if (!to.read.expect_sequence(value, fmt::format("'{}'", table.name))) return;
     if (!has_room(to, table, value, value.items.size())) return;
     std::byte* row = block.image.data() + table.rows_offset;
-    const std::size_t mistakes = to.read.diagnostics().list().size();
+    const std::size_t mistakes = to.read.diagnostics().count();
     for (const Node& items : value.items) {
         set_row(to, block, table, items, row);
         row += table.row_size();
     }
     set_size(block, table, value.items.size());
-    if (to.read.diagnostics().list().size() == mistakes) complete(to, block, table, value);
+    if (to.read.diagnostics().count() == mistakes) complete(to, block, table, value);
 }
 
 void set_tables(Resolving& to) {

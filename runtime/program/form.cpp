@@ -346,7 +346,7 @@ bool accept(const Reader& read, const Shape& s, const Node& node, std::string_vi
 
 bool detail::read_form(const Form& form, const Reader& read, const Node& map, void* plan,
                        std::string_view what, const Node* place) {
-    const std::size_t before = read.diagnostics().list().size();
+    const std::size_t before = read.diagnostics().count();
     if (what.empty()) what = form.what;
     if (!read.expect_map(map, what)) return false;
     if (form.others.name.empty()) refuse_unknown(form, read, map, what);
@@ -363,7 +363,7 @@ bool detail::read_form(const Form& form, const Reader& read, const Node& map, vo
     }
     for (const Rule& rule : form.rules) apply(form, rule, read, map);
     if (form.check) form.check(read, map, plan);
-    return read.diagnostics().list().size() == before;
+    return read.diagnostics().count() == before;
 }
 
 void put(const Reader& read, const Key& key, const Node& node, std::int64_t& value) {

@@ -347,9 +347,12 @@ Program read_program(std::shared_ptr<const SourceFile> file, const LoadOptions& 
 std::optional<std::string> resolve_path(const std::string& named, const std::string& from,
                                         const std::vector<std::string>& include_dirs, Mark where,
                                         Diagnostics& out) {
-    const fs::path path = (fs::path(from).parent_path() / named).lexically_normal();
+    const fs::path whole = fs::path(from).parent_path() / named, normal = whole.lexically_normal();
     std::error_code error;
-    const fs::path real = real_path(path, error);
+    const fs::path real = real_path(whole, error);
+    std::error_code unknown;
+    // `..` of a linked folder is the folder around what it is a link to.
+    const fs::path& path = real_path(normal, unknown) == real ? normal : whole;
     if (error) {
         out.add("L0001", std::move(where),
                 fmt::format("cannot read '{}': {}", named, error.message()));

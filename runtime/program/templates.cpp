@@ -43,14 +43,14 @@ class Expansion {
 
     /// A parameter without a value must be set.
     bool check_set(const std::string& of) const {
-        const std::size_t before = read_.diagnostics().list().size();
+        const std::size_t before = read_.diagnostics().count();
         for (const auto& [name, value] : values_)
             if (value.is_empty())
                 read_.fail("L0403", name_,
                            fmt::format("'{}' uses the template '{}' without its parameter '{}'",
                                        name_.text, of, name),
                            fmt::format("write set: {{{}: ...}}", name));
-        return read_.diagnostics().list().size() == before;
+        return read_.diagnostics().count() == before;
     }
 
     void append_to(std::vector<Entry>& blocks) {

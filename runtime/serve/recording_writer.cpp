@@ -1,7 +1,9 @@
 #include "runtime/serve/recording_writer.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -26,6 +28,24 @@ std::string quoted(const std::string& text) {
     return out + "'";
 }
 
+/// A name in braces or brackets, in quotes where it is not letters alone or a word of YAML's.
+std::string name_text(const std::string& name) {
+    constexpr std::string_view letters =
+        "_.0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+    const bool is_plain = name.find_first_not_of(letters) == std::string::npos &&
+                          name.find_first_of(letters.substr(12)) != std::string::npos;
+    static constexpr std::string_view words[] = {"null", "true", "false", "nan", "inf"};
+    const bool is_word = std::ranges::any_of(
+        words, [&](std::string_view word) { return same_letters(name, word); });
+    return is_plain && !is_word ? name : quoted(name);
+}
+
+std::string value_text(const Change& change) {
+    const Type type =
+        change.kind == Change::Kind::set ? change.stimulus.type : change.force.type;
+    return type == Type::enumeration ? name_text(change.text) : change.text;
+}
+
 }  // namespace
 
 std::string recorded(std::int64_t time, std::span<const Change> changes) {
@@ -36,7 +56,8 @@ std::string recorded(std::int64_t time, std::span<const Change> changes) {
     std::string list;
     for (const Change& change : changes) {
         if (!list.empty()) list += ", ";
-        list += releases ? change.name : fmt::format("{}: {}", change.name, change.text);
+        list += name_text(change.name);
+        if (!releases) list += ": " + value_text(change);
     }
     return fmt::format("- {{at: {}, {}: {}}}\n", time_text(time), key,
                        releases ? "[" + list + "]" : "{" + list + "}");

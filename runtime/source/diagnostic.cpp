@@ -17,6 +17,7 @@ constexpr std::size_t longest_line = 100;      // characters of source shown
 constexpr std::size_t before_mark = 40;        // of these, when the line is cut at its start
 constexpr std::size_t longest_message = 1000;  // characters; a message quotes the user's text
 constexpr std::size_t longest_word = 100;      // bytes that `nearest` compares
+constexpr std::size_t most_kept = 1000;        // diagnostics
 constexpr std::size_t most_names = 12;
 constexpr std::size_t most_meant = 3;
 constexpr std::size_t shortest_abbreviation = 3;
@@ -69,11 +70,21 @@ std::string printable_text(std::string_view text) {
     return std::move(shown.text);
 }
 
-/// Line `line` (from 1) without its end; empty beyond the last.
+/// Without what is never printed.
+std::string kept(std::string text) {
+    constexpr std::size_t most_bytes = 4;  // of a character
+    if (text.size() <= most_bytes * longest_message) return text;
+    std::string_view rest = text;
+    skip(rest, longest_message + 1);
+    text.resize(text.size() - rest.size());
+    return text;
+}
+
+/// Line `line` without its end; empty beyond the last.
 std::string_view line_of(const SourceFile& file, int line) {
     std::string_view text = file.text;
     if (text.starts_with(utf8_byte_order_mark)) text.remove_prefix(utf8_byte_order_mark.size());
-    for (int i = 1; i < line; ++i) {
+    for (int i = file.first_line; i < line; ++i) {
         const std::size_t end = text.find('\n');
         if (end == std::string_view::npos) return {};
         text.remove_prefix(end + 1);
@@ -161,11 +172,16 @@ std::size_t longest_part(std::string_view word) {
 }  // namespace
 
 void Diagnostics::add(std::string code, Mark mark, std::string message, std::string help) {
-    list_.push_back({std::move(code), std::move(mark), std::move(message), std::move(help)});
+    ++count_;
+    if (list_.size() < most_kept)
+        list_.push_back({std::move(code), std::move(mark), kept(std::move(message)),
+                         kept(std::move(help))});
 }
 
 void Diagnostics::warn(std::string code, Mark mark, std::string message, std::string help) {
-    Diagnostic warning{std::move(code), std::move(mark), std::move(message), std::move(help), true};
+    if (warnings_.size() == most_kept) return;
+    Diagnostic warning{std::move(code), std::move(mark), kept(std::move(message)),
+                       kept(std::move(help)), true};
     const auto is_same = [&](const Diagnostic& other) { return order(other) == order(warning); };
     if (std::ranges::none_of(warnings_, is_same)) warnings_.push_back(std::move(warning));
 }
@@ -174,6 +190,7 @@ void Diagnostics::be_strict() {
     for (Diagnostic& warning : warnings_) {
         warning.is_warning = false;
         list_.push_back(std::move(warning));
+        ++count_;
     }
     warnings_.clear();
 }
@@ -193,7 +210,9 @@ std::string Diagnostics::render(std::size_t limit) const {
     std::string out;
     const std::size_t shown = std::min(limit, sorted.size());
     for (std::size_t i = 0; i < shown; ++i) out += lineshaft::render(*sorted[i]);
-    if (shown < sorted.size()) out += fmt::format("... and {} more\n", sorted.size() - shown);
+    const std::size_t not_kept = list_.empty() ? 0 : count_ - list_.size();
+    if (const std::size_t more = sorted.size() - shown + not_kept; more > 0)
+        out += fmt::format("... and {} more\n", more);
     return out;
 }
 

@@ -12,6 +12,7 @@ namespace lineshaft {
 struct SourceFile {
     std::string path;  ///< as the user gave it
     std::string text;
+    int first_line = 1;  ///< number of the line that `text` begins with: it may be a part
 
     /// `lineshaft_study:` at the beginning of a line: what kind of file it is, before it is read.
     bool has_key(std::string_view key) const {
@@ -36,12 +37,16 @@ struct Diagnostic {
     bool is_warning = false;  ///< of what is allowed and hardly meant
 };
 
-/// Collects diagnostics so that all are shown at once, sorted by place when rendered.
+/// Collects diagnostics so that all are shown at once, sorted by place when rendered. A file may
+/// have a mistake in each of its bytes: the first thousand are kept, their texts as far as they are
+/// shown.
 class Diagnostics {
   public:
     void add(std::string code, Mark mark, std::string message, std::string help = {});
     bool empty() const { return list_.empty(); }
     const std::vector<Diagnostic>& list() const { return list_; }
+    /// Errors that were added, kept or not.
+    std::size_t count() const { return count_; }
 
     /// Of what is allowed and hardly meant: no error, so that the list may be empty. Equal ones are
     /// kept once.
@@ -56,6 +61,7 @@ class Diagnostics {
 
   private:
     std::vector<Diagnostic> list_, warnings_;
+    std::size_t count_ = 0;
 };
 
 /// One diagnostic as a compiler prints it:

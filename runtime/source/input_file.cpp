@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <mutex>
+#include <set>
+#include <utility>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -13,6 +16,37 @@ namespace lineshaft {
 
 std::atomic<bool> interrupt_requested = false;
 
+namespace {
+
+/// Whatever their names.
+class ReadFiles {
+  public:
+    void add(const struct stat& file) {
+        const std::lock_guard lock(mutex_);
+        files_.insert({file.st_dev, file.st_ino});
+    }
+    bool contains(const struct stat& file) {
+        const std::lock_guard lock(mutex_);
+        return files_.contains({file.st_dev, file.st_ino});
+    }
+
+  private:
+    std::mutex mutex_;
+    std::set<std::pair<dev_t, ino_t>> files_;
+};
+
+ReadFiles& read_files() {
+    static ReadFiles files;
+    return files;
+}
+
+}  // namespace
+
+bool was_read(const std::string& path) {
+    struct stat status {};
+    return ::stat(path.c_str(), &status) == 0 && read_files().contains(status);
+}
+
 InputFile::InputFile(const std::string& path)
     : InputFile(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
     owned_ = true;
@@ -21,6 +55,7 @@ InputFile::InputFile(const std::string& path)
 InputFile::InputFile(int descriptor) : descriptor_(descriptor) {
     struct stat status {};
     if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) error_ = errno;
+    if (error_ == 0 && S_ISREG(status.st_mode)) read_files().add(status);
     waits_ = S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode) || S_ISCHR(status.st_mode);
 }
 
@@ -39,7 +74,7 @@ std::size_t InputFile::read(char* to, std::size_t size) {
 }
 
 bool InputFile::wait() {
-    if (!waits_) return true;
+    if (!waits_ && !interrupt_requested) return true;
     constexpr int wake_ms = 200;
     pollfd waiting{.fd = descriptor_, .events = POLLIN, .revents = 0};
     while (!interrupt_requested)

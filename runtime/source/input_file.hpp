@@ -37,6 +37,10 @@ class InputFile {
     int error_ = 0;
 };
 
+/// Whether a regular file, by whatever name, is one that an InputFile of this process was opened
+/// for.
+bool was_read(const std::string& path);
+
 /// All bytes of a file, at most `most`; `error` is an errno, or 0.
 std::string read_bytes(const std::string& path, std::size_t most, int& error);
 

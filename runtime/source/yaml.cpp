@@ -698,15 +698,15 @@ std::optional<Node> parse_yaml(std::shared_ptr<const SourceFile> file, Diagnosti
                 fmt::format("the file has more than {} bytes", limits.bytes));
         return {};
     }
-    const std::size_t before = out.list().size();
+    const std::size_t before = out.count();
     const Source source(std::move(file));
     check_characters(source, out);
     check_brackets(source, limits, out);
-    if (out.list().size() != before) return {};
+    if (out.count() != before) return {};
 
     Builder builder(source, out, limits);
     build(source, builder, out);
-    if (out.list().size() != before) return {};
+    if (out.count() != before) return {};
     return builder.take_root();
 }
 

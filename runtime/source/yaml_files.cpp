@@ -13,9 +13,9 @@ std::shared_ptr<const SourceFile> YamlFiles::source(const std::string& path, Dia
 std::optional<Node> YamlFiles::parse(const std::shared_ptr<const SourceFile>& file,
                                      Diagnostics& out) {
     if (const auto it = roots_.find(file); it != roots_.end()) return it->second;
-    const std::size_t before = out.list().size();
+    const std::size_t before = out.count();
     auto root = parse_yaml(file, out);
-    if (root && out.list().size() == before) roots_.emplace(file, *root);
+    if (root && out.count() == before) roots_.emplace(file, *root);
     return root;
 }
 

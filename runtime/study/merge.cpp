@@ -27,7 +27,12 @@ std::vector<Part> find_parts(const std::string& folder, Diagnostics& out) {
     std::ranges::sort(paths);
     std::vector<Part> parts;
     for (const std::string& path : paths)
-        if (auto identity = read_identity(path); identity && identity->chunk)
+        if (auto identity = read_identity(path); !identity)
+            continue;
+        else if (identity->is_damaged)
+            out.add("L0612", {}, fmt::format("the sidecar of '{}' names no chunk", path),
+                    "compute it again, or move it out of the folder");
+        else if (identity->chunk)
             parts.push_back({path, std::move(*identity)});
     return parts;
 }

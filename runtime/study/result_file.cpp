@@ -1,11 +1,13 @@
 #include "runtime/study/result_file.hpp"
 
 #include <filesystem>
-#include <fstream>
 
 #include <fmt/format.h>
 
+#include "runtime/source/input_file.hpp"
+#include "runtime/source/json_text.hpp"
 #include "runtime/source/text_hash.hpp"
+#include "runtime/study/study_reader.hpp"
 #include "runtime/version.hpp"
 
 namespace lineshaft {
@@ -19,15 +21,20 @@ constexpr const char* sidecar = "-metadata.json";
 }  // namespace
 
 std::optional<ResultIdentity> read_identity(const std::string& path) {
-    std::ifstream file(path + sidecar);
-    const auto json = nlohmann::json::parse(file, nullptr, false);
-    if (!json.is_object() || !json.contains("lineshaft:study")) return {};
-    ResultIdentity identity{.study = json.value("lineshaft:study", ""),
+    constexpr std::size_t longest = 16 << 20;  // bytes; a sidecar has some 60 a column
+    int error = 0;
+    const auto json = parse_json(read_bytes(path + sidecar, longest, error));
+    if (error != 0 || !json.is_object() || !json.contains("lineshaft:study")) return {};
+    ResultIdentity identity{.study = text_at(json, "lineshaft:study"),
                             .chunk = {},
-                            .rows = json.value("lineshaft:rows", std::int64_t{0}),
-                            .rows_hash = json.value("lineshaft:rows_hash", "")};
-    if (const auto it = json.find("lineshaft:chunk"); it != json.end())
-        identity.chunk = {it->value("index", std::int64_t{0}), it->value("of", std::int64_t{0})};
+                            .rows = integer_at(json, "lineshaft:rows", 0, most_runs).value_or(0),
+                            .rows_hash = text_at(json, "lineshaft:rows_hash")};
+    const auto chunk = json.find("lineshaft:chunk");
+    if (chunk == json.end()) return identity;
+    const auto of = integer_at(*chunk, "of", 1, most_runs);
+    const auto index = of ? integer_at(*chunk, "index", 1, *of) : std::nullopt;
+    identity.is_damaged = !index;
+    if (index) identity.chunk = {*index, *of};
     return identity;
 }
 
@@ -64,6 +71,10 @@ ResultFile::ResultFile(std::string path, const Study& study, const StudyCsv& csv
                        std::optional<Chunk> chunk)
     : path_(std::move(path)), study_(study), csv_(csv), chunk_(chunk) {}
 
+bool ResultFile::belongs(const ResultIdentity& identity) const {
+    return identity.study == study_.identity && identity.chunk == chunk_ && !identity.is_damaged;
+}
+
 bool ResultFile::begin() {
     rows_ = 0;
     hash_ = text_hash(csv_.header());
@@ -83,7 +94,7 @@ bool ResultFile::resume(const std::function<void(const CaseResult&)>& take,
     const std::string part = path_ + ".part";
     if (!fs::exists(part)) return begin();
     const auto identity = read_identity(part);
-    if (!identity || identity->study != study_.identity || identity->chunk != chunk_) {
+    if (!identity || !belongs(*identity)) {
         error_ = fmt::format(
             "'{}' was left by another study, program or chunk: delete it, or leave --resume out",
             part);
@@ -113,7 +124,7 @@ bool ResultFile::resume(const std::function<void(const CaseResult&)>& take,
 bool ResultFile::take_whole(const std::function<void(const CaseResult&)>& take) const {
     const auto identity = read_identity(path_);
     const CaseRange range = chunk_.value_or(Chunk{}).range(study_.case_count());
-    if (!identity || identity->study != study_.identity || identity->chunk != chunk_ ||
+    if (!identity || !belongs(*identity) ||
         identity->rows != range.count())
         return false;
     for (const bool second : {false, true}) {  // first whether it is whole

@@ -28,7 +28,8 @@ struct ResultIdentity {
     std::string study;           ///< Study::identity
     std::optional<Chunk> chunk;  ///< none: all cases
     std::int64_t rows = 0;
-    std::string rows_hash;  ///< of header and rows
+    std::string rows_hash;    ///< of header and rows
+    bool is_damaged = false;  ///< it names a chunk that there cannot be
 };
 
 /// `PATH-metadata.json`; empty when there is none, or it is not of a study.
@@ -88,6 +89,7 @@ class ResultFile {
 
   private:
     void open(std::int64_t keep);
+    bool belongs(const ResultIdentity& identity) const;
     std::string metadata(bool whole) const;
     bool write_sidecar(const std::string& path, bool whole);
 

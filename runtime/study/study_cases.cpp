@@ -96,7 +96,7 @@ bool StudyFileReader::count(CaseGroup& group, const Mark& place) {
 }
 
 bool StudyFileReader::enough() const {
-    return !checkable_ || read_.diagnostics().list().size() > enough_mistakes;
+    return !checkable_ || read_.diagnostics().count() > enough_mistakes;
 }
 
 /// Loads the program with the settings of the group's first case, which gives the units of what is
@@ -145,12 +145,12 @@ void StudyFileReader::check_value(std::vector<Setting> settings, const Setting& 
 std::optional<Loaded> StudyFileReader::load(const std::vector<Setting>& settings) {
     const LoadOptions options{
         .settings = settings, .include_dirs = options_.include_dirs, .files = &files_};
-    const std::size_t before = read_.diagnostics().list().size();
+    const std::size_t before = read_.diagnostics().count();
     Loaded loaded{.program = read_program(program_file_, options, read_.diagnostics()),
                   .linked = {}};
     loaded.linked = link(loaded.program, catalog_, read_.diagnostics(),
                          sources_.kinds(loaded.program, catalog_));
-    if (read_.diagnostics().list().size() > before) return {};
+    if (read_.diagnostics().count() > before) return {};
     return loaded;
 }
 

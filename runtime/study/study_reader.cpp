@@ -1,12 +1,12 @@
 #include "runtime/study/study_reader.hpp"
 
-#include <fstream>
 #include <set>
 
 #include <fmt/format.h>
 
 #include "runtime/csv/checksum.hpp"
 #include "runtime/csv/csv_metadata.hpp"
+#include "runtime/source/input_file.hpp"
 #include "runtime/source/text_hash.hpp"
 #include "runtime/study/study_file_reader.hpp"
 #include "runtime/version.hpp"
@@ -23,10 +23,11 @@ void add(std::string& hash, const std::string& text) {
 /// Of a file's bytes; of none where it cannot be read.
 std::string checksum_of(const std::string& path) {
     Checksum checksum;
-    std::ifstream file(path, std::ios::binary);
+    InputFile file(path);
     std::vector<char> bytes(std::size_t{1} << 16);
-    while (file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())), file.gcount() > 0)
-        checksum.add({bytes.data(), static_cast<std::size_t>(file.gcount())});
+    for (auto count = file.read(bytes.data(), bytes.size()); count > 0;
+         count = file.read(bytes.data(), bytes.size()))
+        checksum.add({bytes.data(), count});
     return checksum.text();
 }
 

@@ -165,6 +165,13 @@ bool OutputFile::publish() {
     return error_.empty();
 }
 
+void OutputFile::discard() {
+    if (!regular_ || !file_) return;
+    ::unlink(part().c_str());
+    std::fclose(std::exchange(file_, nullptr));
+    set_error(fmt::format("'{}' was discarded", path_));
+}
+
 bool OutputFile::commit() {
     if (!complete()) return false;
     if (!regular_) return publish();

@@ -33,6 +33,9 @@ class OutputFile {
     /// complete() and publish(): an OutputSet of one. False when any step failed: see error().
     bool commit();
 
+    /// Nothing is to stay: the part goes.
+    void discard();
+
     /// All is on the disk, in the part. False when any step failed.
     bool complete();
     /// Gives the complete part its name. False when that failed.

@@ -1,22 +1,37 @@
 #include "runtime/trace/trace_files.hpp"
 
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace lineshaft {
 
-TraceFiles::TraceFiles(const std::string& out, const TraceSetup& setup, const TraceOrigin& origin,
-                       const CsvStyle& style, OutputSet& files)
-    : setup_(setup), origin_(origin), style_(style), files_(files) {
-    extension_ = std::filesystem::path(out).extension().string();
-    stem_ = out.substr(0, out.size() - extension_.size());
-    if (!setup.name.empty() && out != "-") stem_ += "." + setup.name;
+namespace {
+
+std::string path_of(const std::string& out, const TraceSetup& setup, std::size_t number) {
+    const std::string extension = std::filesystem::path(out).extension().string();
+    std::string path = out.substr(0, out.size() - extension.size());
+    if (!setup.name.empty() && out != "-") path += "." + setup.name;
+    if (setup.repeat > 1) path += fmt::format(".{}", number);
+    return path + extension;
 }
 
+}  // namespace
+
+std::vector<std::string> trace_paths(const std::string& out, const TraceSetup& setup) {
+    std::vector<std::string> paths;
+    for (std::int64_t i = 1; i <= setup.repeat; ++i)
+        paths.push_back(path_of(out, setup, static_cast<std::size_t>(i)));
+    return paths;
+}
+
+TraceFiles::TraceFiles(std::string out, const TraceSetup& setup, const TraceOrigin& origin,
+                       const CsvStyle& style, OutputSet& files)
+    : out_(std::move(out)), setup_(setup), origin_(origin), style_(style), files_(files) {}
+
 std::string TraceFiles::next_path() const {
-    if (setup_.repeat == 1) return stem_ + extension_;
-    return fmt::format("{}.{}{}", stem_, paths_.size() + 1, extension_);
+    return path_of(out_, setup_, paths_.size() + 1);
 }
 
 void TraceFiles::open(auto&... state) {

@@ -9,13 +9,16 @@
 
 namespace lineshaft {
 
-/// Writes each measurement of a trace to a CSV file of its own, see CsvWriter: the trace `name` of
-/// `out.csv` goes to `out.name.csv`, one that may repeat to `out.name.1.csv`, `out.name.2.csv`, ...
+/// The files of a trace's measurements: the trace `name` of `out.csv` goes to `out.name.csv`, one
+/// that may repeat to `out.name.1.csv`, `out.name.2.csv`, ... `out` is what the user named, the file
+/// of the trace without a name.
+std::vector<std::string> trace_paths(const std::string& out, const TraceSetup& setup);
+
+/// Writes each measurement of a trace to a CSV file of its own, see CsvWriter and trace_paths().
 class TraceFiles : public TraceSink {
   public:
-    /// `setup`, `origin` and `files`, which takes them, must outlive this. `out` is what the user
-    /// named, the file of the trace without a name.
-    TraceFiles(const std::string& out, const TraceSetup& setup, const TraceOrigin& origin,
+    /// `setup`, `origin` and `files`, which takes them, must outlive this.
+    TraceFiles(std::string out, const TraceSetup& setup, const TraceOrigin& origin,
                const CsvStyle& style, OutputSet& files);
 
     /// For the files that end after the run: why it stopped, empty if it completed, and what came
@@ -45,7 +48,7 @@ class TraceFiles : public TraceSink {
     std::string next_path() const;
     void open(auto&... state);
 
-    std::string stem_, extension_;
+    std::string out_;
     const TraceSetup& setup_;
     const TraceOrigin& origin_;
     CsvStyle style_;

@@ -110,10 +110,11 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
                    Diagnostics& out) {
     for (auto output = outputs.begin(); output != outputs.end(); ++output) {
         if (output->empty()) continue;
-        for (const std::string& input : inputs)
-            if (is_same_file(*output, input))
-                out.add("L0509", {}, fmt::format("'{}' would replace what is read", *output),
-                        "name another file");
+        if (was_read(*output) || std::ranges::any_of(inputs, [&](const std::string& input) {
+                return is_same_file(*output, input);
+            }))
+            out.add("L0509", {}, fmt::format("'{}' would replace what is read", *output),
+                    "name another file");
         if (std::find(outputs.begin(), output, *output) != output)
             out.add("L0509", {}, fmt::format("two outputs would be '{}'", *output),
                     "name another file");

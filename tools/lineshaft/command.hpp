@@ -51,8 +51,8 @@ Exit report(const Diagnostics& diagnostics, bool json);
 /// `--strict`: warnings are errors.
 void add_strict(CLI::App& command, bool& strict);
 
-/// L0509 for each of `outputs` that is one of the files `inputs`, by whatever name, or that is
-/// named twice. Empty names are none.
+/// L0509 for each of `outputs` that is, by whatever name, a file which has been read so far or one
+/// of `inputs`, which are still to be read, or that is named twice. Empty names are none.
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
                    Diagnostics& out);
 

@@ -66,7 +66,7 @@ Exit execute(const FitCommand& command) {
     const auto file = read_source(command.plan, out);
     FitPlan plan;
     if (file) plan = read_fit(file, options, catalog, out);
-    check_outputs({command.output}, {command.plan, plan.program}, out);
+    check_outputs({command.output}, {}, out);
     if (!out.empty()) return report(out, command.common.json);
 
     const FitReport result = search(plan, catalog, command);

@@ -405,6 +405,7 @@ Exit execute(const PlanCommand& command) {
     Planner planner(standard_input ? "stdin" : command.input, command.options);
     OutputFile sink(command.output.empty() ? "-" : command.output);
     const Exit result = plan_lines(lines, planner, sink);
+    if (!planner.has_header()) sink.discard();
     if (!planner.has_header() || (result != Exit::fine && result != Exit::wrong)) return result;
     sink.commit();
     if (sink.error().empty()) return result;

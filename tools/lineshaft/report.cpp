@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "runtime/source/json_text.hpp"
 #include "runtime/source/yaml.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
@@ -55,7 +56,7 @@ bool is_study_file(const std::string& path) {
 Json read_study_results(const std::string& path, Diagnostics& out) {
     const auto file = read_source(path, out);
     if (!file) return {};
-    Json study = Json::parse(file->text, nullptr, false);
+    Json study = parse_json(file->text);
     const auto is_row = [](const Json& row) {
         const auto number_or_null = [&](const char* key) {
             return row.contains(key) && (row[key].is_number() || row[key].is_null());

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "runtime/csv/csv_cells.hpp"
+#include "runtime/source/json_text.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/source/yaml.hpp"
 #include "runtime/trace/event_writer.hpp"
@@ -42,7 +43,7 @@ void read_sidecar(const std::string& csv_path, ReportRun& run, Diagnostics& out)
     if (!std::filesystem::exists(sidecar_path(csv_path))) return;
     const auto file = read_source(sidecar_path(csv_path), out);
     if (!file) return;
-    const Json sidecar = Json::parse(file->text, nullptr, false);
+    const Json sidecar = parse_json(file->text);
     if (!sidecar.is_object()) return;
     const auto list = [&](const char* key, auto is_good, Json& to) {
         if (const auto it = sidecar.find(key); it != sidecar.end())

@@ -7,7 +7,9 @@
 #include "blocks/catalog.hpp"
 #include "runtime/run/signal_json.hpp"
 #include "runtime/source/reader.hpp"
+#include "runtime/csv/csv_metadata.hpp"
 #include "runtime/trace/event_writer.hpp"
+#include "runtime/trace/trace_files.hpp"
 #include "tools/lineshaft/run_command.hpp"
 
 namespace lineshaft {
@@ -159,6 +161,17 @@ void print_shown(const RunCommand& command, const std::vector<Signal>& shown) {
         fmt::print(out, "{:28} {}\n", signal.name, signal.describe(signal.value()));
 }
 
+/// What --trace writes.
+void add_traces(const RunCommand& command, const Loaded& loaded, std::vector<std::string>& files) {
+    if (command.trace.empty() || command.trace == "-") return files.push_back(command.trace);
+    for (const TraceSetup& trace : loaded.linked.traces)
+        for (const std::string& csv : trace_paths(command.trace, trace)) {
+            files.push_back(csv);
+            files.push_back(sidecar_path(csv));
+        }
+    files.push_back(events_path(command.trace));
+}
+
 Exit execute(const RunCommand& command) {
     Diagnostics out;
     RunOptions how = run_options(command, out);
@@ -212,21 +225,15 @@ RunOptions run_options(const RunCommand& command, Diagnostics& out) {
 
 std::optional<Loaded> load(const RunCommand& command, const std::vector<std::string>& outputs,
                            Diagnostics& out) {
-    YamlFiles files;
     LoadOptions options = command.common.load_options(out);
-    options.files = &files;
     options.forces = command.forces;
     options.recording = command.recording;
     auto loaded = load_program(command.program, options, standard_blocks(), out);
-    std::vector<std::string> inputs;
-    for (const auto& file : files.sources()) inputs.push_back(file->path);
-    if (!command.recording.empty()) inputs.push_back(command.recording);
-    if (loaded)
-        for (const ReplayPlan& replay : loaded->program.replays) inputs.push_back(replay.path);
     if (loaded) check_files(command, *loaded, out);
-    std::vector<std::string> all{command.trace, command.pulses, command.retain, command.checkpoint};
+    std::vector<std::string> all{command.pulses, command.retain, command.checkpoint};
     all.insert(all.end(), outputs.begin(), outputs.end());
-    check_outputs(all, inputs, out);
+    if (loaded) add_traces(command, *loaded, all);
+    check_outputs(all, {}, out);
     if (command.strict) out.be_strict();
     if (!out.empty()) return {};
     fmt::print(stderr, "{}", out.render());

@@ -124,6 +124,7 @@ Exit StudyRun::simulate(const Catalog& catalog) {
 Exit StudyRun::merge() {
     Diagnostics out;
     const auto chunks = find_chunks(command_.merge, study_, csv_, out);
+    check_outputs({command_.output}, chunks, out);
     if (!out.empty()) return report(out, command_.common.json);
     bool good = file_->begin();
     for (const std::string& path : chunks) {
@@ -208,7 +209,7 @@ Exit execute(const StudyCommand& command) {
     if (file)
         study =
             read_study(file, options, catalog, out, part ? StudyCheck::groups : StudyCheck::values);
-    check_outputs({command.output, command.report}, {command.plan, study.program}, out);
+    check_outputs({command.output, command.report}, {study.program}, out);
     if (out.empty()) prepare_traces(command, study, out);
     if (!out.empty()) return report(out, command.common.json);
     StudyRun run(command, study, chunk);

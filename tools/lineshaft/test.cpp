@@ -164,6 +164,14 @@ bool prepare(TestCommand& command) {
     return !failed;
 }
 
+/// `inputs` are still to be read. False, and reported, when one would replace what is read.
+bool check_files(const TestCommand& command, const std::vector<std::string>& inputs) {
+    Diagnostics out;
+    check_outputs({command.junit, command.coverage}, inputs, out);
+    if (!out.empty()) report(out, false);
+    return out.empty();
+}
+
 Exit finish(const TestCommand& command, const std::vector<SuiteEntry>& entries) {
     const auto failed =
         std::ranges::count_if(entries, [](const SuiteEntry& e) { return !e.failures.empty(); });
@@ -175,6 +183,7 @@ Exit finish(const TestCommand& command, const std::vector<SuiteEntry>& entries) 
     if (!skipped.empty())
         fmt::print("skipped as slow, --slow runs {}: {}\n", skipped.size() == 1 ? "it" : "them",
                    fmt::join(skipped, ", "));
+    if (!check_files(command, {})) return Exit::wrong;
     const bool written =
         write(command.junit, junit_xml(entries)) && write(command.coverage, st::lcov_text());
     if (!written) return Exit::fault;
@@ -197,6 +206,9 @@ Exit execute(TestCommand& command) {
                 fmt::print("{}\n", name);
         return Exit::fine;
     }
+    std::vector<std::string> paths;
+    for (const TestFile& file : files) paths.push_back(file.path);
+    if (!check_files(command, paths)) return Exit::wrong;
     const std::vector<SuiteEntry> entries = Suite(files, command).run();
     return interrupt_requested ? Exit::interrupted : finish(command, entries);
 }

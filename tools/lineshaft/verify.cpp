@@ -45,9 +45,9 @@ std::optional<CsvTable> verify(const std::string& path, Diagnostics& out) {
 Exit execute(const VerifyCommand& command) {
     Diagnostics out;
     for (const std::string& path : command.files) {
-        const std::size_t before = out.list().size();
+        const std::size_t before = out.count();
         const auto table = verify(path, out);
-        if (out.list().size() != before || command.json || command.quiet) continue;
+        if (out.count() != before || command.json || command.quiet) continue;
         fmt::print("ok  {}: {} rows of {} columns, written by lineshaft {} for '{}'\n", path,
                    table->rows, table->columns.size(), table->metadata->version,
                    table->metadata->title);

@@ -1,6 +1,7 @@
 #include "runtime/csv/csv_reader.hpp"
 
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -222,4 +223,35 @@ TEST_CASE("what a crash left is read up to its last full row") {
     CHECK(values(read_text("x,y\n1,2\n3,4", cut), "y") == Values{2});
     CHECK(values(read_text("x,y\n1,2\n3,4\n", cut), "y") == Values{2, 4});
     CHECK(read_text("x,y\n1\n3,4", cut).said.find("error[L0704]") != std::string::npos);
+}
+
+TEST_CASE("a line ends with LF, CR LF or CR, also where the file is read in parts") {
+    for (const char* end : {"\n", "\r\n", "\r"}) {
+        std::string text = fmt::format("x,y{}", end);
+        Values wanted;
+        for (int i = 0; i < 300'000; ++i) {
+            text += fmt::format("{},{}{}", i, i % 7, end);
+            wanted.push_back(i);
+        }
+        CHECK((values(read_text(text), "x") == wanted));
+    }
+    CHECK(values(read_text("x\r1\n2\r\n3\r"), "x") == Values{1, 2, 3});
+    CHECK(read_text("x,y\r1,2\r3\r").said.find("t.csv:3:1: error[L0704]") != std::string::npos);
+}
+
+TEST_CASE("of a file with mistakes everywhere some are told, and little is kept") {
+    std::string titles = "1", rows = "x\n";
+    for (int i = 0; i < 100'000; ++i) titles += ",1", rows += "?\n";
+    for (const std::string& text : {titles + "\n", rows, "x\n" + titles + "\n"}) {
+        Diagnostics out;
+        const Folder folder;
+        std::ofstream(folder / "t.csv", std::ios::binary) << text;
+        CHECK_FALSE(read_csv(folder / "t.csv", out));
+        CHECK(out.count() <= 21);
+        std::size_t kept = 0;
+        std::set<const SourceFile*> files;
+        for (const Diagnostic& d : out.list())
+            if (files.insert(d.mark.file.get()).second) kept += d.mark.file->text.size();
+        CHECK(kept <= text.size() + 100);
+    }
 }

@@ -186,3 +186,13 @@ TEST_CASE("warnings are no errors until they are taken strictly") {
     CHECK(all.warnings().empty());
     CHECK(all.render() == "a.yaml:1:1: error[L0803]: nothing uses x\n   1 | x\n     | ^\n");
 }
+
+TEST_CASE("what a file has too many of is counted, and kept as far as it is shown") {
+    Diagnostics out;
+    const std::string much(100'000, 'x');
+    for (int i = 1; i <= 3000; ++i) out.add("L0203", {nullptr, i, 1, 1}, much + std::to_string(i));
+    CHECK(out.count() == 3000);
+    CHECK(out.list().size() == 1000);
+    CHECK(out.list().front().message.size() < 5000);
+    CHECK(out.render(1).ends_with("... and 2999 more\n"));
+}
