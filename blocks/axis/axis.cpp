@@ -21,13 +21,16 @@ std::span<const Field> Axis::fields() {
                   "of commands with an acceleration below 0")
             .above(0),
         parameter("default_deceleration", &A::default_deceleration, "{unit}/s^2",
-                  "of commands with a deceleration below 0, and of the axis when it must stop")
+                  "of commands with a deceleration below 0, and of the axis when it must stop; in "
+                  "front of a software limit it stops harder where that is too weak")
             .above(0),
         parameter("default_jerk", &A::default_jerk, "{unit}/s^3",
                   "of commands with a jerk below 0; 0: trapezoids")
             .at_least(0),
-        parameter("software_limits", &A::software_limits, "",
-                  "the position stays in `lowest_position`..`highest_position`"),
+        parameter(
+            "software_limits", &A::software_limits, "",
+            "the position stays in `lowest_position`..`highest_position`; an axis that was put "
+            "outside only comes in"),
         parameter("lowest_position", &A::lowest_position, "{unit}", "with `software_limits`"),
         parameter("highest_position", &A::highest_position, "{unit}", "with `software_limits`"),
         parameter("start_position", &A::start_position, "{unit}", "position at the first scan"),
@@ -67,6 +70,7 @@ double within_period(double position, double period) {
 
 void Axis::scan(const Scan& now, const Context& context) {
     if (started == 0) start(now);
+    watch_limits();
     task = context.task;
     scan_index = now.index;
     scan_time = now.time;
@@ -77,7 +81,7 @@ void Axis::scan(const Scan& now, const Context& context) {
         take_up(context, now);
         advance(context, now.time);
     }
-    if (software_limits) keep_limits(context, now);
+    if (software_limits) keep_limits(context);
     publish();
 }
 
@@ -92,6 +96,7 @@ void Axis::shift(std::int64_t by) {
     for (Moment* moment : {&velocity_motion.start, &point_motion.start, &added_motion.start,
                            &profile_motion.start, &sync.start, &sync.shifting.start})
         moment->time += by;
+    shown.time += by;
 }
 
 void Axis::watch_drive(const Context& context, const Scan& now) {
@@ -196,16 +201,6 @@ void Axis::end_leg(const Moment& at) {
     leg.exists = 0;
 }
 
-/// A motion that does not know where it ends: it stops with the defaults, in time.
-void Axis::keep_limits(const Context& context, const Scan& now) {
-    if (doing == Doing::moving_to_point && !added.exists()) return;
-    if (state == AxisState::error_stop || state == AxisState::standstill) return;
-    const MotionState next = total().after(seconds(now.interval));
-    const double stop = stopping_position(next, defaults());
-    const bool beyond = next.velocity > 0 ? stop > highest_position : stop < lowest_position;
-    if (beyond && next.velocity != 0) fail(context, {now.time}, MotionError::software_limit);
-}
-
 /// Standing, with nothing to do.
 void Axis::settle() {
     if (active.exists() || added.exists() || doing != Doing::holding) return;
@@ -221,7 +216,9 @@ void Axis::publish() {
         error_id = MotionError::not_finite;
         return;
     }
-    position = modulo ? within_period(now.position, period) : now.position;
+    position = modulo            ? within_period(now.position, period)
+               : software_limits ? shown.state.position
+                                 : now.position;
     velocity = now.velocity;
     acceleration = now.acceleration;
     jerk = now.jerk;

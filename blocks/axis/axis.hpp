@@ -11,6 +11,7 @@
 #include "blocks/axis/job.hpp"
 #include "blocks/axis/profile_motion.hpp"
 #include "blocks/axis/sync_motion.hpp"
+#include "blocks/axis/way.hpp"
 #include "runtime/model/catalog.hpp"
 #include "runtime/model/field.hpp"
 #include "runtime/model/scan.hpp"
@@ -75,6 +76,14 @@ struct Axis {
         Dynamics dynamics;
     };
 
+    /// The set-point that was shown last, as long as software limits count.
+    struct Shown {
+        std::int64_t exists = 0;
+        MotionState state;
+        std::int64_t time = 0;  ///< [ns]
+        double relocated = 0;   ///< of the axis then
+    };
+
     JobList inbox, queue;
     Running active;      ///< on the axis' motion
     Running added;       ///< MC_MoveSuperimposed, on top of it
@@ -103,6 +112,7 @@ struct Axis {
     double actual_velocity = 0, last_actual = 0;  ///< of the drive
     std::int64_t renamed = 0;                     ///< times that the place got another position
     std::int64_t trigger_aborts = 0;
+    Shown shown;
     std::int64_t started = 0;
     std::int64_t task = 0, scan_index = 0;  ///< of the scan under way, to stamp what is told
     std::int64_t scan_time = 0, scan_interval = 0;  ///< [ns]
@@ -144,8 +154,9 @@ struct Axis {
     /// Where a motion beneath begins.
     struct Start {
         MotionState state;
-        double origin = 0;  ///< of distances
-        double taken = 0;   ///< way of `extra` that is in both, and no longer on top
+        double origin = 0;         ///< of distances
+        double taken = 0;          ///< way of `extra` that is in both, and no longer on top
+        bool drops_added = false;  ///< what is on top does not go on
     };
     Start start_of(const Request& request, bool keeps_added) const;
     Start start_again() const;
@@ -166,8 +177,36 @@ struct Axis {
     void end_hold(const Context& context, const Moment& at);
     void end_leg(const Moment& at);
     void watch_drive(const Context& context, const Scan& now);
-    void keep_limits(const Context& context, const Scan& now);
     void publish();
+
+    // axis_limits.cpp: the position stays within software limits.
+    struct Bounds {
+        double lowest = 0, highest = 0;
+        double below = 0, above = 0;  ///< tolerances
+
+        bool contain(const Range& positions) const;
+        /// False for a position outside; one within the tolerance is put onto its limit.
+        bool admit(double& position) const;
+    };
+    Bounds bounds() const;
+    void watch_limits();
+    void keep_limits(const Context& context);
+    void show();
+    bool is_safe(const MotionState& next) const;
+    bool can_brake(const MotionState& from) const;
+    bool leads_inside(const Way& way, double further) const;
+    template <class Motion>
+    bool leads_inside(const Motion& beneath, const Start& from) const;
+    bool goes_on_inside() const;
+    bool turns_inside(const MotionState& from) const;
+    void stop_inside(const Context& context, MotionError why);
+    void stop_at_limit(const Moment& at);
+    bool may_aim_at(double& to, const Start& from) const;
+    bool may_begin(const PointMotion& next, const Start& from) const;
+    bool may_begin(const VelocityMotion& next, const Start& from) const;
+    bool may_follow(const ProfileMotion& next, const Cam& cam, const Start& from) const;
+    bool may_add(const PointMotion& next) const;
+    bool may_wait(const Context& context, const Request& request) const;
 
     // axis_sync.cpp: other axes are followed.
     MotionState led_by(const Context& context, const MasterLink& link) const;
@@ -247,7 +286,8 @@ struct Axis {
     MotionError plan_point(const Request& request, double to, const Moment& at, const Start& from);
     MotionError go_to(double to, double end_velocity, const Dynamics& d, const Moment& at,
                       const Start& from);
-    MotionError go_on(double with, const Dynamics& d, const Moment& at, const Start& from);
+    MotionError go_on(double with, const Dynamics& d, const Moment& at, const Start& from,
+                      bool in_any_case = false);
     MotionError plan_homing(const Request& request, const Moment& at, const Start& from);
     void replan(const Context& context, const Moment& at);
     double target_of(const Request& request, const Start& from) const;

@@ -104,7 +104,8 @@ void Axis::blend(const Context& context, const Moment& at) {
     PointMotion motion;
     Leg rest;
     const auto is_possible = [&](double v) {
-        return plan_to_junction(junction, v, motion, rest, at) && goes_on(next, junction, v);
+        return plan_to_junction(junction, v, motion, rest, at) && goes_on(next, junction, v) &&
+               (!software_limits || can_brake({goal + added_goal, junction.direction * v}));
     };
     if (!is_possible(wanted)) {
         double low = 0, high = wanted;

@@ -202,6 +202,7 @@ Axis::Start Axis::start_of(const Request& request, bool keeps_added) const {
     Start from = start_again();
     from.taken = keeps_added ? added_goal : extra.position;
     from.state.position += from.taken;
+    from.drops_added = !keeps_added;
     if (!keeps_added) from.state = total();
     const bool from_goal =
         request.command == Command::move_additive && state == AxisState::discrete_motion;
@@ -258,6 +259,7 @@ MotionError Axis::plan_profile(const Context& context, const Request& request, c
         (!of_velocity && apart(end.velocity, 0, v)))
         return MotionError::out_of_range;
     if (!next.keeps(d, cam)) return MotionError::sync_limits;
+    if (!may_follow(next, cam, from)) return MotionError::software_limit;
     profile_motion = next;
     doing = Doing::following_profile;
     leg.exists = paused = 0;
@@ -301,14 +303,17 @@ MotionError Axis::plan_velocity(const Request& request, const Moment& at, const 
         if (request.direction == MoveDirection::current)
             wanted = std::copysign(wanted, sign_of(now.velocity != 0 ? now.velocity : lasting));
     }
-    return go_on(wanted, dynamics_of(request), at, from);
+    return go_on(wanted, dynamics_of(request), at, from, request.command == Command::stop);
 }
 
-/// To a velocity and on with it, both with the override.
-MotionError Axis::go_on(double with, const Dynamics& d, const Moment& at, const Start& from) {
-    const MotionError why =
-        motion_error_of(velocity_motion.begin(from.state, with * factors.velocity, d, at));
+/// To a velocity and on with it, both with the override; in any case, or where limits allow.
+MotionError Axis::go_on(double with, const Dynamics& d, const Moment& at, const Start& from,
+                        bool in_any_case) {
+    VelocityMotion next;
+    const MotionError why = motion_error_of(next.begin(from.state, with * factors.velocity, d, at));
     if (why != MotionError::none) return why;
+    if (!in_any_case && !may_begin(next, from)) return MotionError::software_limit;
+    velocity_motion = next;
     doing = Doing::following_velocity;
     leg.exists = paused = 0;
     lasting = with;
@@ -319,8 +324,7 @@ MotionError Axis::go_on(double with, const Dynamics& d, const Moment& at, const 
 MotionError Axis::plan_point(const Request& request, double to, const Moment& at,
                              const Start& from) {
     if (!asked_of(request).valid()) return MotionError::limit_not_positive;
-    if (software_limits && (to < lowest_position || to > highest_position))
-        return MotionError::software_limit;
+    if (!may_aim_at(to, from)) return MotionError::software_limit;
     const double direction = sign_of(to - from.state.position);
     const double end_velocity =
         is_continuous(request.command) ? direction * request.end_velocity : 0;
@@ -331,10 +335,18 @@ MotionError Axis::plan_point(const Request& request, double to, const Moment& at
 MotionError Axis::go_to(double to, double end_velocity, const Dynamics& d, const Moment& at,
                         const Start& from) {
     const bool pauses = factors.velocity == 0;
+    VelocityMotion stop;
+    PointMotion next;
     const MotionError why = motion_error_of(
-        pauses ? velocity_motion.begin(from.state, 0, d, at)
-               : point_motion.begin(from.state, to, end_velocity * factors.velocity, d, at));
+        pauses ? stop.begin(from.state, 0, d, at)
+               : next.begin(from.state, to, end_velocity * factors.velocity, d, at));
     if (why != MotionError::none) return why;
+    if (!(pauses ? may_begin(stop, from) : may_begin(next, from)))
+        return MotionError::software_limit;
+    if (pauses)
+        velocity_motion = stop;
+    else
+        point_motion = next;
     doing = pauses ? Doing::following_velocity : Doing::moving_to_point;
     leg.exists = 0;
     paused = pauses ? 1 : 0;

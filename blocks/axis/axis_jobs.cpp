@@ -120,6 +120,8 @@ Progress Axis::begun() const {
 }
 
 void Axis::wait(const Context& context, const Moment& at, Job& job) {
+    if (!may_wait(context, job.request))
+        return tell(job, Progress::failed, MotionError::software_limit);
     link(context, job, queue, JobPlace::queue);
     tell(job, Progress::waiting);
     if (&front(context) != &job || job.request.command == Command::reset) return;

@@ -121,6 +121,19 @@ void VelocityMotion::hold(const MotionState& state, const Moment& at) {
     ramp.end = {0, state.velocity, 0, 0};
 }
 
+bool VelocityMotion::stand_at(double position, const MotionState& from, const Moment& at) {
+    const double way = position - from.position;
+    const double time = 2 * way / from.velocity, deceleration = from.velocity / time;
+    if (!(time > 0) || !std::isfinite(time) || !std::isfinite(deceleration)) return false;
+    start = at;
+    start_position = from.position;
+    ramp.phases[0] = {time, {0, from.velocity, -deceleration, 0}};
+    ramp.count = 1;
+    ramp.duration = time;
+    ramp.end = {way, 0, 0, 0};
+    return true;
+}
+
 MotionState VelocityMotion::at(std::int64_t now) const {
     const double t = start.until(now);
     MotionState state = before_start(ramp.at(t), t);

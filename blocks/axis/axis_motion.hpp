@@ -75,6 +75,9 @@ struct VelocityMotion {
                      const Moment& at);
     /// Stands, or goes on as it is.
     void hold(const MotionState& state, const Moment& at);
+    /// To rest at a position that lies ahead, with one deceleration from now on, whatever it is and
+    /// however far the acceleration jumps. False where numbers are beyond a double.
+    bool stand_at(double position, const MotionState& from, const Moment& at);
 
     MotionState at(std::int64_t now) const;
     bool has_ended(std::int64_t now) const { return start.has_passed(ramp.duration, now); }

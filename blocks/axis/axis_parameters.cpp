@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "blocks/axis/axis.hpp"
 
 namespace lineshaft {
@@ -32,19 +34,26 @@ std::optional<double> Axis::read_parameter(std::int64_t number) const {
     return *limit;
 }
 
-/// What an axis needs to be able to stop stays above 0.
+/// What an axis needs to be able to stop stays above 0, and limits that count stay in order.
 MotionError Axis::write_parameter(std::int64_t number, double value) {
     if (number == 4 || number == 5) {
-        software_limits = value != 0 && !modulo && lowest_position < highest_position;
-        return software_limits == (value != 0) ? MotionError::none : MotionError::out_of_range;
+        const bool wanted = value != 0;
+        if (wanted && (modulo || !(lowest_position < highest_position)))
+            return MotionError::out_of_range;
+        software_limits = wanted;
+        watch_limits();
+        return MotionError::none;
     }
     double* limit = limit_of(number);
     if (!limit) return MotionError::no_such_parameter;
     const bool is_position = number == 2 || number == 3;
     const bool good = is_position || value > 0 || (number == 17 && value == 0);
-    if (!good) return MotionError::out_of_range;
+    if (!good || !std::isfinite(value)) return MotionError::out_of_range;
+    const double before = *limit;
     *limit = value;
-    return MotionError::none;
+    if (!software_limits || lowest_position < highest_position) return MotionError::none;
+    *limit = before;
+    return MotionError::out_of_range;
 }
 
 }  // namespace lineshaft

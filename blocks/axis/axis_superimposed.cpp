@@ -50,8 +50,11 @@ MotionError Axis::plan_added(const Context& context, const Moment& at, const Req
     if (d.velocity == 0) d.velocity = asked.velocity;
     const double stop = stopping_position(extra, d);
     if (halts) covered = to = stop;
-    const PlanResult planned = added_motion.begin(extra, pauses ? stop : to, 0, d, at);
+    PointMotion next;
+    const PlanResult planned = next.begin(extra, pauses ? stop : to, 0, d, at);
     if (planned != PlanResult::ok) return motion_error_of(planned);
+    if (!may_add(next)) return MotionError::software_limit;
+    added_motion = next;
     added_paused = pauses ? 1 : 0;
     const double missing = added_goal - covered;
     added_goal = to;

@@ -22,6 +22,16 @@ MotionState ProfileMotion::end(const Cam& cam) const {
     return of_velocity == 0 ? MotionState{last} : MotionState{at(duration, cam).position, last};
 }
 
+Range ProfileMotion::positions(const Cam& cam) const {
+    if (of_velocity != 0) {
+        const Range way = cam.areas(time_scale * scale, time_scale * offset);
+        return {start_position + way.least, start_position + way.greatest};
+    }
+    const Range values = cam.values();
+    const double one = scale * values.least + offset, other = scale * values.greatest + offset;
+    return {std::min(one, other), std::max(one, other)};
+}
+
 bool ProfileMotion::keeps(const Dynamics& limits, const Cam& cam) const {
     constexpr double slightly_more = 1 + 1e-12;
     constexpr double nanosecond = 1e-9;

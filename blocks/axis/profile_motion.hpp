@@ -25,6 +25,9 @@ struct ProfileMotion {
     /// What is kept from there on: rest at the last position, or the last velocity.
     MotionState end(const Cam& cam) const;
 
+    /// Between which positions it stays up to its end.
+    Range positions(const Cam& cam) const;
+
     /// Whether velocity, acceleration and jerk stay within limits, also at the points.
     bool keeps(const Dynamics& limits, const Cam& cam) const;
 };

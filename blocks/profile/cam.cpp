@@ -156,6 +156,31 @@ double Cam::area(double x) const {
     return sum;
 }
 
+Range Cam::values() const {
+    Range all{points.front().y, points.front().y};
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const Range r = range(curve(points[i], points[i + 1]), 0, points[i + 1].x - points[i].x);
+        all = {std::min(all.least, r.least), std::max(all.greatest, r.greatest)};
+    }
+    return all;
+}
+
+Range Cam::areas(double scale, double offset) const {
+    Range all;
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const auto y = curve(points[i], points[i + 1]);
+        const double h = points[i + 1].x - points[i].x;
+        Polynomial<6> area{{sum, offset}};
+        for (std::size_t n = 0; n < y.c.size(); ++n)
+            area.c[n + 1] += scale * y.c[n] / static_cast<double>(n + 1);
+        const Range r = range(area, 0, h);
+        all = {std::min(all.least, r.least), std::max(all.greatest, r.greatest)};
+        sum = area.at(h);
+    }
+    return all;
+}
+
 CamExtremes Cam::extremes() const {
     CamExtremes most;
     CurvePoint before;

@@ -72,6 +72,10 @@ struct Cam {
     /// The integral of y from the first point to x, within the cam.
     double area(double x) const;
     CamExtremes extremes() const;
+    /// Between what y stays.
+    Range values() const;
+    /// Between what the integral of scale * y + offset stays, from the first point on.
+    Range areas(double scale, double offset) const;
 };
 
 }  // namespace lineshaft

@@ -1,5 +1,6 @@
 #include "blocks/profile/cam.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -111,4 +112,27 @@ TEST_CASE("a cam whose master does not rise is refused at the point where it doe
     const CamProblem nan = problem_of({point(0, 0, cubic), point(1, NAN, cubic)});
     CHECK(nan.fault == CamFault::not_finite);
     CHECK(nan.point == 1);
+}
+
+TEST_CASE("a cam and its area stay between what is seen of them") {
+    for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+        Random random{seed};
+        std::vector<CamPoint> points;
+        for (int i = 0; i < 6; ++i)
+            points.push_back(point(10 * i, random.between(-50, 50), CamCurve::quintic));
+        const Made m(points);
+        const double scale = random.between(-2, 2), offset = random.between(-20, 20);
+        Range values{m.cam.at(0).y, m.cam.at(0).y}, areas;
+        for (int i = 0; i < 50'000; ++i) {
+            const double x = i * 1e-3, y = m.cam.at(x).y;
+            const double area = scale * m.cam.area(x) + offset * x;
+            values = {std::min(values.least, y), std::max(values.greatest, y)};
+            areas = {std::min(areas.least, area), std::max(areas.greatest, area)};
+        }
+        INFO("seed " << seed);
+        CHECK(m.cam.values().least == Approx(values.least).margin(0.05));
+        CHECK(m.cam.values().greatest == Approx(values.greatest).margin(0.05));
+        CHECK(m.cam.areas(scale, offset).least == Approx(areas.least).margin(0.2));
+        CHECK(m.cam.areas(scale, offset).greatest == Approx(areas.greatest).margin(0.2));
+    }
 }

@@ -1,0 +1,245 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "blocks/axis/axis.hpp"
+#include "blocks/axis/way.hpp"
+#include "blocks/inputs.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+/// Of sums as 0.1 + 0.2: a billionth of the unit, or of a shorter way between the limits, and what
+/// rounding does to the limit itself.
+double tolerance_of(double limit, double size) {
+    constexpr double part = 1e-9, rounding = 8 * std::numeric_limits<double>::epsilon();
+    return part * std::min(1.0, size) + rounding * std::abs(limit);
+}
+
+/// More than an axis needs from v and a to rest: jerk and deceleration one after the other, each
+/// at the greatest speed.
+double longest_stop(const MotionState& from, const Dynamics& d) {
+    const double a = std::abs(from.acceleration), per_jerk = 1 / d.jerk;
+    const double least = std::min(d.acceleration, d.deceleration);
+    const double speed = std::abs(from.velocity) + 0.5 * a * a * per_jerk;
+    return speed * ((a + d.acceleration + d.deceleration) * per_jerk + speed / least);
+}
+
+}  // namespace
+
+bool Axis::Bounds::contain(const Range& positions) const {
+    return positions.least >= lowest - below && positions.greatest <= highest + above;
+}
+
+/// An axis that is outside may come in: what it has shown last is a limit then.
+Axis::Bounds Axis::bounds() const {
+    const double size = std::abs(highest_position - lowest_position);
+    const double here = shown.state.position + (relocated - shown.relocated);
+    const bool is_low = !(here >= lowest_position), is_high = !(here <= highest_position);
+    return {is_low ? here : lowest_position, is_high ? here : highest_position,
+            tolerance_of(lowest_position, size), tolerance_of(highest_position, size)};
+}
+
+bool Axis::Bounds::admit(double& position) const {
+    if (!contain({position, position})) return false;
+    position = std::clamp(position, lowest, highest);
+    return true;
+}
+
+/// With the defaults, from there.
+bool Axis::can_brake(const MotionState& from) const {
+    VelocityMotion stop;
+    if (stop.begin(from, 0, defaults(), {}) != PlanResult::ok) return false;
+    Way way({});
+    way.add(stop);
+    return bounds().contain(way.positions(way.duration()));
+}
+
+/// From where the way ends, too, it can brake inside.
+bool Axis::leads_inside(const Way& way, double further) const {
+    Range passed = way.positions(way.duration());
+    passed = {passed.least + further, passed.greatest + further};
+    MotionState end = way.at(way.duration());
+    end.position += further;
+    return bounds().contain(passed) && (end.velocity == 0 || can_brake(end));
+}
+
+/// With what is on top of it, as both are planned.
+template <class Motion>
+bool Axis::leads_inside(const Motion& beneath, const Start& from) const {
+    Way way(beneath.start);
+    way.add(beneath);
+    const bool adds = added.exists() && !from.drops_added;
+    if (adds) way.add(added_motion);
+    return leads_inside(way, adds ? -from.taken : extra.position - from.taken);
+}
+
+/// The motion under way, as it is planned, from the scan under way on.
+bool Axis::goes_on_inside() const {
+    if (doing == Doing::following_axes || doing == Doing::following_profile) return false;
+    Way way({scan_time});
+    if (doing == Doing::moving_to_point)
+        way.add(point_motion);
+    else
+        way.add(velocity_motion);
+    if (added.exists()) way.add(added_motion);
+    const double further = added.exists() ? offset : offset + extra.position;
+    if (leg.exists == 0) return leads_inside(way, further);
+    const Moment end = point_motion.end();
+    const Range passed = way.positions(std::max(0.0, -end.until(scan_time)));
+    if (!bounds().contain({passed.least + further, passed.greatest + further})) return false;
+    PointMotion rest;
+    if (rest.begin(point_motion.plan.end, leg.goal, leg.velocity, leg.dynamics, end) !=
+        PlanResult::ok)
+        return false;
+    Way then(end);
+    then.add(rest);
+    if (added.exists()) then.add(added_motion);
+    return leads_inside(then, further);
+}
+
+/// A law or a table that turns inside may come so near to a limit that only a jump of the
+/// deceleration could stop it.
+bool Axis::turns_inside(const MotionState& from) const {
+    if (doing != Doing::following_axes && doing != Doing::following_profile) return false;
+    if (from.velocity * from.acceleration >= 0) return false;
+    const double way = from.velocity * std::abs(from.velocity) / (2 * default_deceleration);
+    return bounds().contain({std::min(from.position, from.position + way),
+                             std::max(from.position, from.position + way)});
+}
+
+/// What is shown is at each time a state from which the axis can stop inside its limits: with its
+/// defaults, or by going on as planned.
+bool Axis::is_safe(const MotionState& next) const {
+    const double far = longest_stop(next, defaults());
+    if (bounds().contain({next.position - far, next.position + far})) return true;
+    return can_brake(next) || goes_on_inside() || turns_inside(next);
+}
+
+/// From when on limits count: they may be written at any time.
+void Axis::watch_limits() {
+    if (!software_limits)
+        shown.exists = 0;
+    else if (shown.exists == 0)
+        show();
+}
+
+/// Where the set-point of a scan would not be safe it is dropped, and the axis stops from the one
+/// of before, which was.
+void Axis::keep_limits(const Context& context) {
+    if (const MotionState next = total(); !is_safe(next)) {
+        const bool finite = all_finite(next.position, next.velocity, next.acceleration, next.jerk);
+        stop_inside(context, finite ? MotionError::software_limit : MotionError::not_finite);
+    }
+    show();
+}
+
+void Axis::show() {
+    const Bounds kept = bounds();
+    const bool is_first = shown.exists == 0;
+    shown = {1, total(), scan_time, relocated};
+    if (!is_first) kept.admit(shown.state.position);
+}
+
+void Axis::stop_inside(const Context& context, MotionError why) {
+    const Moment at{shown.time};
+    MotionState from = shown.state;
+    from.position += relocated - shown.relocated;
+    const auto restart = [&] {
+        base = from;
+        offset = 0;
+        clear_added();
+    };
+    restart();
+    const bool can = can_brake(from);
+    if (state == AxisState::error_stop)
+        brake(at);
+    else
+        fail(context, at, why);
+    if (!can) {
+        restart();
+        stop_at_limit(at);
+    }
+    if (doing == Doing::holding) come_to_rest(context);
+    advance(context, scan_time);
+}
+
+/// The position wins over jerk, and over deceleration where the default is too weak.
+void Axis::stop_at_limit(const Moment& at) {
+    const MotionState from = base;
+    const Bounds kept = bounds();
+    const double way = 0.5 * from.velocity * std::abs(from.velocity) / default_deceleration;
+    const double stop = std::clamp(from.position + way, kept.lowest, kept.highest);
+    if (!velocity_motion.stand_at(stop, from, at)) return hold({from.position}, at);
+    doing = Doing::following_velocity;
+}
+
+/// A goal within the tolerance is put onto its limit.
+bool Axis::may_aim_at(double& to, const Start& from) const {
+    if (!software_limits) return true;
+    const double further = from.drops_added ? 0 : added_goal - from.taken;
+    const double end = to + further;
+    double admitted = end;
+    if (!bounds().admit(admitted)) return false;
+    if (admitted != end) to = admitted - further;
+    return true;
+}
+
+/// Whether a motion that is about to begin stays inside.
+bool Axis::may_begin(const PointMotion& next, const Start& from) const {
+    return !software_limits || leads_inside(next, from);
+}
+
+/// A motion to a velocity has no end: it is left to run where the axis can brake.
+bool Axis::may_begin(const VelocityMotion& next, const Start& from) const {
+    return !software_limits || leads_inside(next, from) || can_brake(total());
+}
+
+/// Of a table, with what is on top where that stays.
+bool Axis::may_follow(const ProfileMotion& next, const Cam& cam, const Start& from) const {
+    if (!software_limits) return true;
+    const double further = from.drops_added ? 0 : added_goal - from.taken;
+    const Range way = next.positions(cam);
+    return bounds().contain({way.least + further, way.greatest + further});
+}
+
+/// A command that waits is refused at once where it is known that its goal lies outside.
+bool Axis::may_wait(const Context& context, const Request& request) const {
+    using enum Command;
+    if (!software_limits) return true;
+    Start there;
+    bool is_known =
+        doing == Doing::moving_to_point && !added.exists() && point_motion.plan.end.velocity == 0;
+    there.state.position = there.origin = goal + added_goal;
+    const auto go_on = [&](const Request& next) {
+        const bool has_target = is_absolute(next.command) &&
+                                (next.command != home || next.option == homing_to_position);
+        const bool is_relative = next.command == move_relative || next.command == move_additive ||
+                                 next.command == move_continuous_relative;
+        is_known = has_target || (is_relative && is_known);
+        if (is_known) there.state.position = there.origin = target_of(next, there);
+    };
+    for (std::int64_t at = queue.first; at != nowhere; at = context.at<Job>(at).next)
+        go_on(context.at<Job>(at).request);
+    go_on(request);
+    return !is_known || bounds().admit(there.origin);
+}
+
+/// On top of what the axis does.
+bool Axis::may_add(const PointMotion& next) const {
+    if (!software_limits) return true;
+    const bool ends = doing == Doing::moving_to_point ||
+                      (doing != Doing::following_axes && doing != Doing::following_profile &&
+                       velocity_motion.ramp.end.velocity == 0);
+    if (!ends) return true;
+    Way way(next.start);
+    if (doing == Doing::moving_to_point)
+        way.add(point_motion);
+    else
+        way.add(velocity_motion);
+    way.add(next);
+    return leads_inside(way, offset);
+}
+
+}  // namespace lineshaft
