@@ -9,6 +9,7 @@
 #include <memory>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -134,6 +135,7 @@ class CsvReader {
     void add_column(std::string_view cell);
     void select();
     void rows();
+    void blank_rows(std::size_t next);
     void row();
     const char* cell(CsvColumn& column, const char* at, const char* end);
     void take(CsvColumn& column, std::int64_t value);
@@ -152,6 +154,7 @@ class CsvReader {
     Lines lines_;
     std::string_view line_;
     std::size_t number_ = 0;  ///< of the line
+    std::size_t blank_ = 0;   ///< lines up to it that may be the last
     std::size_t mistakes_ = 0;
     char separator_ = ',';
     std::vector<CsvColumn*> order_;  ///< of the file's columns; null: not wanted
@@ -277,11 +280,16 @@ void CsvReader::select() {
 void CsvReader::rows() {
     while (lines_.next(line_)) {
         ++number_;
-        if (table_.rows == options_.most_rows)
+        if (without_blanks(line_).empty()) {
+            ++blank_;
+            continue;
+        }
+        if (table_.rows + blank_ >= options_.most_rows)
             return out_.add("L0710", {table_.header, 0, 0, 1},
                             fmt::format("more than {} rows do not fit into the memory that is "
                                         "allowed for them",
                                         options_.most_rows));
+        blank_rows(number_);
         row();
         if (!is_enough()) continue;
         return out_.add(
@@ -289,6 +297,15 @@ void CsvReader::rows() {
             fmt::format("there are {} mistakes; the rest of the file is not read", mistakes_));
     }
     if (lines_.error() == 0 && mistakes_ == 0) end_of_rows();
+}
+
+/// Blank lines are rows where the line `next` is one, or where the sidecar counts them.
+void CsvReader::blank_rows(std::size_t next) {
+    const std::string_view line = std::exchange(line_, "");
+    for (number_ = next - blank_; number_ < next && !is_enough(); ++number_) row();
+    number_ = next;
+    blank_ = 0;
+    line_ = line;
 }
 
 void CsvReader::row() {
@@ -364,7 +381,11 @@ void CsvReader::odd_cell(CsvColumn& column, std::string_view cell) {
 }
 
 void CsvReader::end_of_rows() {
-    if (!lines_.is_ended() && number_ > 1 && options_.last_row_may_be_cut) drop_last_row();
+    const bool is_cut = !lines_.is_ended() && blank_ == 0 && number_ > 1;
+    if (is_cut && options_.last_row_may_be_cut) drop_last_row();
+    if (table_.metadata && table_.metadata->rows &&
+        static_cast<std::size_t>(*table_.metadata->rows) == table_.rows + blank_)
+        blank_rows(number_ + 1);
     if (options_.last_row_may_be_cut || !table_.metadata || !table_.metadata->rows) return;
     const auto due = static_cast<std::size_t>(*table_.metadata->rows);
     if (due == table_.rows && lines_.is_ended()) return;

@@ -409,7 +409,7 @@ brackets behind the name may be left out.)"},
 the first line of the file.)"},
     {"L0704", "a row of another length than the header",
      R"(Every row of a CSV file has as many cells as the first line has names; a missing value
-is an empty cell. Often a decimal comma took a number apart: then semicolons must stand
+is an empty cell, and blank lines at the end are no rows. Often a decimal comma took a number apart: then semicolons must stand
 between the cells.)"},
     {"L0705", "something else in a column of numbers",
      R"(The cells of the columns that are read are numbers; where there is no value the cell is
@@ -505,7 +505,8 @@ the first scan on:
 
     {"L0901", "a character of no word",
      R"(The Structured Text has a character that begins no name, number, text or sign, or a comment
-or text that does not end. Comments are // to the end of the line, (* *) and /* */, which
+or text that does not end, or the file is no text at all. It is UTF-8, UTF-16 that begins with its
+byte order mark, or Windows-1252. Comments are // to the end of the line, (* *) and /* */, which
 nest. Texts stand in single quotes; names with other than letters, digits and '_' stand in
 double quotes.)"},
     {"L0902", "something else is expected",
@@ -515,8 +516,8 @@ statement. ':=' assigns, '=' compares. IF, CASE, FOR, WHILE and REPEAT end with 
 in a chain of conditions write ELSIF, for ELSE IF opens a second IF.)"},
     {"L0903", "not supported",
      R"(This part of IEC 61131-3 or of a maker's language is not supported; the help says what to write
-instead. Not supported are classes, interfaces, inheritance, pointers and references, direct
-addresses (%IX0.0), sequential function charts, WSTRING and dates.)"},
+instead. Not supported are classes, interfaces, inheritance, namespaces, properties, pointers and
+references, direct addresses (%IX0.0), sequential function charts and WSTRING.)"},
     {"L0904", "a name that is not declared",
      R"(No variable, type, block or function of this name is seen here. Names are found without regard
 to capital letters. A block sees its own variables, its methods those of their block; all see

@@ -181,6 +181,25 @@ TEST_CASE("mistakes of a CSV file are told with their places") {
           "     | ^~~~~~~~ known: time, a.x\n");
 }
 
+TEST_CASE("blank lines at the end are no rows") {
+    for (const char* end : {"\n", "\n\n", "\n\n\n", "\r\n\r\n", "\n  \n", "\n\r", "\n\n "}) {
+        INFO(end);
+        CHECK(values(read_text(std::string("x,y\n1,2\n3,4") + end), "y") == Values{2, 4});
+        CHECK(values(read_text(std::string("x\n1\n3") + end), "x") == Values{1, 3});
+        CHECK(values(read_text(std::string("x\n1\n3") + end, {.most_rows = 2}), "x") ==
+              Values{1, 3});
+        CHECK(values(read_text(std::string("x\n1\n3") + end, {.last_row_may_be_cut = true}), "x") ==
+              Values{1, 3});
+    }
+    CHECK(values(read_text("x\n1\n\n3\n"), "x").size() == 3);
+    CHECK(read_text("x,y\n1,2\n\n3,4\n").said ==
+          "t.csv:3:1: error[L0704]: the row has 1 cell instead of 2\n   3 |\n     | ^\n");
+    const std::string said = read_text("x,y\n" + std::string(100'000, '\n') + "1,2\n").said;
+    CHECK(said.size() < 4000);
+    CHECK(read_text("x\n1\n\n\n3\n", {.most_rows = 3}).said.find("L0710") != std::string::npos);
+    CHECK(values(read_text("time\n1\n\n", {}, sidecar), "time").size() == 2);
+}
+
 TEST_CASE("no more rows than allowed are read") {
     CHECK(values(read_text("x\n1\n2\n", {.most_rows = 2}), "x") == Values{1, 2});
     CHECK(read_text("x\n1\n2\n3\n", {.most_rows = 2}).said.find("error[L0710]: more than 2 rows") !=
