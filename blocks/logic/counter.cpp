@@ -11,7 +11,8 @@ namespace lineshaft {
 
 namespace {
 
-constexpr std::string_view type_names[] = {"int", "dint", "lint", "udint", "ulint"};
+constexpr std::string_view type_names[] = {"int",   "dint", "lint",  "udint",
+                                           "ulint", "sint", "usint", "uint"};
 
 struct Range {
     std::int64_t least, most;
@@ -26,7 +27,10 @@ constexpr Range ranges[] = {range_of<std::int16_t>(),
                             range_of<std::int32_t>(),
                             range_of<std::int64_t>(),
                             range_of<std::uint32_t>(),
-                            {0, std::numeric_limits<std::int64_t>::max()}};
+                            {0, std::numeric_limits<std::int64_t>::max()},
+                            range_of<std::int8_t>(),
+                            range_of<std::uint8_t>(),
+                            range_of<std::uint16_t>()};
 
 constexpr Range range(CounterType type) {
     return ranges[static_cast<std::size_t>(type)];

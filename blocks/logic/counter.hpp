@@ -10,8 +10,8 @@
 namespace lineshaft {
 
 /// Type of a counter's value, whose limits it stops at (a ULINT at those of a LINT). The standard's
-/// CTU counts in INT, its CTU_DINT, CTU_LINT, CTU_UDINT and CTU_ULINT in the others.
-enum class CounterType : std::int64_t { int_, dint, lint, udint, ulint };
+/// CTU counts in INT, its CTU_DINT, CTU_LINT, CTU_UDINT and CTU_ULINT in others, Siemens' in all.
+enum class CounterType : std::int64_t { int_, dint, lint, udint, ulint, sint, usint, uint };
 
 /// Counters of IEC 61131-3:2013, table 45. They count rising edges of `cu` and `cd`; an input that
 /// is true at the first scan has risen. An edge during reset or load is not counted later. cv stops

@@ -9,6 +9,7 @@
 #include "runtime/program/recording_form.hpp"
 #include "runtime/program/shared_folder.hpp"
 #include "runtime/program/templates.hpp"
+#include "runtime/source/encoding.hpp"
 #include "runtime/st/test_sources.hpp"
 
 namespace lineshaft {
@@ -52,13 +53,6 @@ bool are_known(const Node& tasks) {
 }
 
 }  // namespace
-
-bool is_structured_text(const fs::path& file) {
-    static constexpr std::string_view extensions[] = {".st", ".scl", ".s7dcl", ".udt", ".db"};
-    const std::string extension = file.extension().string();
-    return std::ranges::any_of(extensions,
-                               [&](std::string_view e) { return same_letters(extension, e); });
-}
 
 std::vector<std::string> structured_text_below(const std::string& folder, std::error_code& error) {
     std::vector<std::string> files;

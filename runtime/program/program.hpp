@@ -222,9 +222,6 @@ std::optional<std::string> resolve_path(const std::string& named, const std::str
                                         const std::vector<std::string>& include_dirs, Mark where,
                                         Diagnostics& out);
 
-/// Whether the file's name ends as one of Structured Text does.
-bool is_structured_text(const std::filesystem::path& file);
-
 /// Those below a folder, sorted, other than files of tests.
 std::vector<std::string> structured_text_below(const std::string& folder, std::error_code& error);
 

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -163,6 +164,11 @@ bool abbreviates(std::string_view word, std::string_view name) {
            name.starts_with(word) && name.find('_', word.size()) == std::string_view::npos;
 }
 
+/// `GearInPosition` is GearInPos, which is most of it.
+bool spells_out(std::string_view word, std::string_view name) {
+    return word.starts_with(name) && 3 * name.size() >= 2 * word.size();
+}
+
 /// Of `a.position` 8.
 std::size_t longest_part(std::string_view word) {
     const std::size_t dot = std::min(word.find('.'), word.size());
@@ -244,6 +250,11 @@ std::vector<std::string> nearest(std::string_view word,
         if (abbreviates(wanted, lower(candidate))) near.push_back(candidate);
     if (near.size() == 1) return near;
     near.clear();
+    for (const std::string& candidate : candidates)
+        if (spells_out(wanted, lower(candidate)) &&
+            (near.empty() || candidate.size() > near.front().size()))
+            near = {candidate};
+    const std::vector<std::string> spelled_out = std::exchange(near, {});
     std::size_t fewest = std::min<std::size_t>(longest_part(word) / 3, 3);
     for (const std::string& candidate : candidates) {
         if (std::ranges::find(near, candidate) != near.end()) continue;
@@ -255,7 +266,7 @@ std::vector<std::string> nearest(std::string_view word,
         fewest = edits;
         if (near.size() < most_meant) near.push_back(candidate);
     }
-    return near;
+    return near.empty() ? spelled_out : near;
 }
 
 std::string suggest(std::string_view word, const std::vector<std::string>& candidates,

@@ -75,8 +75,8 @@ std::string render(const Diagnostic& diagnostic);
 
 /// The candidates (at most 3) that `word` may be meant for: the one word that it abbreviates
 /// (`pos`, position), else the nearest by edit distance (Damerau; capital letters count as small
-/// ones), of which there may be several. None if it takes more edits than a third of the word's
-/// length (at most 3), so in a word of one or two letters any.
+/// ones), of which there may be several (in a third of the word's length, at most 3, so none of a
+/// word of two letters), else the longest that it spells out (MC_GearInPosition, MC_GearInPos).
 std::vector<std::string> nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 /// For `help`: "did you mean 'x' or 'y'?" when some are near, else "known: a, b, c" (at most 12

@@ -12,6 +12,7 @@
 #include <sleef.h>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/source/utf8.hpp"
 
 namespace lineshaft {
 
@@ -198,8 +199,8 @@ class Evaluator {
     Amount name() {
         const std::size_t start = at_;
         if (text_[at_] == '$') ++at_;
-        while (at_ < text_.size() &&
-               (is_letter(text_[at_]) || is_digit(text_[at_]) || text_[at_] == '.'))
+        while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]) ||
+                                      text_[at_] == '.' || !is_ascii(text_[at_])))
             ++at_;
         const std::string_view word = text_.substr(start, at_ - start);
         if (take('(')) return call(word, start);

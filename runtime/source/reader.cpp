@@ -87,6 +87,11 @@ bool is_identifier(std::string_view text) {
            std::ranges::all_of(text, [](char c) { return is_letter(c) || is_digit(c); });
 }
 
+/// Of a part: sources may name it with letters beyond ASCII.
+bool is_part_letter(char c) {
+    return is_letter(c) || !is_ascii(c);
+}
+
 /// `x`, or a part of it as `table[1,2].x`.
 bool is_path(std::string_view text) {
     constexpr std::string_view marks = ".[],";
@@ -94,12 +99,12 @@ bool is_path(std::string_view text) {
     for (const char c : text) {
         const bool begins = before == '.' || before == '[' || before == ',';
         const bool negative = c == '-' && (before == '[' || before == ',');
-        if (!is_letter(c) && !is_digit(c) && !negative &&
+        if (!is_part_letter(c) && !is_digit(c) && !negative &&
             (begins || marks.find(c) == std::string_view::npos))
             return false;
         before = c;
     }
-    return !text.empty() && is_letter(text.front()) &&
+    return !text.empty() && is_part_letter(text.front()) &&
            (before == ']' || marks.find(before) == std::string_view::npos);
 }
 

@@ -12,6 +12,7 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include "runtime/source/encoding.hpp"
 #include "runtime/source/habits.hpp"
 #include "runtime/source/input_file.hpp"
 #include "runtime/source/letters.hpp"
@@ -728,6 +729,7 @@ std::shared_ptr<const SourceFile> read_source(const std::string& path, Diagnosti
                 fmt::format("'{}' has more than {} bytes", path, limits.bytes));
         return nullptr;
     }
+    if (is_structured_text(path)) text = as_utf8(std::move(text));
     return std::make_shared<const SourceFile>(SourceFile{path, std::move(text)});
 }
 

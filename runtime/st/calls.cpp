@@ -139,7 +139,7 @@ Variable* Checker::find_parameter(Argument& argument, Routine& routine, std::siz
 void Checker::check_arguments(Expression& call, Routine& routine) {
     std::size_t position = 0;
     std::vector<const Variable*> given;
-    bool by_name = false;
+    bool by_name = call.arguments.empty();  // 6.6.1.4.2
     for (Argument& argument : call.arguments) {
         by_name |= argument.is_named();
         Variable* parameter = find_parameter(argument, routine, position++);
@@ -417,6 +417,16 @@ const Type* mixed(const Type& a, const Type& b) {
     return any.is_real() ? common_type(typed, real_type) : &typed;
 }
 
+/// Of a bit string and an integer: that of the numbers.
+const Type* common_number(const Type& a, const Type& b) {
+    const auto number = [](const Type& type) -> const Type& {
+        return type.kind == Kind::bits ? integer_type(type.bits, false) : type;
+    };
+    const bool mixes =
+        (a.kind == Kind::bits && b.is_integer()) || (a.is_integer() && b.kind == Kind::bits);
+    return mixes ? common_type(number(a), number(b)) : nullptr;
+}
+
 const Type& real_for(const Type& type) {
     return type.kind == Kind::real && type.bits == 32 ? real_type : lreal_type;
 }
@@ -454,7 +464,8 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
     const auto coerce_from = [&](std::size_t first, const Type& type) {
         bool good = true;
         for (std::size_t i = first; i < arguments.size(); ++i)
-            good &= coerce(arguments[i].value, type);
+            good &= (type.kind == Kind::text && arguments[i].value->type->kind == type.kind) ||
+                    coerce(arguments[i].value, type);
         return good;
     };
     /// The type that all from `first` on have in common.
@@ -462,6 +473,7 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         const Type* common = arguments[first].value->type;
         for (std::size_t i = first + 1; i < arguments.size(); ++i) {
             const Type& type = *arguments[i].value->type;
+            const Type& before = *common;
             const bool one_is_real = common->is_real() || type.is_real();
             const bool one_is_any = common->is_any() || type.is_any();
             if (one_is_any && one_is_real && common->is_real() != type.is_real())
@@ -470,6 +482,7 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
                 common = &type;
             else if (!type.is_any() && !same_type(*common, type) && common->is_scalar())
                 common = common_type(*common, type);
+            if (!common) common = common_number(before, type);
             if (!common) {
                 fail("L0906", call.place,
                      fmt::format("the arguments of {} have no common type", f.name),
@@ -477,7 +490,8 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
                 return nullptr;
             }
         }
-        if (common->is_any() && expected && (expected->is_number())) common = &expected->plain();
+        const bool is_wanted = expected && (expected->is_number() || expected->is_bits());
+        if (common->is_any() && is_wanted) common = &expected->plain();
         if (common->is_any()) common = common->is_real() ? &lreal_type : &dint_type;
         return coerce_from(first, common->plain()) ? &common->plain() : nullptr;
     };

@@ -10,40 +10,37 @@ namespace lineshaft::st {
 namespace {
 
 constexpr Wide most_elements = 1 << 24;
-constexpr Wide longest_text = 32767;  // LEN, FIND and MAX_LEN are INT
 
 std::string quoted(std::string_view name) {
     return fmt::format("'{}'", name);
 }
 
-/// Names of the standard for a kind of the catalogue, with the type that it counts in.
-struct Preset {
-    std::string_view name, kind;
-    std::int64_t value;
-    std::string_view type;
+/// What the standard's and Siemens' counters count in, by the number of `data_type`.
+constexpr std::string_view counter_types[] = {"int",   "dint", "lint",  "udint",
+                                              "ulint", "sint", "usint", "uint"};
+
+/// A kind of the catalogue that counts in one of them.
+struct Counter {
+    std::string_view kind;
+    std::size_t type = 0;
 };
 
-constexpr Preset counters[] = {{"ctu", "ctu", 0, "int"},
-                               {"ctd", "ctd", 0, "int"},
-                               {"ctud", "ctud", 0, "int"},
-                               {"ctu_int", "ctu", 0, "int"},
-                               {"ctd_int", "ctd", 0, "int"},
-                               {"ctud_int", "ctud", 0, "int"},
-                               {"ctu_dint", "ctu", 1, "dint"},
-                               {"ctd_dint", "ctd", 1, "dint"},
-                               {"ctud_dint", "ctud", 1, "dint"},
-                               {"ctu_lint", "ctu", 2, "lint"},
-                               {"ctd_lint", "ctd", 2, "lint"},
-                               {"ctud_lint", "ctud", 2, "lint"},
-                               {"ctu_udint", "ctu", 3, "udint"},
-                               {"ctd_udint", "ctd", 3, "udint"},
-                               {"ctud_udint", "ctud", 3, "udint"},
-                               {"ctu_ulint", "ctu", 4, "ulint"},
-                               {"ctd_ulint", "ctd", 4, "ulint"},
-                               {"ctud_ulint", "ctud", 4, "ulint"},
-                               {"iec_counter", "ctu", 0, "int"},
-                               {"iec_dcounter", "ctu", 1, "dint"},
-                               {"iec_udcounter", "ctu", 3, "udint"}};
+/// `CTU`, `CTD_UDINT`, `IEC_DCOUNTER`.
+std::optional<Counter> find_counter(std::string_view name) {
+    static constexpr std::pair<std::string_view, std::size_t> siemens[] = {
+        {"iec_counter", 0},  {"iec_dcounter", 1},  {"iec_udcounter", 3},
+        {"iec_scounter", 5}, {"iec_uscounter", 6}, {"iec_ucounter", 7}};
+    for (const auto& [own, type] : siemens)
+        if (same_name(name, own)) return Counter{"ctu", type};
+    const std::size_t end = std::min(name.find('_'), name.size());
+    for (const std::string_view kind : {"ctu", "ctd", "ctud"}) {
+        if (!same_name(name.substr(0, end), kind)) continue;
+        if (end == name.size()) return Counter{kind};
+        for (std::size_t type = 0; type < std::size(counter_types); ++type)
+            if (same_name(name.substr(end + 1), counter_types[type])) return Counter{kind, type};
+    }
+    return {};
+}
 
 constexpr std::pair<std::string_view, std::string_view> aliases[] = {
     {"ton_time", "ton"},  {"tof_time", "tof"}, {"tp_time", "tp"},    {"ton_ltime", "ton"},
@@ -451,13 +448,14 @@ void Checker::check_initial(Expression*& value, const Type& type) {
         if (!(value = list_of_dtl(*value, type))) return;
     if (value->kind == Expression::Kind::list) {
         value->type = &type;
-        const bool named =
-            !value->arguments.empty() && value->arguments.front().name.word != Word::end_of_file;
-        if (type.kind == Kind::array && !named) return check_elements(*value, type);
-        if ((type.kind == Kind::structure || type.is_instance()) && named)
+        const bool is_structure = value->is_structure();
+        if (type.kind == Kind::array && !is_structure) return check_elements(*value, type);
+        if ((type.kind == Kind::structure || type.is_instance()) && is_structure)
             return check_members(*value, type);
         fail("L0905", value->place, fmt::format("this is not a value of {}", describe(type)),
-             type.kind == Kind::array ? "write its elements in brackets: [1, 2, 3]" : "");
+             type.kind == Kind::array ? "write its elements in brackets: [1, 2, 3]"
+             : type.is_real()         ? "write a decimal point: 1.5"
+                                      : "");
         return;
     }
     if (value->kind == Expression::Kind::repeated && type.kind == Kind::array) {
@@ -524,8 +522,22 @@ void Checker::check_elements(Expression& list, const Type& array) {
              "leave some out, or make the array larger");
 }
 
+/// By name, or of a structure by position.
 void Checker::check_members(Expression& list, const Type& type) {
+    const bool by_place =
+        type.kind == Kind::structure && std::ranges::none_of(list.arguments, &Argument::is_named);
+    if (by_place && list.arguments.size() > type.members.size())
+        return (void)fail(
+            "L0908", list.place,
+            fmt::format("{} values for {} members", list.arguments.size(), type.members.size()),
+            "leave some out");
+    for (std::size_t i = 0; by_place && i < list.arguments.size(); ++i) {
+        Variable& member = *type.members[i];
+        list.arguments[i].variable = &member;
+        if (member.type) check_initial(list.arguments[i].value, *member.type);
+    }
     for (Argument& argument : list.arguments) {
+        if (by_place) break;
         if (argument.name.word == Word::end_of_file) {
             fail("L0905", argument.value->place, "this value has no name",
                  fmt::format("name the member of {}: (name := value)", describe(type)));
@@ -672,6 +684,9 @@ const Type* Checker::resolve_enumeration(const TypeText& text) {
     type.slots = 1;
     type.base = &int_type;
     if (text.name.word != Word::end_of_file) type.base = resolve_name(text.name);
+    if (type.base && type.base->kind != Kind::integer && type.base->kind != Kind::bits)
+        return fail("L0903", text.place, "arguments behind a type are not supported",
+                    "write values behind ':=': (name := value)");
     NameMap<Place> names;
     std::int64_t number = 0;
     for (const Argument& value : text.values) {
@@ -737,12 +752,11 @@ const Type* Checker::standard_type(std::string_view name) {
     for (const auto& [theirs, ours] : handles)
         if (same_name(theirs, name)) return standard_type(ours);
     if (const Type* handle = handle_type(name)) return handle;
-    const auto* preset = std::ranges::find_if(
-        counters, [&](const Preset& counter) { return same_name(counter.name, name); });
+    const auto counter = find_counter(name);
     const auto* alias =
         std::ranges::find_if(aliases, [&](const auto& a) { return same_name(a.first, name); });
     std::string_view wanted = name;
-    if (preset != std::end(counters)) wanted = preset->kind;
+    if (counter) wanted = counter->kind;
     if (alias != std::end(aliases)) wanted = alias->second;
     const auto kind = std::ranges::find_if(
         standard_.types(), [&](const BlockType& type) { return same_name(type.name, wanted); });
@@ -778,11 +792,10 @@ const Type* Checker::standard_type(std::string_view name) {
             member.type = &values;
         }
         const bool counts = same_name(field.name, "pv") || same_name(field.name, "cv");
-        if (preset != std::end(counters) && counts) member.type = find_elementary(preset->type);
+        if (counter && counts) member.type = find_elementary(counter_types[counter->type]);
         type.members.push_back(&member);
     }
-    if (preset != std::end(counters))
-        type.presets.push_back({"data_type", {.integer = preset->value}});
+    if (counter) type.presets.push_back({"data_type", {.integer = Wide(counter->type)}});
     return standard_types_[type.name] = &type;
 }
 

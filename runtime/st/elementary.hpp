@@ -7,6 +7,9 @@
 
 namespace lineshaft::st {
 
+/// Bytes that a text may have: LEN, FIND and MAX_LEN are INT.
+inline constexpr Wide longest_text = 32767;
+
 /// `INT`, `ARRAY[0..3] OF LREAL`: for messages.
 std::string describe(const Type& type);
 

@@ -3,6 +3,7 @@
 
 #include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
+#include "runtime/source/utf8.hpp"
 #include "runtime/st/checker_class.hpp"
 #include "runtime/st/literals.hpp"
 
@@ -177,6 +178,9 @@ const Type* Checker::check_text(Expression& e) {
     if (!text)
         return fail("L0908", e.place, "'$' is not followed by one of its characters",
                     "write $$ for a '$', $' for a quote, $N for a new line, $0A for a byte");
+    if (static_cast<Wide>(text->size()) > longest_text)
+        return fail("L0908", e.place, fmt::format("the text has {} bytes", text->size()),
+                    "a text has at most 32767 bytes");
     e.constant.text = *text;
     return &string_type;
 }
@@ -342,7 +346,7 @@ const Type* Checker::undeclared(const Token& name, Place place,
     if (tree_.lost.contains(name.text) || !undeclared_[routine_].insert(name.text).second)
         return nullptr;
     const auto near = nearest(name.text, names);
-    const auto in_name = [](char c) { return is_letter(c) || is_digit(c) || c == '_'; };
+    const auto in_name = [](char c) { return is_letter(c) || is_digit(c) || !is_ascii(c); };
     const bool is_text = name.quoted && !std::ranges::all_of(name.text, in_name);
     return fail("L0904", place, fmt::format("'{}' is not declared", name.text),
                 is_text ? "a text stands in '...', a name in \"...\"" : suggest(name.text, near));
@@ -1022,19 +1026,19 @@ bool Checker::coerce_number(Expression*& e, const Type& to) {
 bool Checker::coerce(Expression*& e, const Type& to) {
     if (!e->type) return false;
     const Type& from = *e->type;
-    if (&from == &to || same_type(from, to)) return true;
-    if (!to.of_number.empty() && from.is_integer() && is_scl(*e)) return coerce_number(e, to);
-    if (from.is_any()) return coerce_constant(*e, to);
-    if (from.is_object() && to.kind == Kind::handle && from.standard == to.standard) {
-        convert(e, to);
-        return true;
-    }
     if (from.kind == Kind::text && to.kind == Kind::text) {
         if (is_constant(*e) && e->constant.text.size() > to.length)
             out_.warn("L0908", e->place.mark(),
                       fmt::format("the text has {} bytes, and {} keeps {}", e->constant.text.size(),
                                   describe(to), to.length),
                       "declare the STRING longer");
+        return true;
+    }
+    if (&from == &to || same_type(from, to)) return true;
+    if (!to.of_number.empty() && from.is_integer() && is_scl(*e)) return coerce_number(e, to);
+    if (from.is_any()) return coerce_constant(*e, to);
+    if (from.is_object() && to.kind == Kind::handle && from.standard == to.standard) {
+        convert(e, to);
         return true;
     }
     if (to.is_character && is_constant(*e) && e->constant.text.size() == 1) {

@@ -492,7 +492,8 @@ void Generator::write_choice(const Statement& s, Slot selector, const IndexTable
 
 void Generator::write_for(const Statement& s) {
     const Location target = locate(*s.target);
-    const bool direct = target.mode == Location::Mode::slot;
+    const Type& type = *s.target->type;
+    const bool direct = target.mode == Location::Mode::slot && !type.is_subrange;
     const Slot counter = direct ? target.slot : new_temporary();
     value_to(*s.value, counter);
     const Slot limit = new_temporary(2);
@@ -501,8 +502,8 @@ void Generator::write_for(const Statement& s) {
         value_to(*s.step, limit + 1);
     else
         put(Op::move, limit + 1, constant_slot(1));
+    if (type.is_subrange) store(target, counter);
     Loop loop;
-    const Type& type = *s.target->type;
     const bool is_long = type.is_unsigned_64();
     jump(is_long ? Op::skip_loop_unsigned : Op::skip_loop, counter, limit, loop.exits);
     loops_.push_back(std::move(loop));
@@ -514,10 +515,12 @@ void Generator::write_for(const Statement& s) {
     write_block(s.body);
     land(loops_.back().nexts);
     place_ = s.place;
+    if (!direct) put(Op::move, counter, load(target));
     put(is_long ? Op::repeat_next_unsigned : Op::repeat_next, counter, limit, start);
     land(loops_.back().exits);
     cover_branch(s, 1);
     loops_.pop_back();
+    if (type.is_subrange) return;  // its last value
     if (type.bits < 64) put(of_type(Op::wrap_sint, type.plain()), counter, counter);
     if (!direct) store(target, counter);
 }

@@ -24,7 +24,7 @@ Slot Generator::new_text(Slot& address) {
 Slot Generator::text_address(const Expression& e) {
     if (e.kind == E::constant) {
         const auto first = static_cast<std::uint32_t>(constants_.size());
-        const std::string text = e.constant.text.substr(0, longest_result);
+        const std::string& text = e.constant.text;
         std::vector<std::uint64_t> words(1 + (text.size() + 7) / 8);
         words[0] = text.size();
         std::ranges::copy(text, reinterpret_cast<char*>(words.data() + 1));

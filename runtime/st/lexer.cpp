@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/encoding.hpp"
 #include "runtime/source/habits.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
@@ -87,6 +88,7 @@ class Lexer {
 
     Tokens read() {
         if (text_.starts_with(utf8_byte_order_mark)) at_ = utf8_byte_order_mark.size();
+        if (is_binary()) at_ = text_.size();
         tokens_.tokens.reserve(text_.size() / 4 + 1);
         for (skip_blanks(); at_ < text_.size(); skip_blanks()) read_token();
         start_ = at_ = text_.size();
@@ -109,6 +111,26 @@ class Lexer {
         while (at_ < text_.size() && condition(text_[at_])) ++at_;
     }
 
+    /// One message, as nothing of it can be meant.
+    bool is_binary() {
+        const std::size_t zero = text_.find('\0');
+        if (zero == std::string_view::npos) return false;
+        fail(place(zero, zero + 1), "this is not a text", "save the source as UTF-8");
+        return true;
+    }
+
+    /// Bytes of a letter beyond ASCII that is next; 0 where there is none.
+    std::size_t national_letter() const {
+        if (at_ >= text_.size() || is_ascii(text_[at_])) return 0;
+        const Utf8Character character = first_character(text_.substr(at_));
+        return character.valid && is_national_letter(character.code) ? character.bytes : 0;
+    }
+
+    void skip_name() {
+        for (std::size_t bytes = 1; bytes != 0; at_ += bytes)
+            bytes = is_letter(peek()) || is_digit(peek()) ? 1 : national_letter();
+    }
+
     Token& add(Word word) {
         Token& token = tokens_.tokens.emplace_back();
         token.word = word;
@@ -122,7 +144,7 @@ class Lexer {
     void skip_blanks() {
         for (; at_ < text_.size(); ++at_) {
             const char c = text_[at_];
-            if (c == ' ' || c == '\t' || c == '\r') continue;
+            if (c == ' ' || (c >= '\t' && c <= '\r' && c != '\n')) continue;
             if (c == '\n')
                 new_line_ = true;
             else if (at("(*") || at("/*") || is_translated_comment())
@@ -187,26 +209,35 @@ class Lexer {
 
     void skip_pragma() {
         const std::size_t begin = at_;
-        char quote = '\0';
-        for (; at_ < text_.size(); ++at_) {
-            const char c = text_[at_];
-            if (quote != '\0' ? c == quote : c == '\'' || c == '"')
-                quote = quote != '\0' ? '\0' : c;
-            else if (c == '\n')
-                quote = '\0';
-            else if (c == '}' && quote == '\0')
-                break;
-        }
+        for (; at_ < text_.size() && text_[at_] != '}'; ++at_)
+            if (const std::size_t end = end_of_quoted(at_)) at_ = end;
         if (at_ == text_.size())
             fail(place(begin, begin + 1), "the pragma does not end", "it ends with '}'");
         tokens_.pragmas.push_back(
             {tokens_.tokens.size(), new_line_, place(begin, std::min(at_ + 1, text_.size()))});
     }
 
+    /// Of what is quoted in a pragma from `begin` on; 0 if nothing is. It may go over lines, where
+    /// neither the brace stands in its first one, nor the other quote belongs to something else.
+    std::size_t end_of_quoted(std::size_t begin) const {
+        const char quote = text_[begin];
+        if (quote != '\'' && quote != '"') return 0;
+        const std::size_t end = text_.find(quote, begin + 1);
+        if (end == std::string_view::npos) return 0;
+        const std::string_view quoted = text_.substr(begin, end - begin);
+        if (quoted.find('\n') == std::string_view::npos) return end;
+        const bool closes = quoted.substr(0, quoted.find('\n')).find('}') != std::string_view::npos;
+        const std::size_t behind = text_.find_first_not_of(" \t\r\n", end + 1);
+        const bool goes_on =
+            behind != std::string_view::npos &&
+            std::string_view("},;:)").find(text_[behind]) != std::string_view::npos;
+        return !closes && goes_on ? end : 0;
+    }
+
     void read_token() {
         start_ = at_;
         const char c = peek();
-        if (is_letter(c)) return read_word();
+        if (is_letter(c) || national_letter() != 0) return read_word();
         if (is_digit(c)) return read_number();
         if (c == '\'') return read_text();
         if (c == '"' || c == '#') return read_marked_name();
@@ -221,7 +252,7 @@ class Lexer {
     }
 
     void read_word() {
-        skip_while([](char c) { return is_letter(c) || is_digit(c); });
+        skip_name();
         const std::string_view text = text_.substr(start_, at_ - start_);
         const bool after_dot = !tokens_.tokens.empty() && tokens_.tokens.back().word == Word::dot;
         if (peek() == '#' && !after_dot) return read_prefix(text);
@@ -344,7 +375,7 @@ class Lexer {
             if (is_prefix) ++at_;
             return;
         }
-        skip_while([](char c) { return is_letter(c) || is_digit(c); });
+        skip_name();
         Token& token = add(Word::name);
         token.local = true;
         token.text.remove_prefix(1);
@@ -394,7 +425,7 @@ class Lexer {
         if (text.starts_with('?')) return "write IF, or SEL(condition, otherwise, then)";
         if (text.starts_with('%')) return "write MOD";
         if (text.starts_with("||")) return "write OR";
-        return "names have letters without accents, digits and '_'; others stand in quotes";
+        return "names have letters, digits and '_'; others stand in quotes";
     }
 
     void fail(Place where, std::string message, std::string help) {

@@ -165,15 +165,17 @@ void copy_text(std::byte* to, const std::byte* from, std::uint64_t room) {
     set_word(to, 0, length);
 }
 
-/// Of `from` those characters from `first` (0) on, to a text that has room for `longest_result`.
-void append_text(std::byte* to, const std::byte* from, std::int64_t first, std::int64_t count) {
+/// Of `from` those characters from `first` (0) on, to a text that has room for `longest_result`;
+/// false where that cuts them short.
+bool append_text(std::byte* to, const std::byte* from, std::int64_t first, std::int64_t count) {
     const auto length = static_cast<std::int64_t>(word(from, 0));
     first = std::clamp<std::int64_t>(first, 0, length);
     count = std::clamp<std::int64_t>(count, 0, length - first);
     const auto before = static_cast<std::int64_t>(word(to, 0));
-    count = std::clamp<std::int64_t>(longest_result - before, 0, count);
-    std::memmove(to + 8 + before, from + 8 + first, static_cast<std::size_t>(count));
-    set_word(to, 0, static_cast<std::uint64_t>(before + count));
+    const auto taken = std::clamp<std::int64_t>(longest_result - before, 0, count);
+    std::memmove(to + 8 + before, from + 8 + first, static_cast<std::size_t>(taken));
+    set_word(to, 0, static_cast<std::uint64_t>(before + taken));
+    return taken == count;
 }
 
 /// -1, 0 or 1: the size of what std::memcmp returns depends on where the texts are.

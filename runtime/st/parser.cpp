@@ -23,6 +23,7 @@ struct Unsupported {
 };
 
 constexpr Unsupported unsupported[] = {
+    {Word::abstract_, "abstract blocks are", "leave it out, and write the whole block"},
     {Word::class_, "classes are", "write a FUNCTION_BLOCK with METHODs"},
     {Word::interface_, "interfaces are", "write a FUNCTION_BLOCK with METHODs"},
     {Word::namespace_, "namespaces are", "put the namespace before its blocks' names: Lib_Block"},
@@ -48,13 +49,13 @@ constexpr Unsupported unsupported[] = {
 
 /// Words that are names wherever a name may stand.
 constexpr Word soft_words[] = {
-    Word::version_,    Word::test_,      Word::setup_,         Word::teardown_,
-    Word::action_,     Word::class_,     Word::final_,         Word::at_,
-    Word::internal_,   Word::using_,     Word::property_,      Word::network_,
-    Word::method_,     Word::override_,  Word::interface_,     Word::type_,
-    Word::namespace_,  Word::begin_,     Word::pointer_,       Word::private_,
-    Word::public_,     Word::protected_, Word::configuration_, Word::super_,
-    Word::implements_, Word::union_};
+    Word::abstract_, Word::version_,    Word::test_,      Word::setup_,
+    Word::teardown_, Word::action_,     Word::class_,     Word::final_,
+    Word::at_,       Word::internal_,   Word::using_,     Word::property_,
+    Word::network_,  Word::method_,     Word::override_,  Word::interface_,
+    Word::type_,     Word::namespace_,  Word::begin_,     Word::pointer_,
+    Word::private_,  Word::public_,     Word::protected_, Word::configuration_,
+    Word::super_,    Word::implements_, Word::union_};
 
 struct PouWords {
     Word begin, end;
@@ -236,7 +237,7 @@ class Parser {
         fail("L0902", here().place,
              fmt::format("expected {0}{1}{0}{2}{3}, found {4}", is_word ? "" : "'", what,
                          where.empty() ? "" : " ", where, found()),
-             habit(what));
+             habit());
     }
 
     /// The lexer left something out just before.
@@ -249,7 +250,7 @@ class Parser {
     }
 
     /// What is written here in other languages.
-    std::string habit(std::string_view expected) const {
+    std::string habit() const {
         const bool touches = last().place.end == here().place.begin;
         const auto is_pair = [&](Word word) { return is(word) && last().word == word && touches; };
         if (is_pair(Word::equal)) return "write '=' to compare";
@@ -264,8 +265,6 @@ class Parser {
         if (is(Word::comma) && last().word == Word::integer && next().word == Word::integer &&
             touches_next)
             return "write a decimal point: 1.5";
-        if (is(Word::comma) && expected == ")" && !is_in_body_)
-            return "name the members: (name := value, ...)";
         if (same_name(here().text, "step")) return "write BY";
         const bool is_joined = last().word == Word::and_ || last().word == Word::or_;
         if (is_joined && here().word >= Word::less && here().word <= Word::unequal)
@@ -332,7 +331,7 @@ class Parser {
         if (panic_ || unclosed_at_ == at_) return false;
         const bool left = is(Word::end_of_file) || is_end(here().word) || is(Word::else_) ||
                           is(Word::elsif_) || is(Word::until_) || find_pou(here().word) ||
-                          at_test();
+                          at_test() || at_label_of_case();
         if (!left) {
             expected(shown(end));
             return false;
@@ -465,16 +464,45 @@ class Parser {
                                          Word::property_, Word::action_,    Word::using_};
         if (std::ranges::find(words, here().word) == std::end(words)) return false;
         const std::string end = fmt::format("end_{}", here().text);
-        const auto rest = std::span(tokens_).subspan(at_);
-        const auto last = std::ranges::find_if(rest, [&](const Token& token) {
-            return is(Word::using_) ? token.word == Word::semicolon : same_name(token.text, end);
-        });
+        const bool is_using = is(Word::using_);
+        const bool is_part = is(Word::property_) || is(Word::action_);
         refuse_unsupported();
         panic_ = false;
-        if (last != rest.end()) at_ += static_cast<std::size_t>(last - rest.begin());
-        take();
+        const std::size_t first = at_;
+        const auto at_last = [&] {
+            return is(Word::end_of_file) || (is_using && is(Word::semicolon)) ||
+                   same_name(here().text, end);
+        };
+        while (!at_last() && !(is_part && at_ != first && at_next_part())) take();
+        if (at_last()) take();
         accept(Word::semicolon);
         return true;
+    }
+
+    /// Of a block, where the end of the part before was left out.
+    bool at_next_part() const {
+        const bool begins = is(Word::method_) || is(Word::property_) || is(Word::action_);
+        return ends_pou(here().word) ||
+               (here().first_in_line && (at_pou() || (begins && is_name(next()))));
+    }
+
+    static bool ends_pou(Word word) {
+        return std::ranges::find(pou_words, word, &PouWords::end) != std::end(pou_words);
+    }
+
+    /// `INITIAL_STEP s:`, `STEP s:`, `TRANSITION FROM s TO t`: up to the end of the block.
+    bool at_chart() const {
+        if (!is(Word::name) || !here().first_in_line || !is_name(next())) return false;
+        const std::string_view text = here().text;
+        if (same_name(text, "transition")) return true;
+        return (same_name(text, "step") || same_name(text, "initial_step")) &&
+               next(2).word == Word::colon;
+    }
+
+    void refuse_chart() {
+        tell("L0903", here().place, "sequential function charts are not supported",
+             "write a CASE over the steps");
+        while (!is(Word::end_of_file) && !ends_pou(here().word)) take();
     }
 
     Token read_name(std::string_view what) {
@@ -495,6 +523,17 @@ class Parser {
                                   accept(Word::protected_) || accept(Word::internal_));
     }
 
+    /// `FUNCTION_BLOCK ABSTRACT x`; what is behind the word is read all the same.
+    bool refuse_modifier() {
+        if (!is_name(next()) || next().first_in_line ||
+            !(is(Word::override_) || is(Word::final_) || is(Word::abstract_)))
+            return false;
+        if (!is(Word::abstract_) || !is_wrong_) refuse_unsupported();  // told of its block
+        panic_ = false;
+        take();
+        return true;
+    }
+
     Pou* read_pou_of(const PouWords& words) {
         const std::string_view doc = comment_before(at_, true);
         const Token opener = take();
@@ -502,12 +541,7 @@ class Parser {
         pou.kind = words.kind;
         pou.doc = doc;
         pou.is_private = is(Word::private_);
-        accept_access();
-        while (is_name(next()) && (is(Word::override_) || is(Word::final_))) {
-            refuse_unsupported();
-            panic_ = false;
-            take();
-        }
+        while (accept_access() || refuse_modifier()) continue;
         pou.name = read_name(fmt::format("the name of the {}", shown(opener.word)));
         pou.place = opener.place.to(pou.name.place);
         if (accept(Word::colon)) pou.result = read_type();
@@ -632,6 +666,7 @@ class Parser {
         while (!is(end) && !is(Word::end_of_file)) {
             const bool is_inst =
                 is(Word::name) && here().first_in_line && same_name(here().text, "var_inst");
+            if (refuse_untyped()) continue;
             const bool is_list = next(2).word == Word::colon || next(2).word == Word::comma;
             if (!is_inst && is_name(next()) && is_list) respell(variable_words);
             const auto* it = std::ranges::find(section_words, here().word, &SectionWord::word);
@@ -644,6 +679,23 @@ class Parser {
             const DeclarationBlock block = read_section(is_inst ? Section::local : it->section);
             if (block.section != Section::external) pou.blocks.push_back(block);
         }
+    }
+
+    /// `CONST n := 5; END_CONST` and LABEL of Siemens' older SCL.
+    bool refuse_untyped() {
+        const bool is_const = same_name(here().text, "const");
+        if (!is(Word::name) || !here().first_in_line || !is_name(next()) ||
+            !(is_const || same_name(here().text, "label")))
+            return false;
+        const std::string end = fmt::format("end_{}", here().text);
+        tell("L0903", here().place, fmt::format("{} is not supported", here().place.text()),
+             is_const ? "write VAR CONSTANT n : INT := 5; END_VAR, with the type of each"
+                      : "write IF, CASE, EXIT or RETURN");
+        while (!is(Word::end_of_file) && !is_end(here().word) && !same_name(here().text, end))
+            take();
+        if (is(Word::name)) take();
+        accept(Word::semicolon);
+        return true;
     }
 
     DeclarationBlock read_section(Section section) {
@@ -769,11 +821,20 @@ class Parser {
         return begin == end ? std::string_view() : begin->place.to((end - 1)->place).text();
     }
 
+    /// `TYPE t EXTENDS base : STRUCT`; the members that are written are read all the same.
+    void refuse_base() {
+        fail("L0903", here().place, "inheritance is not supported",
+             "declare a member of the other type");
+        panic_ = false;
+        while (!is(Word::end_of_file) && !is(Word::colon) && !is(Word::struct_)) take();
+    }
+
     void read_types() {
         const Token opener = take();
         while (!is_end(here().word) && !is(Word::end_of_file) && !at_pou()) {
             TypeDeclaration declared;
             declared.name = read_name("the name of a type");
+            if (is(Word::extends_)) refuse_base();
             skip_header();
             if (!is(Word::struct_)) expect(Word::colon, "after the name");
             declared.type = read_type();
@@ -851,11 +912,20 @@ class Parser {
         if (is(Word::name) && type.name.word == Word::end_of_file) type.name = take();
     }
 
+    /// `lib.T`: what is behind the points is taken.
+    void refuse_namespace(Token& name) {
+        const Place first = name.place;
+        while (is(Word::dot) && is_name(next())) take(), name = take();
+        tell("L0903", first.to(name.place), "namespaces are not supported",
+             fmt::format("write {}", name.text));
+    }
+
     void read_named(TypeText& type) {
         if (is(Word::pointer_) && next().word == Word::to_) refuse_unsupported();
         type.name = read_name("a type");
         if (type.name.text == "_" && accept(Word::dot)) type.name = read_name("a type");
         if (panic_) return;
+        if (is(Word::dot) && is_name(next())) refuse_namespace(type.name);
         if (same_name(type.name.text, "string") && (is(Word::open_bracket) || is(Word::open))) {
             type.kind = TypeText::Kind::text;
             const Word end = take().word == Word::open_bracket ? Word::close_bracket : Word::close;
@@ -905,9 +975,29 @@ class Parser {
         if (to.depth > longest_chain) too_deep(to.token.place);
     }
 
-    /// `[1, 4(0.0)]`, `(x := 1, y := 2)`, or an expression.
+    /// `(x := 1)`, `(1, 2)`, `()`, and not `(1 + 2) * 3`.
+    bool at_structure() const {
+        if (!is(Word::open)) return false;
+        if (next().word == Word::close || at_argument_name(1)) return true;
+        for (int i = 0, open = 0;; ++i) {
+            const Word word = next(static_cast<std::size_t>(i)).word;
+            open += (word == Word::open || word == Word::open_bracket) -
+                    (word == Word::close || word == Word::close_bracket);
+            if (open == 1 && word == Word::comma) return true;
+            if (open == 0 || word == Word::semicolon || word == Word::end_of_file) return false;
+        }
+    }
+
+    /// A word may be one without quotes, as nothing else can be meant.
+    bool at_argument_name(std::size_t ahead = 0) const {
+        const Word behind = next(ahead + 1).word;
+        return next(ahead).word <= Word::name && next(ahead).word != Word::end_of_file &&
+               (behind == Word::assign || behind == Word::output);
+    }
+
+    /// `[1, 4(0.0)]`, `(x := 1, y := 2)`, `(1, 2)`, or an expression.
     Expression* read_initial() {
-        const bool structure = is(Word::open) && is_name(next()) && next(2).word == Word::assign;
+        const bool structure = at_structure();
         if (!structure && !is(Word::open_bracket)) return read_repeated();
         const Level level(*this);
         Expression* list = make(Expression::Kind::list, take());
@@ -950,7 +1040,7 @@ class Parser {
                 if (negated)
                     return fail("L0903", here().place, "NOT before an output is not supported",
                                 "take the output, and write NOT where it is used");
-                if (is_name() && (next().word == Word::assign || next().word == Word::output)) {
+                if (at_argument_name()) {
                     argument.name = take();
                     argument.is_output = take().word == Word::output;
                     if (argument.is_output && (is(Word::comma) || is(end))) {
@@ -1065,6 +1155,7 @@ class Parser {
                 }
                 default:
                     skip_this();
+                    if (is(Word::super_) && next().word == Word::caret) break;
                     if (is_name() || (is_operator_name() && next().word == Word::open))
                         return make(Expression::Kind::name, take());
             }
@@ -1135,7 +1226,9 @@ class Parser {
 
     /// Up to `end`, or what ends a block around it.
     void read_statements(Block& to, Word end, bool in_case = false) {
-        while (!panic_ && !is(end) && !at_end_of_statements() && !(in_case && at_label())) {
+        while (!panic_ && !is(end) && !at_end_of_statements() &&
+               !(in_case ? at_label() : at_label_of_case())) {
+            if (at_chart()) return refuse_chart();
             if (at_doomed_name() && !at_test_word() && respell(statement_words)) continue;
             const std::size_t before = at_;
             Statement* statement = read_statement();
@@ -1252,7 +1345,8 @@ class Parser {
                      "write IF, CASE, EXIT or RETURN");
             else if (is(Word::semicolon) || here().first_in_line)
                 fail("L0902", target->place, "this does nothing",
-                     "write 'name := value;', or a call 'name();'");
+                     cases_ > 0 ? "a value of CASE has a ':' behind it, a call '()'"
+                                : "write 'name := value;', or a call 'name();'");
             else
                 expected(":=", "or '('");
             return nullptr;
@@ -1390,12 +1484,20 @@ class Parser {
         return false;
     }
 
+    /// Within a statement of a CASE, whose end is missing.
+    bool at_label_of_case() const {
+        return cases_ > 0 && here().first_in_line && at_label() &&
+               (is(Word::integer) || next().word == Word::colon);
+    }
+
     Statement* read_case() {
         const Token opener = take();
         Statement* statement = make(Statement::Kind::case_, opener);
         statement->value = read_condition(Word::of_, "after the selector");
         if (panic_) skip_to_statement();
-        while (!panic_ && at_label()) {
+        ++cases_;
+        const auto at_first = [&] { return statement->branches.empty() && is(Word::name); };
+        while (!panic_ && (at_label() || at_first())) {
             Branch branch;
             do {
                 Expression* from = read_expression();
@@ -1407,6 +1509,7 @@ class Parser {
             read_statements(branch.body, Word::end_case_, true);
             statement->branches.push_back(std::move(branch));
         }
+        --cases_;
         if (accept(Word::else_)) {
             accept(Word::colon);
             read_statements(statement->body, Word::end_case_);
@@ -1468,6 +1571,7 @@ class Parser {
     std::vector<Token> regions_;                              ///< that are open
     std::vector<Place> else_ifs_;                             ///< within the IFs that are open
     int depth_ = 0;
+    int cases_ = 0;  ///< that are open, before their ELSE
     bool panic_ = false;
     bool is_wrong_ = false;      ///< what is being read
     bool section_left_ = false;  ///< a VAR ended without END_VAR

@@ -198,7 +198,8 @@ void Checker::check_for(Statement& s) {
     }
     if (type && check_target(*s.target))
         for (Expression** part : {&s.value, &s.limit, &s.step})
-            if (*part && check(**part, type)) coerce(*part, type->plain());
+            if (*part && check(**part, type))
+                coerce(*part, part == &s.value ? *type : type->plain());
     if (s.step && s.step->type && s.step->kind == Expression::Kind::constant &&
         s.step->constant.integer == 0)
         fail("L0908", s.step->place, "a loop with step 0 does not end");

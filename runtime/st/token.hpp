@@ -45,8 +45,8 @@ inline bool same_name(std::string_view a, std::string_view b) {
 }
 
 // Every word and sign of the language, as it is shown in messages.
-#define LINESHAFT_ST_WORDS(WORD)                                                                \
-    WORD(action) WORD(and) WORD(and_then) WORD(array) WORD(at) WORD(begin) WORD(by) WORD(case)     \
+#define LINESHAFT_ST_WORDS(WORD)                                                                              \
+    WORD(abstract) WORD(action) WORD(and) WORD(and_then) WORD(array) WORD(at) WORD(begin) WORD(by) WORD(case) \
     WORD(class) WORD(configuration) WORD(constant) WORD(continue) WORD(data_block) WORD(do)        \
     WORD(else) WORD(elsif) WORD(end_action) WORD(end_case) WORD(end_class) WORD(end_data_block)    \
     WORD(end_for) WORD(end_function) WORD(end_function_block) WORD(end_if) WORD(end_interface)     \

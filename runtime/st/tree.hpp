@@ -39,7 +39,7 @@ struct Expression {
         unary,
         binary,
         typed,      ///< `INT#5`, `Colour#red`: token.text # operands[0]
-        list,       ///< `[1, 4(0.0)]`: of arguments, or `(x := 1, y := 2)`
+        list,       ///< `[1, 4(0.0)]`: of arguments, or `(x := 1, y := 2)`, `(1, 2)`
         repeated,   ///< `4(0.0)`: operands[0] times what is in `arguments`
         converted,  ///< operands[0] to `type`, put in by the checker
     };
@@ -64,13 +64,17 @@ struct Expression {
     /// `s[3]` of a text, which is no place of its own.
     bool is_character() const;
 
+    /// Of a list: `(x := 1, y := 2)`, `(1, 2)`, `()`.
+    bool is_structure() const {
+        return token.word == Word::open || (!arguments.empty() && arguments.front().is_named());
+    }
+
     /// Of a list: it has lists of elements again, `[[1, 2], 2([3, 4])]`, not structures,
     /// `[(x := 1)]`.
     bool is_nested() const {
         for (const Argument& argument : arguments) {
             const Expression& e = *argument.value;
-            const bool named = !e.arguments.empty() && e.arguments.front().is_named();
-            if (e.kind == Kind::list && !named) return true;
+            if (e.kind == Kind::list && !e.is_structure()) return true;
             if (e.kind == Kind::repeated && e.is_nested()) return true;
         }
         return false;

@@ -7,6 +7,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/fit/fit.hpp"
 #include "runtime/run/link.hpp"
+#include "runtime/source/encoding.hpp"
 #include "runtime/study/study_reader.hpp"
 #include "tools/lineshaft/command.hpp"
 #include "tools/lineshaft/test_files.hpp"

@@ -8,6 +8,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/fit/fit.hpp"
 #include "runtime/run/single_run.hpp"
+#include "runtime/source/encoding.hpp"
 #include "runtime/st/test_suite.hpp"
 #include "runtime/study/report.hpp"
 #include "runtime/study/study_reader.hpp"

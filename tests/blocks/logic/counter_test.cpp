@@ -57,6 +57,31 @@ TEST_CASE("ctu counts up as in the standard") {
                  });
 }
 
+TEST_CASE("a counter stops at the limits of its type") {
+    struct Limits {
+        CounterType type;
+        std::int64_t least, most;
+    };
+    constexpr Limits all[] = {{CounterType::int_, -32768, 32767},
+                              {CounterType::sint, -128, 127},
+                              {CounterType::usint, 0, 255},
+                              {CounterType::uint, 0, 65535}};
+    for (const auto& [type, least, most] : all) {
+        Ctud counter;
+        counter.data_type = type;
+        const auto scan = [&](bool up, bool down) {
+            counter.cu = up, counter.cd = down;
+            counter.scan({});
+        };
+        counter.cv = most - 1;
+        for (int i = 0; i < 3; ++i) scan(true, false), scan(false, false);
+        CHECK(counter.cv == most);
+        counter.cv = least + 1;
+        for (int i = 0; i < 3; ++i) scan(false, true), scan(false, false);
+        CHECK(counter.cv == least);
+    }
+}
+
 TEST_CASE("ctd counts down as in the standard") {
     check_tables("ctd", Calls::once_and_twice,
                  {

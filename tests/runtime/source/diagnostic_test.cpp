@@ -148,7 +148,10 @@ TEST_CASE("the nearest name") {
     CHECK(nearest("master", {"master_unit"}).empty());
     CHECK(nearest("x.a", {"x.b", "y.a"}).empty());
     CHECK(nearest("abcdefghijkl", {"abcdefghi"}) == Names{"abcdefghi"});
-    CHECK(nearest("abcdefghijklmnop", {"abcdefghijkl"}).empty());
+    CHECK(nearest("abcdefghijklmnop", {"bbcdefghijkl"}).empty());
+    CHECK(nearest("MC_GearInPosition", {"MC_Gear", "MC_GearIn", "MC_GearInPos"}) ==
+          Names{"MC_GearInPos"});
+    CHECK(nearest("MC_GearInPosition", {"MC_Gear", "MC_GearIn"}).empty());
 }
 
 TEST_CASE("a suggestion is the nearest name or the names there are") {

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/encoding.hpp"
+
 namespace lineshaft::st {
 
 std::shared_ptr<const SourceFile> read(const std::string& path) {
@@ -12,7 +14,7 @@ std::shared_ptr<const SourceFile> read(const std::string& path) {
     std::ostringstream text;
     text << file.rdbuf();
     return std::make_shared<const SourceFile>(
-        SourceFile{path.substr(path.rfind('/') + 1), text.str()});
+        SourceFile{path.substr(path.rfind('/') + 1), as_utf8(text.str())});
 }
 
 std::shared_ptr<const SourceFile> source(std::string text) {

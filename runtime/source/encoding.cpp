@@ -1,0 +1,95 @@
+#include "runtime/source/encoding.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+
+#include "runtime/source/letters.hpp"
+#include "runtime/source/utf8.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+struct Letters {
+    char32_t first, last;
+};
+
+constexpr Letters national_letters[] = {{0x00B5, 0x00B5}, {0x00C0, 0x00D6}, {0x00D8, 0x00F6},
+                                        {0x00F8, 0x037D}, {0x037F, 0x1FFF}, {0x2C00, 0x2FEF},
+                                        {0x3005, 0xD7FF}, {0xF900, 0xFDCF}};
+
+/// Of 0x80 to 0x9F, all others are as in Unicode; five are none.
+constexpr char32_t windows_1252[] = {
+    0x20AC, 0xFFFD, 0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
+    0x2039, 0x0152, 0xFFFD, 0x017D, 0xFFFD, 0xFFFD, 0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
+    0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0xFFFD, 0x017E, 0x0178};
+
+char32_t of_windows_1252(unsigned char byte) {
+    return byte >= 0x80 && byte < 0xA0 ? windows_1252[byte - 0x80] : byte;
+}
+
+void add_character(std::string& to, char32_t code) {
+    const auto add = [&](char32_t byte) {
+        to += static_cast<char>(static_cast<unsigned char>(byte));
+    };
+    const auto rest = [&](int shift) { add(0x80U | ((code >> shift) & 0x3FU)); };
+    if (code < 0x80) return add(code);
+    if (code < 0x800) return add(0xC0U | (code >> 6)), rest(0);
+    if (code < 0x10000) return add(0xE0U | (code >> 12)), rest(6), rest(0);
+    add(0xF0U | (code >> 18)), rest(12), rest(6), rest(0);
+}
+
+/// Half a pair of surrogates, and half a unit at the end, are U+FFFD.
+std::string of_utf16(std::string_view bytes, bool big_endian) {
+    const auto unit = [&](std::size_t at) -> char32_t {
+        const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[at + i]); };
+        if (at + 1 >= bytes.size()) return 0xFFFD;
+        return big_endian ? byte(0) * 256U + byte(1) : byte(1) * 256U + byte(0);
+    };
+    std::string text;
+    text.reserve(bytes.size());
+    for (std::size_t at = 0; at < bytes.size(); at += 2) {
+        char32_t code = unit(at);
+        const bool leads = code >= 0xD800 && code < 0xDC00;
+        const char32_t behind = leads && at + 2 < bytes.size() ? unit(at + 2) : 0;
+        if (behind >= 0xDC00 && behind < 0xE000) {
+            code = 0x10000 + ((code - 0xD800) << 10) + (behind - 0xDC00);
+            at += 2;
+        } else if (code >= 0xD800 && code < 0xE000) {
+            code = 0xFFFD;
+        }
+        add_character(text, code);
+    }
+    return text;
+}
+
+}  // namespace
+
+bool is_structured_text(const std::filesystem::path& file) {
+    static constexpr std::string_view extensions[] = {".st", ".scl", ".s7dcl", ".udt", ".db"};
+    const std::string extension = lower(file.extension().string());
+    return std::ranges::find(extensions, extension) != std::end(extensions);
+}
+
+std::string as_utf8(std::string bytes) {
+    if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
+        return of_utf16(std::string_view(bytes).substr(2), bytes.starts_with("\xFE"));
+    std::string text;
+    for (std::string_view rest = bytes; !rest.empty();) {
+        const Utf8Character character = first_character(rest);
+        if (character.valid)
+            text += rest.substr(0, character.bytes);
+        else
+            add_character(text, of_windows_1252(static_cast<unsigned char>(rest.front())));
+        rest.remove_prefix(character.bytes);
+    }
+    return text;
+}
+
+bool is_national_letter(char32_t code) {
+    return std::ranges::any_of(national_letters,
+                               [&](const Letters& l) { return code >= l.first && code <= l.last; });
+}
+
+}  // namespace lineshaft

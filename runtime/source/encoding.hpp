@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace lineshaft {
+
+/// Whether the file's name ends as one of Structured Text does.
+bool is_structured_text(const std::filesystem::path& file);
+
+/// A file's text in UTF-8: UTF-16 is known by its byte order mark, and a byte that belongs to no
+/// character of UTF-8 is one of Windows-1252.
+std::string as_utf8(std::string bytes);
+
+/// What a name may have beside letters, digits and `_` of ASCII: as XML 1.0 has it, without signs.
+bool is_national_letter(char32_t code);
+
+}  // namespace lineshaft
