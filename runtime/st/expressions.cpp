@@ -347,7 +347,8 @@ const Type* Checker::undeclared(const Token& name, Place place,
         return nullptr;
     const auto near = nearest(name.text, names);
     const auto in_name = [](char c) { return is_letter(c) || is_digit(c) || !is_ascii(c); };
-    const bool is_text = name.quoted && !std::ranges::all_of(name.text, in_name);
+    const bool is_text = name.quoted && (!std::ranges::all_of(name.text, in_name) ||
+                                         (near.empty() && !is_scl(place)));
     return fail("L0904", place, fmt::format("'{}' is not declared", name.text),
                 is_text ? "a text stands in '...', a name in \"...\"" : suggest(name.text, near));
 }

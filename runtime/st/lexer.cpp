@@ -88,7 +88,8 @@ class Lexer {
 
     Tokens read() {
         if (text_.starts_with(utf8_byte_order_mark)) at_ = utf8_byte_order_mark.size();
-        if (is_binary()) at_ = text_.size();
+        if (const std::size_t zero = text_.find('\0'); zero != std::string_view::npos)
+            fail_as_binary(place(zero, zero + 1));
         tokens_.tokens.reserve(text_.size() / 4 + 1);
         for (skip_blanks(); at_ < text_.size(); skip_blanks()) read_token();
         start_ = at_ = text_.size();
@@ -109,14 +110,6 @@ class Lexer {
     template <class Condition>
     void skip_while(Condition condition) {
         while (at_ < text_.size() && condition(text_[at_])) ++at_;
-    }
-
-    /// One message, as nothing of it can be meant.
-    bool is_binary() {
-        const std::size_t zero = text_.find('\0');
-        if (zero == std::string_view::npos) return false;
-        fail(place(zero, zero + 1), "this is not a text", "save the source as UTF-8");
-        return true;
     }
 
     /// Bytes of a letter beyond ASCII that is next; 0 where there is none.
@@ -412,8 +405,8 @@ class Lexer {
             return;
         }
         last_foreign_ = at_;
-        if (!character.valid || is_control(character.code))
-            return fail(here, "the file has a byte that is not text", "save it as UTF-8");
+        if (!character.valid || is_control(character.code) || character.code == 0xFFFD)
+            return fail_as_binary(here);
         fail(here, fmt::format("'{}' has no meaning here", here.text()),
              std::string(instead_of(text_.substr(start_))));
     }
@@ -426,6 +419,12 @@ class Lexer {
         if (text.starts_with('%')) return "write MOD";
         if (text.starts_with("||")) return "write OR";
         return "names have letters, digits and '_'; others stand in quotes";
+    }
+
+    /// Once, and nothing else can be meant.
+    void fail_as_binary(Place where) {
+        at_ = text_.size();
+        fail(where, "the file is not a text", "save it as UTF-8");
     }
 
     void fail(Place where, std::string message, std::string help) {

@@ -666,7 +666,7 @@ class Parser {
         while (!is(end) && !is(Word::end_of_file)) {
             const bool is_inst =
                 is(Word::name) && here().first_in_line && same_name(here().text, "var_inst");
-            if (refuse_untyped()) continue;
+            if (refuse_section()) continue;
             const bool is_list = next(2).word == Word::colon || next(2).word == Word::comma;
             if (!is_inst && is_name(next()) && is_list) respell(variable_words);
             const auto* it = std::ranges::find(section_words, here().word, &SectionWord::word);
@@ -681,8 +681,14 @@ class Parser {
         }
     }
 
-    /// `CONST n := 5; END_CONST` and LABEL of Siemens' older SCL.
-    bool refuse_untyped() {
+    /// VAR_ACCESS; `CONST n := 5; END_CONST` and LABEL of Siemens' older SCL.
+    bool refuse_section() {
+        if (is(Word::var_access_)) {
+            refuse_unsupported();
+            skip_past(Word::end_var_);
+            accept(Word::semicolon);
+            return true;
+        }
         const bool is_const = same_name(here().text, "const");
         if (!is(Word::name) || !here().first_in_line || !is_name(next()) ||
             !(is_const || same_name(here().text, "label")))

@@ -437,11 +437,14 @@ class CWriter {
         loops_.push_back(loop);
         put("for (;;) {{\nif ((i128){0} >= 0 ? {1} > {2} : {1} < {2}) break;", step, counter,
             limit);
-        const Type& given = *s.target->type;
-        if (given.is_subrange) check_range(counter, given.lower, given.upper);
         write(s.body);
-        put("next{0}:;\nconst i128 sum = (i128){1} + {2};\n{1} = ({3})sum;", loop, counter, step,
-            c_type(type));
+        at(s.place);
+        put("next{}:;\nconst i128 sum = (i128){} + {};", loop, counter, step);
+        if (const Type& given = *s.target->type; given.is_subrange) {
+            put("if ((i128){0} >= 0 ? sum > {1} : sum < {1}) break;", step, limit);
+            check_range("sum", given.lower, given.upper);
+        }
+        put("{} = ({})sum;", counter, c_type(type));
         put("if (sum != (i128){}) break;\n}}\nexit{}:;", counter, loop);
         loops_.pop_back();
     }
@@ -741,9 +744,10 @@ class CWriter {
 
     std::string text(const Expression& e) {
         if (e.kind == E::constant) {
-            const std::string name = new_text();
-            put("twin_literal(&{}, 254, {}, {});", name, quoted(e.constant.text),
-                e.constant.text.size());
+            const std::string name = new_name();
+            const std::size_t size = e.constant.text.size();
+            put("struct {{ i64 length; char c[{}]; }} {};", size + 1, name);
+            put("twin_literal(&{}, {}, {}, {});", name, size, quoted(e.constant.text), size);
             return "&" + name;
         }
         if (e.kind == E::call) return e.routine ? "&" + call(e) : text_function(e);

@@ -223,14 +223,16 @@ void call_tp(struct tp* b) {
     if (!b->q && !b->in) b->et = 0;
 }
 
-static const i64 most[] = {INT16_MAX, INT32_MAX, INT64_MAX};
+static const i64 lowest[] = {INT16_MIN, INT32_MIN, INT64_MIN, 0, 0, INT8_MIN, 0, 0};
+static const i64 most[] = {INT16_MAX, INT32_MAX, INT64_MAX, UINT32_MAX,
+                           INT64_MAX, INT8_MAX,  UINT8_MAX, UINT16_MAX};
 
 static i64 loaded(i64 pv, i64 type) {
-    return within(pv, -most[type] - 1, most[type]);
+    return within(pv, lowest[type], most[type]);
 }
 
 static void count(i64* cv, int by, i64 type) {
-    if (by > 0 ? *cv < most[type] : *cv > -most[type] - 1) *cv += by;
+    if (by > 0 ? *cv < most[type] : *cv > lowest[type]) *cv += by;
 }
 
 void call_ctu(struct ctu* b) {

@@ -409,8 +409,8 @@ brackets behind the name may be left out.)"},
 the first line of the file.)"},
     {"L0704", "a row of another length than the header",
      R"(Every row of a CSV file has as many cells as the first line has names; a missing value
-is an empty cell, and blank lines at the end are no rows. Often a decimal comma took a number apart: then semicolons must stand
-between the cells.)"},
+is an empty cell, and blank lines at the end are no rows. Often a decimal comma took a number
+apart: then semicolons must stand between the cells.)"},
     {"L0705", "something else in a column of numbers",
      R"(The cells of the columns that are read are numbers; where there is no value the cell is
 empty. Words such as nan, inf or true are not numbers. In a trace booleans are 0 and 1,
