@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Kills runs that write retained values, at random moments: the file is always whole, the old or the new one.
+Then flips bits of the file: each is told, and the copy before it is taken where there is one.
 
 usage: retain.py LINESHAFT [KILLS]
 """
@@ -29,6 +30,25 @@ def seconds(start):
     begin = time.monotonic()
     assert start(0).wait() == 0
     return time.monotonic() - begin
+
+
+def flips(lineshaft, program, kept, chance):
+    """Whatever bit it is."""
+    copy = pathlib.Path(f"{kept}.bak")
+    command = [lineshaft, "run", program, "--quiet", "--set", "count=1", "--retain-file", kept]
+    for _ in range(2):
+        subprocess.run(command, check=True)
+    whole, before = kept.read_bytes(), copy.read_bytes()
+    for _ in range(40):
+        place, bit = chance.randrange(len(whole)), chance.randrange(8)
+        flipped = whole[:place] + bytes([whole[place] ^ 1 << bit]) + whole[place + 1:]
+        for has_copy in (False, True):
+            kept.write_bytes(flipped)
+            copy.write_bytes(before) if has_copy else copy.unlink()
+            run = subprocess.run(command, capture_output=True, text=True)
+            told = "is damaged: the copy before it" in run.stderr if has_copy else "L0507" in run.stderr
+            assert run.returncode == (0 if has_copy else 2) and told, (place, bit, has_copy, run)
+    print("40 flipped bits were told")
 
 
 def main():
@@ -61,6 +81,7 @@ def main():
                 return 1
             renewed += found == count
             old = found
+        flips(lineshaft, program, kept, chance)
     print(f"{killed} of {count} runs killed, {renewed} runs had renewed the file, each left a whole one")
     return 0
 

@@ -4,11 +4,14 @@
 #include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "runtime/source/input_file.hpp"
+#include "runtime/source/json_text.hpp"
+#include "runtime/source/text_hash.hpp"
 #include "runtime/source/yaml.hpp"
 #include "runtime/trace/output_file.hpp"
 
@@ -19,14 +22,48 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Bytes = std::vector<std::byte>;
 
+constexpr YamlLimits retain_limits{.bytes = 256 << 20};
 constexpr std::string_view help = "a cold restart (--restart cold) begins with the initial values";
 
+constexpr std::int64_t retain_layout = 2;  // of the blocks
+constexpr std::string_view check_begin = "\"check\": \"", no_check = "0000000000000000";
+
+/// Where the digits of the file's own check stand; npos when there are none.
+std::size_t check_place(std::string_view text) {
+    const std::size_t at = text.find(check_begin);
+    const bool has_room =
+        at != std::string::npos && at + check_begin.size() + no_check.size() <= text.size();
+    return has_room ? at + check_begin.size() : std::string::npos;
+}
+
+std::string check_of(std::string text, std::size_t place) {
+    return text_hash(text.replace(place, no_check.size(), no_check));
+}
+
+bool is_intact(const std::string& text) {
+    const std::size_t place = check_place(text);
+    return place != std::string::npos &&
+           text.substr(place, no_check.size()) == check_of(text, place);
+}
+
 std::optional<Value> value_of(const Json& json, Type type) {
+    constexpr auto least = std::numeric_limits<std::int64_t>::min();
+    constexpr auto most = std::numeric_limits<std::int64_t>::max();
     if (type == Type::boolean && json.is_boolean()) return json.get<bool>();
     if (type == Type::real && json.is_number()) return json.get<double>();
-    if (type != Type::boolean && type != Type::real && json.is_number_integer())
-        return json.get<std::int64_t>();
-    return {};
+    if (type == Type::boolean || type == Type::real) return {};
+    return integer_at({{"value", json}}, "value", least, most);
+}
+
+/// Among an enumeration's, and within the limits of the field.
+bool is_admitted(const Value& value, const Signal& signal, const Machine& machine) {
+    if (signal.type == Type::enumeration) {
+        const auto number = std::get<std::int64_t>(value);
+        return number >= 0 && number < std::ssize(signal.names);
+    }
+    if (signal.port.instance < 0 || signal.type != Type::integer) return true;
+    const BlockPlace& block = machine.blocks[static_cast<std::size_t>(signal.port.instance)];
+    return block.type->fields[static_cast<std::size_t>(signal.port.field)].admits(value);
 }
 
 std::string hexadecimal(const Bytes& bytes) {
@@ -66,6 +103,22 @@ void restore(const BlockPlace& block, const Bytes& state) {
     std::ranges::copy(bytes, block.published);
 }
 
+/// The first field with a boolean that is neither, or a number that no name of its enumeration has;
+/// null when there is none.
+const Field* find_damaged(const BlockPlace& block, const Bytes& state) {
+    const auto is_damaged = [&](const Field& field) {
+        if (field.direction != Direction::output && field.direction != Direction::local)
+            return false;
+        const std::byte* const place = state.data() + field.offset;
+        if (field.type == Type::boolean) return read<unsigned char>(place) > 1;
+        if (field.type != Type::enumeration) return false;
+        const auto number = read<std::int64_t>(place);
+        return number < 0 || number >= std::ssize(field.names);
+    };
+    const auto it = std::ranges::find_if(block.type->fields, is_damaged);
+    return it == block.type->fields.end() ? nullptr : &*it;
+}
+
 /// A file of retained values while it is read.
 struct Reading {
     const Json& root;
@@ -88,7 +141,7 @@ bool set_value(const Reading& reading, const Retained& kept) {
     const Json* json = reading.find("values", kept.signal.name);
     if (!json) return false;
     const auto value = value_of(*json, kept.signal.type);
-    if (!value) {
+    if (!value || !is_admitted(*value, kept.signal, reading.machine)) {
         reading.fail(fmt::format("'{}' is {}, the file has {}", kept.signal.name,
                                  name_of(kept.signal.type), json->dump()));
         return false;
@@ -110,43 +163,101 @@ bool set_block(const Reading& reading, const RetainedBlock& kept) {
                         block.name, block.type->name));
         return false;
     }
+    if (const Field* field = find_damaged(block, bytes)) {
+        reading.fail(fmt::format("'{}.{}' cannot be as the file has it", block.name, field->name));
+        return false;
+    }
     restore(block, bytes);
     return true;
 }
 
+bool is_object(const Json& root, const char* key) {
+    return root.contains(key) && root[key].is_object();
+}
+
 bool is_retain_file(const Json& root) {
-    const auto is_object = [&](const char* key) {
-        return root.contains(key) && root[key].is_object();
-    };
-    return root.is_object() && root.contains("lineshaft_retain") && root["lineshaft_retain"] == 1 &&
-           is_object("values") && (!root.contains("blocks") || is_object("blocks"));
+    return root.is_object() && integer_at(root, "lineshaft_retain", 1, retain_layout) &&
+           is_object(root, "values") && (!root.contains("blocks") || is_object(root, "blocks"));
+}
+
+std::string copy_before(const std::string& path) {
+    return path + ".bak";
+}
+
+/// Whether there is a file with a check that fits.
+bool is_good(const std::string& path) {
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(path, unknown)) return false;
+    int error = 0;
+    const std::string text = read_bytes(path, retain_limits.bytes, error);
+    return error == 0 && is_intact(text);
+}
+
+/// Under another name too, so that there is a whole file at each moment. Where that cannot be there
+/// is no copy.
+void keep_copy(const std::string& path) {
+    std::error_code unknown;
+    std::filesystem::remove(copy_before(path), unknown);
+    std::filesystem::create_hard_link(path, copy_before(path), unknown);
+    if (unknown) std::filesystem::copy_file(path, copy_before(path), unknown);
+}
+
+/// What is read: the file, or, with a warning, the copy before it. Empty when there is none.
+std::string readable(const std::string& path, Diagnostics& out) {
+    std::error_code unknown;
+    const bool exists = std::filesystem::exists(path, unknown);
+    if (exists && !std::filesystem::is_regular_file(path, unknown)) return path;
+    if (is_good(path) || !is_good(copy_before(path))) return exists ? path : "";
+    out.warn("L0507", {},
+             fmt::format("'{}' is {}: the copy before it, '{}', is taken", path,
+                         exists ? "damaged" : "not there", copy_before(path)));
+    return copy_before(path);
+}
+
+/// Empty when nothing is.
+std::string what_is_wrong(const Json& root, const std::string& text) {
+    if (!is_retain_file(root)) {
+        return text.find("lineshaft_retain") == std::string::npos
+                   ? "this is not a file of retained values"
+                   : "the file of retained values is damaged";
+    }
+    if (integer_at(root, "lineshaft_retain", retain_layout, retain_layout) && !is_intact(text))
+        return "the file of retained values is damaged: its check does not fit";
+    if (!integer_at(root, "lineshaft_retain", retain_layout, retain_layout))
+        return "the file is of an earlier lineshaft, whose blocks were laid out otherwise";
+    return {};
 }
 
 }  // namespace
 
 std::string write_retained(const std::string& path, const Machine& machine, std::int64_t now) {
-    Json root{{"lineshaft_retain", 1}, {"values", Json::object()}};
+    Json root{{"lineshaft_retain", retain_layout}, {"check", no_check}, {"values", Json::object()}};
     for (const Retained& kept : machine.retained)
         std::visit([&](auto v) { root["values"][kept.signal.name] = v; }, kept.signal.value());
     for (const RetainedBlock& kept : machine.retained_blocks) {
         const BlockPlace& block = machine.blocks[kept.instance];
         root["blocks"][block.name] = json_of(kept, block, now);
     }
+    std::string text = root.dump(2) + "\n";
+    const std::size_t place = check_place(text);
+    text.replace(place, no_check.size(), check_of(text, place));
     OutputFile file(path);
-    file.write(root.dump(2) + "\n");
+    file.write(text);
+    if (!file.complete()) return file.error();
+    if (file.is_regular() && is_good(path)) keep_copy(path);
     file.commit();
     return file.error();
 }
 
 int read_retained(const std::string& path, Machine& machine, Diagnostics& out) {
-    std::error_code unknown;
-    if (!std::filesystem::exists(path, unknown)) return 0;
-    const auto file = read_source(path, out);
+    const std::string name = readable(path, out);
+    if (name.empty()) return 0;
+    const auto file = read_source(name, out, {}, retain_limits);
     if (!file) return 0;
-    const Json root = Json::parse(file->text, nullptr, false);
+    const Json root = parse_json(file->text);
     const Reading reading{root, machine, file, out};
-    if (!is_retain_file(root)) {
-        reading.fail("this is not a file of retained values");
+    if (const std::string wrong = what_is_wrong(root, file->text); !wrong.empty()) {
+        reading.fail(wrong);
         return 0;
     }
     int set = 0;

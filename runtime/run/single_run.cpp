@@ -117,7 +117,8 @@ RunReport SingleRun::run() {
         const bool broke_off = report_.result.outcome == Outcome::interrupted && writing_fails();
         if (broke_off)
             report_.result.message = "the run stopped at " + format_time(report_.result.time);
-        report_.warnings = executive_->warnings();
+        for (std::string& text : executive_->warnings())
+            report_.warnings.push_back(std::move(text));
         warn_of_cut_texts();
         judge_.finish(report_.result);
         if (!broke_off) report_.verdicts = judge_.verdicts();
@@ -174,6 +175,8 @@ bool SingleRun::restart() {
         program_ = fingerprint(loaded_.program, machine_);
     if (options_.restart == Restart::warm && !options_.retain_path.empty())
         retained_ = read_retained(options_.retain_path, machine_, report_.refused);
+    for (const Diagnostic& warning : report_.refused.warnings())
+        report_.warnings.push_back(warning.message);
     if (options_.restart == Restart::hot) {
         state_ = read_checkpoint(options_.checkpoint_path, program_, report_.refused).value_or("");
         begun_.emplace(state_);

@@ -318,11 +318,11 @@ differs, if it is not whole, or if the trace is not the one that was being writt
 Run the program from its start, or with the same file, --set, --force, --trace and
 --pulses as before, for a served machine --record, too.)"},
     {"L0507", "a file of retained values that does not fit",
-     R"(A retain file is JSON: {"lineshaft_retain": 1, "values": {"counter.cv": 12}, "blocks": ...}.
-This one is something else, or has a value of another type than the signal. What a block
-remembers, as bytes, is of use only to a block of the same kind with the same parameters in
-the same version of lineshaft. Remove the file, or begin with the initial values, which
-then overwrite it:
+     R"(A retain file is JSON with a check of itself: {"lineshaft_retain": 2, "check": "...", "values":
+{"counter.cv": 12}, "blocks": ...}. This one is something else, is damaged (and so is the copy
+before it, FILE.bak), or has a value that the signal cannot have. What a block remembers, as
+bytes, is of use only to a block of the same kind with the same parameters in the same version
+of lineshaft. Remove the file, or begin with the initial values, which then overwrite it:
     lineshaft run program.yaml --retain-file line.retain --restart cold)"},
     {"L0508", "--retain-file for a program that retains nothing",
      R"(The program does not say what outlives a run. List the blocks and inputs:

@@ -6,6 +6,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/run/single_run.hpp"
+#include "runtime/source/text_hash.hpp"
 #include "tests/folder.hpp"
 
 using namespace lineshaft;
@@ -81,6 +82,15 @@ RunReport run_on(Loaded& loaded, const Folder& folder) {
     return report;
 }
 
+/// As written by hand, with its check made right.
+std::string with_check(std::string text) {
+    constexpr std::string_view begin = "\"check\": \"";
+    constexpr std::size_t digits = 16;
+    const std::size_t at = text.find(begin) + begin.size();
+    text.replace(at, digits, digits, '0');
+    return text.replace(at, digits, text_hash(text));
+}
+
 Value value_of(const Loaded& loaded, std::string_view signal) {
     const Signal* found = loaded.linked.machine.find(signal);
     REQUIRE(found);
@@ -151,7 +161,7 @@ TEST_CASE("a block retained by other settings, or cut short, is refused", "[reta
     run_on(first, folder);
     const std::string whole = read(folder / "line.retain");
     const auto refused = [&](const std::string& text) {
-        write(folder / "line.retain", text);
+        write(folder / "line.retain", with_check(text));
         Loaded loaded = load(folder);
         const RunReport report = run_on(loaded, folder);
         CHECK(value_of(loaded, "parts.cv") == Value(std::int64_t{0}));
@@ -165,4 +175,54 @@ TEST_CASE("a block retained by other settings, or cut short, is refused", "[reta
           std::string::npos);
     CHECK(refused(replaced("\"state\": \"", "\"state\": \"00")).find("L0507") != std::string::npos);
     CHECK(refused(replaced("\"state\": \"0", "\"state\": \"x")).find("L0507") != std::string::npos);
+}
+
+TEST_CASE("a damaged file gives way to the copy before it, with a warning", "[retain]") {
+    const Folder folder;
+    const std::string path = folder / "line.retain";
+    for (int restart = 0; restart < 2; ++restart) {
+        Loaded loaded = load(folder);
+        run_on(loaded, folder);
+    }
+    const std::string whole = read(path), before = read(path + ".bak");
+    CHECK(whole != before);
+    for (std::size_t at = 0; at < whole.size(); at += 97) {
+        std::string flipped = whole;
+        flipped[at] = static_cast<char>(flipped[at] ^ 1 << at % 7);
+        write(path, flipped);
+        write(path + ".bak", before);
+        Loaded loaded = load(folder);
+        const RunReport report = run_on(loaded, folder);
+        REQUIRE(report.refused.empty());
+        REQUIRE(report.warnings.size() == 1);
+        CHECK(report.warnings[0].find("is damaged: the copy before it") != std::string::npos);
+        CHECK(value_of(loaded, "delay.et") == Value(std::int64_t{2'000'000'000}));
+        CHECK(read(path + ".bak") == before);
+    }
+    std::filesystem::remove(path);
+    Loaded loaded = load(folder);
+    CHECK(run_on(loaded, folder).warnings.size() == 1);
+}
+
+TEST_CASE("a damaged file alone, and one of an earlier layout, is refused", "[retain]") {
+    const Folder folder;
+    Loaded first = load(folder);
+    run_on(first, folder);
+    std::string text = read(folder / "line.retain");
+    const auto refused = [&](const std::string& other) {
+        write(folder / "line.retain", other);
+        Loaded loaded = load(folder);
+        return run_on(loaded, folder).refused.render();
+    };
+    CHECK(refused(text.substr(0, text.size() / 2)).find("damaged") != std::string::npos);
+    std::string flipped = text;
+    flipped[text.find("\"delay\"") + 1] = 'D';
+    CHECK(refused(flipped).find("its check does not fit") != std::string::npos);
+    const std::string layout = "\"lineshaft_retain\": 2";
+    text.replace(text.find(layout), layout.size(), "\"lineshaft_retain\": 1");
+    CHECK(refused(with_check(text)).find("of an earlier lineshaft") != std::string::npos);
+    write(folder / "line.retain", "{}");
+    Loaded loaded = load(folder);
+    CHECK(run_on(loaded, folder).refused.render().find("this is not a file of retained values") !=
+          std::string::npos);
 }
