@@ -8,6 +8,7 @@ usage: explain.py LINESHAFT
 """
 
 import os
+import json
 import pathlib
 import re
 import subprocess
@@ -173,6 +174,21 @@ def explain(lineshaft, *code):
     return subprocess.run([lineshaft, "explain", *code], capture_output=True, text=True, check=True).stdout
 
 
+def blocks_examples_hold(lineshaft):
+    """The example of each kind of block, all in one program, beside what they name."""
+    kinds = json.loads(subprocess.run([lineshaft, "blocks", "--json"], capture_output=True, text=True, check=True).stdout)
+    with tempfile.TemporaryDirectory() as root:
+        program = pathlib.Path(root) / "blocks.yaml"
+        program.write_text("lineshaft: 1\ntasks: {main: {every: 10 ms}}\ninputs: {go: false}\nrun: {for: 10 ms}\nblocks:\n"
+                           "  x: {type: axis, task: main}\n  line: {type: axis, task: main}\n"
+                           + "".join(f"  {kind['example']}\n" for kind in kinds), encoding="utf-8")
+        answer = subprocess.run([lineshaft, "run", "--strict", program], capture_output=True, text=True, check=False)
+    shown = subprocess.run([lineshaft, "blocks", "MC_GearIn"], capture_output=True, text=True, check=True).stdout
+    holds = answer.returncode == 0 and all(kind["example"] for kind in kinds) and "my_gear_in: {type: MC_GearIn" in shown
+    print(f"{len(kinds)} blocks' examples: {'they run' if holds else answer.stderr}")
+    return holds
+
+
 def main():
     lineshaft = pathlib.Path(sys.argv[1]).resolve()
     count = failed = 0
@@ -186,6 +202,8 @@ def main():
                 failed += 1
                 print(f"{code}: exit code {answer.returncode}", example, answer.stdout, answer.stderr, sep="\n")
     print(f"{count} examples, {failed} failed")
+    if not blocks_examples_hold(lineshaft):
+        return 1
     return 1 if failed or count < 20 else 0
 
 

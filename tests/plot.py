@@ -6,6 +6,7 @@ usage: plot.py LINESHAFT PROJECT
 
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -43,6 +44,37 @@ class Prompt(unittest.TestCase):
         self.assertEqual(png.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
         self.run_lineshaft("plot", self.trace, "--signals", "x.velocity", "-o", svg)
         self.assertNotIn("x.position", svg.read_text(encoding="utf-8"))
+
+    def test_long_names_have_room(self):
+        name = "a_carriage_of_a_very_long_name"
+        program = self.file("long.yaml", f"""lineshaft: 1
+tasks: {{t: {{every: 2 ms}}}}
+blocks:
+  {name}: {{type: axis, task: t}}
+  feed: {{type: MC_MoveVelocity, task: t, Axis: {name}, Velocity: 10 mm/s, Execute: true}}
+run: {{for: 0.1 s}}
+trace: {{task: t, signals: [{name}.velocity, {name}.actual_velocity, {name}.error, {name}.actual_position]}}
+""")
+        trace, picture = self.folder / "long.csv", self.folder / "long.svg"
+        self.run_lineshaft("run", program, "--quiet", "--trace", trace)
+        said = self.run_lineshaft("plot", trace, "-o", picture, "--width", "1400")
+        self.assertEqual(said.stderr, "", "a signal that stays as it is needs no warning")
+        texts = []
+        for group in xml.etree.ElementTree.parse(picture).getroot().iter("{http://www.w3.org/2000/svg}g"):
+            text = "".join(group.itertext()).strip()
+            place = re.match(r"translate\(([\d.]+),", group.get("transform", ""))
+            if place and text and "rotate" not in group.get("transform"):
+                texts.append((text, float(place[1]), group.get("text-anchor")))
+        narrowest = 6  # pixels a character of DejaVu Sans 12 at least, on average
+        wide = [one for one in texts if name in one[0]]
+        self.assertEqual(len(wide), 4)
+        for text, x, anchor in wide:
+            if anchor == "end":
+                self.assertGreater(x - narrowest * len(text), 0, text)
+            else:
+                ticks = [place for number, place, how in texts if how == "middle" and re.fullmatch(r"[\d.]+", number)]
+                self.assertGreater(x, max(ticks), "the legend is beside the curves")
+                self.assertLess(x + narrowest * len(text), 1400, text)
 
     def test_no_gnuplot(self):
         picture = self.folder / "a.svg"

@@ -132,6 +132,43 @@ assert len(xml.parse(folder / "marked.xml").getroot().findall("testcase/skipped"
 assert test("--slow", "marked")[0][-1] == "4 of 4 passed"
 assert test("marked/b.yaml")[0][-1] == "1 of 1 passed", "what is named runs"
 
+# A folder is checked with its programs, and what two of them have of Structured Text is told once.
+wrong = write("wrong/a.yaml", quick + "run: {for: 1 ms}\nsources: wrong.st\n")
+write("wrong/b.yaml", pathlib.Path(wrong).read_text().replace("pv: 3", "pv: three"))
+write("wrong/c.yaml", pathlib.Path(wrong).read_text())
+write("wrong/wrong.st", "FUNCTION_BLOCK Wrong VAR x : INT; END_VAR x := TRUE; END_FUNCTION_BLOCK\n")
+write("wrong/alone.st", "FUNCTION_BLOCK Alone VAR x : INT; END_VAR x := y; END_FUNCTION_BLOCK\n")
+write("wrong/names_of_another.st", "FUNCTION_BLOCK Wrong VAR x : INT; END_VAR x := 1; END_FUNCTION_BLOCK\n")
+checked = subprocess.run([lineshaft, "check", "wrong"], cwd=folder, capture_output=True, text=True, timeout=60)
+places = re.findall(r"^wrong/(\S+):\d+:\d+: error", checked.stderr, re.M)
+assert checked.returncode == 2 and sorted(places) == ["alone.st", "b.yaml", "wrong.st"], checked
+assert run("check", "marked", code=0) == "ok  marked: 4 files\n"
+assert run("check", "short/fault.st", code=0) == "ok  short/fault.st\n"
+
+# What stands at the end, by name or of a block.
+said = run("run", "marked/a.yaml", "--show", "n,inputs.on", code=0).splitlines()
+assert [line.split() for line in said[-4:]] == [["n.q", "false"], ["n.cv", "0"], ["n.error", "false"], ["inputs.on", "false"]] or \
+    [line.split() for line in said[-3:]] == [["n.q", "false"], ["n.cv", "0"], ["inputs.on", "false"]], said
+assert json.loads(run("run", "marked/a.yaml", "--show", "n.cv", "--json", code=0))["show"] == {"n.cv": 0}
+refused = subprocess.run([lineshaft, "run", "marked/a.yaml", "--show", "n.vc"], cwd=folder, capture_output=True, text=True)
+assert refused.returncode == 2 and "n.vc" in refused.stderr or "'vc'" in refused.stderr, refused
+
+# Helps say choices as people write them; blocks are searched.
+commands = re.findall(r"^  ([a-z]+) ", run("--help", code=0).split("Subcommands:")[1], re.M)
+assert len(commands) > 15
+for command in commands:
+    assert "value in" not in run(command, "--help", code=0) and "OR {" not in run(command, "--help", code=0), command
+found = [line.split()[0] for line in run("blocks", "Gear", code=0).splitlines()]
+assert {"MC_GearIn", "MC_GearOut", "MC_GearInPos"} <= set(found) and len(found) < 10, found
+assert [line.split()[0] for line in run("blocks", "gear", "leaves", code=0).splitlines()] == ["MC_GearOut"]
+
+# Which axis a command refers to.
+write("axis.yaml", "lineshaft: 1\ntasks: {t: {every: 1 ms}}\nblocks:\n  x: {type: axis, task: t}\n"
+      "  stop: {type: MC_Stop, task: t, Axis: x, Execute: true}\nrun: {for: 1 ms}\n")
+assert re.search(r"2 stop +MC_Stop\n +Axis +-> x\n", run("show", "axis.yaml", code=0))
+assert "stop -> x" in run("show", "axis.yaml", "--dot", code=0).replace('"', "")
+assert json.loads(run("show", "axis.yaml", "--json", code=0))["tasks"][0]["blocks"][1]["references"] == {"Axis": "x"}
+
 # A terminal shows what is at work.
 write("long/a.yaml", quick + "run: {for: 1 ms}\n")
 write("long/b.yaml", quick + "run: {for: 100000 h}\n")

@@ -1,10 +1,12 @@
 #include "tools/lineshaft/block_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "runtime/model/literal.hpp"
+#include "runtime/source/letters.hpp"
 
 namespace lineshaft {
 
@@ -65,6 +67,65 @@ std::string line(const Field& field, const std::string& notes) {
                        notes.empty() ? "" : " (" + notes + ")");
 }
 
+/// `my_gear_in` of MC_GearIn, `my_ton` of ton.
+std::string example_name(std::string_view type) {
+    if (type.starts_with("MC_")) type.remove_prefix(3);
+    std::string name = "my_";
+    for (std::size_t i = 0; i < type.size(); ++i) {
+        if (i > 0 && type[i] != lower(type[i]) && type[i - 1] == lower(type[i - 1]) &&
+            type[i - 1] != '_')
+            name += '_';
+        name += lower(type[i]);
+    }
+    return name;
+}
+
+/// `1 mm/s` of `{unit}/s`: with the block's own default unit, with mm of what it refers to.
+std::string example_number(const BlockType& type, const Fresh& fresh, std::string_view unit,
+                           std::string_view number) {
+    std::string text(unit);
+    for (std::size_t at = text.find('{'); at != std::string::npos; at = text.find('{', at)) {
+        const std::size_t end = text.find('}', at);
+        const Field* chosen = type.find_settable(text.substr(at + 1, end - at - 1));
+        const bool is_own = chosen && !is_reference(*chosen);
+        text.replace(at, end + 1 - at, is_own ? fresh.text(*chosen) : "mm");
+    }
+    if (text == "ns") text = "s";
+    if (text.starts_with("/") || text.starts_with("^")) text.clear();  // of a plain number
+    return text.empty() ? std::string(number) : fmt::format("{} {}", number, text);
+}
+
+std::string example_value(const BlockType& type, const Fresh& fresh, const Field& field) {
+    if (field.refers == "cam_table") return "my_cam_table";
+    if (is_reference(field)) return lower(field.name).starts_with("master") ? "line" : "x";
+    if (field.name == "CamTableID") return "my_cam_table_select.CamTableID";
+    if (field.type == Type::boolean) return "inputs.go";
+    if (field.type == Type::enumeration) return std::string(written(field.names[0]));
+    return example_number(type, fresh, field.unit, field.name == "low" ? "0" : "1");
+}
+
+/// What the block is for, if it need not be said.
+bool is_telling(const BlockType& type, const Field& field) {
+    static constexpr std::string_view names[] = {"execute",  "enable",     "position",
+                                                 "distance", "phaseshift", "camtableid",
+                                                 "count",    "start_rate"};
+    const bool is_velocity = field.name == "Velocity" && type.name == "MC_MoveVelocity";
+    return is_velocity || std::ranges::find(names, lower(field.name)) != std::end(names);
+}
+
+/// `points: [[0 mm, 0 mm], [1 mm, 1 mm]]`
+std::string example_rows(const BlockType& type, const Fresh& fresh, const TableField& table) {
+    const std::size_t columns = table.needed > 0 ? table.needed : table.columns.size();
+    std::string rows;
+    for (const char* number : {"0", "1"}) {
+        std::string row;
+        for (const Field& column : table.columns.first(columns))
+            row += (row.empty() ? "" : ", ") + example_number(type, fresh, column.unit, number);
+        rows += fmt::format("{}[{}]", rows.empty() ? "" : ", ", row);
+    }
+    return fmt::format(", {}: [{}]", table.name, rows);
+}
+
 void add_limits(Json& object, const Field& field) {
     if (std::isfinite(field.minimum))
         object[field.minimum_excluded ? "above" : "at_least"] = field.minimum;
@@ -107,12 +168,37 @@ std::string block_text(const BlockType& type) {
             fmt::format("\nlist {}, up to {} rows: {}\n", table.name, table.capacity, table.doc);
         for (const Field& column : table.columns) text += line(column, describe_limits(column, ""));
     }
+    if (const std::string example = block_example(type); !example.empty())
+        text += fmt::format("\nexample\n  {}\n", example);
     return text;
+}
+
+std::string block_example(const BlockType& type) {
+    const Fresh fresh(type);
+    std::string text =
+        fmt::format("{}: {{type: {}, task: main", example_name(type.name), type.name);
+    bool has_inputs = false;
+    for (const Field& f : type.fields) {
+        if (is_reference(f) && f.refers != "axis" && f.refers != "cam_table") return {};
+        has_inputs = has_inputs || f.direction == Direction::input;
+        const bool is_asked = f.required || is_reference(f);
+        const bool is_set = f.direction == Direction::input && is_telling(type, f);
+        if (f.name.find('.') != std::string_view::npos || (!is_asked && !is_set)) continue;
+        const bool has_index = f.name.find('[') != std::string_view::npos;
+        text += fmt::format(", {0}{1}{0}: {2}", has_index ? "\"" : "", f.name,
+                            example_value(type, fresh, f));
+    }
+    for (const TableField& table : type.tables)
+        if (!has_inputs) text += example_rows(type, fresh, table);
+    return text + "}";
 }
 
 Json block_json(const BlockType& type) {
     const Fresh fresh(type);
-    Json out{{"type", type.name}, {"doc", type.doc}, {"fields", Json::array()}};
+    Json out{{"type", type.name},
+             {"doc", type.doc},
+             {"example", block_example(type)},
+             {"fields", Json::array()}};
     for (const Field& f : type.fields) out["fields"].push_back(field_json(f, fresh));
     for (const TableField& t : type.tables) {
         auto columns = Json::array();

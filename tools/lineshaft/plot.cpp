@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -106,6 +107,7 @@ class Script {
     std::string data(const std::string& points);
     void plot(const PlotGroup& group);
     void axis(const PlotGroup& group);
+    std::optional<double> constant_of(const PlotGroup& group) const;
     std::string title_of(const std::string& signal, std::size_t run) const;
     std::pair<std::size_t, std::size_t> margins(const std::vector<PlotGroup>& groups) const;
 
@@ -135,6 +137,20 @@ std::string Script::data(const std::string& points) {
     return name;
 }
 
+/// What all samples of all of its signals are, for gnuplot makes no range of that without a
+/// warning.
+std::optional<double> Script::constant_of(const PlotGroup& group) const {
+    std::optional<double> constant;
+    for (const ReportRun& run : runs_)
+        for (const std::string& signal : group.signals)
+            for (const double value : run.table.find(signal)->values) {
+                if (!std::isfinite(value)) continue;
+                if (constant && value != *constant) return {};
+                constant = value;
+            }
+    return constant;
+}
+
 void Script::axis(const PlotGroup& group) {
     std::string tics;
     const bool strips = group.type == Type::boolean;
@@ -145,8 +161,11 @@ void Script::axis(const PlotGroup& group) {
                                    : static_cast<double>(i));
     line("set ytics {}", tics.empty() ? "autofreq" : "(" + tics + ")");
     line("set ylabel {}", gnuplot_text(group.unit.empty() ? "" : "[" + group.unit + "]"));
+    const auto constant = constant_of(group);
     if (strips)
         line("set yrange [0:{}]", group.signals.size());
+    else if (constant)
+        line("set yrange [{:.9g}:{:.9g}]", *constant - 1, *constant + 1);
     else
         line("set autoscale y");
 }

@@ -35,5 +35,7 @@ TEST_CASE("a kind of block is listed with units, limits and defaults") {
           "  x                  unit       taken (must be set)\n"
           "\noutputs\n"
           "  y                  unit       factor * x\n"
-          "  rate               unit/s     nothing, for its unit\n");
+          "  rate               unit/s     nothing, for its unit\n"
+          "\nexample\n"
+          "  my_gain: {type: gain, task: main, x: 1 mm}\n");
 }
