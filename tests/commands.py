@@ -15,6 +15,8 @@ import sys
 import tempfile
 import time
 
+from built import has_pages
+
 lineshaft, project = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
 COMMAND = re.compile(r"(lineshaft|curl|printf|python3) ")
 
@@ -106,6 +108,8 @@ def main():
         for command, said in commands:
             if shutil.which("genhtml") is None and "genhtml" in command:
                 print(f"skipped: {command}: genhtml is not installed")
+                continue
+            if re.search("lineshaft report|--report ", command) and not has_pages(lineshaft, command):
                 continue
             count += 1
             start = time.monotonic()

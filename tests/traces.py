@@ -15,6 +15,8 @@ import sys
 import tempfile
 import zlib
 
+from built import has_pages
+
 PROGRAM = """lineshaft: 1
 title: A gear
 tasks: {servo: {every: 2 ms}}
@@ -237,6 +239,8 @@ def check_origins():
         yield f"diff of a forced run: {code} {out}{err}"
     if lineshaft("diff", "m.csv", "longer.csv")[0] != 2:
         yield "diff of another program"
+    if not has_pages(COMMAND, "what the report of two settings says"):
+        return
     lineshaft("report", "m.csv", "fast.csv", "-o", "both.html")
     if any(speed not in (FOLDER / "both.html").read_text() for speed in ("0.1 mm/s", "0.2 mm/s")):
         yield "the report does not say what differs"
@@ -269,8 +273,10 @@ def check_diff():
     (FOLDER / "more.csv").write_text("".join(f"{line.rstrip()},{'b.x' if not i else i}\n" for i, line in enumerate(lines)))
     if lineshaft("diff", "a.csv", "more.csv")[0] != 2:
         yield "diff of other columns is not refused"
-    code, out, err = lineshaft("diff", "a.csv", "more.csv", "--common", "--report", "diff.html")
-    if code != 0 or "same: 1001 rows of 6 columns" not in out or "slave.velocity" not in (FOLDER / "diff.html").read_text():
+    pages = has_pages(COMMAND, "the report of a diff")
+    code, out, err = lineshaft("diff", "a.csv", "more.csv", "--common", *(["--report", "diff.html"] if pages else []))
+    drawn = not pages or "slave.velocity" in (FOLDER / "diff.html").read_text()
+    if code != 0 or "same: 1001 rows of 6 columns" not in out or not drawn:
         yield f"diff --common: {code} {out}{err}"
     (FOLDER / "alien.csv").write_text("time,scan,z\n0,0,1\n")
     code, out, err = lineshaft("diff", "a.csv", "alien.csv", "--common")

@@ -15,6 +15,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
+from built import has_pages  # noqa: E402
+
 PROGRAM = """lineshaft: 1
 title: An axis and pulses
 parameters: {speed: 10 mm/s}
@@ -49,6 +52,8 @@ COMMANDS = {
     "report": ["report", "trace.csv", "-o", "out.html"],
     "verify": ["verify", "trace.csv"],
 }
+if not has_pages(pathlib.Path(sys.argv[1]).resolve(), "faults of report"):
+    del COMMANDS["report"]
 KINDS = ("write", "fsync", "syncfs", "rename", "open", "malloc")
 MOST_SECONDS = 20
 

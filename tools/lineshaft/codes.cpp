@@ -399,7 +399,8 @@ study shows its table on the terminal and keeps nothing.)"},
     {"L0701", "a CSV file without columns",
      R"(The first line of a CSV file names its columns, separated by commas (or semicolons, where
 the decimal point is a comma); numbers begin in the second line. The file is empty, begins
-with numbers, or a column has no name.)"},
+with numbers, or a column has no name; or it is a program or a study, whose trace is meant:
+    lineshaft run program.yaml --trace out.csv)"},
     {"L0702", "an unknown column",
      R"(The CSV file has no column of this name. Columns are named as in the first line of the
 file, in a trace also as the signals are in the program: shaft.position. A unit in

@@ -102,7 +102,8 @@ int run_command(int argc, char** argv) {
     app.require_subcommand(1);
     app.footer(
         "Exit codes: 0 fine, 1 an expectation failed, 2 the program or the command line is wrong,\n"
-        "3 a fault while running, 130 interrupted. `lineshaft COMMAND --help` says more.");
+        "3 a fault while running, 130 interrupted, 141 nobody reads what is printed.\n"
+        "`lineshaft COMMAND --help` says more.");
     Exit result = Exit::fine;
     for (const AddCommand add :
          {add_new,    add_run,    add_serve,   add_check,  add_test,   add_study,   add_fit,
