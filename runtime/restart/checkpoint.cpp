@@ -8,6 +8,7 @@
 
 #include "runtime/program/meaning.hpp"
 #include "runtime/source/input_file.hpp"
+#include "runtime/source/json_text.hpp"
 #include "runtime/source/text_hash.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "runtime/version.hpp"
@@ -18,21 +19,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text_of(const Json& head, const char* key) {
-    return head.contains(key) && head[key].is_string() ? head[key].get<std::string>() : "";
-}
+constexpr std::int64_t checkpoint_layout = 2;            // of the state
+constexpr std::size_t longest_head = 1 << 16;  // bytes
 
 /// What is wrong with a checkpoint; empty when nothing is.
 std::string refusal(const Json& head, const std::string& state, const std::string& program) {
-    if (!head.is_object() || !head.contains("lineshaft_checkpoint") ||
-        head["lineshaft_checkpoint"] != 1)
-        return "this is not a checkpoint";
-    if (text_of(head, "version") != version())
+    const auto of = integer_at(head, "lineshaft_checkpoint", 1, checkpoint_layout);
+    if (!of) return "this is not a checkpoint";
+    if (*of < checkpoint_layout)
+        return "the checkpoint is of an earlier lineshaft, whose blocks were laid out otherwise";
+    if (text_at(head, "version") != version())
         return fmt::format("the checkpoint is of lineshaft {}, this is {}",
-                           text_of(head, "version"), version());
-    if (text_of(head, "program") != program)
+                           text_at(head, "version"), version());
+    if (text_at(head, "program") != program)
         return "the checkpoint is of another program, or of other parameters";
-    if (text_of(head, "state") != text_hash(state)) return "the checkpoint is not whole";
+    if (text_at(head, "state") != text_hash(state)) return "the checkpoint is not whole";
     return {};
 }
 
@@ -62,7 +63,7 @@ std::string fingerprint(const Program& program, const Machine& machine) {
 }
 
 std::string checkpoint_of(const std::string& program, std::int64_t time, const std::string& state) {
-    const Json head{{"lineshaft_checkpoint", 1},
+    const Json head{{"lineshaft_checkpoint", checkpoint_layout},
                     {"version", version()},
                     {"program", program},
                     {"time_ns", time},
@@ -80,16 +81,17 @@ std::string write_checkpoint(const std::string& path, const std::string& checkpo
 std::optional<std::string> read_checkpoint(const std::string& path, const std::string& program,
                                            Diagnostics& out) {
     int error = 0;
-    const std::string bytes = read_bytes(path, std::numeric_limits<std::size_t>::max(), error);
+    std::string bytes = read_bytes(path, std::numeric_limits<std::size_t>::max(), error);
     if (error != 0) {
         out.add("L0001", {}, fmt::format("cannot read the checkpoint '{}'", path),
                 "--checkpoint-every writes one, --checkpoint names it");
         return {};
     }
     const std::size_t end = std::min(bytes.find('\n'), bytes.size());
-    std::string state = bytes.substr(std::min(end + 1, bytes.size()));
-    const std::string wrong =
-        refusal(Json::parse(bytes.substr(0, end), nullptr, false), state, program);
+    const Json head = parse_json(std::string_view(bytes).substr(0, std::min(end, longest_head)));
+    std::string state = std::move(bytes);
+    state.erase(0, std::min(end + 1, state.size()));
+    const std::string wrong = refusal(head, state, program);
     if (wrong.empty()) return state;
     out.add("L0506", {std::make_shared<SourceFile>(SourceFile{path, {}}), 0, 0, 1}, wrong,
             "run the program from its start: without --resume");
