@@ -341,7 +341,11 @@ class Lexer {
         while (at_ < text_.size() && text_[at_] != '\n' && (text_[at_] != '\'' || is_pair()))
             at_ += is_pair() ? 2 : 1;
         const bool ends = peek() == '\'';
-        if (!ends) fail(place(start_, start_ + 1), "the text does not end", "it ends with \"'\"");
+        const bool escapes = text_.substr(start_, at_ - start_).find("$'") != text_.npos;
+        if (!ends)
+            fail(place(start_, start_ + 1), "the text does not end",
+                 escapes ? "it ends with \"'\"; $' is a quote in it, $$ is '$'"
+                         : "it ends with \"'\"");
         if (ends) ++at_;
         Token& token = add(Word::text);
         token.text = token.text.substr(1, token.text.size() - (ends ? 2 : 1));

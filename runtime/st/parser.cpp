@@ -331,7 +331,7 @@ class Parser {
         if (panic_ || unclosed_at_ == at_) return false;
         const bool left = is(Word::end_of_file) || is_end(here().word) || is(Word::else_) ||
                           is(Word::elsif_) || is(Word::until_) || find_pou(here().word) ||
-                          at_test() || at_label_of_case();
+                          at_test() || at_label_of_case() || (is(Word::type_) && is_name(next()));
         if (!left) {
             expected(shown(end));
             return false;
@@ -1314,6 +1314,7 @@ class Parser {
         if (panic_ || unclosed_at_ == at_ || accept(Word::semicolon)) return;
         if (!here().first_in_line && !is_end(here().word) && !ends_statements(here().word))
             return expected(";", "after the statement");
+        if (follows_mistake()) return;
         Place place = last().place;
         place.begin = place.end - 1;
         tell("L0902", place, "expected ';' after this", "put a ';' at the end of the statement");
