@@ -281,14 +281,14 @@ struct Axis {
                          const Start& from);
     MotionError plan_profile(const Context& context, const Request& request, const Moment& at,
                              const Start& from);
-    MotionError plan(const Request& request, const Moment& at, const Start& from);
+    MotionError plan(const Request& request, const Moment& at, Start from);
     MotionError plan_velocity(const Request& request, const Moment& at, const Start& from);
     MotionError plan_point(const Request& request, double to, const Moment& at, const Start& from);
     MotionError go_to(double to, double end_velocity, const Dynamics& d, const Moment& at,
                       const Start& from);
     MotionError go_on(double with, const Dynamics& d, const Moment& at, const Start& from,
                       bool in_any_case = false);
-    MotionError plan_homing(const Request& request, const Moment& at, const Start& from);
+    MotionError plan_homing(const Request& request, const Moment& at, Start& from);
     void replan(const Context& context, const Moment& at);
     double target_of(const Request& request, const Start& from) const;
     double modulo_target(const Request& request, const Start& from) const;

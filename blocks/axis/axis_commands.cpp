@@ -270,7 +270,7 @@ MotionError Axis::plan_profile(const Context& context, const Request& request, c
     return MotionError::none;
 }
 
-MotionError Axis::plan(const Request& request, const Moment& at, const Start& from) {
+MotionError Axis::plan(const Request& request, const Moment& at, Start from) {
     const Dynamics d = dynamics_of(request);
     if (!(d.acceleration > 0) || !(d.deceleration > 0) || !(d.jerk > 0))
         return MotionError::limit_not_positive;
@@ -377,7 +377,7 @@ double Axis::modulo_target(const Request& request, const Start& from) const {
 
 /// The position is known at once, at the end of the move, or where the signal came: from there the
 /// axis stops.
-MotionError Axis::plan_homing(const Request& request, const Moment& at, const Start& from) {
+MotionError Axis::plan_homing(const Request& request, const Moment& at, Start& from) {
     if (modulo && (request.position < 0 || request.position >= period))
         return MotionError::out_of_range;
     if (request.option == homing_to_position)
@@ -385,13 +385,15 @@ MotionError Axis::plan_homing(const Request& request, const Moment& at, const St
     Request search = request;
     search.command = request.option == homing_on_signal ? Command::move_velocity : Command::stop;
     search.velocity = asked_of(request).velocity;
+    if (request.option == homing_on_signal) return plan_velocity(search, at, from);
     Start known = from;
-    if (request.option != homing_on_signal) {
-        relocated += request.position - known.state.position;
-        known.state.position = request.position;
-        ++renamed;
-    }
-    return plan_velocity(search, at, known);
+    known.state.position = request.position;
+    const MotionError why = plan_velocity(search, at, known);
+    if (why != MotionError::none) return why;
+    relocated += request.position - from.state.position;
+    ++renamed;
+    from = known;
+    return why;
 }
 
 /// The motion under way with other limits, or with another way left, and what is blended into it.
