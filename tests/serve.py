@@ -11,6 +11,7 @@ import os
 import pathlib
 import random
 import re
+import resource
 import shutil
 import signal
 import socket
@@ -64,23 +65,44 @@ trace: {task: servo, signals: [shaft.position, slave.position, slave.velocity, l
 """
 
 
+TOKEN = "0123456789abcdef0123456789abcdef"
+
+
 def free_port():
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]
 
 
+class NotServed(AssertionError):
+    """The command has ended before it served."""
+
+    def __init__(self, code, said):
+        super().__init__(code, said)
+        self.code, self.said = code, said
+
+
 class Machine:
     """A served program; its clients' answers are checked to be JSON."""
 
-    def __init__(self, *options, program="program.yaml", write=True, host="127.0.0.1"):
+    def __init__(self, *options, program="program.yaml", write=True, host="127.0.0.1", limits=(), as_other=False):
+        def limit():
+            for kind, value in limits:
+                resource.setrlimit(kind, (value, value))
+
+        other = {"user": 65534, "group": 65534, "extra_groups": []} if as_other and os.geteuid() == 0 else {}
         self.host, self.port, self.modbus_port = host, free_port(), free_port()
         self.process = subprocess.Popen(
             [COMMAND, "serve", program, "--http", f"{host}:{self.port}", "--modbus", f"{host}:{self.modbus_port}",
              *(["--allow-write"] if write else []), *options],
-            cwd=FOLDER, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        said = self.process.stderr.readline()
-        assert said.startswith("serving "), said + self.process.stderr.read()
+            cwd=FOLDER, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=limit if limits else None,
+            **other)
+        said = ""
+        while (line := self.process.stderr.readline()) and not line.startswith("serving "):
+            said += line  # a warning
+        if not line:
+            said += self.process.communicate(timeout=30)[1]
+            raise NotServed(self.process.returncode, said)
 
     def ask(self, path, body=None, headers=None, method=None):
         data = None if body is None else json.dumps(body).encode()
@@ -270,8 +292,18 @@ def check_modbus():
         assert (got := raw.recv(100)) == struct.pack(">HHHB", 7, 0, 1 + len(answer), 1) + answer, (request, got)
         raw.close()
     raw = connected(machine.modbus_port)
-    raw.sendall(struct.pack(">HHHBBHH", 7, 0, 6, 1, 0x85, 5, 0xFF00))  # the answer to such a function would be none
-    assert answered(raw) == b""
+    raw.sendall(struct.pack(">HHHBBHH", 7, 0, 6, 1, 0x85, 5, 0xFF00))  # no function, and nothing is written
+    assert raw.recv(100) == struct.pack(">HHHBBB", 7, 0, 3, 1, 0x85, 1)
+    raw.close()
+    frame = struct.pack(">HHHBBHH", 7, 0, 18, 1, 3, 10, 2) + struct.pack(">HHHBBHH", 8, 0, 6, 1, 5, 5, 0)
+    raw = connected(machine.modbus_port)
+    raw.sendall(frame + struct.pack(">HHHBBHH", 9, 0, 6, 1, 1, 5, 1))  # the write is inside of a read that is too long
+    wanted = struct.pack(">HHHBBB", 7, 0, 3, 1, 0x83, 3) + struct.pack(">HHHBBBB", 9, 0, 4, 1, 1, 1, 1)
+    got = b""
+    while len(got) < len(wanted):
+        got += raw.recv(100)
+    assert got == wanted, got
+    raw.close()
     assert machine.end()[0] == 0
 
 
@@ -572,6 +604,7 @@ def check_other_addresses():
         print("SKIPPED: writing from another address: this machine has none")
         return
     (FOLDER / "token").write_text("0123456789abcdef\n", encoding="ascii")
+    os.chmod(FOLDER / "token", 0o600)
     machine = Machine("--token-file", "token", host=address)
     assert machine.ask("/api/state")[0] == 200
     for headers, status in (({}, 403), ({"Authorization": "Bearer 0123456789abcdeF"}, 403),
@@ -664,23 +697,235 @@ def check_checkpoint(seed):
     assert other.returncode == 2 and "--record" in other.stderr, other.stderr
 
 
+class Writer(threading.Thread):
+    """Sets a signal of its own to 1, 2, 3... until the machine is gone, and keeps what was acknowledged."""
+
+    def __init__(self, machine, number):
+        super().__init__()
+        self.machine, self.number, self.kept = machine, number, 0
+        self.start()
+
+    def run(self):
+        try:
+            self.write_by_modbus() if self.number % 2 else self.write_by_http()
+        except (OSError, http.client.HTTPException):
+            pass  # it was killed
+
+    def write_by_http(self):
+        connection = http.client.HTTPConnection("127.0.0.1", self.machine.port, timeout=20)
+        while True:
+            connection.request("POST", "/api/set", json.dumps({f"inputs.w{self.number}": self.kept + 1}))
+            response = connection.getresponse()
+            response.read()
+            assert response.status == 200, response.status
+            self.kept += 1
+
+    def write_by_modbus(self):
+        client = connected(self.machine.modbus_port)
+        while True:
+            request = struct.pack(">HHHBBHH", 1, 0, 6, 1, 6, self.number, self.kept + 1)
+            client.sendall(request)
+            answer = client.recv(100)
+            if not answer:
+                return
+            assert answer == request, answer
+            self.kept += 1
+
+
 def check_kills(count, seed):
+    """Whenever a machine is killed, its recording has all that it has acknowledged, and is played back."""
     rng = random.Random(seed)
+    names = [f"w{number}" for number in range(8)]
+    registers = ", ".join(f"{k}: {{signal: inputs.{name}, type: uint16, write: true}}" for k, name in enumerate(names))
+    (FOLDER / "kept.yaml").write_text(
+        "lineshaft: 1\ntasks: {main: {every: 2 ms}}\ninputs: {" + ", ".join(f"{name}: 0" for name in names) + "}\n"
+        "blocks: {late: {type: ton, task: main, in: true, pt: 1 s}, "
+        "counter: {type: ctu, task: main, cu: late.q, pv: inputs.w0}}\n"
+        f"modbus: {{holding_registers: {{{registers}}}}}\nrun: {{for: 1 s}}\n", encoding="utf-8")
+    acknowledged = 0
     for number in range(count):
-        machine = Machine("--record", "killed.yaml", "--trace", "killed.csv")
-        writer = threading.Thread(target=lambda: [machine.ask("/api/set", {"inputs.ratio": k}) for k in range(1, 300)])
-        threading.excepthook = lambda _: None  # its connection is refused then
-        writer.start()
+        for old in FOLDER.glob("killed*.yaml"):
+            old.unlink()
+        machine = Machine("--record", "killed.yaml", "--record-sync", rng.choice(["each", "10 ms", "none"]),
+                          program="kept.yaml")
+        writers = [Writer(machine, k) for k in range(8)]
         time.sleep(rng.random() * 0.3)
         machine.end(signal.SIGKILL)
-        writer.join()
-        threading.excepthook = threading.__excepthook__
-        again = run("run", "program.yaml", "--recording", "killed.yaml", "--json")
+        for writer in writers:
+            writer.join()
+        text = (FOLDER / "killed.yaml").read_text(encoding="ascii")
+        whole = text[:text.rfind("\n") + 1]
+        for writer in writers:
+            found = set(map(int, re.findall(rf"inputs\.w{writer.number}: (\d+)}}", whole)))
+            missing = set(range(1, writer.kept + 1)) - found
+            assert not missing, (seed, number, writer.number, missing)
+            acknowledged += writer.kept
+        again = run("run", "kept.yaml", "--recording", "killed.yaml", "--json")
         assert again.returncode == 0, (seed, number, again.stderr)
-        whole = (FOLDER / "killed.yaml").read_text().rsplit("\n", 1)[0].split("entries:", 1)
-        last = re.findall(r"at: ([0-9.]+) s", whole[1] if len(whole) > 1 else "") or ["0"]
+        last = re.findall(r"at: ([0-9.]+) s", whole) or ["0"]
         assert abs(json.loads(again.stdout)["machine_time_s"] - float(last[-1])) < 1e-12, (seed, number)
-    print(f"{count} machines killed, each recording played back up to its last whole entry, seed {seed}")
+    print(f"{count} machines killed with 8 writers, {acknowledged} writes acknowledged, 0 of them missing, seed {seed}")
+
+
+def check_kept():
+    """A recording of a machine that was killed stays; what is no recording, too; a full disk is told."""
+    files = ("--record", "mine.yaml")
+    for number in range(2):
+        machine = Machine(*files)
+        machine.post("set", {"inputs.ratio": 2 + number})
+        assert machine.get("state")["recording"] == {"file": "mine.2.yaml" if number else "mine.yaml", "error": None}
+        machine.end(signal.SIGKILL)
+    third = Machine(*files)
+    assert third.get("state")["recording"]["file"] == "mine.3.yaml"
+    assert third.end(signal.SIGHUP)[0] == 0
+    again = Machine(*files)
+    assert again.get("state")["recording"]["file"] == "mine.3.yaml", "that one had ended"
+    again.end()
+    assert "ratio: 2" in (FOLDER / "mine.yaml").read_text() and "ratio: 3" in (FOLDER / "mine.2.yaml").read_text()
+    (FOLDER / "notes.txt").write_text("my notes\n")
+    other = run("serve", "program.yaml", "--allow-write", "--record", "notes.txt", "--http", "off")
+    assert other.returncode == 2 and "L0512" in other.stderr and (FOLDER / "notes.txt").read_text() == "my notes\n"
+
+    machine = Machine("--record", "full.yaml", limits=[(resource.RLIMIT_FSIZE, 2000)])
+    client, kept = machine.modbus(), 0
+    while (answer := machine.ask("/api/set", {"inputs.ratio": kept + 1}))[0] == 200:
+        kept += 1
+    assert answer[0] == 507 and "L0512" == answer[1]["code"], answer
+    assert client.write_coil(5, True).exception_code == 4
+    assert "full.yaml" in machine.get("state")["recording"]["error"]
+    assert machine.get("values")["values"]["inputs.go"] is False, "what is refused is not carried out"
+    code, _, errors = machine.end()
+    assert code == 3 and "full.yaml" in errors, errors
+    text = (FOLDER / "full.yaml").read_text()
+    assert all(f"inputs.ratio: {value}}}" in text for value in range(1, kept + 1)), (kept, text)
+
+
+def check_types():
+    """A value is one of the signal's type; a name may have any letters."""
+    (FOLDER / "types.scl").write_text("""FUNCTION_BLOCK taker
+VAR_INPUT single : REAL; large : ULINT; small : SINT; "größe" : INT; END_VAR
+VAR_OUTPUT q : BOOL; END_VAR
+q := single > 1.0;
+END_FUNCTION_BLOCK
+""", encoding="utf-8")
+    (FOLDER / "types.yaml").write_text("""lineshaft: 1
+tasks: {main: {every: 1 ms}}
+sources: [types.scl]
+blocks: {fb: {type: taker, task: main}}
+modbus: {coils: {0: fb.q}}
+run: {for: 1 s}
+""", encoding="utf-8")
+    machine = Machine("--record", "types_recorded.yaml", program="types.yaml")
+    for values, status in (({"fb.single": 1e300}, 400), ({"fb.single": -1e39}, 400), ({"fb.single": 1e38}, 200),
+                           ({"fb.large": -1}, 400), ({"fb.large": 2**62}, 200), ({"fb.small": 128}, 400),
+                           ({"fb.small": -128}, 200), ({"fb.größe": 7}, 200), ({"fb.größe": 40000}, 400)):
+        answer = machine.ask("/api/set", values)
+        assert answer[0] == status, (values, answer)
+        assert machine.ask("/api/force", values)[0] == status, values
+    eventually(lambda: machine.get("values?signals=fb.gr%C3%B6%C3%9Fe")["values"]["fb.größe"] == 7)
+    assert machine.end()[0] == 0
+    again = run("run", "types.yaml", "--recording", "types_recorded.yaml")
+    assert again.returncode == 0, again.stderr
+
+
+def check_protocol():
+    """What HTTP says of methods, of bodies, of connections that stay."""
+    machine = Machine("--audit", "audit.jsonl", "--token-file", "token.txt")
+    assert machine.ask("/api/set", {"inputs.go": True}, {"Authorization": "beARer  " + TOKEN})[0] == 200
+    assert machine.ask("/api/set", {"inputs.go": False}, {"Authorization": "Bearer wrong"})[0] == 403
+    machine.modbus().write_coil(5, True)
+    machine.modbus().write_coil(99, True)
+    connection = http.client.HTTPConnection("127.0.0.1", machine.port, timeout=20)
+    for method, path, status, allow in (("PUT", "/api/state", 405, "GET, HEAD"), ("DELETE", "/api/set", 405, "POST"),
+                                        ("GET", "/api/set", 405, "POST"), ("OPTIONS", "/api/pause", 405, "POST"),
+                                        ("HEAD", "/api/state", 200, None), ("HEAD", "/", 200, None),
+                                        ("HEAD", "/api/stream", 200, None), ("HEAD", "/api/nothing", 404, None)):
+        connection.request(method, path)
+        response = connection.getresponse()
+        body = response.read()
+        assert (response.status, response.getheader("Allow")) == (status, allow), (method, path, response.status)
+        assert method != "HEAD" or body == b"", (path, body)
+        assert "frame-ancestors 'none'" in response.getheader("Content-Security-Policy")
+    stays = int(re.search(r"timeout=(\d+)", response.getheader("Keep-Alive"))[1])
+    assert stays > 2
+    time.sleep(1.5)  # a second more than it stayed before
+    connection.request("POST", "/api/pause")
+    assert connection.getresponse().status == 200
+    blanks = " " * (65536 - len('{"inputs.go": true}'))
+    (FOLDER / "body").write_text('{"inputs.go": true}' + blanks)
+    for options in ([], ["-H", "Expect: 100-continue"], ["-H", "Content-Type: application/json"]):
+        curl = subprocess.run(["curl", "-s", "-d", "@body", *options, f"http://127.0.0.1:{machine.port}/api/set"],
+                              cwd=FOLDER, capture_output=True, text=True, timeout=20)
+        assert "time_ns" in curl.stdout, (options, curl.stdout)
+    (FOLDER / "body").write_text('{"inputs.go": true}' + blanks + " ")
+    curl = subprocess.run(["curl", "-s", "-o", "/dev/null", "-w", "%{http_code}", "-d", "@body",
+                           f"http://127.0.0.1:{machine.port}/api/set"], cwd=FOLDER, capture_output=True, text=True, timeout=20)
+    assert curl.stdout == "413", curl.stdout
+    code, _, errors = machine.end(signal.SIGHUP)
+    assert code == 0 and "127.0.0.1 has sent a wrong token" in errors, errors
+    lines = [json.loads(line) for line in (FOLDER / "audit.jsonl").read_text().splitlines()]
+    answers = [(line["by"], line["answer"].split()[0]) for line in lines]
+    assert answers[:4] == [("HTTP", "200"), ("HTTP", "403"), ("Modbus", "done"), ("Modbus", "exception")], answers
+    assert all(line["peer"] == "127.0.0.1" and line["date"].endswith("Z") for line in lines)
+    assert '"inputs.go": true' in lines[0]["asked"] and lines[0]["time_ns"] > 0 and "time_ns" not in lines[1]
+    os.chmod(FOLDER / "token.txt", 0o644)
+    warned = run("serve", "program.yaml", "--token-file", "token.txt", "--http", "off", "--for", "10 ms")
+    assert warned.returncode == 0 and "chmod 600" in warned.stderr, warned.stderr
+    os.chmod(FOLDER / "token.txt", 0o600)
+
+
+def check_owner():
+    """With 64 idle clients of Modbus and 200 of HTTP that send byte by byte the owner is answered."""
+    machine = Machine("--token-file", "token.txt")
+    idle = [connected(machine.modbus_port) for _ in range(64)]
+    slow = [begun_connection(machine.port) for _ in range(200)]
+    times = []
+    for number in range(40):
+        for client in slow:
+            try:
+                client.send(b"G")
+            except OSError:
+                pass  # it had to go
+        begun = time.monotonic()
+        assert machine.ask("/api/set", {"inputs.ratio": 1 + number}, {"Authorization": "Bearer " + TOKEN})[0] == 200
+        times.append(time.monotonic() - begun)
+        begun = time.monotonic()
+        assert reads_coil(machine.modbus_port)
+        times.append(time.monotonic() - begun)
+    times.sort()
+    print(f"64 idle and 200 slow clients: the owner is answered in {times[len(times) // 2] * 1e3:.1f} ms (median), "
+          f"{times[-1] * 1e3:.1f} ms (greatest)")
+    assert times[len(times) // 2] < 0.1, times
+    for client in idle + slow:
+        client.close()
+    assert machine.end()[0] == 0
+
+
+def check_process_limits(step):
+    """Whatever the system does not give, `serve` says so or serves, and no client ends it."""
+    seen = set()
+    os.chmod(FOLDER, 0o777)
+    for kind, values in ((resource.RLIMIT_NOFILE, range(3, 60, step)),
+                         (resource.RLIMIT_AS, range(20 << 20, 400 << 20, step << 22)),
+                         (resource.RLIMIT_NPROC, range(1, 24, step))):
+        for value in values:
+            try:
+                machine = Machine("--for", "10 h", limits=[(kind, value)], as_other=kind == resource.RLIMIT_NPROC)
+            except NotServed as refused:
+                assert refused.code in (0, 2, 3) or refused.code == 127, (kind, value, refused.code, refused.said)
+                seen.add((kind, refused.code))
+                continue
+            for _ in range(3):
+                clients = [begun_connection(port) for port in (machine.port, machine.modbus_port) * 12]
+                for client in clients[::3]:
+                    send_some(client)
+                for client in clients:
+                    client.close()
+            assert machine.process.poll() is None, (kind, value, machine.process.communicate())
+            code, _, errors = machine.end()
+            assert code in (0, 2, 3), (kind, value, code, errors)
+            seen.add((kind, code))
+    print(f"limits of descriptors, memory and processes: exit codes {sorted({code for _, code in seen})}")
 
 
 def check_memory(program, hours):
@@ -710,8 +955,13 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         FOLDER = pathlib.Path(folder)
         (FOLDER / "program.yaml").write_text(PROGRAM, encoding="utf-8")
+        (FOLDER / "token.txt").write_text(TOKEN + "\n", encoding="ascii")
+        os.chmod(FOLDER / "token.txt", 0o600)
         check_api()
         check_refusals()
+        check_protocol()
+        check_types()
+        check_kept()
         check_privileges()
         check_modbus()
         check_mbpoll()
@@ -722,10 +972,12 @@ def main():
         check_streams_end()
         check_hostile()
         check_limits()
+        check_owner()
+        check_process_limits(1 if recordings >= 100 else 9)
         check_other_addresses()
         check_recordings(recordings, seed)
         check_checkpoint(seed)
-        check_kills(max(2, recordings // 2), seed)
+        check_kills(2 * max(2, recordings), seed)
         check_memory(source / "programs" / "13_served_line.yaml", 24 if recordings >= 100 else 12)
     return 0
 

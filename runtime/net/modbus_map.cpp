@@ -1,6 +1,7 @@
 #include "runtime/net/modbus_map.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -46,6 +47,13 @@ std::optional<double> scale_of(const Connecting& to, const RegisterPlan& plan,
     return {};
 }
 
+std::int64_t whole(double number) {
+    constexpr double most = 1e15;  // such numbers and their neighbours are told apart
+    return number == std::trunc(number) && std::abs(number) <= most
+               ? static_cast<std::int64_t>(number)
+               : 0;
+}
+
 void set_type(const Connecting& to, const RegisterPlan& plan, MappedSignal& mapped) {
     const Signal& signal = mapped.signal;
     if (has_bits(plan.table)) {
@@ -63,29 +71,39 @@ void set_type(const Connecting& to, const RegisterPlan& plan, MappedSignal& mapp
     const auto type = std::ranges::find(types, name, &NamedType::name);
     mapped.type = type->type;
     mapped.count = type->registers;
-    mapped.scale = scale_of(to, plan, signal).value_or(1);
+    set_scale(mapped, scale_of(to, plan, signal).value_or(1));
+    constexpr int of_64_bits = 4;
+    if (signal.type == Type::integer && mapped.count == of_64_bits && mapped.divisor == 0)
+        to.read.fail("L0423", *plan.scale,
+                     fmt::format("whole numbers of 64 bits would lose digits by the scale {}",
+                                 plan.scale->text),
+                     "take a whole number or one over a whole number, such as 0.001, or another "
+                     "type");
 }
 
-/// Whether a client may write it, as far as the map says; reported if nobody can.
-bool is_writable(const Connecting& to, const RegisterPlan& plan) {
-    if (!plan.write || plan.write->text != "true") return false;
+/// What a client writes, as far as the map says that it may; reported if nobody can.
+std::optional<Target> find_written(const Connecting& to, const RegisterPlan& plan) {
+    if (!plan.write || plan.write->text != "true") return {};
     if (!may_be_written(plan.table)) {
         to.read.fail("L0422", *plan.write, "clients cannot write this table",
                      "write coils or holding_registers, and leave 'write' out here");
-        return false;
+        return {};
     }
-    return find_settable(to, plan.signal).has_value();
+    return find_settable(to, plan.signal);
 }
 
 void add(Connecting& to, const RegisterPlan& plan, std::vector<MappedSignal>& table) {
     const auto target = find_target(to, plan.signal);
     const auto address = to.read.integer(plan.address);
     if (!target || !address) return;
+    const auto written = find_written(to, plan);
     MappedSignal mapped{.address = static_cast<int>(*address),
                         .little = plan.little,
                         .low_first = plan.low_first,
-                        .is_writable = is_writable(to, plan),
+                        .is_writable = written.has_value(),
                         .signal = target->signal};
+    if (!target->is_of_block() || (written && written->live == target->live))
+        mapped.set_to = target->live;
     set_type(to, plan, mapped);
     constexpr int addresses = 65536;
     if (mapped.end() > addresses)
@@ -106,6 +124,17 @@ void add(Connecting& to, const RegisterPlan& plan, std::vector<MappedSignal>& ta
 }
 
 }  // namespace
+
+void set_scale(MappedSignal& mapped, double scale) {
+    mapped.scale = scale;
+    mapped.multiplier = whole(scale);
+    mapped.divisor = mapped.multiplier != 0 ? 1 : 0;
+    if (mapped.divisor != 0) return;
+    const double inverse = std::round(1 / scale);
+    if (1 / inverse != scale) return;
+    mapped.divisor = whole(inverse);
+    mapped.multiplier = mapped.divisor != 0 ? 1 : 0;
+}
 
 std::span<const MappedSignal> ModbusMap::find(ModbusTable table, int address, int count) const {
     const auto& all = tables[static_cast<std::size_t>(table)];

@@ -203,6 +203,21 @@ std::int64_t Executive::post(Stimulus value) {
     return known_until_;
 }
 
+std::optional<Value> Executive::posted(const std::byte* target) const {
+    for (auto it = mail_.rbegin(); it != mail_.rend(); ++it)
+        if (it->target == target) return it->value;
+    return {};
+}
+
+void Executive::make_room(std::size_t values) {
+    const auto grow = [values](auto& list) {
+        if (list.capacity() < list.size() + values)
+            list.reserve(std::max(2 * list.capacity(), list.size() + values));
+    };
+    grow(mail_);
+    grow(machine_.forces);
+}
+
 std::int64_t Executive::force(Force force) {
     force.from = known_until_;
     machine_.impose(std::move(force));

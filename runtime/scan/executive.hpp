@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -110,6 +111,12 @@ class Executive {
     /// scan that comes, and is told as a stimulus of that time. A run of the same program with that
     /// stimulus in its file does the same. Returns that time [ns].
     std::int64_t post(Stimulus value);
+
+    /// The value that was posted to it since the last step, last.
+    std::optional<Value> posted(const std::byte* target) const;
+
+    /// So many values can be posted, and so many forces imposed, without taking memory.
+    void make_room(std::size_t values);
 
     /// Likewise: see Machine::impose() and lift().
     std::int64_t force(Force force);

@@ -1,3 +1,5 @@
+#include "runtime/serve/address.hpp"
+
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -7,8 +9,6 @@
 #include <netdb.h>
 #include <sys/socket.h>
 #include <unistd.h>
-
-#include "runtime/serve/http.hpp"
 
 namespace lineshaft {
 
@@ -59,16 +59,6 @@ std::optional<Address> Address::parse(const std::string& text) {
 std::string Address::text() const {
     return fmt::format(fmt::runtime(host.find(':') == std::string::npos ? "{}:{}" : "[{}]:{}"),
                        host, port);
-}
-
-std::string peer_of(int socket) {
-    sockaddr_storage peer{};
-    socklen_t size = sizeof peer;
-    auto* const address = reinterpret_cast<sockaddr*>(&peer);
-    char text[INET6_ADDRSTRLEN] = {};
-    if (::getpeername(socket, address, &size) == 0 && peer.ss_family != AF_UNIX)
-        ::getnameinfo(address, size, text, sizeof text, nullptr, 0, NI_NUMERICHOST);
-    return text;
 }
 
 bool Address::is_loopback() const {

@@ -26,16 +26,23 @@ ApiReply mistake(const Diagnostics& out) {
     return failure(400, first.message, first.help, first.code);
 }
 
+Json text_or_null(const std::string& text) {
+    return text.empty() ? Json() : Json(text);
+}
+
 Json state_json(const LiveState& state, const Loaded& loaded) {
     Json forced = Json::object();
     for (const auto& [name, value] : state.forced) forced[name] = value;
-    return {{"program", loaded.program.title},
-            {"time_s", seconds_of(state.time)},
-            {"time_ns", state.time},
-            {"speed", state.speed == Pacer::unpaced ? Json("max") : Json(state.speed)},
-            {"paused", state.paused},
-            {"forced", forced},
-            {"pace", to_json(state.pace)}};
+    return {
+        {"program", loaded.program.title},
+        {"time_s", seconds_of(state.time)},
+        {"time_ns", state.time},
+        {"speed", state.speed == Pacer::unpaced ? Json("max") : Json(state.speed)},
+        {"paused", state.paused},
+        {"forced", forced},
+        {"recording",
+         {{"file", text_or_null(state.recording)}, {"error", text_or_null(state.recording_error)}}},
+        {"pace", to_json(state.pace)}};
 }
 
 /// Of an object of signals and values; empty for anything else.
@@ -103,13 +110,18 @@ Json values_schema(const char* doc) {
 }
 
 Json state_schema() {
-    return object({{"program", of_type("string")},
-                   {"time_s", of_type("number", "virtual time that has been reached")},
-                   {"time_ns", of_type("integer", "the same, exact")},
-                   {"speed", described(Json::object(), "a number, or max")},
-                   {"paused", of_type("boolean")},
-                   {"forced", values_schema("signals that are forced, and their values")},
-                   {"pace", of_type("object", "tasks, their scans, overruns and lateness")}});
+    return object(
+        {{"program", of_type("string")},
+         {"time_s", of_type("number", "virtual time that has been reached")},
+         {"time_ns", of_type("integer", "the same, exact")},
+         {"speed", described(Json::object(), "a number, or max")},
+         {"paused", of_type("boolean")},
+         {"forced", values_schema("signals that are forced, and their values")},
+         {"recording", object({{"file", described({{"type", "string"}, {"nullable", true}},
+                                                  "where what comes is recorded; null: nowhere")},
+                               {"error", described({{"type", "string"}, {"nullable", true}},
+                                                   "why not all is in it now; null: all is")}})},
+         {"pace", of_type("object", "tasks, their scans, overruns and lateness")}});
 }
 
 const Json stamp_schema =
@@ -191,11 +203,21 @@ Json operation(const Route& route) {
     out["responses"]["200"]["description"] = "done";
     Json& reply = out["responses"]["200"]["content"][std::string(route.type)] = Json::object();
     if (!route.reply.is_null()) reply["schema"] = route.reply;
-    for (const auto& [status, doc] :
-         {std::pair{"400", "the request is wrong: 'error' says how"},
-          std::pair{"403", "not allowed: writing without --allow-write, another origin"},
-          std::pair{"503", "too many clients or requests"}})
+    const auto may_be = [&out](const char* status, const char* doc) {
         out["responses"][status] = {{"description", doc}};
+    };
+    may_be("400", "the request is wrong: 'error' says how");
+    may_be("403", route.writes ? "not allowed: writing without --allow-write or the token, another "
+                                 "origin, a wrong token"
+                               : "not allowed: another origin, a wrong token");
+    if (!route.parameters.is_null()) may_be("414", "the address is too long");
+    if (route.method == "POST") may_be("413", "the body has more than 64 KiB");
+    may_be("429", "too many requests a second of this machine");
+    if (!route.body.is_null() && route.reply == stamp_schema)
+        may_be("507",
+               "not recorded, for instance as the disk is full: 'error' says whether it "
+               "counts");
+    may_be("503", "too many clients or requests");
     return out;
 }
 
@@ -307,13 +329,17 @@ ApiReply Api::stream(const ApiRequest& request) {
 }
 
 ApiReply Api::change(Change::Kind kind, const std::vector<Wanted>& wanted) {
+    constexpr const char* help = "make room on the disk, then try again";
     Diagnostics out;
     auto changes = desk_.changes(kind, wanted, out);
     if (!out.empty()) return mistake(out);
-    return ask([this, changes = std::move(changes)] {
-        const std::int64_t at = live_.apply(changes);
-        return ApiReply{200, {{"time_s", seconds_of(at)}, {"time_ns", at}}};
-    });
+    if (std::string error = live_.recording_error(); !error.empty())
+        return failure(507, std::move(error), help, "L0512");
+    const auto applied = live_.mailbox().ask([&] { return live_.apply(changes); });
+    if (!applied) return too_much();
+    if (const std::string error = live_.keep(*applied); !error.empty())
+        return failure(507, "this counts, but is not in the recording: " + error, help, "L0512");
+    return {200, {{"time_s", seconds_of(applied->at)}, {"time_ns", applied->at}}};
 }
 
 ApiReply Api::set(const ApiRequest& request) {

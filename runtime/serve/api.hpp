@@ -26,6 +26,7 @@ struct ApiReply {
     nlohmann::ordered_json body;
     std::string file = {};
     std::shared_ptr<Stream> stream = nullptr;
+    std::string allow = {};  ///< of 405: the methods that there are
 };
 
 class Api;

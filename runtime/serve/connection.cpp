@@ -1,55 +1,40 @@
 #include "runtime/serve/connection.hpp"
 
 #include <algorithm>
-#include <cstring>
-
-#include <poll.h>
-#include <sys/socket.h>
-
-#include "runtime/serve/http.hpp"
 
 namespace lineshaft {
 
 namespace {
 
 constexpr std::size_t most_lines = 100, most_head_bytes = 16 << 10, most_request_bytes = 80 << 10;
-constexpr std::int64_t millisecond = 1'000'000, request_time = 5000 * millisecond;
-constexpr int idle_ms = 1000, write_ms = 5000;
-
-/// Which of `events` have come within the time.
-int wait_for(int socket, int events, std::int64_t milliseconds) {
-    pollfd waiting{.fd = socket, .events = static_cast<short>(events), .revents = 0};
-    return ::poll(&waiting, 1, static_cast<int>(std::max<std::int64_t>(milliseconds, 0))) > 0
-               ? waiting.revents
-               : 0;
-}
+constexpr std::int64_t request_time = 5 * one_second, write_time = 5 * one_second;
 
 }  // namespace
 
 bool Connection::begin() {
-    if (too_much_ || gone_ || (first_ == end_ && wait_for(socket_, POLLIN, idle_ms) == 0))
+    constexpr std::int64_t patience = (idle_s + 1) * one_second;
+    if (too_much_ || gone_ ||
+        (first_ == end_ && !client_.socket->is_readable(world_.now() + patience)))
         return false;
     bytes_ = lines_ = line_ = 0;
     in_head_ = true;
-    deadline_ = Pacer::now() + request_time;
+    is_answered_ = false;
+    deadline_ = world_.now() + request_time;
     return true;
 }
 
 bool Connection::is_readable() const {
-    return first_ < end_ ||
-           wait_for(socket_, POLLIN, (deadline_ - Pacer::now()) / millisecond) != 0;
+    return first_ < end_ || client_.socket->is_readable(deadline_);
 }
 
 bool Connection::is_writable() const {
-    return wait_for(socket_, POLLRDHUP, 0) == 0;
+    return !client_.socket->has_ended();
 }
 
 bool Connection::fill() {
-    if (!is_readable()) return false;
-    const ssize_t got = ::recv(socket_, buffer_.data(), buffer_.size(), 0);
     first_ = 0;
-    end_ = static_cast<std::size_t>(std::max<ssize_t>(got, 0));
-    return got > 0;
+    end_ = client_.socket->receive(buffer_.data(), buffer_.size(), deadline_);
+    return end_ > 0;
 }
 
 bool Connection::is_allowed(char next) {
@@ -81,14 +66,15 @@ ssize_t Connection::read(char* to, std::size_t size) {
 
 ssize_t Connection::write(const char* from, std::size_t size) {
     if (gone_) return -1;
-    const bool is_ready = (wait_for(socket_, POLLOUT, write_ms) & POLLOUT) != 0;
-    const ssize_t sent = is_ready ? ::send(socket_, from, size, MSG_NOSIGNAL) : -1;
-    gone_ = sent < 0;
-    return sent;
+    if (!is_answered_) client_.has_asked(world_.now());
+    is_answered_ = true;
+    const std::size_t sent = client_.socket->send({from, size}, world_.now() + write_time);
+    gone_ = sent == 0;
+    return gone_ ? -1 : static_cast<ssize_t>(sent);
 }
 
 void Connection::get_remote_ip_and_port(std::string& host, int&) const {
-    host = peer_of(socket_);
+    host = client_.peer;
 }
 
 }  // namespace lineshaft

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <thread>
+#include <cstring>
 
 #include <fmt/format.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include "runtime/run/signal_json.hpp"
 #include "runtime/serve/connection.hpp"
@@ -17,16 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int most_streams = 16, most_clients = 48, most_that_wait = 48;
+constexpr int most_streams = 16;
 constexpr std::size_t most_bytes = 64 << 10;  ///< of a request's body
-
-/// Takes as long for a wrong token as for the right one.
-bool is_same(std::string_view a, std::string_view b) {
-    unsigned difference = a.size() == b.size() ? 0 : 1;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-        difference |= static_cast<unsigned>(a[i] ^ b[i]);
-    return difference == 0;
-}
 
 Value value_of(const Signal& signal, std::uint64_t bits) {
     std::array<std::byte, sizeof bits> slot;
@@ -67,130 +57,119 @@ std::string rows(Stream& stream, std::int64_t& lost) {
     return event("rows", {{"time", time}, {"values", values}, {"lost", lost}});
 }
 
-/// Threads for clients; when too many clients wait for one, the next ones are sent away.
-class Threads : public httplib::ThreadPool {
-  public:
-    static inline thread_local bool sends_away = false;
-
-    Threads() : ThreadPool(most_clients) {}
-
-    void enqueue(std::function<void()> client) override {
-        sends_away = waiting_ >= most_that_wait;
-        if (sends_away) return client();
-        ++waiting_;
-        ThreadPool::enqueue([this, client = std::move(client)] {
-            --waiting_;
-            client();
-        });
-    }
-
-  private:
-    std::atomic<int> waiting_ = 0;
-};
-
-}  // namespace
-
-bool Guard::is_known(const std::string& host) const {
-    const std::string name =
-        host.substr(0, host.starts_with('[') ? host.find(']') + 1 : host.find(':'));
-    return name == "localhost" || Address::parse(name + ":1").has_value();
+/// The methods of a path, with commas between.
+std::string methods_of(const std::string& path) {
+    std::string methods;
+    for (const Route& route : routes())
+        if (route.path == path)
+            methods += fmt::format("{}{}{}", methods.empty() ? "" : ", ", route.method,
+                                   route.method == "GET" ? ", HEAD" : "");
+    return methods;
 }
 
-bool Guard::is_too_much() {
-    const std::int64_t second = Pacer::now() / 1'000'000'000;
-    const std::lock_guard lock(mutex_);
-    if (second != second_) requests_ = 0;
-    second_ = second;
-    return ++requests_ > options_.most_requests;
+ApiReply of_no_route(const std::string& path) {
+    constexpr const char* help = "/api/openapi.json lists what there is";
+    const std::string methods = methods_of(path);
+    if (methods.empty()) return failure(404, "there is no such path", help);
+    ApiReply reply = failure(405, "not by this method", help);
+    reply.allow = methods;
+    return reply;
 }
 
-/// A name in Host that is not this machine's is that of a page that a browser was led astray by.
-std::optional<ApiReply> Guard::refuse(const Visitor& visitor, bool writes) {
-    if (is_too_much()) return failure(429, "too many requests", "ask less often");
-    if (!is_known(visitor.host))
-        return failure(403, "this is not the address of the machine", "use its number", "L0513");
-    if (!visitor.origin.empty() && visitor.origin != "http://" + visitor.host)
-        return failure(403, "a page of another origin asks", "open the machine's own", "L0513");
-    if (!writes) return {};
-    if (!options_.allow_write)
-        return failure(403, "this machine is only looked at",
-                       "serve it with --allow-write to change something", "L0513");
-    const bool is_near = Address{visitor.peer}.is_loopback();
-    if (!is_near &&
-        (options_.token.empty() || !is_same(visitor.authorization, "Bearer " + options_.token)))
-        return failure(403, "writing from another machine takes the token",
-                       "send 'Authorization: Bearer TOKEN', as --token-file has it", "L0513");
-    return {};
-}
-
-ApiReply answer(Api& api, Guard& guard, const Visitor& visitor, const std::string& method,
-                const std::string& path, const std::multimap<std::string, std::string>& query,
-                const std::string& body) {
-    const auto all = routes();
-    const auto route = std::ranges::find_if(
-        all, [&](const Route& r) { return r.path == path && r.method == method; });
-    const bool writes = route != all.end() && route->writes;
-    if (auto refused = guard.refuse(visitor, writes)) return *refused;
-    if (route == all.end()) {
-        const bool is_there = std::ranges::count(all, path, &Route::path) > 0;
-        return failure(is_there ? 405 : 404,
-                       is_there ? "not by this method" : "there is no such path",
-                       "/api/openapi.json lists what there is");
-    }
+ApiReply call(Api& api, const Route& route, const std::multimap<std::string, std::string>& query,
+              const std::string& body) {
     ApiRequest request{query, nullptr};
     if (!body.empty()) {
         request.body = Json::parse(body, nullptr, false);
         if (request.body.is_discarded()) return failure(400, "the body is not JSON");
     }
-    return (api.*route->call)(request);
+    return (api.*route.call)(request);
+}
+
+void note(Audit& audit, const Visitor& visitor, const std::string& asked, const ApiReply& reply) {
+    AuditEntry entry{visitor.peer, "HTTP", asked, std::to_string(reply.status)};
+    if (reply.body.contains("error")) entry.answer += " " + reply.body["error"].get<std::string>();
+    if (reply.body.contains("time_ns")) entry.at = reply.body["time_ns"].get<std::int64_t>();
+    audit.note(entry);
+}
+
+}  // namespace
+
+ApiReply answer(Api& api, Guard& guard, Audit* audit, const Visitor& visitor,
+                const std::string& method, const std::string& path,
+                const std::multimap<std::string, std::string>& query, const std::string& body) {
+    const std::string as = method == "HEAD" ? "GET" : method;
+    const auto all = routes();
+    const auto route =
+        std::ranges::find_if(all, [&](const Route& r) { return r.path == path && r.method == as; });
+    const bool writes = route != all.end() && route->writes;
+    const auto refused = guard.refuse(visitor, writes);
+    if (!refused && method == "HEAD" && route != all.end() && route->reply.is_null())
+        return {200, Json::object()};
+    ApiReply reply = refused              ? *refused
+                     : route == all.end() ? of_no_route(path)
+                                          : call(api, *route, query, body);
+    if (audit && writes && !Guard::is_of_many(reply))
+        note(*audit, visitor, fmt::format("{} {} {}", method, path, body), reply);
+    return reply;
 }
 
 struct HttpServer::Server : httplib::Server {
-    Server(Api& a, const HttpOptions& o) : api(a), options(o), guard(o) {}
+    Server(Api& a, const HttpOptions& o, World& w, Audit* au)
+        : api(a), options(o), world(w), audit(au), guard(o.guard, w, o.tell) {
+        svr_sock_ = 0;  // a server without a port is one that ends, to the library
+    }
 
-    bool process_and_close_socket(int socket) override;
-    void reply(const httplib::Request& request, httplib::Response& response);
+    void answer_by(const httplib::Request& request, httplib::Response& response,
+                   const std::string& body);
+    void converse(Client& client);
     void send(std::shared_ptr<Stream> stream, httplib::Response& response);
     bool feed(Stream& stream, httplib::DataSink& sink);
 
+    static inline thread_local Client* client_of_thread = nullptr;
+
     Api& api;
     const HttpOptions& options;
+    World& world;
+    Audit* const audit;
     Guard guard;
     std::atomic<int> streams = 0;
     std::atomic<bool> ends = false;
-    std::thread thread;
 };
 
-bool HttpServer::Server::process_and_close_socket(int socket) {
+void HttpServer::Server::converse(Client& client) {
     const auto answer_whole = [](httplib::Request& request) { request.ranges.clear(); };
-    Connection connection(socket);
-    bool closed = Threads::sends_away;
-    while (!closed && !ends && connection.begin())
-        if (!process_request(connection, false, closed, answer_whole)) break;
-    ::shutdown(socket, SHUT_RDWR);
-    ::close(socket);
-    return true;
+    Connection connection(client, world);
+    client_of_thread = &client;
+    bool closed = false;
+    for (std::size_t left = keep_alive_max_count_; left > 0 && !closed && !ends; --left)
+        if (!connection.begin() || !process_request(connection, left == 1, closed, answer_whole))
+            return;
 }
 
-void HttpServer::Server::reply(const httplib::Request& request, httplib::Response& response) {
+void HttpServer::Server::answer_by(const httplib::Request& request, httplib::Response& response,
+                                   const std::string& body) {
     const Visitor visitor{request.remote_addr, request.get_header_value("Host"),
                           request.get_header_value("Origin"),
                           request.get_header_value("Authorization")};
+    const bool reads = request.method == "GET" || request.method == "HEAD";
     response.set_header("X-Content-Type-Options", "nosniff");
+    response.set_header("X-Frame-Options", "DENY");
     response.set_header("Cache-Control", "no-store");
-    if (request.path == "/" && request.method == "GET" && !guard.refuse(visitor, false)) {
-        response.set_header("Content-Security-Policy",
-                            "default-src 'none'; script-src 'unsafe-inline' data:; style-src "
-                            "'unsafe-inline'; img-src data:; connect-src 'self'");
+    response.set_header("Content-Security-Policy",
+                        "default-src 'none'; script-src 'unsafe-inline' data:; style-src "
+                        "'unsafe-inline'; img-src data:; connect-src 'self'; frame-ancestors "
+                        "'none'; base-uri 'none'; form-action 'none'");
+    if (request.path == "/" && reads && !guard.refuse(visitor, false))
         return response.set_content(options.page.data(), options.page.size(), "text/html");
-    }
-    ApiReply got =
-        answer(api, guard, visitor, request.method, request.path, request.params, request.body);
+    ApiReply got = lineshaft::answer(api, guard, audit, visitor, request.method, request.path,
+                                     request.params, body);
     if (got.stream && streams >= most_streams) {
         got.stream->close();
         got = failure(503, "too many clients take samples", "close a page");
     }
     response.status = got.status;
+    if (!got.allow.empty()) response.set_header("Allow", got.allow);
     if (got.stream) return send(std::move(got.stream), response);
     if (!got.file.empty()) return response.set_content(got.file, "application/octet-stream");
     response.set_content(got.body.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",
@@ -199,18 +178,20 @@ void HttpServer::Server::reply(const httplib::Request& request, httplib::Respons
 
 void HttpServer::Server::send(std::shared_ptr<Stream> stream, httplib::Response& response) {
     ++streams;
+    client_of_thread->stays(true);
     response.set_chunked_content_provider(
         "text/event-stream",
         [this, stream](std::size_t, httplib::DataSink& sink) { return feed(*stream, sink); },
-        [this, stream](bool) {
+        [this, stream, client = client_of_thread](bool) {
             stream->close();
+            client->stays(false);
             --streams;
         });
 }
 
 /// Until the client goes, or the machine ends.
 bool HttpServer::Server::feed(Stream& stream, httplib::DataSink& sink) {
-    constexpr auto pause = std::chrono::milliseconds(20);
+    constexpr std::int64_t pause = 20'000'000;
     constexpr int rows_a_state = 20;
     const auto write = [&](const std::string& text) {
         return text.empty() || sink.write(text.data(), text.size());
@@ -224,41 +205,54 @@ bool HttpServer::Server::feed(Stream& stream, httplib::DataSink& sink) {
     for (int i = 0; !ends && !stream.is_closed(); ++i) {
         if (i % rows_a_state == 0 && !write_state()) return false;
         if (!sink.is_writable() || !write(rows(stream, lost))) return false;
-        std::this_thread::sleep_for(pause);
+        world.sleep_until(world.now() + pause);
     }
     sink.done();
     return true;
 }
 
-HttpServer::HttpServer(Api& api, const HttpOptions& options)
-    : server_(std::make_unique<Server>(api, options)) {
+/// The body is read here: the library allows a form, as `curl -d` sends it, 8 KiB.
+HttpServer::HttpServer(Api& api, const HttpOptions& options, World& world, Audit* audit)
+    : server_(std::make_unique<Server>(api, options, world, audit)) {
+    constexpr std::size_t most_requests = 1000;
     Server& http = *server_;
-    http.new_task_queue = [] { return new Threads; };
-    http.set_socket_options([](int socket) {
-        const int yes = 1;
-        ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    });
     http.set_payload_max_length(most_bytes);
-    http.set_tcp_nodelay(true);
-    const auto reply = [&http](const httplib::Request& request, httplib::Response& response) {
-        http.reply(request, response);
+    http.set_keep_alive_max_count(most_requests);
+    http.set_keep_alive_timeout(Connection::idle_s);
+    const auto without_body = [&http](const httplib::Request& request,
+                                      httplib::Response& response) {
+        http.answer_by(request, response, "");
     };
-    http.Get(".*", reply).Post(".*", reply);
-    if (options.address.port == 0) return;
-    failed_ = !http.bind_to_port(options.address.host, options.address.port);
-    if (failed_) return;
-    http.thread = std::thread([&http] { http.listen_after_bind(); });
-    while (!http.is_running()) std::this_thread::yield();
+    const auto with_body = [&http](const httplib::Request& request, httplib::Response& response,
+                                   const httplib::ContentReader& read) {
+        std::string body;
+        const auto take = [&](const char* bytes, std::size_t size) {
+            body.append(bytes, size);
+            return body.size() <= most_bytes;
+        };
+        const bool has_none =
+            !request.has_header("Content-Length") && !request.has_header("Transfer-Encoding");
+        if (has_none || read(take)) http.answer_by(request, response, body);
+    };
+    constexpr const char* any = ".*";
+    http.Get(any, without_body).Options(any, without_body).Delete(any, without_body);
+    http.Post(any, with_body).Put(any, with_body).Patch(any, with_body).Delete(any, with_body);
+    http.set_exception_handler(
+        [](const httplib::Request&, httplib::Response& response, const std::exception_ptr&) {
+            response.status = 503;
+            response.set_content("{\"error\": \"this machine has no memory for that\"}\n",
+                                 "application/json");
+        });
 }
 
-HttpServer::~HttpServer() {
+HttpServer::~HttpServer() = default;
+
+void HttpServer::end() {
     server_->ends = true;
-    server_->stop();
-    if (server_->thread.joinable()) server_->thread.join();
 }
 
-void HttpServer::converse(int socket) {
-    server_->process_and_close_socket(socket);
+void HttpServer::converse(Client& client) {
+    server_->converse(client);
 }
 
 }  // namespace lineshaft

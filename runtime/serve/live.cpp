@@ -44,10 +44,12 @@ nlohmann::ordered_json to_json(const Pace& pace) {
 }
 
 Live::Live(Loaded& loaded, Executive& executive, const LiveOptions& options,
-           RecordingWriter* recording)
+           RecordingWriter* recording, World& world)
     : machine_(loaded.linked.machine),
       executive_(executive),
       options_(options),
+      world_(world),
+      mailbox_(world),
       pacer_(options.speed),
       recording_(recording) {
     for (const Task& task : machine_.tasks) {
@@ -59,7 +61,7 @@ Live::Live(Loaded& loaded, Executive& executive, const LiveOptions& options,
 
 void Live::drive() {
     Pacer::take_sleep_at_its_word();
-    pacer_.anchor(time());
+    pacer_.anchor(time(), world_.now());
     while (goes_on_ && time() < options_.end && !*options_.interrupt) turn();
     mailbox_.close();
 }
@@ -82,17 +84,17 @@ void Live::rest() {
     if (mailbox_.waits())
         mailbox_.deliver();
     else
-        Pacer::sleep_until(Pacer::now() + patience);
+        world_.sleep_until(world_.now() + patience);
 }
 
 void Live::run_paced(std::int64_t next) {
-    const std::int64_t now = Pacer::now(), due = pacer_.due(next);
+    const std::int64_t now = world_.now(), due = pacer_.due(next);
     if (now < due) {
         if (mailbox_.waits()) {
             advance(std::clamp(pacer_.time_at(now), time(), next - 1));
             deliver();
         } else {
-            Pacer::sleep_until(std::min(due, now + patience));
+            world_.sleep_until(std::min(due, now + patience));
         }
         return;
     }
@@ -108,15 +110,15 @@ void Live::run_paced(std::int64_t next) {
 
 void Live::run_freely(std::int64_t next, std::int64_t limit) {
     if (next == machine_.duration) return rest();
-    const std::int64_t begun = Pacer::now();
+    const std::int64_t begun = world_.now();
     advance(std::min(limit, std::max(next, later(time(), chunk_))));
-    const std::int64_t took = std::max<std::int64_t>(Pacer::now() - begun, 1);
+    const std::int64_t took = std::max<std::int64_t>(world_.now() - begun, 1);
     chunk_ = std::clamp<std::int64_t>(took > ms ? chunk_ / 2 : chunk_ * 2, 1000, never / 4);
     deliver();
 }
 
 void Live::deliver() {
-    delivered_ = Pacer::now();
+    delivered_ = world_.now();
     if (mailbox_.waits()) mailbox_.deliver();
 }
 
@@ -140,18 +142,24 @@ void Live::scanned(int task, const Scan& scan) {
     if (scan.interval > 0 && late_ >= pacer_.due(scan.interval) - pacer_.due(0)) ++pace.overruns;
 }
 
-std::int64_t Live::apply(const std::vector<Change>& changes) {
-    std::int64_t at = 0;
-    for (const Change& change : changes) {
+Applied Live::apply(const std::vector<Change>& changes) {
+    std::vector<Change> taken = changes;
+    executive_.make_room(taken.size());
+    Applied applied{.at = executive_.time() + 1};
+    if (recording_) applied.mark = recording_->append(recorded(applied.at, changes));
+    for (Change& change : taken) {
         if (change.kind == Change::Kind::set)
-            at = executive_.post(change.stimulus);
+            executive_.post(std::move(change.stimulus));
         else if (change.kind == Change::Kind::force)
-            at = executive_.force(change.force);
+            executive_.force(std::move(change.force));
         else
-            at = executive_.release(change.live);
+            executive_.release(change.live);
     }
-    if (recording_) recording_->append(recorded(at, changes));
-    return at;
+    return applied;
+}
+
+std::string Live::keep(const Applied& applied) {
+    return recording_ ? recording_->keep(applied.mark) : "";
 }
 
 void Live::pause() {
@@ -160,7 +168,7 @@ void Live::pause() {
 
 void Live::resume() {
     paused_ = false;
-    pacer_.anchor(time());
+    pacer_.anchor(time(), world_.now());
 }
 
 std::int64_t Live::step(int task, std::int64_t scans) {
@@ -168,8 +176,8 @@ std::int64_t Live::step(int task, std::int64_t scans) {
     step_task_ = task;
     steps_ = scans;
     const std::int64_t limit = std::min(options_.end, machine_.duration);
-    for (const std::int64_t begun = Pacer::now();
-         steps_ > 0 && goes_on_ && time() < limit && Pacer::now() - begun < patience;)
+    for (const std::int64_t begun = world_.now();
+         steps_ > 0 && goes_on_ && time() < limit && world_.now() - begun < patience;)
         advance(std::min(executive_.next_time(), limit));
     return time() < limit ? std::max<std::int64_t>(steps_, 0) : 0;
 }
@@ -182,12 +190,17 @@ void Live::run_until(std::int64_t time) {
 
 void Live::set_speed(double speed) {
     pacer_.set_speed(speed);
-    pacer_.anchor(time());
+    pacer_.anchor(time(), world_.now());
 }
 
 LiveState Live::state() const {
-    LiveState state{
-        .time = time(), .speed = pacer_.speed(), .paused = paused_, .forced = {}, .pace = pace_};
+    LiveState state{.time = time(),
+                    .speed = pacer_.speed(),
+                    .paused = paused_,
+                    .forced = {},
+                    .pace = pace_,
+                    .recording = recording_ ? recording_->path() : "",
+                    .recording_error = recording_error()};
     for (const Force& force : machine_.forces)
         if (force.from <= time() + 1 && time() + 1 < force.until)
             state.forced.push_back(

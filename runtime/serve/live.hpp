@@ -59,6 +59,13 @@ struct LiveState {
     bool paused = false;
     std::vector<Forced> forced;
     Pace pace;
+    std::string recording, recording_error;  ///< its file; why not all is in it. Empty: none
+};
+
+/// When changes count, and where they stand in the recording.
+struct Applied {
+    std::int64_t at = 0;    ///< virtual [ns]
+    std::int64_t mark = 0;  ///< of RecordingWriter
 };
 
 /// A machine that runs by the clock, by stepping an executive that has begun. The thread that makes
@@ -68,18 +75,27 @@ class Live : public Observer {
   public:
     /// `recording` takes what changes; may be null.
     Live(Loaded& loaded, Executive& executive, const LiveOptions& options,
-         RecordingWriter* recording);
+         RecordingWriter* recording, World& world = World::system());
     ~Live() override { executive_.remove(*this); }
     Live(const Live&) = delete;
     Live& operator=(const Live&) = delete;
 
     Mailbox& mailbox() { return mailbox_; }
+    World& world() { return world_; }
 
     /// Runs until the end, an interrupt, or what ends a run.
     void drive();
 
-    /// All at once; returns the virtual time from which they count [ns].
-    std::int64_t apply(const std::vector<Change>& changes);
+    /// All at once, or none when there is no memory for them. Who asked for them is not told so
+    /// before keep().
+    Applied apply(const std::vector<Change>& changes);
+    /// The value that an input has been set to since the machine last moved.
+    std::optional<Value> posted(const std::byte* input) const { return executive_.posted(input); }
+
+    /// Of any thread. Waits until the recording has what was applied; empty, or why it has not.
+    std::string keep(const Applied& applied);
+    /// Likewise: why nothing more may be changed now; empty when all is well.
+    std::string recording_error() const { return recording_ ? recording_->error() : ""; }
 
     void pause();
     void resume();
@@ -112,6 +128,7 @@ class Live : public Observer {
     Machine& machine_;
     Executive& executive_;
     const LiveOptions options_;
+    World& world_;
     Mailbox mailbox_;
     Pacer pacer_;
     Pace pace_;

@@ -1,31 +1,32 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <cstddef>
+#include <exception>
 #include <functional>
-#include <future>
+#include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <thread>
 #include <vector>
+
+#include "runtime/serve/world.hpp"
 
 namespace lineshaft {
 
 /// What clients want of the machine, on its way to the one thread that may touch it: the one that
-/// makes the box. That thread
-/// never waits for them: it takes what is there between two instants, or finds the box in use and
-/// looks again after the next one.
+/// makes the box. That thread never waits for them: it takes what is there between two instants, or
+/// finds the box in use and looks again after the next one.
 class Mailbox {
   public:
     using Job = std::function<void()>;
 
     static constexpr std::size_t room = 256;  ///< jobs that wait, at most
 
+    explicit Mailbox(World& world) : world_(world) {}
+
     /// Calls `job` in the machine's thread, and waits for its result; at once when that thread
     /// asks. Empty when the box is full or closed, or nobody has come for it within two seconds:
-    /// then it is not called any more.
+    /// then it is not called any more. What it throws is thrown here.
     template <class Call>
     auto ask(Call job) -> std::optional<decltype(job())>;
 
@@ -39,6 +40,7 @@ class Mailbox {
   private:
     bool put(Job job);
 
+    World& world_;
     const std::thread::id owner_ = std::this_thread::get_id();
     std::mutex mutex_;
     std::vector<Job> jobs_, taken_;
@@ -49,23 +51,43 @@ class Mailbox {
 template <class Call>
 auto Mailbox::ask(Call job) -> std::optional<decltype(job())> {
     if (std::this_thread::get_id() == owner_) return job();
-    using Result = decltype(job());
     struct Asked {
         explicit Asked(Call c) : call(std::move(c)) {}
+
         Call call;
-        std::promise<Result> promise;
-        std::atomic<bool> settled = false;
+        std::mutex mutex;
+        std::condition_variable changed;
+        bool is_left = false, is_begun = false, is_done = false;
+        std::optional<decltype(call())> result;
+        std::exception_ptr thrown;
     };
     const auto asked = std::make_shared<Asked>(std::move(job));
-    auto result = asked->promise.get_future();
-    if (!put([asked] {
-            if (!asked->settled.exchange(true)) asked->promise.set_value(asked->call());
-        }))
-        return {};
-    constexpr auto patience = std::chrono::seconds(2);
-    if (result.wait_for(patience) != std::future_status::ready && !asked->settled.exchange(true))
-        return {};
-    return result.get();
+    const auto call = [asked] {
+        {
+            const std::lock_guard lock(asked->mutex);
+            if (asked->is_left) return;
+            asked->is_begun = true;
+        }
+        try {
+            asked->result = asked->call();
+        } catch (...) {
+            asked->thrown = std::current_exception();
+        }
+        const std::lock_guard lock(asked->mutex);
+        asked->is_done = true;
+        asked->changed.notify_one();
+    };
+    if (!put(call)) return {};
+    constexpr std::int64_t patience = 2 * one_second,
+                           end_of_time = std::numeric_limits<std::int64_t>::max() - 1;
+    const auto is_done = [&] { return asked->is_done; };
+    std::unique_lock lock(asked->mutex);
+    if (!world_.wait(lock, asked->changed, world_.now() + patience, is_done) && !asked->is_begun)
+        asked->is_left = true;
+    else
+        world_.wait(lock, asked->changed, end_of_time, is_done);
+    if (asked->thrown) std::rethrow_exception(asked->thrown);
+    return std::move(asked->result);
 }
 
 }  // namespace lineshaft

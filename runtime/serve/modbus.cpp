@@ -2,268 +2,166 @@
 
 #include <algorithm>
 
-#include <modbus/modbus.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
+#include <fmt/format.h>
 
+#include "runtime/serve/modbus_request.hpp"
 #include "runtime/serve/registers.hpp"
 
 namespace lineshaft {
 
 namespace {
 
-constexpr int illegal_function = MODBUS_EXCEPTION_ILLEGAL_FUNCTION,
-              illegal_address = MODBUS_EXCEPTION_ILLEGAL_DATA_ADDRESS,
-              illegal_value = MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE,
-              busy = MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY;
+using enum ModbusException;
 
-constexpr std::uint8_t known_functions[] = {MODBUS_FC_READ_COILS,
-                                            MODBUS_FC_READ_DISCRETE_INPUTS,
-                                            MODBUS_FC_READ_HOLDING_REGISTERS,
-                                            MODBUS_FC_READ_INPUT_REGISTERS,
-                                            MODBUS_FC_WRITE_SINGLE_COIL,
-                                            MODBUS_FC_WRITE_SINGLE_REGISTER,
-                                            MODBUS_FC_WRITE_MULTIPLE_COILS,
-                                            MODBUS_FC_WRITE_MULTIPLE_REGISTERS,
-                                            MODBUS_FC_MASK_WRITE_REGISTER,
-                                            MODBUS_FC_WRITE_AND_READ_REGISTERS};
-
-bool is_of_bits(ModbusTable table) {
+bool has_bits(ModbusTable table) {
     return table == ModbusTable::coils || table == ModbusTable::discrete_inputs;
 }
 
-std::uint8_t* bits_of(ModbusTables& tables, ModbusTable table) {
-    return table == ModbusTable::coils ? tables.tab_bits : tables.tab_input_bits;
+std::string in_hexadecimal(std::string_view bytes) {
+    std::string text;
+    for (const char byte : bytes) text += fmt::format("{:02x}", static_cast<unsigned char>(byte));
+    return text;
 }
 
-std::uint16_t* registers_of(ModbusTables& tables, ModbusTable table) {
-    return table == ModbusTable::holding_registers ? tables.tab_registers
-                                                   : tables.tab_input_registers;
+/// The number of bytes, and the bits from the lowest on, or the registers.
+std::string packed(std::span<const std::uint16_t> words, bool are_bits) {
+    std::string bytes(1, '\0');
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (!are_bits)
+            bytes += {static_cast<char>(words[i] >> 8), static_cast<char>(words[i] & 0xFF)};
+        else if (i % 8 == 0)
+            bytes += static_cast<char>(words[i]);
+        else
+            bytes.back() = static_cast<char>(bytes.back() | words[i] << i % 8);
+    }
+    bytes[0] = static_cast<char>(bytes.size() - 1);
+    return bytes;
 }
 
 }  // namespace
 
-/// Function code and what follows it.
-struct ModbusDesk::Request {
-    std::span<const std::uint8_t> bytes;
-
-    int word(std::size_t at) const { return bytes[at] << 8 | bytes[at + 1]; }
-    bool has(std::size_t size) const { return bytes.size() >= size; }
-};
-
-int ModbusDesk::handle(std::span<const std::uint8_t> bytes, bool may_write, ModbusTables& tables) {
-    using enum ModbusTable;
-    const Request request{bytes};
-    if (std::ranges::find(known_functions, bytes[0]) == std::end(known_functions))
-        return illegal_function;
-    if (!request.has(5)) return illegal_value;
-    const int address = request.word(1), count = request.word(3);
-    const auto check = [](int number, int most) { return number >= 1 && number <= most; };
-    switch (bytes[0]) {
-        case MODBUS_FC_READ_COILS:
-        case MODBUS_FC_READ_DISCRETE_INPUTS:
-            if (!check(count, MODBUS_MAX_READ_BITS)) return illegal_value;
-            return read(bytes[0] == MODBUS_FC_READ_COILS ? coils : discrete_inputs, address, count,
-                        tables);
-        case MODBUS_FC_READ_HOLDING_REGISTERS:
-        case MODBUS_FC_READ_INPUT_REGISTERS:
-            if (!check(count, MODBUS_MAX_READ_REGISTERS)) return illegal_value;
-            return read(
-                bytes[0] == MODBUS_FC_READ_HOLDING_REGISTERS ? holding_registers : input_registers,
-                address, count, tables);
-        default:
-            break;
-    }
-    if (!allow_write_ || !may_write) return illegal_function;
-    switch (bytes[0]) {
-        case MODBUS_FC_WRITE_SINGLE_COIL: {
-            if (count != 0 && count != 0xFF00) return illegal_value;
-            const auto value = static_cast<std::uint16_t>(count != 0);
-            return write(coils, address, {&value, 1});
-        }
-        case MODBUS_FC_WRITE_SINGLE_REGISTER: {
-            const auto value = static_cast<std::uint16_t>(count);
-            return write(holding_registers, address, {&value, 1});
-        }
-        case MODBUS_FC_WRITE_MULTIPLE_COILS:
-            return write_bits(request);
-        case MODBUS_FC_WRITE_MULTIPLE_REGISTERS:
-            return write_registers(request, 1);
-        case MODBUS_FC_MASK_WRITE_REGISTER:
-            return mask(request, tables);
-        case MODBUS_FC_WRITE_AND_READ_REGISTERS: {
-            if (!request.has(9) || !check(count, MODBUS_MAX_WR_READ_REGISTERS))
-                return illegal_value;
-            if (const int exception = write_registers(request, 5)) return exception;
-            return read(holding_registers, address, count, tables);
-        }
-        default:
-            return illegal_function;
-    }
+std::string ModbusDesk::answer(std::string_view bytes, const ModbusPeer& peer) {
+    constexpr int failed = 0x80;
+    ModbusRequest request;
+    ModbusException exception = parse(bytes, request);
+    std::string data(bytes.substr(1, request.function == mask_write_register ? 6 : 4));
+    std::int64_t at = never;
+    const bool is_write = writes(request.function);
+    if (is_write && !(allow_write_ && peer.may_write)) exception = illegal_function;
+    if (exception == none) exception = carry_out(request, data, at);
+    if (audit_ && is_write)
+        audit_->note(
+            {peer.address, "Modbus", in_hexadecimal(bytes),
+             exception == none ? "done" : fmt::format("exception {}", static_cast<int>(exception)),
+             at});
+    if (exception == none) return std::string(bytes.substr(0, 1)) + data;
+    return {static_cast<char>(request.function | failed), static_cast<char>(exception)};
 }
 
-int ModbusDesk::read(ModbusTable table, int address, int count, ModbusTables& tables) {
-    const auto signals = map_.find(table, address, count);
-    if (signals.empty()) return illegal_address;
-    const auto values = live_.mailbox().ask([signals] {
-        std::vector<Value> now;
-        for (const MappedSignal& mapped : signals) now.push_back(mapped.signal.value());
-        return now;
+ModbusException ModbusDesk::carry_out(const ModbusRequest& request, std::string& data,
+                                      std::int64_t& at) {
+    Signals read, written;
+    std::vector<Change> changes;
+    if (request.read)
+        if (const auto exception = find_read(request, read); exception != none) return exception;
+    if (request.written) {
+        if (const auto exception = find_written(*request.written, written); exception != none)
+            return exception;
+        if (request.function == mask_write_register) return mask(request, written, at);
+        if (const auto exception = this->changes(written, request.values, changes);
+            exception != none)
+            return exception;
+    }
+    if (!changes.empty() && !live_.recording_error().empty()) return device_failure;
+    const auto found = live_.mailbox().ask([&] {
+        const Applied applied = changes.empty() ? Applied{} : live_.apply(changes);
+        return std::pair(applied,
+                         request.read ? words(read, *request.read) : std::vector<std::uint16_t>());
     });
-    if (!values) return busy;
-    for (std::size_t i = 0; i < signals.size(); ++i) {
-        const auto at = static_cast<std::size_t>(signals[i].address);
-        if (is_of_bits(table))
-            bits_of(tables, table)[at] = std::get<bool>((*values)[i]);
-        else
-            to_registers(
-                signals[i], (*values)[i],
-                {registers_of(tables, table) + at, static_cast<std::size_t>(signals[i].count)});
-    }
-    return 0;
+    if (!found) return busy;
+    if (!changes.empty())
+        if (const auto exception = keep(found->first, at); exception != none) return exception;
+    if (request.read) data = packed(found->second, has_bits(request.read->table));
+    return none;
 }
 
-int ModbusDesk::write(ModbusTable table, int address, std::span<const std::uint16_t> values) {
-    const auto signals = map_.find(table, address, static_cast<int>(values.size()));
-    if (signals.empty() || signals.front().address != address ||
-        signals.back().end() != address + static_cast<int>(values.size()) ||
-        !std::ranges::all_of(signals, &MappedSignal::is_writable))
-        return illegal_address;
+ModbusException ModbusDesk::find_read(const ModbusRequest& request, Signals& found) const {
+    found = map_.find(request.read->table, request.read->address, request.read->count);
+    return found.empty() ? illegal_address : none;
+}
+
+ModbusException ModbusDesk::find_written(const ModbusArea& area, Signals& found) const {
+    found = map_.find(area.table, area.address, area.count);
+    const bool are_whole = !found.empty() && found.front().address == area.address &&
+                           found.back().end() == area.address + area.count;
+    return are_whole && std::ranges::all_of(found, &MappedSignal::is_writable) ? none
+                                                                               : illegal_address;
+}
+
+ModbusException ModbusDesk::changes(Signals signals, std::span<const std::uint16_t> words,
+                                    std::vector<Change>& changes) {
     std::vector<Wanted> wanted;
     for (const MappedSignal& mapped : signals) {
-        const auto value = from_registers(
-            mapped, values.subspan(static_cast<std::size_t>(mapped.address - address)));
+        const auto first = static_cast<std::size_t>(mapped.address - signals.front().address);
+        const auto value = from_registers(mapped, words.subspan(first));
         if (!value) return illegal_value;
         wanted.push_back({mapped.signal.name, mapped.signal.describe(*value)});
     }
     Diagnostics out;
-    auto changes = desk_.changes(Change::Kind::set, wanted, out);
-    if (!out.empty()) return illegal_value;
-    const auto done = live_.mailbox().ask(
-        [live = &live_, changes = std::move(changes)] { return live->apply(changes); });
-    return done ? 0 : busy;
+    changes = desk_.changes(Change::Kind::set, wanted, out);
+    return out.empty() ? none : illegal_value;
 }
 
-/// Address, count, number of bytes, bits from the lowest on.
-int ModbusDesk::write_bits(const Request& request) {
-    const int count = request.word(3);
-    if (!request.has(6) || count < 1 || count > MODBUS_MAX_WRITE_BITS ||
-        request.bytes[5] != (count + 7) / 8 || !request.has(6 + std::size_t{request.bytes[5]}))
-        return illegal_value;
-    std::vector<std::uint16_t> values;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
-        values.push_back(request.bytes[6 + i / 8] >> i % 8 & 1);
-    return write(ModbusTable::coils, request.word(1), values);
-}
-
-/// The same with registers, from the byte `header` on.
-int ModbusDesk::write_registers(const Request& request, std::size_t header) {
-    const std::size_t data = header + 5;
-    if (!request.has(data)) return illegal_value;
-    const int address = request.word(header), count = request.word(header + 2);
-    const std::size_t size = request.bytes[data - 1];
-    if (count < 1 || count > MODBUS_MAX_WRITE_REGISTERS ||
-        size != 2 * static_cast<std::size_t>(count) || !request.has(data + size))
-        return illegal_value;
-    std::vector<std::uint16_t> values;
-    for (std::size_t at = data; at < data + size; at += 2)
-        values.push_back(static_cast<std::uint16_t>(request.word(at)));
-    return write(ModbusTable::holding_registers, address, values);
-}
-
-/// The bits of the first word are kept, those of the second one set where they are not.
-int ModbusDesk::mask(const Request& request, ModbusTables& tables) {
-    if (!request.has(7)) return illegal_value;
-    const int address = request.word(1), kept = request.word(3), set = request.word(5);
-    if (const int exception = read(ModbusTable::holding_registers, address, 1, tables))
-        return exception;
-    const int now = tables.tab_registers[address];
-    const auto value = static_cast<std::uint16_t>((now & kept) | (set & ~kept));
-    return write(ModbusTable::holding_registers, address, {&value, 1});
-}
-
-void ModbusDesk::converse(int socket, bool may_write, ModbusTables& tables) {
-    constexpr std::uint32_t idle_s = 300;
-    constexpr std::uint8_t first_exception = 0x80;  // no request, and its answer would be none
-    modbus_t* const context = modbus_new_tcp("127.0.0.1", MODBUS_TCP_DEFAULT_PORT);
-    modbus_set_socket(context, socket);
-    modbus_set_indication_timeout(context, idle_s, 0);
-    const auto header = static_cast<std::size_t>(modbus_get_header_length(context));
-    std::array<std::uint8_t, MODBUS_TCP_MAX_ADU_LENGTH> query;
-    while (true) {
-        const int size = modbus_receive(context, query.data());
-        const bool is_modbus = size > static_cast<int>(header) && query[2] == 0 && query[3] == 0 &&
-                               query[header] < first_exception;
-        if (!is_modbus) break;
-        const auto request = std::span(query).first(static_cast<std::size_t>(size)).subspan(header);
-        const int exception = handle(request, may_write, tables);
-        const int sent = exception == 0 ? modbus_reply(context, query.data(), size, &tables)
-                                        : modbus_reply_exception(context, query.data(),
-                                                                 static_cast<unsigned>(exception));
-        if (sent < 0) break;
-        if (exception == illegal_function) modbus_flush(context);
+/// The bits of the first mask are kept, those of the second one set where they are not. Made of
+/// what stands there, and written if that still stands there: else made anew, as often as others
+/// are quicker.
+ModbusException ModbusDesk::mask(const ModbusRequest& request, Signals signals, std::int64_t& at) {
+    constexpr int most_rounds = 100;
+    const ModbusArea& area = *request.written;
+    for (int round = 0; round < most_rounds; ++round) {
+        if (!live_.recording_error().empty()) return device_failure;
+        const auto before = live_.mailbox().ask([&] { return words(signals, area); });
+        if (!before) return busy;
+        const std::uint16_t now = before->front(), kept = request.and_mask,
+                            after = static_cast<std::uint16_t>((now & kept) |
+                                                               (request.or_mask & ~kept));
+        std::vector<Change> changes;
+        if (const auto exception = this->changes(signals, {&after, 1}, changes); exception != none)
+            return exception;
+        const auto applied = live_.mailbox().ask([&]() -> std::optional<Applied> {
+            if (words(signals, area) != *before) return std::nullopt;
+            return live_.apply(changes);
+        });
+        if (!applied) return busy;
+        if (*applied) return keep(**applied, at);
     }
-    modbus_free(context);
+    return busy;
 }
 
-ModbusServer::ModbusServer(ModbusDesk& desk, const Address& address) : desk_(desk) {
-    modbus_t* const context =
-        modbus_new_tcp_pi(address.host.c_str(), std::to_string(address.port).c_str());
-    if (!context) return;
-    listener_ = modbus_tcp_pi_listen(context, static_cast<int>(most_clients));
-    modbus_free(context);
-    if (!failed()) thread_ = std::thread([this] { work(); });
+ModbusException ModbusDesk::keep(const Applied& applied, std::int64_t& at) {
+    at = applied.at;
+    return live_.keep(applied).empty() ? none : device_failure;
 }
 
-ModbusServer::~ModbusServer() {
-    ends_ = true;
-    if (thread_.joinable()) thread_.join();
-    for (Client& client : clients_) ::shutdown(client.socket, SHUT_RDWR);
-    for (Client& client : clients_) {
-        client.thread.join();
-        ::close(client.socket);
+/// In the machine's thread: what was written last is there, though the machine may stand still.
+Value ModbusDesk::value(const MappedSignal& mapped) const {
+    const auto posted = mapped.set_to ? live_.posted(mapped.set_to) : std::nullopt;
+    return posted ? *posted : mapped.signal.value();
+}
+
+std::vector<std::uint16_t> ModbusDesk::words(Signals signals, const ModbusArea& area) const {
+    std::vector<std::uint16_t> all;
+    for (const MappedSignal& mapped : signals) {
+        const Value now = value(mapped);
+        const std::size_t size = all.size();
+        all.resize(size + static_cast<std::size_t>(mapped.count));
+        if (has_bits(area.table))
+            all.back() = std::get<bool>(now);
+        else
+            to_registers(mapped, now, std::span(all).subspan(size));
     }
-    if (listener_ >= 0) ::close(listener_);
-}
-
-void ModbusServer::work() {
-    constexpr int patience_ms = 100;
-    while (!ends_) {
-        pollfd waiting{.fd = listener_, .events = POLLIN, .revents = 0};
-        if (::poll(&waiting, 1, patience_ms) > 0) admit();
-        for (auto client = clients_.begin(); client != clients_.end();) {
-            const auto gone = client++;
-            if (!gone->gone) continue;
-            gone->thread.join();
-            ::close(gone->socket);
-            clients_.erase(gone);
-        }
-    }
-}
-
-void ModbusServer::admit() {
-    const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
-    if (socket < 0) return;
-    if (clients_.size() >= most_clients) {
-        ::close(socket);
-        return;
-    }
-    const int yes = 1;
-    ::setsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &yes, sizeof yes);
-    ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-    Client& client = clients_.emplace_back(socket, Address{peer_of(socket)}.is_loopback());
-    client.thread = std::thread([this, &client] { serve(client); });
-}
-
-void ModbusServer::serve(Client& client) {
-    constexpr int addresses = 65536;
-    ModbusTables* const tables = modbus_mapping_new(addresses, addresses, addresses, addresses);
-    if (tables) desk_.converse(client.socket, client.is_near, *tables);
-    modbus_mapping_free(tables);
-    client.gone = true;
+    const auto first = all.begin() + (area.address - signals.front().address);
+    return {first, first + area.count};
 }
 
 }  // namespace lineshaft

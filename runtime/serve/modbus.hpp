@@ -1,91 +1,76 @@
 #pragma once
 
-#include <array>
-#include <atomic>
 #include <cstdint>
-#include <list>
-#include <memory>
-#include <mutex>
 #include <span>
 #include <string>
-#include <thread>
+#include <string_view>
 #include <vector>
 
+#include "runtime/serve/audit.hpp"
 #include "runtime/serve/desk.hpp"
-#include "runtime/serve/http.hpp"
 #include "runtime/serve/live.hpp"
-
-struct _modbus_mapping_t;
 
 namespace lineshaft {
 
-/// The four tables of one client, of 65536 addresses each, as libmodbus has them: what a request is
-/// about is put there before libmodbus answers it.
-using ModbusTables = ::_modbus_mapping_t;
+/// Of the MODBUS Application Protocol Specification V1.1b3, chapter 7.
+enum class ModbusException : std::uint8_t {
+    none = 0,
+    illegal_function = 1,
+    illegal_address = 2,
+    illegal_value = 3,
+    device_failure = 4,
+    busy = 6,
+};
+
+/// Coils or registers that follow each other in a table.
+struct ModbusArea {
+    ModbusTable table;
+    int address = 0, count = 0;
+};
+
+/// What a request says, as its function's own lengths and limits allow it.
+struct ModbusRequest;
+
+/// Who asks.
+struct ModbusPeer {
+    std::string address;  ///< number of its machine
+    bool may_write = false;
+};
 
 /// What a program's map makes of requests. For any thread.
 class ModbusDesk {
   public:
-    ModbusDesk(Live& live, Desk& desk, const ModbusMap& map, bool allow_write)
-        : live_(live), desk_(desk), map_(map), allow_write_(allow_write) {}
+    /// `audit` may be null.
+    ModbusDesk(Live& live, Desk& desk, const ModbusMap& map, bool allow_write,
+               Audit* audit = nullptr)
+        : live_(live), desk_(desk), map_(map), allow_write_(allow_write), audit_(audit) {}
 
-    /// What a request (function code and what follows it) wants: its values are put into `tables`,
-    /// or into the machine. 0, or the exception code of the standard: 1 for another function, and
-    /// for writing that is not allowed; 2 where the map has a hole, half of a value or what is only
-    /// read; 3 for a value or a count that cannot be; 6 when the machine has too much to do.
-    int handle(std::span<const std::uint8_t> request, bool may_write, ModbusTables& tables);
-
-    /// Answers all requests of a client that come to a socket, until it goes or sends what cannot
-    /// be understood.
-    void converse(int socket, bool may_write, ModbusTables& tables);
+    /// The answer to a request, both from the function code on. An exception's code is 1 for a
+    /// function that is not there, and for writing that is not allowed; 2 where the map has a
+    /// hole, half of a value or what is only read; 3 for a length, a count or a value that cannot
+    /// be; 4 when what was written is not kept; 6 when the machine has too much to do. Reading and
+    /// writing of one request are one moment of the machine: nothing of others comes in between,
+    /// and of what is refused nothing is written. Requests to write are noted.
+    std::string answer(std::string_view request, const ModbusPeer& peer);
 
   private:
-    struct Request;
-    int read(ModbusTable table, int address, int count, ModbusTables& tables);
-    int write(ModbusTable table, int address, std::span<const std::uint16_t> values);
-    int write_bits(const Request& request);
-    int write_registers(const Request& request, std::size_t header);
-    int mask(const Request& request, ModbusTables& tables);
+    using Signals = std::span<const MappedSignal>;
+
+    ModbusException carry_out(const ModbusRequest& request, std::string& data, std::int64_t& at);
+    ModbusException find_read(const ModbusRequest& request, Signals& found) const;
+    ModbusException find_written(const ModbusArea& area, Signals& found) const;
+    ModbusException changes(Signals signals, std::span<const std::uint16_t> words,
+                            std::vector<Change>& changes);
+    ModbusException mask(const ModbusRequest& request, Signals signals, std::int64_t& at);
+    ModbusException keep(const Applied& applied, std::int64_t& at);
+    Value value(const MappedSignal& mapped) const;
+    std::vector<std::uint16_t> words(Signals signals, const ModbusArea& area) const;
 
     Live& live_;
     Desk& desk_;
     const ModbusMap& map_;
     bool allow_write_;
-};
-
-/// Modbus/TCP by libmodbus, a thread for each client: one that is slow, or sends half a request,
-/// holds up nobody else. From the constructor on until it is destroyed. Clients of other machines
-/// may only read.
-class ModbusServer {
-  public:
-    static constexpr std::size_t most_clients = 16;
-
-    ModbusServer(ModbusDesk& desk, const Address& address);
-    ~ModbusServer();
-    ModbusServer(const ModbusServer&) = delete;
-    ModbusServer& operator=(const ModbusServer&) = delete;
-
-    bool failed() const { return listener_ < 0; }
-
-  private:
-    struct Client {
-        Client(int s, bool near) : socket(s), is_near(near) {}
-
-        int socket;
-        bool is_near;  ///< of this machine
-        std::atomic<bool> gone = false;
-        std::thread thread = {};
-    };
-
-    void work();
-    void admit();
-    void serve(Client& client);
-
-    ModbusDesk& desk_;
-    int listener_ = -1;
-    std::atomic<bool> ends_ = false;
-    std::list<Client> clients_;  ///< of work()'s thread
-    std::thread thread_;
+    Audit* audit_;
 };
 
 }  // namespace lineshaft

@@ -24,9 +24,9 @@ std::int64_t nearest_nanosecond(double nanoseconds) {
 
 }  // namespace
 
-void Pacer::anchor(std::int64_t time) {
+void Pacer::anchor(std::int64_t time, std::int64_t wall) {
     time_ = time;
-    wall_ = now();
+    wall_ = wall;
 }
 
 std::int64_t Pacer::due(std::int64_t time) const {

@@ -17,8 +17,8 @@ class Pacer {
     bool is_paced() const { return speed_ != unpaced; }
     void set_speed(double speed) { speed_ = speed; }
 
-    /// The virtual time `time` is now.
-    void anchor(std::int64_t time);
+    /// The virtual time `time` is at `wall`.
+    void anchor(std::int64_t time, std::int64_t wall);
     /// Everything is so much later [ns].
     void put_off(std::int64_t by) { wall_ += by; }
 

@@ -1,14 +1,12 @@
 #include "runtime/serve/recording_writer.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <string_view>
+#include <system_error>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include "runtime/source/units.hpp"
 
@@ -21,6 +19,9 @@ std::string time_text(std::int64_t time) {
     constexpr std::int64_t short_enough = 1'000'000'000'000'000;
     return time < short_enough ? format_time(time) : fmt::format("{} ns", time);
 }
+
+constexpr std::string_view first_key = "lineshaft_recording:", no_entry = "entries:\n",
+                           the_end = "end: true}\n";
 
 std::string quoted(const std::string& text) {
     std::string out = "'";
@@ -35,14 +36,13 @@ std::string name_text(const std::string& name) {
     const bool is_plain = name.find_first_not_of(letters) == std::string::npos &&
                           name.find_first_of(letters.substr(12)) != std::string::npos;
     static constexpr std::string_view words[] = {"null", "true", "false", "nan", "inf"};
-    const bool is_word = std::ranges::any_of(
-        words, [&](std::string_view word) { return same_letters(name, word); });
+    const bool is_word =
+        std::ranges::any_of(words, [&](std::string_view word) { return same_letters(name, word); });
     return is_plain && !is_word ? name : quoted(name);
 }
 
 std::string value_text(const Change& change) {
-    const Type type =
-        change.kind == Change::Kind::set ? change.stimulus.type : change.force.type;
+    const Type type = change.kind == Change::Kind::set ? change.stimulus.type : change.force.type;
     return type == Type::enumeration ? name_text(change.text) : change.text;
 }
 
@@ -63,22 +63,20 @@ std::string recorded(std::int64_t time, std::span<const Change> changes) {
                        releases ? "[" + list + "]" : "{" + list + "}");
 }
 
-RecordingWriter::RecordingWriter(std::string path, const std::string& program,
-                                 const std::string& meaning, bool goes_on)
-    : path_(std::move(path)) {
-    file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC | (goes_on ? 0 : O_CREAT), 0666);
-    if (file_ < 0) {
-        error_ = fmt::format("cannot write '{}': {}", path_, std::strerror(errno));
-        return;
-    }
-    if (::flock(file_, LOCK_EX | LOCK_NB) != 0 || (!goes_on && ::ftruncate(file_, 0) != 0)) {
-        error_ = fmt::format("another lineshaft writes '{}'", path_);
-        return;
-    }
+RecordingWriter::RecordingWriter(World& world, std::string path, const std::string& program,
+                                 const std::string& meaning, bool goes_on, RecordSync sync)
+    : world_(world), path_(std::move(path)), sync_(sync) {
+    open(goes_on);
+    if (!error_.empty()) return;
     if (!goes_on)
-        append(fmt::format("lineshaft_recording: 1\nprogram: {}\nmeaning: '{}'\nentries:\n",
-                           quoted(program), meaning));
-    thread_ = std::thread([this] { work(); });
+        begin(fmt::format("lineshaft_recording: 1\nprogram: {}\nmeaning: '{}'\n{}", quoted(program),
+                          meaning, no_entry));
+    if (!error_.empty()) return;
+    try {
+        thread_ = world_.start([this] { work(); });
+    } catch (const std::system_error& error) {
+        error_ = fmt::format("cannot write '{}': {}", path_, error.code().message());
+    }
 }
 
 RecordingWriter::~RecordingWriter() {
@@ -86,71 +84,144 @@ RecordingWriter::~RecordingWriter() {
         const std::lock_guard lock(mutex_);
         ended_ = true;
     }
-    filled_.notify_one();
-    if (thread_.joinable()) thread_.join();
-    if (file_ >= 0) ::close(file_);
+    changed_.notify_all();
+    if (thread_.joinable()) world_.join(thread_);
 }
 
-void RecordingWriter::append(std::string line) {
+/// The first file that may be taken: the one that is named, or `name.2.yaml`, `name.3.yaml`...
+void RecordingWriter::open(bool goes_on) {
+    constexpr int most = 1000;
+    const std::filesystem::path first = path_;
+    for (int number = 2; !take(path_, goes_on) && error_.empty(); ++number) {
+        if (number > most) {
+            error_ = fmt::format(
+                "'{}' and {} files beside it are recordings of machines that were "
+                "killed",
+                first.string(), most - 1);
+            return;
+        }
+        path_ = (first.parent_path() /
+                 fmt::format("{}.{}{}", first.stem().string(), number, first.extension().string()))
+                    .string();
+    }
+}
+
+/// False when there is a recording that has not ended, or an error.
+bool RecordingWriter::take(const std::string& path, bool goes_on) {
+    constexpr std::size_t most = 4096;
+    int error = 0;
+    file_ = world_.open(path, !goes_on, error);
+    if (!file_) {
+        error_ = failure(error);
+        return false;
+    }
+    if (file_->lock() != 0) {
+        error_ = fmt::format("another lineshaft writes '{}'", path);
+        return false;
+    }
+    const std::int64_t size = file_->size();
+    if (goes_on || size == 0) return true;
+    if (!file_->read(0, most).starts_with(first_key)) {
+        error_ = fmt::format("'{}' is something else than a recording, and stays", path);
+        return false;
+    }
+    const std::string end = file_->read(std::max<std::int64_t>(size - std::int64_t{most}, 0), most);
+    if (!end.ends_with(the_end) && !end.ends_with(no_entry)) return false;
+    if (const int failed = file_->truncate(0); failed != 0) error_ = failure(failed);
+    return error_.empty();
+}
+
+/// Before there is a thread.
+void RecordingWriter::begin(const std::string& text) {
+    std::size_t written = 0;
+    const int error = file_->append(text, written);
+    if (error != 0) error_ = failure(error);
+    appended_ = kept_ = std::ssize(text);
+}
+
+std::string RecordingWriter::failure(int error) const {
+    return fmt::format("cannot write '{}': {}", path_, std::strerror(error));
+}
+
+std::string RecordingWriter::error() const {
+    const std::lock_guard lock(mutex_);
+    return error_;
+}
+
+std::int64_t RecordingWriter::append(const std::string& line) {
+    std::int64_t mark = 0;
     {
         const std::lock_guard lock(mutex_);
         text_ += line;
-        appended_ += std::ssize(line);
+        mark = appended_ += std::ssize(line);
     }
-    filled_.notify_one();
+    changed_.notify_all();
+    return mark;
+}
+
+std::string RecordingWriter::keep(std::int64_t mark) {
+    std::unique_lock lock(mutex_);
+    world_.wait(lock, changed_, never, [&] { return kept_ >= mark || !error_.empty(); });
+    return kept_ >= mark ? "" : error_;
 }
 
 void RecordingWriter::finish(std::int64_t time) {
-    append(fmt::format("- {{at: {}, end: true}}\n", time_text(time)));
+    append(fmt::format("- {{at: {}, {}", time_text(time), the_end));
     {
         const std::lock_guard lock(mutex_);
         ended_ = true;
     }
-    filled_.notify_one();
-    if (thread_.joinable()) thread_.join();
+    changed_.notify_all();
+    if (thread_.joinable()) world_.join(thread_);
 }
 
 void RecordingWriter::save(StateWriter& out) const {
     std::unique_lock lock(mutex_);
-    emptied_.wait(lock, [this] { return written_ == appended_; });
+    world_.wait(lock, changed_, never, [this] { return kept_ == appended_ || !error_.empty(); });
     out.put(appended_);
 }
 
 void RecordingWriter::restore(StateReader& in) {
     const std::lock_guard lock(mutex_);
     in.get(appended_);
-    written_ = appended_;
-    if (::lseek(file_, 0, SEEK_END) < appended_)
+    kept_ = appended_;
+    if (file_->size() < appended_)
         error_ = fmt::format("'{}' is not the recording of the checkpoint", path_);
-    else if (::ftruncate(file_, appended_) != 0 || ::lseek(file_, appended_, SEEK_SET) < 0)
-        error_ = fmt::format("cannot write '{}': {}", path_, std::strerror(errno));
+    else if (const int error = file_->truncate(appended_); error != 0)
+        error_ = failure(error);
+    is_broken_ = !error_.empty();
 }
 
+/// What could not be written is tried again when something more comes, and now and then. After a
+/// flush that failed nobody knows what is on the disk.
 void RecordingWriter::work() {
+    constexpr std::int64_t pause = 100'000'000;
     std::string text;
+    std::int64_t due = never;
     std::unique_lock lock(mutex_);
-    while (true) {
-        filled_.wait(lock, [this] { return ended_ || !text_.empty(); });
-        if (text_.empty()) return;
-        text.swap(text_);
+    for (bool is_last = false; !is_last && !is_broken_;) {
+        world_.wait(lock, changed_, text.empty() ? due : world_.now() + pause,
+                    [this] { return ended_ || !text_.empty(); });
+        is_last = ended_;
+        text += text_;
+        text_.clear();
         lock.unlock();
-        write(text);
+        std::size_t count = 0;
+        int error = text.empty() ? 0 : file_->append(text, count);
+        text.erase(0, count);
+        if (count > 0) due = std::min(due, later(world_.now(), sync_.within));
+        if (due < never && (is_last || due <= world_.now())) {
+            due = never;
+            if (const int failed = file_->flush(); failed != 0) {
+                is_broken_ = true;
+                error = failed;
+            }
+        }
         lock.lock();
-        written_ += std::ssize(text);
-        text.clear();
-        emptied_.notify_all();
+        error_ = error != 0 ? failure(error) : "";
+        if (!is_broken_) kept_ += static_cast<std::int64_t>(count);
+        changed_.notify_all();
     }
-}
-
-void RecordingWriter::write(const std::string& text) {
-    for (std::size_t done = 0; done < text.size() && error_.empty();) {
-        const ssize_t written = ::write(file_, text.data() + done, text.size() - done);
-        if (written >= 0)
-            done += static_cast<std::size_t>(written);
-        else if (errno != EINTR)
-            error_ = fmt::format("cannot write '{}': {}", path_, std::strerror(errno));
-    }
-    ::fdatasync(file_);
 }
 
 }  // namespace lineshaft

@@ -1,13 +1,10 @@
 #pragma once
 
-#include <condition_variable>
-#include <mutex>
 #include <span>
 #include <string>
-#include <thread>
-#include <vector>
 
 #include "runtime/scan/executive.hpp"
+#include "runtime/serve/world.hpp"
 
 namespace lineshaft {
 
@@ -25,26 +22,44 @@ struct Change {
 /// An entry of a recording: changes of one kind that count from `time` [ns] on.
 std::string recorded(std::int64_t time, std::span<const Change> changes);
 
-/// Writes a recording (see recording_form.hpp) as it comes: a thread of its own hands each entry
-/// to the disk, so that a machine that is killed leaves what it had and the machine's thread waits
-/// for no disk, but for a checkpoint: it notes how much of the recording there was.
+/// How soon what is recorded is on the disk, and not only in the system's memory, which outlives
+/// this program, but not a power failure.
+struct RecordSync {
+    static constexpr std::int64_t each = 0, none = never;
+
+    std::int64_t within = each;  ///< each: before it is acknowledged; [ns] later; never
+};
+
+/// Writes a recording (see recording_form.hpp) as it comes: a thread of its own writes each entry,
+/// so that the machine's thread waits for no disk, but for a checkpoint: it notes how much of the
+/// recording there was. Who has asked for a change waits in keep(). When the disk is full, what
+/// could not be written waits, is tried again, and is lost only if the machine ends before.
 class RecordingWriter : public Observer {
   public:
-    /// Unless another one writes the file. Replaces it, or `goes_on` where a checkpoint will say.
-    /// `meaning`: Meaning::in_force.
-    RecordingWriter(std::string path, const std::string& program, const std::string& meaning,
-                    bool goes_on);
+    /// Replaces the file where it is a recording that has ended, or empty; where a machine was
+    /// killed that recorded there, its recording stays, and this one is beside it, see path().
+    /// `goes_on`: writes on where a checkpoint will say. Not where another one writes, nor over
+    /// what is no recording: see error(). `meaning`: Meaning::in_force.
+    RecordingWriter(World& world, std::string path, const std::string& program,
+                    const std::string& meaning, bool goes_on, RecordSync sync);
     ~RecordingWriter() override;
     RecordingWriter(const RecordingWriter&) = delete;
     RecordingWriter& operator=(const RecordingWriter&) = delete;
 
-    void append(std::string line);
+    /// The file that is written.
+    const std::string& path() const { return path_; }
+
+    /// Returns the mark of what has been appended so far.
+    std::int64_t append(const std::string& line);
+
+    /// Waits until all up to a mark is in the file, as the sync says. Empty, or why it is not.
+    std::string keep(std::int64_t mark);
 
     /// The machine was served until `time` [ns]. Nothing may follow.
     void finish(std::int64_t time);
 
-    /// Empty when all is well. After the constructor, and after finish().
-    const std::string& error() const { return error_; }
+    /// Why there is no recording, or not all in it now; empty when all is well. Of any thread.
+    std::string error() const;
 
     void scanned(int, const Scan&) override {}
     void settled(std::int64_t, std::int64_t) override {}
@@ -52,16 +67,21 @@ class RecordingWriter : public Observer {
     void restore(StateReader& in) override;
 
   private:
+    void open(bool goes_on);
+    bool take(const std::string& path, bool goes_on);
+    void begin(const std::string& text);
     void work();
-    void write(const std::string& text);
+    std::string failure(int error) const;
 
-    std::string path_, error_;
-    int file_ = -1;
+    World& world_;
+    std::string path_;
+    const RecordSync sync_;
+    std::unique_ptr<GrowingFile> file_;
     mutable std::mutex mutex_;
-    mutable std::condition_variable filled_, emptied_;
-    std::string text_;
-    std::int64_t appended_ = 0, written_ = 0;  ///< bytes
-    bool ended_ = false;
+    mutable std::condition_variable changed_;
+    std::string error_, text_;
+    std::int64_t appended_ = 0, kept_ = 0;  ///< bytes
+    bool ended_ = false, is_broken_ = false;
     std::thread thread_;
 };
 

@@ -9,6 +9,9 @@ namespace lineshaft {
 
 namespace {
 
+/// Of products of two whole numbers.
+__extension__ using Wide = __int128;
+
 template <class T>
 std::uint64_t bits_of(T value) {
     if constexpr (std::is_same_v<T, float>)
@@ -31,14 +34,26 @@ T nearest_of(double value) {
     return static_cast<T>(rounded);
 }
 
+/// Likewise of value / scale; half is away from zero.
 template <class T>
-T nearest_of(std::int64_t value) {
-    if constexpr (std::is_floating_point_v<T>)
-        return static_cast<T>(value);
-    else if (std::in_range<T>(value))
-        return static_cast<T>(value);
-    else
-        return value < 0 ? std::numeric_limits<T>::min() : std::numeric_limits<T>::max();
+T nearest_of(std::int64_t value, const MappedSignal& signal) {
+    const Wide product = Wide{value} * signal.divisor, by = signal.multiplier;
+    const Wide left = product % by, half = (by < 0 ? -by : by) / 2 + (by % 2 != 0);
+    const bool is_up = (left < 0 ? -left : left) >= half && left != 0;
+    const Wide quotient = product / by + (is_up ? ((product < 0) == (by < 0) ? 1 : -1) : 0);
+    if (quotient < Wide{std::numeric_limits<T>::min()}) return std::numeric_limits<T>::min();
+    if (quotient > Wide{std::numeric_limits<T>::max()}) return std::numeric_limits<T>::max();
+    return static_cast<T>(quotient);
+}
+
+/// number * scale, if that is a whole number of 64 bits.
+std::optional<Value> scaled(Wide number, const MappedSignal& signal) {
+    const Wide product = number * signal.multiplier;
+    if (product % signal.divisor != 0) return {};
+    const Wide value = product / signal.divisor;
+    using Limits = std::numeric_limits<std::int64_t>;
+    if (value < Limits::min() || value > Limits::max()) return {};
+    return static_cast<std::int64_t>(value);
 }
 
 /// Calls `with` with a zero of the type.
@@ -92,8 +107,9 @@ void to_registers(const MappedSignal& signal, const Value& value, std::span<std:
     const auto* integer = std::get_if<std::int64_t>(&value);
     const std::uint64_t bits = with_type(signal.type, [&](auto zero) {
         using T = decltype(zero);
-        return bits_of(integer && signal.scale == 1 ? nearest_of<T>(*integer)
-                                                    : nearest_of<T>(as_real(value) / signal.scale));
+        if constexpr (std::numeric_limits<T>::is_integer)
+            if (integer && signal.divisor != 0) return bits_of(nearest_of<T>(*integer, signal));
+        return bits_of(nearest_of<T>(as_real(value) / signal.scale));
     });
     for (int i = 0; i < signal.count; ++i)
         to[static_cast<std::size_t>(i)] =
@@ -114,10 +130,8 @@ std::optional<Value> from_registers(const MappedSignal& signal,
             zero = std::bit_cast<double>(bits);
         } else {
             zero = static_cast<T>(bits);
-            if (signal.signal.type == Type::integer && signal.scale == 1)
-                return std::in_range<std::int64_t>(zero)
-                           ? std::optional<Value>(static_cast<std::int64_t>(zero))
-                           : std::nullopt;
+            if (signal.signal.type == Type::integer && signal.divisor != 0)
+                return scaled(zero, signal);
         }
         return value_of(signal, static_cast<double>(zero) * signal.scale);
     });

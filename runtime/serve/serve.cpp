@@ -2,8 +2,10 @@
 
 #include <filesystem>
 
+#include <fmt/format.h>
+
 #include "runtime/program/meaning.hpp"
-#include "runtime/serve/modbus.hpp"
+#include "runtime/serve/modbus_session.hpp"
 
 namespace lineshaft {
 
@@ -22,19 +24,47 @@ void refuse_address(const Address& address, Diagnostics& refused) {
 
 /// What is written to the recording's file, if there is one.
 void open_recording(std::optional<RecordingWriter>& recording, const Loaded& loaded,
-                    const std::string& path, bool goes_on, Diagnostics& refused) {
-    if (path.empty()) return;
+                    const ServeOptions& options, bool goes_on, Diagnostics& refused) {
+    if (options.record.empty()) return;
     const std::string program =
         std::filesystem::path(loaded.program.file->path).filename().string();
-    recording.emplace(path, program, meaning_of(loaded.program).in_force, goes_on);
+    recording.emplace(World::system(), options.record, program, meaning_of(loaded.program).in_force,
+                      goes_on, options.sync);
     if (!recording->error().empty())
         refused.add("L0512", {}, recording->error(), "name another file: --record FILE.yaml");
+}
+
+void open_audit(std::optional<Audit>& audit, const std::string& path, Diagnostics& refused) {
+    if (path.empty()) return;
+    audit.emplace(World::system(), path);
+    if (!audit->error().empty())
+        refused.add("L0512", {}, audit->error(), "name another file: --audit FILE");
+}
+
+/// A server's clients, and where they come in.
+struct Door {
+    Door(std::size_t most, Clients::Answer answer, const Address& address)
+        : clients(World::system(), most, std::move(answer)),
+          listener(clients, address.host, address.port) {}
+
+    Clients clients;
+    Listener listener;
+};
+
+void open_door(std::optional<Door>& door, std::size_t most, Clients::Answer answer,
+               const Address& address, Diagnostics& refused) {
+    if (address.port == 0) return;
+    door.emplace(most, std::move(answer), address);
+    if (!door->listener.error().empty())
+        refused.add("L0510", {},
+                    fmt::format("cannot listen at {}: {}", address.text(), door->listener.error()),
+                    "allow this program more threads, files or memory, or name another port");
 }
 
 }  // namespace
 
 ServeReport serve(Loaded& loaded, RunOptions how, const ServeOptions& options,
-                  const std::function<void()>& ready) {
+                  const std::function<void(const std::string&)>& ready) {
     loaded.linked.machine.duration = never - 1;
     loaded.linked.expectations.clear();
     ServeReport report;
@@ -42,34 +72,50 @@ ServeReport serve(Loaded& loaded, RunOptions how, const ServeOptions& options,
     refuse_address(options.http.address, refused);
     refuse_address(options.modbus, refused);
     std::optional<RecordingWriter> recording;
+    std::optional<Audit> audit;
+    if (refused.empty()) open_audit(audit, options.audit, refused);
     if (refused.empty())
-        open_recording(recording, loaded, options.record, how.restart == Restart::hot, refused);
+        open_recording(recording, loaded, options, how.restart == Restart::hot, refused);
     if (options.realtime > 0)
         if (const std::string error = Pacer::be_realtime(options.realtime); !error.empty())
             refused.add("L0511", {}, error, realtime_help);
     if (!refused.empty()) return report;
 
     std::int64_t end = 0;
+    World& world = World::system();
+    Diagnostics closed;
     if (recording) how.observer = &*recording;
     how.drive = [&](Executive& executive, const std::function<std::string()>& checkpoint) {
-        Live live(loaded, executive, options.live, recording ? &*recording : nullptr);
+        constexpr std::size_t most_modbus_clients = 16;
+        Live live(loaded, executive, options.live, recording ? &*recording : nullptr, world);
         Desk desk(loaded);
         Api api(live, desk, loaded, checkpoint);
-        ModbusDesk modbus_desk(live, desk, loaded.linked.modbus, options.http.allow_write);
-        std::optional<HttpServer> http;
-        std::optional<ModbusServer> modbus;
-        if (options.http.address.port > 0) http.emplace(api, options.http);
-        if (options.modbus.port > 0) modbus.emplace(modbus_desk, options.modbus);
-        ready();
-        live.drive();
+        Audit* const noted = audit ? &*audit : nullptr;
+        HttpServer http(api, options.http, world, noted);
+        ModbusDesk modbus(live, desk, loaded.linked.modbus, options.http.guard.allow_write, noted);
+        std::optional<Door> http_door, modbus_door;
+        open_door(
+            http_door, HttpServer::most_clients, [&](Client& client) { http.converse(client); },
+            options.http.address, closed);
+        open_door(
+            modbus_door, most_modbus_clients,
+            [&](Client& client) { converse(modbus, client, world); }, options.modbus, closed);
+        if (closed.empty()) {
+            ready(recording ? recording->path() : "");
+            live.drive();
+        }
+        live.mailbox().close();
+        http.end();
         report.pace = live.pace();
         end = live.time();
     };
     report.run = run(loaded, how);
+    if (!closed.empty()) report.run.refused = closed;
     if (recording) {
         recording->finish(end);
         report.recording_error = recording->error();
     }
+    if (audit) report.audit_error = audit->error();
     return report;
 }
 

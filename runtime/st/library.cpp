@@ -301,6 +301,11 @@ class FieldWriter {
         if (limited) {
             field.minimum = static_cast<double>(smallest(type));
             field.maximum = static_cast<double>(largest(type));
+        } else if (type.is_real() && type.bits == 32) {
+            field.maximum = std::numeric_limits<float>::max();
+            field.minimum = -field.maximum;
+        } else if ((type.kind == Kind::integer || type.kind == Kind::bits) && smallest(type) == 0) {
+            field.minimum = 0;
         }
         const bool wired = direction == Direction::input;
         if (wired && (limited || (type.is_real() && type.bits == 32)))

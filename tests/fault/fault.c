@@ -1,15 +1,19 @@
 /* Preloaded by tests/fault/fault.py: lets the N-th call of one kind fail, as a disk or a machine at its end would.
-   FAULT_KIND write, fsync, syncfs, rename, open or malloc; FAULT_AT N, from 1, 0 for none. Calls from main() on are
+   FAULT_KIND write, disk (write and fdatasync of a file), fsync, syncfs, rename, open, malloc, thread or accept; FAULT_AT N, from 1, 0 for none. Calls from main() on are
    counted; their number goes to the file FAULT_REPORT. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 static atomic_long calls;
 static long fault_at;
@@ -68,6 +72,38 @@ int open(const char* path, int flags, ...) {
     va_end(rest);
     if (!next) next = (int (*)(const char*, int, ...))dlsym(RTLD_NEXT, "open");
     return fails("open", EMFILE) ? -1 : next(path, flags, mode);
+}
+
+static int is_file(int descriptor) {
+    struct stat file;
+    return descriptor > STDERR_FILENO && fstat(descriptor, &file) == 0 && S_ISREG(file.st_mode);
+}
+
+ssize_t write(int descriptor, const void* data, size_t size) {
+    static ssize_t (*next)(int, const void*, size_t);
+    if (!next) next = (ssize_t(*)(int, const void*, size_t))dlsym(RTLD_NEXT, "write");
+    return is_file(descriptor) && fails("disk", ENOSPC) ? -1 : next(descriptor, data, size);
+}
+
+int fdatasync(int descriptor) {
+    static int (*next)(int);
+    if (!next) next = (int (*)(int))dlsym(RTLD_NEXT, "fdatasync");
+    return fails("disk", EIO) ? -1 : next(descriptor);
+}
+
+int pthread_create(pthread_t* thread, const pthread_attr_t* how, void* (*work)(void*), void* with) {
+    static int (*next)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
+    if (!next)
+        next = (int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*))dlsym(
+            RTLD_NEXT, "pthread_create");
+    return fails("thread", EAGAIN) ? EAGAIN : next(thread, how, work, with);
+}
+
+int accept4(int descriptor, struct sockaddr* address, socklen_t* size, int flags) {
+    static int (*next)(int, struct sockaddr*, socklen_t*, int);
+    if (!next)
+        next = (int (*)(int, struct sockaddr*, socklen_t*, int))dlsym(RTLD_NEXT, "accept4");
+    return fails("accept", EMFILE) ? -1 : next(descriptor, address, size, flags);
 }
 
 extern void* __libc_malloc(size_t size);

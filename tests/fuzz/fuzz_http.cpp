@@ -68,12 +68,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
     if (is_too_much(bytes)) return 0;
     ServedMachine& machine = ServedMachine::get();
-    machine.options.allow_write = (data[0] & 1) != 0;
-    machine.options.token = token;
-    const bool may_write = machine.options.allow_write && bytes.find(token) != bytes.npos;
+    machine.options.guard.allow_write = (data[0] & 1) != 0;
+    machine.options.guard.token = token;
+    const bool may_write = machine.options.guard.allow_write && bytes.find(token) != bytes.npos;
     const std::string before = machine.state(), inputs = machine.inputs();
-    check_answers(ServedMachine::answer(bytes, [&](int socket) { machine.http.converse(socket); }),
-                  bytes.find("HEAD ") == bytes.npos);
+    check_answers(
+        ServedMachine::answer(bytes, [&](Client& client) { machine.http.converse(client); }),
+        bytes.find("HEAD ") == bytes.npos);
     hold(may_write || machine.state() == before, "a client changed what it may not");
     machine.go_on();
     hold(may_write || machine.inputs() == inputs, "a client wrote what it may not");

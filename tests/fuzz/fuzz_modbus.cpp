@@ -1,12 +1,11 @@
 /// The first byte tells what is allowed; the others come by Modbus/TCP. Each answer is a whole
 /// frame, time stands still, and what may not be written is as it was.
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
-#include <modbus/modbus.h>
-#include <unistd.h>
-
+#include "runtime/serve/modbus_request.hpp"
 #include "tests/fuzz/served_machine.hpp"
 
 using namespace lineshaft;
@@ -20,19 +19,21 @@ void hold(bool holds, const char* what) {
     std::abort();
 }
 
+constexpr std::size_t most_pdu_bytes = 253;
+
 /// Of a frame without its header: function code and what follows it.
 bool is_answer(std::string_view frame) {
     const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(frame[at]); };
-    if (frame.empty() || frame.size() > MODBUS_MAX_PDU_LENGTH) return false;
+    if (frame.empty() || frame.size() > most_pdu_bytes) return false;
     if (byte(0) & 0x80)
         return frame.size() == 2 && ((byte(1) >= 1 && byte(1) <= 3) || byte(1) == 6);
     switch (byte(0)) {
-        case MODBUS_FC_WRITE_SINGLE_COIL:
-        case MODBUS_FC_WRITE_SINGLE_REGISTER:
-        case MODBUS_FC_WRITE_MULTIPLE_COILS:
-        case MODBUS_FC_WRITE_MULTIPLE_REGISTERS:
+        case write_single_coil:
+        case write_single_register:
+        case write_multiple_coils:
+        case write_multiple_registers:
             return frame.size() == 5;
-        case MODBUS_FC_MASK_WRITE_REGISTER:
+        case mask_write_register:
             return frame.size() == 7;
         default:
             return frame.size() > 2 && frame.size() == 2u + byte(1);
@@ -55,17 +56,19 @@ void check_frames(std::string_view answered) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static modbus_mapping_t* const tables = modbus_mapping_new(65536, 65536, 65536, 65536);
     if (size == 0) return 0;
     ServedMachine& machine = ServedMachine::get();
     const bool allow_write = data[0] & 1, may_write = data[0] & 2;
     ModbusDesk desk(machine.live, machine.desk, machine.map, allow_write);
     const std::string before = machine.state(), inputs = machine.inputs();
-    check_frames(
-        ServedMachine::answer({reinterpret_cast<const char*>(data) + 1, size - 1}, [&](int socket) {
-            desk.converse(socket, may_write, *tables);
-            ::close(socket);
-        }));
+    ModbusSession session(desk, {"127.0.0.1", may_write});
+    std::string_view rest(reinterpret_cast<const char*>(data) + 1, size - 1);
+    std::string answers;
+    for (std::size_t part = 1; !rest.empty(); part = part * 7 % 31) {
+        answers += session.take(rest.substr(0, part));
+        rest.remove_prefix(std::min(part, rest.size()));
+    }
+    check_frames(answers);
     hold(machine.state() == before, "a client of Modbus did not leave the machine standing");
     machine.go_on();
     hold(machine.is_fixed(), "a client of Modbus wrote what is only read");

@@ -93,7 +93,7 @@ bool ServedMachine::is_fixed() const {
 }
 
 std::string ServedMachine::answer(std::string_view bytes,
-                                  const std::function<void(int)>& converse) {
+                                  const std::function<void(Client&)>& converse) {
     int ends[2];
     if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) std::abort();
     const int room = 8 << 20;  // for all answers, which are read when all are there
@@ -101,7 +101,10 @@ std::string ServedMachine::answer(std::string_view bytes,
     const auto written = ::send(ends[0], bytes.data(), bytes.size(), 0);
     if (written != static_cast<ssize_t>(bytes.size())) std::abort();
     ::shutdown(ends[0], SHUT_WR);
-    converse(ends[1]);
+    {
+        Client client(system_socket(ends[1]), 0);
+        converse(client);
+    }
     std::string answered;
     char part[4096];
     for (ssize_t got = 0; (got = ::recv(ends[0], part, sizeof part, 0)) > 0;)

@@ -6,7 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/serve/modbus.hpp"
+#include "runtime/serve/http.hpp"
+#include "runtime/serve/modbus_session.hpp"
 
 namespace lineshaft::test {
 
@@ -28,8 +29,8 @@ class ServedMachine {
     /// `inputs.fixed`, which may be forced, but not set by Modbus, is what it was.
     bool is_fixed() const;
 
-    /// Answers the bytes of a client that then sends no more, by what answers a socket.
-    static std::string answer(std::string_view bytes, const std::function<void(int)>& converse);
+    /// Answers the bytes of a client that then sends no more, by what answers it.
+    static std::string answer(std::string_view bytes, const std::function<void(Client&)>& converse);
 
     /// The only one. A new one when the time of the last one has ended.
     static ServedMachine& get();
@@ -43,8 +44,9 @@ class ServedMachine {
     Live live;
     Desk desk;
     Api api;
-    HttpOptions options{.address = {}, .page = "<!doctype html>", .most_requests = never};
-    HttpServer http{api, options};
+    HttpOptions options{
+        .address = {}, .guard = {.most_requests = never}, .page = "<!doctype html>"};
+    HttpServer http{api, options, World::system()};
     const ModbusMap& map;
 };
 

@@ -343,14 +343,17 @@ takes root, the capabilities cap_sys_nice and cap_ipc_lock, or limits for rtprio
 are the same, the clock's are kept less well.)"},
     {"L0512", "a recording that cannot be written",
      R"(What clients write is recorded, so that a run of it can be played back. The file cannot be
-made, or another 'lineshaft serve' writes it: name another one by --record FILE.yaml.)"},
+made or written (the disk may be full), another 'lineshaft serve' writes it, or it is something else
+than a recording, which stays: name another one by --record FILE.yaml. The same goes for the file
+of --audit.)"},
     {"L0513", "a request that is not allowed",
      R"(A machine that is served is only looked at, unless --allow-write is said. Clients of other
-machines need a token to write, too: the first line of the file of --token-file. A browser's
+machines need a token to write, too: the first line of the file of --token-file. A token that is sent and
+is wrong is refused in any case. A browser's
 request is refused when its page is not the machine's own.)"},
     {"L0514", "a file without a token",
      R"(The first line of the file of --token-file is what clients of other machines send to write:
-'Authorization: Bearer TOKEN'. It has 16 characters or more; nobody else should read the file.)"},
+'Authorization: Bearer TOKEN'. It has 16 characters or more; nobody else should read the file: chmod 600.)"},
 
     {"L0601", "a study of too many runs",
      R"(The cases, the values of a grid multiplied with each other, and 'repeat' make more

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -54,6 +55,7 @@ void occupy_closed_streams() {
 void set_up_signals() {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
+    if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
     std::signal(SIGPIPE, SIG_IGN);  // writing tells it
     std::signal(SIGXFSZ, SIG_IGN);  // likewise
 }
@@ -66,12 +68,15 @@ void allow_many_files() {
     ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-/// A library that cannot go on without memory ends here, whatever it calls on its way.
+/// A library that cannot go on without memory or a thread ends here, whatever it calls on its way.
 [[noreturn]] void on_terminate() {
     try {
         if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
     } catch (const std::bad_alloc&) {
         std::fputs(out_of_memory, stderr);
+        std::_Exit(static_cast<int>(lineshaft::Exit::fault));
+    } catch (const std::system_error& error) {
+        std::fprintf(stderr, "lineshaft: error: %s\n", error.what());
         std::_Exit(static_cast<int>(lineshaft::Exit::fault));
     } catch (...) {
     }

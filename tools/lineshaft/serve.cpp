@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 
 #include "runtime/serve/api.hpp"
 #include "runtime/source/input_file.hpp"
@@ -39,7 +40,8 @@ constexpr const char* serve_help =
 
 struct ServeCommand {
     RunCommand run;
-    std::string speed = "1", duration, record, http = "127.0.0.1:8080", modbus, token_file;
+    std::string speed = "1", duration, record, record_sync = "each", audit, http = "127.0.0.1:8080",
+                modbus, token_file;
     WhenLate late = WhenLate::catch_up;
     int realtime = 0;
     bool allow_write = false, openapi = false;
@@ -66,6 +68,20 @@ std::int64_t end_of(const std::string& text, Diagnostics& out) {
     return Reader(out).time(node).value_or(never);
 }
 
+/// L0305 for what is neither a time nor one of the words.
+RecordSync sync_of(const std::string& text, Diagnostics& out) {
+    if (text == "each") return {RecordSync::each};
+    if (text == "none") return {RecordSync::none};
+    Node node;
+    node.text = text;
+    Diagnostics of_time;
+    const auto time = Reader(of_time).time(node);
+    if (time && *time > 0) return {*time};
+    out.add("L0305", {}, fmt::format("'{}' is not a time for --record-sync", text),
+            "write each, none, or a time such as '10 ms'");
+    return {};
+}
+
 /// Port 0 for none.
 Address address_of(const std::string& text, const char* option, Diagnostics& out) {
     if (text.empty() || text == "off") return {};
@@ -85,14 +101,18 @@ std::string token_of(const std::string& path, Diagnostics& out) {
     if (error != 0 || token.size() < shortest)
         out.add("L0514", {}, fmt::format("'{}' has no token of 16 characters or more", path),
                 "make one: openssl rand -hex 16 >token; chmod 600 token");
+    else if (struct stat file{}; ::stat(path.c_str(), &file) == 0 && (file.st_mode & 077) != 0)
+        spdlog::warn("others on this machine may read or change the token in '{}': chmod 600 '{}'",
+                     path, path);
     return token;
 }
 
 ServeOptions serve_options(const ServeCommand& command, Diagnostics& out) {
-    const HttpOptions http{.address = address_of(command.http, "--http", out),
-                           .allow_write = command.allow_write,
-                           .token = token_of(command.token_file, out),
-                           .page = live_page()};
+    const HttpOptions http{
+        .address = address_of(command.http, "--http", out),
+        .guard = {.allow_write = command.allow_write, .token = token_of(command.token_file, out)},
+        .page = live_page(),
+        .tell = [](const std::string& text) { spdlog::warn("{}", text); }};
     return {.live = {.speed = speed_of(command.speed, out),
                      .late = command.late,
                      .end = end_of(command.duration, out),
@@ -101,19 +121,25 @@ ServeOptions serve_options(const ServeCommand& command, Diagnostics& out) {
             .record = !command.record.empty() ? command.record
                       : command.allow_write   ? "recording.yaml"
                                               : "",
+            .sync = sync_of(command.record_sync, out),
+            .audit = command.audit,
             .http = http,
             .modbus = address_of(command.modbus, "--modbus", out)};
 }
 
 /// On stderr, for the results go to stdout.
-void tell_where(const ServeCommand& command, const ServeOptions& options) {
+void tell_where(const ServeCommand& command, const ServeOptions& options,
+                const std::string& record) {
     if (command.run.common.quiet) return;
     std::string text = fmt::format("serving {}", command.run.program);
     if (options.http.address.port > 0)
         text += fmt::format(" at http://{}/", options.http.address.text());
     if (options.modbus.port > 0) text += fmt::format(", Modbus/TCP at {}", options.modbus.text());
-    if (!options.http.allow_write) text += ", to be looked at only (--allow-write allows more)";
-    if (!options.record.empty()) text += ", recording to " + options.record;
+    if (!options.http.guard.allow_write)
+        text += ", to be looked at only (--allow-write allows more)";
+    if (!record.empty()) text += ", recording to " + record;
+    if (record != options.record)
+        text += fmt::format(", for {} is of a machine that was killed", options.record);
     fmt::print(stderr, "{}; ^C ends it\n", text);
 }
 
@@ -139,22 +165,24 @@ Exit execute(const ServeCommand& command) {
     const ServeOptions options = serve_options(command, out);
     RunOptions how = run_options(command.run, out);
     how.interrupt = nullptr;
-    auto loaded = load(command.run, {options.record}, out);
+    auto loaded = load(command.run, {options.record, options.audit}, out);
     if (loaded && options.modbus.port > 0 && loaded->linked.modbus.empty())
         out.add("L0503", {loaded->program.file, 0, 0, 1},
                 "the program has no 'modbus:' for clients of --modbus",
                 "say under 'modbus:' which signals they find where");
     if (!loaded || !out.empty()) return report(out, command.run.common.json);
-    const ServeReport served = serve(*loaded, how, options, [&] { tell_where(command, options); });
+    const ServeReport served = serve(*loaded, how, options, [&](const std::string& record) {
+        tell_where(command, options, record);
+    });
     const Exit exit = tell(command.run, *loaded, served.run, {{"serving", to_json(served.pace)}});
     if (!served.run.refused.empty()) return exit;
     if (!command.run.common.json && !command.run.common.quiet)
         print_pace(served.pace, command.run.trace == "-" ? stderr : stdout);
     if (const std::int64_t overruns = served.pace.overruns(); overruns > 0)
         spdlog::warn("{} scans were a whole interval late: this machine did not keep up", overruns);
-    if (served.recording_error.empty()) return exit;
-    spdlog::error("{}", served.recording_error);
-    return Exit::fault;
+    for (const std::string& error : {served.recording_error, served.audit_error})
+        if (!error.empty()) spdlog::error("{}", error);
+    return served.recording_error.empty() && served.audit_error.empty() ? exit : Exit::fault;
 }
 
 }  // namespace
@@ -183,6 +211,16 @@ void add_serve(CLI::App& app, Exit& result) {
         ->type_name("PRIORITY");
     sub->add_option("--record", command->record, "Write what comes from clients to this file")
         ->type_name("FILE.yaml");
+    sub->add_option("--record-sync", command->record_sync,
+                    "When what is recorded is handed to the disk: each, before it is acknowledged; "
+                    "a time, so long after it at most; none, when the system likes. A machine that "
+                    "is killed has recorded what it acknowledged with all of them")
+        ->capture_default_str()
+        ->type_name("each|TIME|none");
+    sub->add_option("--audit", command->audit,
+                    "Append to this file who wanted to change what, and the answer: a line of JSON "
+                    "each, also of what was refused")
+        ->type_name("FILE");
     sub->add_option("--http", command->http, "Where the page and the API are; off: nowhere")
         ->capture_default_str()
         ->type_name("ADDRESS:PORT");

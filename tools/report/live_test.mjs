@@ -122,6 +122,7 @@ async function testWriting(newPage, port) {
   for (const what of ["set", "force"]) {
     await buttonOf(page, "inputs.go", what).click();
     await eventually(page, () => document.querySelector("#message").textContent.includes("--allow-write"));
+    await eventually(page, () => document.querySelector('#signals tr[data-name="inputs.go"] .wrong').textContent.includes("--allow-write"));
   }
   await page.click("#pause");
   await eventually(page, () => document.querySelector("#message").textContent.includes("--allow-write"));
@@ -130,8 +131,13 @@ async function testWriting(newPage, port) {
   await page.reload();
   await page.waitForFunction(() => globalThis.drawings > 5);
   const value = async () => (await (await fetch(`http://127.0.0.1:${port}/api/values?signals=inputs.go,x.velocity`)).json()).values;
+  await page.fill('[aria-label="value of inputs.go"]', "perhaps");
+  await page.click('[aria-label="set inputs.go"]');
+  await eventually(page, () => document.querySelector('#signals tr[data-name="inputs.go"] .wrong').textContent.includes("perhaps"));
   await page.fill('[aria-label="value of inputs.go"]', "true");
-  await buttonOf(page, "inputs.go", "set").click();
+  assert.equal(await page.textContent('#signals tr[data-name="inputs.go"] .wrong'), "", "what is typed anew is not wrong yet");
+  await page.click('[aria-label="set inputs.go"]');
+  await eventually(page, () => document.querySelector('#signals tr[data-name="inputs.go"] .value').textContent === "true");
   await page.click("#pause");
   await eventually(page, () => document.querySelector("#status").textContent.startsWith("paused"));
   const stands = await timeOf(page);
@@ -226,6 +232,10 @@ async function testNarrow(newPage, port) {
   await page.waitForTimeout(1000);
   const [width, inner] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
   assert.ok(width <= inner, `the page is ${width} wide in a window of ${inner}`);
+  const cut = await page.evaluate(() => [...document.querySelectorAll("button, input, select, td, th, h1, label")]
+    .filter((each) => each.getClientRects().length > 0 && each.getBoundingClientRect().right > innerWidth + 0.5)
+    .map((each) => `${each.tagName} ${each.textContent}`));
+  assert.deepEqual(cut, [], "nothing is cut");
   await page.screenshot({ path: file("narrow.png"), fullPage: true });
   assert.deepEqual(page.problems, []);
   await page.close();

@@ -56,8 +56,8 @@ Value random_value(const Target& target, std::mt19937_64& random) {
                                                        : std::numeric_limits<std::int64_t>::max();
         const std::uint64_t width =
             static_cast<std::uint64_t>(most) - static_cast<std::uint64_t>(least);
-        const std::uint64_t off = random() % 4 == 0   ? 0
-                                  : random() % 4 == 0 ? width
+        const std::uint64_t off = random() % 4 == 0            ? 0
+                                  : random() % 4 == 0          ? width
                                   : width == ~std::uint64_t{0} ? random()
                                                                : random() % (width + 1);
         return static_cast<std::int64_t>(static_cast<std::uint64_t>(least) + off);
@@ -84,8 +84,8 @@ TEST_CASE("whatever is recorded of any signal is played back") {
     Connecting to{loaded->program, loaded->linked.net, loaded->linked.machine, Reader(out)};
     const std::string meaning = meaning_of(loaded->program).in_force;
     std::mt19937_64 random(41);
-    std::string text = fmt::format(
-        "lineshaft_recording: 1\nprogram: p.yaml\nmeaning: '{}'\nentries:\n", meaning);
+    std::string text =
+        fmt::format("lineshaft_recording: 1\nprogram: p.yaml\nmeaning: '{}'\nentries:\n", meaning);
     std::vector<Stimulus> wanted;
     std::vector<Force> forced;
     std::int64_t time = 1;

@@ -16,8 +16,9 @@ using enum RegisterType;
 using Words = std::array<std::uint16_t, 4>;
 
 MappedSignal mapped(RegisterType type, int count, Type of, double scale = 1) {
-    MappedSignal signal{.count = count, .type = type, .scale = scale, .signal = {}};
+    MappedSignal signal{.count = count, .type = type, .signal = {}};
     signal.signal.type = of;
+    set_scale(signal, scale);
     return signal;
 }
 
@@ -87,4 +88,40 @@ TEST_CASE("registers without a value of the signal's have none") {
     CHECK_FALSE(from_registers(mapped(real32, 2, Type::integer), Words{0x3FC0, 0}));
     CHECK_FALSE(from_registers(mapped(uint64, 4, Type::integer), Words{0x8000}));
     CHECK_FALSE(from_registers(mapped(real32, 2, Type::real), Words{0x7F80, 0}));
+}
+
+TEST_CASE("whole numbers keep all their digits, whatever their scale") {
+    std::mt19937_64 random(11);
+    for (int n = 0; n < 20'000; ++n) {
+        const double power = std::pow(10.0, static_cast<double>(random() % 10));
+        const bool is_whole = random() % 2;
+        const MappedSignal signal = mapped(
+            int64, 4, Type::integer, (random() % 2 ? -1 : 1) * (is_whole ? power : 1 / power));
+        INFO("scale " << signal.scale);
+        REQUIRE(signal.divisor != 0);
+        const std::int64_t room =
+            std::numeric_limits<std::int64_t>::max() / static_cast<std::int64_t>(power);
+        const std::int64_t small = static_cast<std::int64_t>(random() >> 1) % room;
+        const auto large = static_cast<std::int64_t>(small * static_cast<std::int64_t>(power));
+        // What is a multiple of the scale, and has room in the registers.
+        const std::int64_t value = is_whole ? large : small;
+        const auto again = from_registers(signal, written(signal, value));
+        REQUIRE(again);
+        REQUIRE(std::get<std::int64_t>(*again) == value);
+    }
+}
+
+TEST_CASE(
+    "a scaled whole number is rounded to the nearest, and refused where it would not be whole") {
+    const MappedSignal tens = mapped(int16, 1, Type::integer, 10);
+    CHECK(written(tens, std::int64_t{14}) == Words{1});
+    CHECK(written(tens, std::int64_t{15}) == Words{2});
+    CHECK(written(tens, std::int64_t{-15}) == Words{0xFFFE});
+    CHECK(from_registers(tens, Words{2}) == Value{std::int64_t{20}});
+    const MappedSignal parts = mapped(int16, 1, Type::integer, 0.1);
+    CHECK(written(parts, std::int64_t{14}) == Words{140});
+    CHECK(from_registers(parts, Words{140}) == Value{std::int64_t{14}});
+    CHECK_FALSE(from_registers(parts, Words{141}));
+    const MappedSignal thirds = mapped(int64, 4, Type::integer, 0.3);
+    CHECK(thirds.divisor == 0);
 }

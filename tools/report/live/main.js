@@ -2,6 +2,7 @@ import { get, post } from "#live/api";
 import { Axes } from "#live/axes";
 import { download, Scope } from "#live/scope";
 import { conditions } from "#live/trigger";
+import { Values } from "#live/values";
 import { readout } from "#page/cursors";
 import { element, nextFrame, row } from "#page/dom";
 import { duration } from "#page/format";
@@ -57,6 +58,7 @@ function show(now) {
   for (const [name, { force }] of rows) {
     const is = name in now.forced;
     force.textContent = is ? `release ${now.forced[name]}` : "force";
+    force.ariaLabel = is ? `release ${name} from ${now.forced[name]}` : `force ${name}`;
     force.classList.toggle("forced", is);
   }
 }
@@ -132,24 +134,46 @@ function choose(name, is) {
   connect();
 }
 
-function signalRow(signal) {
-  const { name, unit, settable } = signal;
-  const field = element("input", { type: "text", ariaLabel: `value of ${name}`,
-                                   placeholder: signal.names?.join(" | ") ?? unit });
+/** A field for a signal's value, and what is wrong with what was typed there. */
+function valueField({ name, unit, names }) {
+  const field = element("input", { type: "text", ariaLabel: `value of ${name}`, placeholder: names?.join(" | ") ?? unit });
+  const wrong = element("span", { className: "bad wrong", role: "alert", hidden: true });
+  const say = (text) => {
+    wrong.textContent = text;
+    wrong.hidden = !text;
+    field.ariaInvalid = String(Boolean(text));
+  };
+  field.oninput = () => say("");
   const value = () => ({ true: true, false: false })[field.value.trim()] ?? typed(field);
-  const set = element("button", { hidden: !settable }, "set");
-  set.onclick = attempt(() => post("set", { [name]: value() }));
-  const force = element("button", {}, "force");
-  force.onclick = attempt(async () => {
+  return { cell: element("span", { className: "typed" }, field, wrong), value, say };
+}
+
+function signalRow(signal) {
+  const { name, settable } = signal;
+  const { cell, value: typedValue, say } = valueField(signal);
+  const tried = (task) => attempt(async () => {
+    try {
+      say("");
+      return await task();
+    } catch (error) {
+      say(error.message);
+      throw error;
+    }
+  });
+  const set = element("button", { hidden: !settable, ariaLabel: `set ${name}` }, "set");
+  set.onclick = tried(() => post("set", { [name]: typedValue() }));
+  const force = element("button", { ariaLabel: `force ${name}` }, "force");
+  force.onclick = tried(async () => {
     const isForced = name in (state?.forced ?? {});
-    await (isForced ? post("release", { signals: [name] }) : post("force", { [name]: value() }));
+    await (isForced ? post("release", { signals: [name] }) : post("force", { [name]: typedValue() }));
     return get("state");
   });
-  const drawn = element("input", { type: "checkbox", checked: chosen.has(name), id: `draw ${name}` });
+  const drawn = element("input", { type: "checkbox", checked: chosen.has(name), id: `draw ${name}`, ariaLabel: `draw ${name}` });
   drawn.onchange = () => choose(name, drawn.checked);
-  const made = row(drawn, element("label", { htmlFor: drawn.id }, name), field, set, force);
+  const value = element("span", { className: "value" }, "–");
+  const made = row(drawn, element("label", { htmlFor: drawn.id }, name), value, cell, set, force);
   made.dataset.name = name;
-  return [name, { made, force, drawn }];
+  return [name, { made, force, drawn, value, signal }];
 }
 
 /** Those of the address, else the program's trace, else a few. */
@@ -182,6 +206,7 @@ async function start() {
     axes = new Axes(byId("axes"), signals);
     rows = new Map(signals.map(signalRow));
     byId("signals").replaceChildren(...[...rows.values()].map(({ made }) => made));
+    new Values(rows, document.querySelector(".scroll"));
     connect();
   } catch {
     byId("status").textContent = "not connected, trying again …";
