@@ -94,7 +94,7 @@ void Axis::start(const Scan& now) {
 
 void Axis::shift(std::int64_t by) {
     for (Moment* moment : {&velocity_motion.start, &point_motion.start, &added_motion.start,
-                           &profile_motion.start, &sync.start, &sync.shifting.start})
+                           &profile_motion.start, &sync.start, &sync.looked, &sync.shifting.start})
         moment->time += by;
     shown.time += by;
 }

@@ -109,6 +109,7 @@ struct Axis {
     Factors factors;           ///< of MC_SetOverride
     std::int64_t paused = 0;   ///< on the way to `goal`, by an override of 0
     std::int64_t powered = 1;  ///< what MC_Power wants
+    Shortage shortage;         ///< of the last sync_limits
     double actual_velocity = 0, last_actual = 0;  ///< of the drive
     std::int64_t renamed = 0;                     ///< times that the place got another position
     std::int64_t trigger_aborts = 0;
@@ -125,7 +126,9 @@ struct Axis {
     std::optional<Misfit> misfit(const IsConstant& is_constant) const;
     void scan(const Scan& now, const Context& context);
     void shift(std::int64_t by);
-    std::string why(const Context&, const NameOf&) const { return std::string(text_of(error_id)); }
+    std::string why(const Context&, const NameOf&) const {
+        return text_of(error_id, shortage, axis_unit_names[static_cast<std::size_t>(unit)]);
+    }
 
     /// Of a command block: the job, or its changed request, is put into the inbox. Before that the
     /// command writes the request and, at each start, the next ticket.
@@ -216,8 +219,11 @@ struct Axis {
     MotionError plan_sync(const Context& context, const Request& request, const Moment& at,
                           const Start& from);
     MotionError get_onto_guide(const Context& context, const Moment& at, const MotionState& from);
-    CurveFault approach(const MotionState& from, const MotionState& leader, const Cam& table);
-    double foreseen() const;
+    MotionError ramp_in(const MotionState& from, const MotionState& leader, const Cam& table,
+                        const Moment& at);
+    MotionError approach(const Context& context, const MotionState& from, const Cam& table,
+                         const Moment& at);
+    MotionError lacks(const MotionState& guide, PlanResult result);
     MotionError join_law(const Context& context, const Moment& at, const MotionState& from);
     MotionError place_cam(const Context& context, const MotionState& leader,
                           const MotionState& from);
@@ -227,9 +233,18 @@ struct Axis {
     void follow(const Context& context);
     void follow_guide(const Context& context);
     void follow_law(const Context& context);
-    void foresee(const Context& context, const MotionState& leader);
-    void count_periods(const Context& context, const Cam& table, const MotionState& leader);
+    bool gets_onto(const Context& context, const MotionState& guide, bool with_scan);
+    bool leaves(const Context& context, const MotionState& leader, const Cam& table);
+    void follow_approach(const Context& context, const MotionState& leader, const Cam& table);
+    void follow_in_sync(const Context& context, const MotionState& leader, const Cam& table);
+    void fail_before(const Context& context, MotionError why);
+    void look_for_end(const Context& context, const MotionState& leader, const Cam& table);
+    void end_cam(const Context& context, const MotionState& leader, double x,
+                 const CurvePoint& point);
     void reach(const Context& context);
+    bool is_steady(const Context& context) const;
+    MotionState planned(double t) const;
+    Forecast foresee(const Context& context) const;
 
     // axis_jobs.cpp: commands are taken up, told how far they are, and ended.
     void take_up(const Context& context, const Scan& now);

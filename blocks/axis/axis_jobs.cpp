@@ -204,6 +204,7 @@ void Axis::tell(Job& job, Progress how, MotionError why) const {
     job.progress = how;
     if (how == Progress::reached) job.has_reached = 1;
     job.error = why;
+    job.shortage = shortage;
     job.told_by = task;
     job.told_in = scan_index;
 }

@@ -134,8 +134,7 @@ bool VelocityMotion::stand_at(double position, const MotionState& from, const Mo
     return true;
 }
 
-MotionState VelocityMotion::at(std::int64_t now) const {
-    const double t = start.until(now);
+MotionState VelocityMotion::later(double t) const {
     MotionState state = before_start(ramp.at(t), t);
     state.position += start_position;
     return state;

@@ -79,7 +79,8 @@ struct VelocityMotion {
     /// however far the acceleration jumps. False where numbers are beyond a double.
     bool stand_at(double position, const MotionState& from, const Moment& at);
 
-    MotionState at(std::int64_t now) const;
+    MotionState at(std::int64_t now) const { return later(start.until(now)); }
+    MotionState later(double t) const;  ///< t seconds after the start
     bool has_ended(std::int64_t now) const { return start.has_passed(ramp.duration, now); }
     Moment end() const { return start.after(ramp.duration); }
     /// When the ramp ends.

@@ -1,5 +1,8 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "blocks/axis/axis.hpp"
 #include "blocks/motion/cam_table.hpp"
@@ -10,6 +13,9 @@ namespace {
 
 using Law = SyncMotion::Law;
 using Stage = SyncMotion::Stage;
+
+/// Of positions that have been added to others.
+constexpr double sum_rounding = 0x1p-40;
 
 Law law_of(Command command) {
     if (command == Command::gear_in_pos) return Law::positioned;
@@ -27,6 +33,33 @@ MotionError sync_error(PlanResult result) {
     if (result == PlanResult::velocity_above_limit) return MotionError::sync_limits;
     return result == PlanResult::not_finite ? MotionError::not_finite
                                             : MotionError::limit_not_positive;
+}
+
+/// How long ago something was at a position, at most `most` [s].
+double time_since(const MotionState& now, double position, double most) {
+    const double side = now.after(-most).position - position;
+    double low = 0, high = most;
+    for (double m = 0.5 * high; m > low && m < high; m = 0.5 * (low + high))
+        ((now.after(-m).position - position) * side > 0 ? high : low) = m;
+    return high;
+}
+
+using Times = std::array<double, Forecast::most_pieces>;
+
+/// Adds when the phases of a plan end that is `passed` old.
+void add_ends(const MotionPlan& plan, double passed, Times& times, std::size_t& count) {
+    for (std::size_t i = 0; i < plan.count && count < times.size() - 1; ++i) {
+        const double end = plan.phases[i].begin + plan.phases[i].duration - passed;
+        if (end > 0) times[count++] = end;
+    }
+}
+
+void add_ends(const VelocityRamp& ramp, double passed, Times& times, std::size_t& count) {
+    double end = -passed;
+    for (int i = 0; i < ramp.count; ++i) {
+        end += ramp.phases[static_cast<std::size_t>(i)].duration;
+        if (end > 0) times[count++] = end;
+    }
 }
 
 bool is_measured(const Coupling& c) {
@@ -138,35 +171,63 @@ MotionError Axis::get_onto_guide(const Context& context, const Moment& at,
 MotionError Axis::join_law(const Context& context, const Moment& at, const MotionState& from) {
     const MotionState leader = master(context).after(-at.until(scan_time));
     const Axis& leading = context.seen_instance<Axis>(sync.coupling.master.axis);
-    sync.sync_y = sync.coupling.slave_sync;
+    const Coupling& c = sync.coupling;
+    sync.sync_y = c.slave_sync;
     if (sync.law == Law::positioned)
-        sync.meet(leader, sync.coupling.master_sync - leading.relocated,
-                  leading.modulo ? leading.period : 0);
+        sync.meet(leader, c.master_sync - leading.relocated, leading.modulo ? leading.period : 0);
     else if (const MotionError why = place_cam(context, leader, from); why != MotionError::none)
         return why;
     const Cam table = cam(context);
+    const bool is_cam = sync.law == Law::cammed;
     sync.stage = Stage::in_sync;
+    sync.looked = at;
+    sync.led = leader;
+    if (is_cam && c.start_mode == StartMode::ramp_in) return ramp_in(from, leader, table, at);
     if (sync.is_on_law(from, leader, table)) return MotionError::none;
-    const double left = sync.distance(leader), start = sync.coupling.start_distance;
+    const double left = sync.distance(leader);
+    const bool begins_here = is_cam && std::abs(left) <= sum_rounding * std::abs(leader.position);
+    if (begins_here && sync.is_beside_law(from, leader, table)) return MotionError::none;
+    if (begins_here && !CamTableId::of(c.cam).master_absolute)
+        return ramp_in(from, leader, table, at);
     if (!(left > 0)) return MotionError::sync_passed;
-    sync.start = at;
-    if (start == 0 || left <= start) return sync_error(approach(from, leader, table));
+    if (c.start_distance == 0 || left <= c.start_distance)
+        return approach(context, from, table, at);
     sync.stage = Stage::waiting;
+    sync.start = at;
     const double rest = from.acceleration * std::abs(from.acceleration) / (2 * sync.dynamics.jerk);
     return sync_error(velocity_motion.begin(from, from.velocity + rest, sync.dynamics, at));
 }
 
-CurveFault Axis::approach(const MotionState& from, const MotionState& leader, const Cam& table) {
-    return sync.approach(from, leader, table, modulo ? period : 0, foreseen());
+/// Onto the cam wherever the master is.
+MotionError Axis::ramp_in(const MotionState& from, const MotionState& leader, const Cam& table,
+                          const Moment& at) {
+    const double y = sync.law_at(leader.position, table).y;
+    if (modulo) sync.cam_rise += period * std::round((from.position - y) / period);
+    sync.coupling.catch_up = 1;
+    sync.coupling.transition = TransitionMode::jerk_limited;
+    sync.goal_offset = 0;
+    const MotionState guide = sync.law_at(leader.position, table).led_by(leader);
+    return lacks(guide, sync.get_onto(from, guide, at));
 }
 
-/// How long a master that accelerates is taken to go on with it [s]: it may be at its velocity at
-/// any time.
-double Axis::foreseen() const {
-    return 2 * seconds(scan_interval);
+MotionError Axis::approach(const Context& context, const MotionState& from, const Cam& table,
+                           const Moment& at) {
+    const bool steady = is_steady(context);
+    const Forecast ahead = foresee(context).after(at.until(scan_time), sync.led);
+    const CurveFault fault = sync.approach(from, ahead, table, modulo ? period : 0, steady, at);
+    if (fault != CurveFault::none) shortage = sync.shortage(from, ahead, steady);
+    return sync_error(fault);
 }
 
-/// A relative cam begins, on its axis, at MasterOffset and, for the slave, where the slave is.
+/// What of a guide is faster than the slave may be.
+MotionError Axis::lacks(const MotionState& guide, PlanResult result) {
+    if (result == PlanResult::velocity_above_limit)
+        shortage = {CurveFault::velocity, std::abs(guide.velocity), sync.dynamics.velocity};
+    return sync_error(result);
+}
+
+/// A relative cam begins, on its axis, at MasterOffset and, for the slave, where the slave is. One
+/// that is executed once ends at the other end than it is entered by.
 MotionError Axis::place_cam(const Context& context, const MotionState& leader,
                             const MotionState& from) {
     const Coupling& c = sync.coupling;
@@ -182,7 +243,9 @@ MotionError Axis::place_cam(const Context& context, const MotionState& leader,
         sync.cam_rise += from.position - sync.law_at(leader.position, table).y;
     sync.meet(leader, (c.master_sync - sync.cam_origin) / c.master_scaling,
               table.periodic ? table.length() / std::abs(c.master_scaling) : 0);
-    sync.last_periods = table.periods(c.master_scaling * leader.position + sync.cam_origin);
+    const double x = c.master_scaling * leader.position + sync.cam_origin;
+    sync.last_periods = table.periods(x);
+    sync.ends_at = x <= table.begin() ? 1 : x >= table.points.back().x ? -1 : 0;
     return MotionError::none;
 }
 
@@ -225,27 +288,32 @@ void Axis::follow(const Context& context) {
         follow_law(context);
 }
 
-/// In gear it follows whatever its master has done since. What is measured never moves as foreseen:
-/// then a transition may end with a scan.
+/// In gear it follows whatever its master has done since.
 void Axis::follow_guide(const Context& context) {
     const MotionState guide = sync.guide(master(context), led_by(context, sync.coupling.second));
     if (sync.stage == Stage::in_transition) {
-        const double t = sync.start.until(scan_time);
-        base = sync.transition.at(t);
-        double left = sync.transition.plan.duration - t;
-        if (left > Moment::same_scan && !sync.transition.foresees(guide, t)) {
-            const MotionError why = sync_error(sync.get_onto(base, guide, {scan_time}));
-            if (why != MotionError::none) return fail(context, {scan_time}, why);
-            left = sync.transition.plan.duration -
-                   (is_measured(sync.coupling) ? seconds(scan_interval) : 0);
-        }
-        if (left > Moment::same_scan) return;
+        if (!gets_onto(context, guide, is_measured(sync.coupling))) return;
         sync.offset = sync.transition.plan.end.position;
         reach(context);
         if (doing != Doing::following_axes || sync.stage != Stage::in_sync) return;
     }
     base = guide;
     base.position += sync.offset;
+}
+
+/// Whether the slave has got onto its guide. One that never moves as foreseen, as what is measured,
+/// may be reached with a scan.
+bool Axis::gets_onto(const Context& context, const MotionState& guide, bool with_scan) {
+    const double t = sync.start.until(scan_time);
+    base = sync.transition.at(t);
+    double left = sync.transition.plan.duration - t;
+    if (left > Moment::same_scan && !sync.transition.foresees(guide, t)) {
+        const MotionError why = lacks(guide, sync.get_onto(base, guide, {scan_time}));
+        if (why != MotionError::none) fail(context, {scan_time}, why);
+        if (why != MotionError::none) return false;
+        left = sync.transition.plan.duration - (with_scan ? seconds(scan_interval) : 0);
+    }
+    return left <= Moment::same_scan;
 }
 
 void Axis::reach(const Context& context) {
@@ -258,43 +326,198 @@ void Axis::reach(const Context& context) {
 void Axis::follow_law(const Context& context) {
     const MotionState leader = master(context);
     const Cam table = cam(context);
-    if (sync.stage == Stage::waiting) {
-        base = velocity_motion.at(scan_time);
-        if (sync.distance(leader) > sync.coupling.start_distance) return;
-        sync.start = {scan_time};
-        const CurveFault fault = approach(base, leader, table);
-        if (fault != CurveFault::none) return fail(context, {scan_time}, sync_error(fault));
-        return tell(context, active, Progress::approaching);
+    if (sync.stage == Stage::waiting && !leaves(context, leader, table)) return;
+    if (sync.stage == Stage::approaching) follow_approach(context, leader, table);
+    if (sync.stage == Stage::in_transition &&
+        gets_onto(context, sync.law_at(leader.position, table).led_by(leader), true))
+        sync.stage = Stage::in_sync;
+    if (doing == Doing::following_axes && sync.stage == Stage::in_sync)
+        follow_in_sync(context, leader, table);
+    sync.looked = {scan_time};
+    sync.led = leader;
+}
+
+/// Whether the slave that has waited for its master to come near is on its way now.
+bool Axis::leaves(const Context& context, const MotionState& leader, const Cam& table) {
+    base = velocity_motion.at(scan_time);
+    if (sync.distance(leader) > sync.coupling.start_distance) return false;
+    sync.led = leader;
+    const MotionError why = approach(context, base, table, {scan_time});
+    if (why != MotionError::none) fail(context, {scan_time}, why);
+    if (why != MotionError::none) return false;
+    tell(context, active, Progress::approaching);
+    return true;
+}
+
+/// What the master does is known a scan late: where it does not suit, the slave goes on from the
+/// state of the scan before, which was within limits.
+void Axis::follow_approach(const Context& context, const MotionState& leader, const Cam& table) {
+    using Way = SyncMotion::Way;
+    const bool steady = is_steady(context);
+    const double since = sync.looked.until(scan_time), now = sync.start.until(scan_time);
+    const auto can_be = [&](const MotionState& next) {
+        return !steady || !(since > 0) ||
+               check_step(base, next, since, sync.limits_of(sync.curve, sync.dynamics)) ==
+                   CurveFault::none;
+    };
+    if (sync.distance(leader) <= 0) {
+        const bool foreseen = sync.way == Way::curve || now >= sync.meeting.time;
+        if (!foreseen && !can_be(sync.law_at(leader.position, table).led_by(leader)))
+            return fail_before(context, MotionError::sync_limits);
+        sync.stage = Stage::in_sync;
+        return;
     }
-    if (sync.stage == Stage::approaching && sync.distance(leader) > 0) {
-        base = sync.curve.at(leader.position).led_by(leader);
-        return foresee(context, leader);
+    const Forecast ahead = foresee(context).after(since, sync.led);
+    Meeting met = sync.meet(ahead);
+    met.time += now - since;
+    const bool on_curve = sync.way == Way::curve;
+    const bool keeps_curve = on_curve && can_be(sync.curve.at(leader.position).led_by(leader));
+    if (!met.agrees(sync.meeting) || (on_curve && !keeps_curve)) {
+        const CurveFault fault = sync.approach_anew(base, ahead, keeps_curve, steady, sync.looked);
+        if (fault != CurveFault::none) shortage = sync.shortage(base, ahead, steady);
+        if (fault != CurveFault::none) return fail_before(context, MotionError::sync_limits);
+        if (sync.way == Way::rest) velocity_motion.begin(base, 0, sync.dynamics, sync.looked);
     }
+    base = sync.way == Way::curve   ? sync.curve.at(leader.position).led_by(leader)
+           : sync.way == Way::timed ? sync.timed.at(sync.start.until(scan_time))
+                                    : velocity_motion.at(scan_time);
+}
+
+/// An error that began a scan ago: so does the stop.
+void Axis::fail_before(const Context& context, MotionError why) {
+    fail(context, sync.looked, why);
+    base = velocity_motion.at(scan_time);
+}
+
+void Axis::follow_in_sync(const Context& context, const MotionState& leader, const Cam& table) {
     base = sync.law_at(leader.position, table).led_by(leader);
+    if (sync.finished != 0) base = velocity_motion.at(scan_time);
     if (sync.reached == 0 || !active.exists()) reach(context);
-    if (sync.law == Law::cammed) count_periods(context, table, leader);
+    if (doing == Doing::following_axes && sync.law == Law::cammed && sync.finished == 0)
+        look_for_end(context, leader, table);
 }
 
-/// A master that moves otherwise than when the limits were checked, where its jerk does not count:
-/// whether they are still kept.
-void Axis::foresee(const Context& context, const MotionState& leader) {
-    if (sync.sure != 0 && sync.transition.foresees(leader, sync.start.until(scan_time))) return;
-    sync.start = {scan_time};
-    const CurveFault fault =
-        sync.foresee(sync.curve, leader, sync.limits(base.velocity), foreseen());
-    if (fault != CurveFault::none) fail(context, {scan_time}, sync_error(fault));
+/// EndOfProfile: the command sees by the number that a cam has ended.
+void Axis::look_for_end(const Context& context, const MotionState& leader, const Cam& table) {
+    const double x = sync.coupling.master_scaling * leader.position + sync.cam_origin;
+    const double first = table.begin(), last = table.points.back().x;
+    if (table.periodic) {
+        const double periods = table.periods(x), before = sync.last_periods;
+        sync.last_periods = periods;
+        if (periods == before) return;
+        const double end = first + table.length() * (periods > before ? periods : periods + 1);
+        return end_cam(context, leader, end, table.at(end));
+    }
+    const double slack = sum_rounding * (std::abs(x) + std::abs(sync.cam_origin));
+    CurvePoint behind = table.last();
+    behind.y = table.points.back().y;
+    if (sync.ends_at >= 0 && x >= last - slack) return end_cam(context, leader, last, behind);
+    if (sync.ends_at <= 0 && x <= first + slack) end_cam(context, leader, first, table.at(first));
 }
 
-/// EndOfProfile: the command sees by the number that a period has ended. What waits begins there.
-void Axis::count_periods(const Context& context, const Cam& table, const MotionState& leader) {
-    const Coupling& c = sync.coupling;
-    const double periods = table.periods(c.master_scaling * leader.position + sync.cam_origin);
-    if (periods == sync.last_periods) return;
-    sync.last_periods = periods;
+/// What waits begins at the moment when the master was at the end, with the slave's motion there.
+void Axis::end_cam(const Context& context, const MotionState& leader, double x,
+                   const CurvePoint& point) {
     Job& job = context.at<Job>(active.place);
     if (job.ticket == active.ticket) job.told_value += 1;
     tell(context, active, Progress::reached);
-    if (queue.first != nowhere) begin_next(context, {scan_time});
+    const double end = (x - sync.cam_origin) / sync.coupling.master_scaling;
+    const double since = sync.looked.until(scan_time);
+    const double back = time_since(leader, end, since);
+    const Moment at = sync.looked.after(since - back);
+    const MotionState now = base;
+    const MotionState last = sync.on_axis(point).led_by(leader.after(-back));
+    if (queue.first != nowhere) {
+        const Running before = active;
+        base = last;
+        begin_next(context, at);
+        if (active.place != before.place || active.ticket != before.ticket)
+            return look(context, scan_time);
+        base = now;
+    }
+    if (cam(context).periodic) return;
+    sync.finished = 1;
+    const bool stands = std::abs(last.velocity) <= sum_rounding * sync.dynamics.velocity;
+    if (stands)
+        velocity_motion.hold({last.position}, at);
+    else
+        velocity_motion.begin(last, 0, sync.dynamics, at);
+    base = velocity_motion.at(scan_time);
+}
+
+// What is foreseen.
+
+/// Of a motion that the axis has planned itself, t seconds after its scan.
+MotionState Axis::planned(double t) const {
+    MotionState s = doing == Doing::moving_to_point
+                        ? point_motion.plan.at(point_motion.start.until(scan_time) + t)
+                        : velocity_motion.later(velocity_motion.start.until(scan_time) + t);
+    const MotionState more = added.exists() && added_paused == 0
+                                 ? added_motion.plan.at(added_motion.start.until(scan_time) + t)
+                                 : extra;
+    return {s.position + offset + more.position, s.velocity + more.velocity,
+            s.acceleration + more.acceleration, s.jerk + more.jerk};
+}
+
+/// A master that is measured, or scanned less often than its slave, moves in jumps.
+bool Axis::is_steady(const Context& context) const {
+    const Axis& leader = context.seen_instance<Axis>(sync.coupling.master.axis);
+    return !is_measured(sync.coupling) && leader.scan_interval <= scan_interval;
+}
+
+/// The master as the axis sees it, from now on: as it has planned it itself; one that follows
+/// others keeps its jerk for two scans, and then its velocity.
+Forecast Axis::foresee(const Context& context) const {
+    const Axis& leader = context.seen_instance<Axis>(sync.coupling.master.axis);
+    const MotionState now = master(context);
+    Forecast ahead;
+    ahead.add(0, now);
+    const bool plans = leader.doing == Doing::holding || leader.doing == Doing::moving_to_point ||
+                       leader.doing == Doing::following_velocity;
+    if (is_measured(sync.coupling) || !plans) {
+        if (now.acceleration == 0 && now.jerk == 0) return ahead;
+        const double soon = 2 * seconds(scan_interval);
+        const MotionState then = now.after(soon);
+        ahead.add(soon, {then.position, then.velocity, 0, 0});
+        return ahead;
+    }
+    Times times{};
+    std::size_t count = 0;
+    if (leader.doing == Doing::moving_to_point)
+        add_ends(leader.point_motion.plan, leader.point_motion.start.until(leader.scan_time), times,
+                 count);
+    else
+        add_ends(leader.velocity_motion.ramp, leader.velocity_motion.start.until(leader.scan_time),
+                 times, count);
+    if (leader.added.exists())
+        add_ends(leader.added_motion.plan, leader.added_motion.start.until(leader.scan_time), times,
+                 count);
+    if (phased.exists())
+        add_ends(sync.shifting.plan, sync.shifting.start.until(scan_time), times, count);
+    std::ranges::sort(std::span(times).first(count));
+    const auto seen_at = [&](double t) {
+        MotionState s = leader.planned(t);
+        s.position -= leader.relocated;
+        const MotionState by = phased.exists()
+                                   ? sync.shifting.plan.at(sync.shifting.start.until(scan_time) + t)
+                                   : MotionState{sync.shift.position};
+        return MotionState{s.position + by.position, s.velocity + by.velocity,
+                           s.acceleration + by.acceleration, s.jerk + by.jerk};
+    };
+    double begin = 0;
+    for (std::size_t i = 0; i <= count; ++i) {
+        const double end = i < count ? times[i] : begin + 1;
+        if (!(end > begin)) continue;
+        MotionState start = begin == 0 ? now : seen_at(begin);
+        start.jerk = seen_at(0.5 * (begin + end)).jerk;
+        if (i == count) start.acceleration = start.jerk = 0;
+        if (begin == 0)
+            ahead.pieces[0].start = start;
+        else
+            ahead.add(begin, start);
+        begin = end;
+    }
+    return ahead;
 }
 
 }  // namespace lineshaft

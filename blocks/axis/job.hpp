@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <iterator>
+#include <string>
 #include <string_view>
 
 #include "blocks/axis/axis_states.hpp"
@@ -85,6 +86,9 @@ constexpr std::string_view text_of(MotionError error) {
     return motion_error_texts[static_cast<std::size_t>(error)];
 }
 
+/// The same, of sync_limits with the limit and by how much it is short, in the unit of the axis.
+std::string text_of(MotionError error, const Shortage& shortage, std::string_view unit);
+
 /// `option` of MC_Home.
 inline constexpr std::int64_t homing_direct = 0, homing_to_position = 1, homing_on_signal = 2,
                               homing_signalled = 3;
@@ -141,6 +145,7 @@ struct Job {
         0;  ///< `progress` has been `reached`, though it may have ended since
     std::int64_t told_by = nowhere, told_in = 0;
     MotionError error = MotionError::none;  ///< of `failed`
+    Shortage shortage;                      ///< of sync_limits
     double told_value = 0;                  ///< what the axis answers beside the progress
 };
 

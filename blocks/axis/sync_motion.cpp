@@ -1,8 +1,16 @@
 #include "blocks/axis/sync_motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lineshaft {
+
+namespace {
+
+/// A timed motion takes the least part of acceleration and jerk, in steps of 4, that is enough.
+constexpr double gentlest = 0x1p-12;
+
+}  // namespace
 
 TransitionLimits limits_towards(double direction, const Dynamics& d) {
     const bool forward = direction >= 0;
@@ -39,8 +47,11 @@ PlanResult SyncMotion::get_onto(const MotionState& slave, const MotionState& ont
 CurvePoint SyncMotion::law_at(double x, const Cam& cam) const {
     const double k = coupling.master.ratio();
     if (law == Law::positioned) return {sync_y + k * (x - sync_x), k, 0, 0};
+    return on_axis(cam.at(coupling.master_scaling * x + cam_origin));
+}
+
+CurvePoint SyncMotion::on_axis(const CurvePoint& p) const {
     const double M = coupling.master_scaling, S = coupling.slave_scaling;
-    const CurvePoint p = cam.at(M * x + cam_origin);
     return {S * p.y + cam_rise, S * M * p.slope, S * M * M * p.bend, S * M * M * M * p.twist};
 }
 
@@ -54,48 +65,170 @@ void SyncMotion::meet(const MotionState& master, double position, double repeats
     sync_x += direction * repeats * std::ceil(missing / repeats);
 }
 
-CurveFault SyncMotion::approach(const MotionState& slave, const MotionState& master, const Cam& cam,
-                                double period, double interval) {
-    CurvePoint from, to = law_at(sync_x, cam);
-    const double length = sync_x - master.position;
-    if (!start_of_curve(slave, master, from)) return CurveFault::standing_master;
-    if (period > 0) {
-        const double goal = sync_position(from, to.slope, length, to.y, period, coupling.sync_mode);
-        sync_y += goal - to.y;
-        cam_rise += goal - to.y;
-        to.y = goal;
-    }
-    const SyncCurve tried = SyncCurve::between(master.position, length, from, to);
-    const Range slope = range(tried.y.slope(), 0, 1);
-    const bool turns = slope.least < 0 && slope.greatest > 0;
-    const double towards = to.slope * direction;
-    const CurveFault fault =
-        foresee(tried, master,
-                turns ? limits_towards(towards, symmetric(dynamics)) : limits(towards), interval);
-    if (fault != CurveFault::none) return fault;
+bool Meeting::agrees(const Meeting& other) const {
+    constexpr double slight = 0x1p-38;
+    const auto same = [](double a, double b) {
+        return a == b || std::abs(a - b) <= slight * std::max(std::abs(a), std::abs(b));
+    };
+    return same(time, other.time) && same(state.position, other.state.position) &&
+           same(state.velocity, other.state.velocity) &&
+           std::abs(state.acceleration - other.state.acceleration) <=
+               slight * (1 + std::abs(state.acceleration));
+}
+
+Meeting SyncMotion::meet(const Forecast& master) const {
+    const double time = master.time_at(sync_x, direction);
+    if (!std::isfinite(time)) return {time, {joins.y, 0, 0, 0}};
+    return {time, joins.led_by(master.at(time))};
+}
+
+TransitionLimits SyncMotion::limits_of(const SyncCurve& on, const Dynamics& d) const {
+    const double towards = joins.slope * direction;
+    return limits_towards(towards, on.turns() ? symmetric(d) : d);
+}
+
+bool SyncMotion::choose_curve(const SyncCurve& tried, const Forecast& master, const Dynamics& d,
+                              bool may_turn, CurveFault& fault) {
+    if (!may_turn && tried.turns()) return false;
+    const CurveFault found = check_ahead(tried, master, limits_of(tried, d));
+    if (found != CurveFault::none) fault = found;
+    if (found != CurveFault::none) return false;
+    way = Way::curve;
     curve = tried;
-    stage = Stage::approaching;
+    return true;
+}
+
+bool SyncMotion::choose_timed(const MotionState& slave, const Meeting& goal, const Dynamics& d,
+                              bool may_turn, CurveFault& fault) {
+    if (!std::isfinite(goal.time)) return false;
+    const double speed = slave.velocity + goal.state.velocity;
+    const double towards = speed != 0 ? speed : goal.state.position - slave.position;
+    const bool turns = slave.velocity * goal.state.velocity < 0;
+    if (turns && !may_turn) return false;
+    Range velocities{towards < 0 ? -d.velocity : 0, towards < 0 ? 0 : d.velocity};
+    if (may_turn) velocities = {-d.velocity, d.velocity};
+    TransitionLimits kept = limits_towards(towards, may_turn ? symmetric(d) : d);
+    const TransitionLimits most = kept;
+    CurveFault found = CurveFault::none;
+    for (double part = gentlest; part <= 1; part *= 4) {
+        kept.acceleration = part * most.acceleration;
+        kept.deceleration = part * most.deceleration;
+        kept.jerk = part * most.jerk;
+        found = timed.begin(slave, goal.state, goal.time, kept, velocities);
+        if (found != CurveFault::none) continue;
+        way = Way::timed;
+        return true;
+    }
+    fault = found;
+    return false;
+}
+
+CurveFault SyncMotion::choose(const MotionState& slave, const Forecast& master, const Meeting& goal,
+                              const Dynamics& d, const Choice& from) {
+    const MotionState leader = master.at(0);
+    CurvePoint begin;
+    const bool may_begin = from.steady || !from.on_its_way;
+    const bool begins =
+        may_begin && sync_x != leader.position && start_of_curve(slave, leader, begin);
+    const SyncCurve fresh =
+        begins ? SyncCurve::between(leader.position, sync_x - leader.position, begin, joins)
+               : curve;
+    const bool waits = from.steady && from.on_its_way && !std::isfinite(goal.time);
+    CurveFault fault = CurveFault::standing_master;
+    for (const bool may_turn : {false, true}) {
+        const bool curves = may_turn || !from.steady || !master.goes_against(direction, goal.time);
+        meeting = goal;
+        stage = Stage::approaching;
+        if (curves && from.kept_curve && choose_curve(curve, master, d, may_turn, fault)) return {};
+        if (curves && !from.on_its_way && begins && choose_curve(fresh, master, d, may_turn, fault))
+            return {};
+        if (from.steady && choose_timed(slave, goal, d, may_turn, fault)) return {};
+        if (curves && begins && choose_curve(fresh, master, d, may_turn, fault)) return {};
+        if (!waits) continue;
+        way = Way::rest;
+        return {};
+    }
     return fault;
 }
 
-CurveFault SyncMotion::foresee(const SyncCurve& way, const MotionState& master,
-                               const TransitionLimits& kept, double interval) {
-    transition.guide = master;
-    transition.guide.jerk = 0;
-    sure = check(way, master, kept) == CurveFault::none ? 1 : 0;
-    return sure != 0 ? CurveFault::none : check_soon(way, master, kept, interval);
+CurveFault SyncMotion::approach(const MotionState& slave, const Forecast& master, const Cam& cam,
+                                double period, bool steady, const Moment& at) {
+    CurvePoint from;
+    const MotionState leader = master.at(0);
+    joins = law_at(sync_x, cam);
+    if (!start_of_curve(slave, leader, from)) return CurveFault::standing_master;
+    if (period > 0) {
+        const double goal = sync_position(from, joins.slope, sync_x - leader.position, joins.y,
+                                          period, coupling.sync_mode);
+        sync_y += goal - joins.y;
+        cam_rise += goal - joins.y;
+        joins.y = goal;
+    }
+    start = looked = at;
+    led = leader;
+    return choose(slave, master, meet(master), dynamics, {.steady = steady});
+}
+
+CurveFault SyncMotion::approach_anew(const MotionState& slave, const Forecast& master,
+                                     bool keeps_curve, bool steady, const Moment& at) {
+    start = at;
+    return choose(slave, master, meet(master), dynamics, {steady, true, keeps_curve});
+}
+
+/// By the least factor that a limit would have to have, alone, or all together.
+Shortage SyncMotion::shortage(const MotionState& slave, const Forecast& master, bool steady) const {
+    const Meeting goal = meet(master);
+    const auto raised = [&](CurveFault limit, double by) {
+        Dynamics d = dynamics;
+        const bool all = limit == CurveFault::none;
+        if (all || limit == CurveFault::velocity) d.velocity *= by;
+        if (all || limit == CurveFault::acceleration) d.acceleration *= by, d.deceleration *= by;
+        if (all || limit == CurveFault::jerk) d.jerk *= by;
+        return d;
+    };
+    const auto suffices = [&](CurveFault limit, double by) {
+        SyncMotion tried = *this;
+        return tried.choose(slave, master, goal, raised(limit, by), {.steady = steady}) ==
+               CurveFault::none;
+    };
+    constexpr double greatest = 0x1p20;
+    Shortage least;
+    double factor = greatest;
+    for (const CurveFault limit :
+         {CurveFault::none, CurveFault::jerk, CurveFault::acceleration, CurveFault::velocity}) {
+        if (!suffices(limit, factor)) continue;
+        double low = 1;
+        for (int i = 0; i < 50 && factor > low * (1 + 1e-6); ++i) {
+            const double middle = std::sqrt(low * factor);
+            (suffices(limit, middle) ? factor : low) = middle;
+        }
+        least = {limit, factor, 1};
+        if (limit == CurveFault::none) factor = greatest;
+    }
+    if (factor == greatest) return least;
+    if (least.limit == CurveFault::velocity) least.allowed = dynamics.velocity;
+    if (least.limit == CurveFault::acceleration)
+        least.allowed = std::min(dynamics.acceleration, dynamics.deceleration);
+    if (least.limit == CurveFault::jerk) least.allowed = dynamics.jerk;
+    least.needed = least.allowed * factor;
+    return least;
 }
 
 bool SyncMotion::is_on_law(const MotionState& slave, const MotionState& master,
                            const Cam& cam) const {
+    const double wanted = law_at(master.position, cam).led_by(master).acceleration;
+    return is_beside_law(slave, master, cam) &&
+           std::abs(slave.acceleration - wanted) <= 1e-9 * (1 + std::abs(wanted));
+}
+
+bool SyncMotion::is_beside_law(const MotionState& slave, const MotionState& master,
+                               const Cam& cam) const {
     const MotionState wanted = law_at(master.position, cam).led_by(master);
     const auto same = [](double a, double b, double size) {
         return std::abs(a - b) <= 1e-12 * (1 + std::abs(a) + std::abs(size));
     };
     return same(slave.position, wanted.position, master.position) &&
-           same(slave.velocity, wanted.velocity, master.velocity) &&
-           std::abs(slave.acceleration - wanted.acceleration) <=
-               1e-9 * (1 + std::abs(wanted.acceleration));
+           same(slave.velocity, wanted.velocity, master.velocity);
 }
 
 }  // namespace lineshaft

@@ -8,6 +8,8 @@
 #include "blocks/axis/coupling.hpp"
 #include "blocks/profile/cam.hpp"
 #include "blocks/profile/curve.hpp"
+#include "blocks/profile/forecast.hpp"
+#include "blocks/profile/timed_motion.hpp"
 #include "blocks/profile/transition.hpp"
 
 namespace lineshaft {
@@ -15,17 +17,27 @@ namespace lineshaft {
 /// Limits upwards and downwards, of dynamics that say where the speed grows and where it falls.
 TransitionLimits limits_towards(double direction, const Dynamics& dynamics);
 
+/// Where a slave is to be on its law, if the master moves as foreseen.
+struct Meeting {
+    double time = 0;  ///< from the start of the approach [s]; infinite: the master does not come
+    MotionState state;
+
+    bool agrees(const Meeting& other) const;
+};
+
 /// A motion that follows one master or two. Positions of masters are those that no MC_SetPosition
 /// has moved: [m]; the slave's are its own: [u].
 ///
 /// `geared`: the slave gets on the way of its guide, ratio x master, wherever it then is.
-/// `positioned` and `cammed`: it follows a law, slave over master, which it joins at `sync_x` by a
-/// SyncCurve over the master.
+/// `positioned` and `cammed`: it follows a law, slave over master, which it joins at `sync_x`: by a
+/// SyncCurve over the master, as long as that keeps the limits and does not turn round, else by a
+/// TimedMotion to where they will meet, planned anew whenever that changes. A slave whose master
+/// does not come any more waits in rest.
 struct SyncMotion {
     enum class Law : std::int64_t { geared, positioned, cammed };
     enum class Stage : std::int64_t {
         waiting,        ///< for the master to come near
-        approaching,    ///< on the curve
+        approaching,    ///< on its way to the law
         in_transition,  ///< onto the guide
         in_sync,
     };
@@ -33,16 +45,18 @@ struct SyncMotion {
     static constexpr std::string_view stage_names[] = {"waiting", "approaching", "in_transition",
                                                        "in_sync"};
 
+    /// How it approaches its law.
+    enum class Way : std::int64_t { curve, timed, rest };
+
     Law law = Law::geared;
     Stage stage = Stage::in_sync;
     std::int64_t reached = 0;  ///< the command has been told of in_sync
-    std::int64_t sure = 0;     ///< a curve's limits are kept if the master goes on as foreseen
     Coupling coupling;
     Dynamics dynamics;
 
     // Of `geared`.
     Moment start;
-    Transition transition;   ///< `transition.guide` also foresees the master of a curve
+    Transition transition;
     double offset = 0;       ///< of the slave from its guide
     double goal_offset = 0;  ///< the one that is caught up
 
@@ -52,7 +66,18 @@ struct SyncMotion {
     double cam_origin = 0;    ///< the cam's x is scaling * master + cam_origin
     double cam_rise = 0;      ///< the slave is scaling * cam(x) + cam_rise
     double last_periods = 0;  ///< of the cam, when it was looked at last
+    std::int64_t ends_at =
+        0;  ///< of a cam that is not periodic: 1 its end, -1 its beginning, 0 both
+    std::int64_t finished = 0;  ///< it has been executed
+
+    // Of an approach.
+    Way way = Way::curve;
+    CurvePoint joins;  ///< the law at sync_x
+    Meeting meeting;
     SyncCurve curve;
+    TimedMotion timed;
+    Moment looked;    ///< when the axis looked last,
+    MotionState led;  ///< and its master then
 
     // Of the master as the slave sees it.
     MotionState shift;  ///< by phasing
@@ -66,12 +91,18 @@ struct SyncMotion {
     /// From the state of the slave onto the guide.
     PlanResult get_onto(const MotionState& slave, const MotionState& guide, const Moment& at);
 
+    /// A point of the cam, as one of the axes.
+    CurvePoint on_axis(const CurvePoint& of_cam) const;
+
     /// The law at the master's position x, of a cam by its table.
     CurvePoint law_at(double x, const Cam& cam) const;
 
     /// A command that waits for the end of this one begins as soon as it is in sync; that of a cam
     /// at its end.
-    bool holds() const { return stage == Stage::in_sync && law != Law::cammed; }
+    bool holds() const { return stage == Stage::in_sync && (law != Law::cammed || finished != 0); }
+
+    /// Limits of a motion that keeps its direction, or turns round.
+    TransitionLimits limits_of(const SyncCurve& on, const Dynamics& d) const;
 
     /// Sets sync_x to where the master comes to `position`, or, where that repeats every `repeats`
     /// > 0, to the first such place that is not nearer than the slave is to begin before.
@@ -82,19 +113,40 @@ struct SyncMotion {
         return (sync_x - master.position) * direction;
     }
 
-    /// From the state of the slave on the way to the law at `sync_x`. `period` of the slave: 0 if
-    /// it is not modulo. `interval`: see foresee.
-    CurveFault approach(const MotionState& slave, const MotionState& master, const Cam& cam,
-                        double period, double interval);
+    /// Begins the approach to the law at `sync_x`. `period` of the slave: 0 if it is not modulo. A
+    /// master that is not `steady`, as one that is measured, moves by so much noise that nothing
+    /// but a curve follows it.
+    CurveFault approach(const MotionState& slave, const Forecast& master, const Cam& cam,
+                        double period, bool steady, const Moment& at);
 
-    /// Whether the limits are kept on a curve. A master that accelerates may be at its velocity at
-    /// any time: if they would not be to the end, those of `interval` [s] and of its velocity then
-    /// count.
-    CurveFault foresee(const SyncCurve& way, const MotionState& master,
-                       const TransitionLimits& kept, double interval);
+    /// Goes on with it from another state: the meeting has changed, or the curve cannot be kept.
+    CurveFault approach_anew(const MotionState& slave, const Forecast& master, bool keeps_curve,
+                             bool steady, const Moment& at);
+
+    /// When and how the slave is to be on its law; the forecast begins at `start`.
+    Meeting meet(const Forecast& master) const;
+
+    /// What an approach lacks that has just failed.
+    Shortage shortage(const MotionState& slave, const Forecast& master, bool steady) const;
+
+    /// What there is to choose from.
+    struct Choice {
+        bool steady = true;       ///< what a master does is foreseen: a curve, a timed motion
+        bool on_its_way = false;  ///< it may wait in rest
+        bool kept_curve = false;  ///< the one that it is on
+    };
+    /// The first way of these that keeps the limits, those first that do not turn round.
+    CurveFault choose(const MotionState& slave, const Forecast& master, const Meeting& goal,
+                      const Dynamics& d, const Choice& from);
+    bool choose_curve(const SyncCurve& tried, const Forecast& master, const Dynamics& d,
+                      bool may_turn, CurveFault& fault);
+    bool choose_timed(const MotionState& slave, const Meeting& goal, const Dynamics& d,
+                      bool may_turn, CurveFault& fault);
 
     /// Whether the slave is where the law has it, with its velocity.
     bool is_on_law(const MotionState& slave, const MotionState& master, const Cam& cam) const;
+    /// The same but for its acceleration, which may jump at the points of a cam.
+    bool is_beside_law(const MotionState& slave, const MotionState& master, const Cam& cam) const;
 };
 
 }  // namespace lineshaft

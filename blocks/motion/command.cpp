@@ -61,7 +61,9 @@ void CommandBlock::show(const Context& context) {
 
 std::string CommandBlock::why(const Context& context, const NameOf& name_of) const {
     const std::string hops = error_id == MotionError::master_loop ? loop(context, name_of) : "";
-    return hops.empty() ? std::string(text_of(error_id)) : hops;
+    if (!hops.empty() || axis == nowhere) return hops;
+    const AxisUnit unit = context.instance<Axis>(axis).unit;
+    return text_of(error_id, job.shortage, axis_unit_names[static_cast<std::size_t>(unit)]);
 }
 
 std::string CommandBlock::loop(const Context& context, const NameOf& name_of) const {

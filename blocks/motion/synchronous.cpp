@@ -150,12 +150,10 @@ void CamIn::scan(const Scan& now, const Context& context) {
     run(now, context);
     const Progress at = progress(context);
     start_sync = busy && at >= Progress::approaching;
-    const bool known =
-        busy && job.told_by != nowhere &&
-        (job.told_by == context.task || context.is_published(job.told_by, job.told_in));
+    const bool known = job.told_by != nowhere && (job.told_by == context.task ||
+                                                  context.is_published(job.told_by, job.told_in));
     end_of_profile = known && job.told_value > ends;
     if (known) ends = job.told_value;
-    if (!busy) ends = job.told_value;
 }
 
 std::span<const Field> PhasingAbsolute::fields() {

@@ -10,6 +10,15 @@ namespace {
 /// A limit is kept where rounding alone is beyond it.
 constexpr double tolerance = 1e-9;
 
+CurveFault fault_of(const MotionState& s, const TransitionLimits& limits) {
+    constexpr double more = 1 + tolerance;
+    if (!(std::abs(s.velocity) <= limits.velocity * more)) return CurveFault::velocity;
+    if (!(s.acceleration <= limits.acceleration * more &&
+          s.acceleration >= -limits.deceleration * more))
+        return CurveFault::acceleration;
+    return std::abs(s.jerk) <= limits.jerk * more ? CurveFault::none : CurveFault::jerk;
+}
+
 }  // namespace
 
 MotionState CurvePoint::led_by(const MotionState& master) const {
@@ -38,19 +47,43 @@ CurvePoint SyncCurve::at(double x) const {
             second.slope().at(u) * per * per * per};
 }
 
+bool SyncCurve::turns() const {
+    const Range slope = range(y.slope(), 0, 1);
+    const double slack = tolerance * slope.size();
+    return slope.least < -slack && slope.greatest > slack;
+}
+
 CurveFault check(const SyncCurve& curve, const MotionState& now, const TransitionLimits& limits) {
     return check(curve, now, limits, curve.begin + curve.length);
 }
 
-CurveFault check_soon(const SyncCurve& curve, const MotionState& now,
-                      const TransitionLimits& limits, double interval) {
-    const MotionState then = now.after(interval);
-    for (const double a : {now.acceleration, then.acceleration})
-        if (const CurveFault soon =
-                check(curve, {now.position, now.velocity, a, 0}, limits, then.position);
-            soon != CurveFault::none)
-            return soon;
-    return check(curve, {then.position, then.velocity, 0, 0}, limits);
+CurveFault check_ahead(const SyncCurve& curve, const Forecast& master,
+                       const TransitionLimits& limits) {
+    constexpr int looks = 32;
+    const double end = curve.begin + curve.length;
+    const double arrival = master.time_at(end, curve.length);
+    for (std::size_t i = 0; i < master.count && master.pieces[i].begin < arrival; ++i) {
+        const auto& [begin, start] = master.pieces[i];
+        const double duration = std::min(master.end(i), arrival) - begin;
+        CurveFault fault = CurveFault::none;
+        if (start.jerk == 0)
+            fault = check(curve, start, limits,
+                          std::isfinite(duration) ? start.after(duration).position : end);
+        for (int look = 0; start.jerk != 0 && look <= looks && fault == CurveFault::none; ++look) {
+            const MotionState m = start.after(duration * look / looks);
+            fault = fault_of(curve.at(m.position).led_by(m), limits);
+        }
+        if (fault != CurveFault::none) return fault;
+    }
+    return CurveFault::none;
+}
+
+CurveFault check_step(const MotionState& before, const MotionState& now, double time,
+                      const TransitionLimits& limits) {
+    MotionState state = now;
+    state.jerk = (now.acceleration - before.acceleration) / time;
+    const CurveFault mean = fault_of(state, limits);
+    return mean != CurveFault::none ? mean : fault_of(now, limits);
 }
 
 CurveFault check(const SyncCurve& curve, const MotionState& now, const TransitionLimits& limits,

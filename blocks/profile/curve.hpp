@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "blocks/profile/forecast.hpp"
 #include "blocks/profile/polynomial.hpp"
 #include "blocks/profile/transition.hpp"
 
@@ -28,10 +29,19 @@ struct SyncCurve {
     /// On a straight line before its start; x in the direction of the way.
     CurvePoint at(double x) const;
     double share(double x) const { return (x - begin) / length; }
+
+    /// Whether the slave turns round on the way of a master that does not.
+    bool turns() const;
 };
 
 /// Why a curve is not taken: a limit that it does not keep, or no beginning.
 enum class CurveFault : std::int64_t { none, velocity, acceleration, jerk, standing_master };
+
+/// Which limit it is, what it would have to be, and what it is: 0 where that is not known.
+struct Shortage {
+    CurveFault limit = CurveFault::none;
+    double needed = 0, allowed = 0;
+};
 
 /// Whether the slave keeps its limits at every instant from the master's state `now` to the end of
 /// the curve, or to where the master turns or is at `last`, if the master keeps its acceleration.
@@ -41,10 +51,15 @@ CurveFault check(const SyncCurve& curve, const MotionState& now, const Transitio
                  double last);
 CurveFault check(const SyncCurve& curve, const MotionState& now, const TransitionLimits& limits);
 
-/// The same of a master that keeps its acceleration or its jerk for `interval` [s], and then its
-/// velocity.
-CurveFault check_soon(const SyncCurve& curve, const MotionState& now,
-                      const TransitionLimits& limits, double interval);
+/// The same of a master that moves as foreseen. Where its jerk is not 0 the slave is looked at in
+/// 32 moments of a piece.
+CurveFault check_ahead(const SyncCurve& curve, const Forecast& master,
+                       const TransitionLimits& limits);
+
+/// Whether a state that is `time` [s] later than another one can be that of a motion within limits,
+/// by its velocity, its acceleration and the mean of its jerk.
+CurveFault check_step(const MotionState& before, const MotionState& now, double time,
+                      const TransitionLimits& limits);
 
 /// Where slave and master stand when they begin to approach: y' = v / vm, y'' = (a - y' am) / vm^2.
 /// A slave that stands begins with both 0. False where the slave moves and the master stands.
