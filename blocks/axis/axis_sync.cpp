@@ -165,7 +165,7 @@ MotionError Axis::get_onto_guide(const Context& context, const Moment& at,
     const MotionState guide = sync.guide(master(context), led_by(context, sync.coupling.second))
                                   .after(-at.until(scan_time));
     sync.goal_offset = from.position - guide.position;
-    return sync_error(sync.get_onto(from, guide, at));
+    return lacks(guide, sync.get_onto(from, guide, at));
 }
 
 MotionError Axis::join_law(const Context& context, const Moment& at, const MotionState& from) {

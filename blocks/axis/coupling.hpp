@@ -22,7 +22,7 @@ inline constexpr std::string_view combine_mode_names[] = {"mcAddAxes", "mcSubAxe
 enum class StartMode : std::int64_t {
     absolute,
     relative,  ///< from where the slave is
-    ramp_in,   ///< absolute
+    ramp_in,   ///< absolute; the slave gets onto the cam at once, within its limits
 };
 
 inline constexpr std::string_view start_mode_names[] = {"mcAbsolute", "mcRelative", "mcRampIn"};

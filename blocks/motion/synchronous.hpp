@@ -21,8 +21,8 @@ struct GearIn : CommandBlock {
 };
 
 /// MC_GearInPos: at MasterSyncPosition the slave is at SlaveSyncPosition, with ratio x the master's
-/// velocity. It leaves for it MasterStartDistance before, or at once where that is 0. Before it
-/// does its limits are checked: Error if they cannot be kept.
+/// velocity. It leaves for it MasterStartDistance before, or at once where that is 0. Error if it
+/// cannot come there within its limits.
 struct GearInPos : CommandBlock {
     bool start_sync = false;
 
@@ -33,7 +33,8 @@ struct GearInPos : CommandBlock {
     void scan(const Scan& now, const Context& context);
 };
 
-/// MC_CamIn: as MC_GearInPos, onto a cam. MasterSyncPosition is a position on the cam.
+/// MC_CamIn: as MC_GearInPos, onto a cam. MasterSyncPosition is a position on the cam. A cam that is
+/// not periodic is executed once.
 struct CamIn : CommandBlock {
     bool start_sync = false, end_of_profile = false;
     double ends = 0;  ///< of the profile, that have been shown

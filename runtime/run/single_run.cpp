@@ -35,6 +35,37 @@ bool RunReport::expectations_hold() const {
 
 namespace {
 
+/// The errors of blocks that a run goes on after: the first of each block, and how many they were.
+class BlockErrors final : public EventSink {
+  public:
+    explicit BlockErrors(EventSink* next) : next_(next) {}
+
+    void happened(const RunEvent& event) override {
+        if (next_) next_->happened(event);
+        if (event.kind != EventKind::block_error) return;
+        const std::string block = event.text.substr(0, event.text.find(" reports error"));
+        const auto known = std::ranges::find(blocks_, block, &Block::name);
+        if (known == blocks_.end())
+            blocks_.push_back({block, event.text, 1});
+        else
+            ++known->errors;
+    }
+
+    void tell(std::vector<std::string>& out) const {
+        for (const auto& [name, first, errors] : blocks_)
+            out.push_back(errors == 1 ? first : fmt::format("{} (the first of {})", first, errors));
+    }
+
+  private:
+    struct Block {
+        std::string name, first;
+        std::int64_t errors = 0;
+    };
+
+    EventSink* next_;
+    std::vector<Block> blocks_;
+};
+
 /// One trace while it is recorded.
 struct Tracing {
     Tracing(const TraceSetup& setup, const TraceOrigin& origin, const RunOptions& options,
@@ -104,6 +135,7 @@ class SingleRun {
     OutputSet outputs_{options_.flush};
     std::deque<Tracing> traces_;
     std::optional<EventWriter> events_;
+    std::optional<BlockErrors> errors_;  ///< where the run goes on after them
     std::optional<PulseWriter> pulses_;
     std::optional<Executive> executive_;
     std::vector<Observer*> observers_;
@@ -119,6 +151,7 @@ RunReport SingleRun::run() {
             report_.result.message = "the run stopped at " + format_time(report_.result.time);
         for (std::string& text : executive_->warnings())
             report_.warnings.push_back(std::move(text));
+        if (errors_) errors_->tell(report_.warnings);
         warn_of_cut_texts();
         judge_.finish(report_.result);
         if (!broke_off) report_.verdicts = judge_.verdicts();
@@ -150,6 +183,8 @@ bool SingleRun::begin() {
     if (!restart() || !open_files()) return false;
     executive_.emplace(machine_);
     if (events_) executive_->report_to(*events_);
+    if (machine_.continue_on_error)
+        executive_->report_to(errors_.emplace(events_ ? &*events_ : nullptr));
     if (begun_ && !resume()) return false;
     tell_restart();
     if (options_.checkpoint_every > 0)

@@ -57,12 +57,14 @@ struct RunReport {
     RunResult result;
     std::vector<Verdict> verdicts;  ///< one per expectation; none when files could not be written
     std::vector<std::string>
-        never_looked_at;                ///< expectations of every scan of a task that had none
-    std::vector<std::string> warnings;  ///< what devices have put up with, a sentence each
-    std::vector<TraceReport> traces;    ///< that were recorded
-    std::string output_error;           ///< why traces, events and pulses are not there
-    std::string restart_error;          ///< why retained values or checkpoints were not written
-    Diagnostics refused;  ///< why the run could not begin, if so; nothing has run then
+        never_looked_at;  ///< expectations of every scan of a task that had none
+    /// What devices have put up with, and what errors of blocks the run has gone on after, a
+    /// sentence each.
+    std::vector<std::string> warnings;
+    std::vector<TraceReport> traces;  ///< that were recorded
+    std::string output_error;         ///< why traces, events and pulses are not there
+    std::string restart_error;        ///< why retained values or checkpoints were not written
+    Diagnostics refused;              ///< why the run could not begin, if so; nothing has run then
     double wall_seconds = 0;
 
     bool expectations_hold() const;

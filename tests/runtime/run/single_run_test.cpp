@@ -148,3 +148,28 @@ TEST_CASE("a program with mistakes is not loaded") {
     REQUIRE_FALSE(missing.diagnostics.empty());
     CHECK(missing.diagnostics.list().front().code == "L0001");
 }
+
+TEST_CASE("errors that a run goes on after stand in its report, with their reason") {
+    File file(R"(lineshaft: 1
+tasks: {main: {every: 1 ms}}
+blocks:
+  m: {type: axis, task: main}
+  s: {type: axis, task: main, default_velocity: 40 mm/s}
+  feed: {type: MC_MoveVelocity, task: main, Axis: m, Velocity: 50 mm/s, Execute: true}
+  gear: {type: MC_GearInPos, task: main, Master: m, Slave: s, MasterSyncPosition: 200 mm, SlaveSyncPosition: 100 mm,
+         Execute: inputs.go}
+inputs: {go: false}
+stimulus: [{at: 1 s, set: {inputs.go: true}}, {at: 1.1 s, set: {inputs.go: false}}, {at: 1.2 s, set: {inputs.go: true}}]
+run: {for: 2 s, on_error: continue}
+)");
+    auto loaded = file.load();
+    REQUIRE(loaded);
+    const RunReport report = run(*loaded, {});
+    CHECK_FALSE(report.faulted());
+    REQUIRE(report.warnings.size() == 1);
+    CHECK(
+        report.warnings[0] ==
+        "block 'gear' (MC_GearInPos) reports error 15 (sync_limits) in scan 1001 of task 'main' "
+        "at 1.001 s: the coupling takes a velocity of 50 mm/s, and 40 mm/s is the limit (the first "
+        "of 2)");
+}
