@@ -352,7 +352,7 @@ bool Axis::leaves(const Context& context, const MotionState& leader, const Cam& 
 /// What the master does is known a scan late: where it does not suit, the slave goes on from the
 /// state of the scan before, which was within limits.
 void Axis::follow_approach(const Context& context, const MotionState& leader, const Cam& table) {
-    using Way = SyncMotion::Way;
+    using Approach = SyncMotion::Way;
     const bool steady = is_steady(context);
     const double since = sync.looked.until(scan_time), now = sync.start.until(scan_time);
     const auto can_be = [&](const MotionState& next) {
@@ -361,7 +361,7 @@ void Axis::follow_approach(const Context& context, const MotionState& leader, co
                    CurveFault::none;
     };
     if (sync.distance(leader) <= 0) {
-        const bool foreseen = sync.way == Way::curve || now >= sync.meeting.time;
+        const bool foreseen = sync.way == Approach::curve || now >= sync.meeting.time;
         if (!foreseen && !can_be(sync.law_at(leader.position, table).led_by(leader)))
             return fail_before(context, MotionError::sync_limits);
         sync.stage = Stage::in_sync;
@@ -370,17 +370,17 @@ void Axis::follow_approach(const Context& context, const MotionState& leader, co
     const Forecast ahead = foresee(context).after(since, sync.led);
     Meeting met = sync.meet(ahead);
     met.time += now - since;
-    const bool on_curve = sync.way == Way::curve;
+    const bool on_curve = sync.way == Approach::curve;
     const bool keeps_curve = on_curve && can_be(sync.curve.at(leader.position).led_by(leader));
     if (!met.agrees(sync.meeting) || (on_curve && !keeps_curve)) {
         const CurveFault fault = sync.approach_anew(base, ahead, keeps_curve, steady, sync.looked);
         if (fault != CurveFault::none) shortage = sync.shortage(base, ahead, steady);
         if (fault != CurveFault::none) return fail_before(context, MotionError::sync_limits);
-        if (sync.way == Way::rest) velocity_motion.begin(base, 0, sync.dynamics, sync.looked);
+        if (sync.way == Approach::rest) velocity_motion.begin(base, 0, sync.dynamics, sync.looked);
     }
-    base = sync.way == Way::curve   ? sync.curve.at(leader.position).led_by(leader)
-           : sync.way == Way::timed ? sync.timed.at(sync.start.until(scan_time))
-                                    : velocity_motion.at(scan_time);
+    base = sync.way == Approach::curve   ? sync.curve.at(leader.position).led_by(leader)
+           : sync.way == Approach::timed ? sync.timed.at(sync.start.until(scan_time))
+                                         : velocity_motion.at(scan_time);
 }
 
 /// An error that began a scan ago: so does the stop.
