@@ -304,6 +304,7 @@ struct Axis {
     MotionError go_on(double with, const Dynamics& d, const Moment& at, const Start& from,
                       bool in_any_case = false);
     MotionError plan_homing(const Request& request, const Moment& at, Start& from);
+    bool stands_sooner(const Dynamics& d, const Moment& at, const Start& from) const;
     void replan(const Context& context, const Moment& at);
     double target_of(const Request& request, const Start& from) const;
     double modulo_target(const Request& request, const Start& from) const;

@@ -396,6 +396,13 @@ MotionError Axis::plan_homing(const Request& request, const Moment& at, Start& f
     return why;
 }
 
+/// A halt under way is never made longer: with less jerk it would even turn round.
+bool Axis::stands_sooner(const Dynamics& d, const Moment& at, const Start& from) const {
+    VelocityMotion anew;
+    const double left = velocity_motion.ramp.duration - velocity_motion.start.until(at.time);
+    return anew.begin(from.state, 0, d, at) == PlanResult::ok && anew.ramp.duration < left;
+}
+
 /// The motion under way with other limits, or with another way left, and what is blended into it.
 void Axis::replan(const Context& context, const Moment& at) {
     if (state == AxisState::disabled || state == AxisState::error_stop) return;
@@ -405,6 +412,7 @@ void Axis::replan(const Context& context, const Moment& at) {
         if (go_to(goal, lasting, d, at, from) != MotionError::none) return;
     } else if (doing == Doing::following_velocity ||
                (doing == Doing::holding && base.velocity != lasting * factors.velocity)) {
+        if (lasting == 0 && !stands_sooner(d, at, from)) return;
         if (go_on(lasting, d, at, from) != MotionError::none) return;
         if (active.exists()) tell(context, active, Progress::active);
     } else {

@@ -119,12 +119,19 @@ Progress Axis::begun() const {
     return leaves ? Progress::approaching : Progress::active;
 }
 
+/// Behind what waits already. A command that has waited before, and is begun anew, is no longer
+/// where the motion was to be joined to it.
 void Axis::wait(const Context& context, const Moment& at, Job& job) {
     if (!may_wait(context, job.request))
         return tell(job, Progress::failed, MotionError::software_limit);
     link(context, job, queue, JobPlace::queue);
     tell(job, Progress::waiting);
-    if (&front(context) != &job || job.request.command == Command::reset) return;
+    if (job.request.command == Command::reset) return;
+    const bool joins_another =
+        doing == Doing::moving_to_point &&
+        (leg.exists != 0 || point_motion.plan.end.velocity != lasting * factors.velocity);
+    if (joins_another) return replan(context, at);
+    if (&front(context) != &job) return;
     const bool holds =
         (state == AxisState::continuous_motion && doing == Doing::holding && !is_held()) ||
         (doing == Doing::following_axes && sync.holds());
