@@ -47,7 +47,7 @@ std::optional<double> scale_of(const Connecting& to, const RegisterPlan& plan,
     return {};
 }
 
-std::int64_t whole(double number) {
+std::int64_t whole_or_zero(double number) {
     constexpr double most = 1e15;  // such numbers and their neighbours are told apart
     return number == std::trunc(number) && std::abs(number) <= most
                ? static_cast<std::int64_t>(number)
@@ -127,12 +127,12 @@ void add(Connecting& to, const RegisterPlan& plan, std::vector<MappedSignal>& ta
 
 void set_scale(MappedSignal& mapped, double scale) {
     mapped.scale = scale;
-    mapped.multiplier = whole(scale);
+    mapped.multiplier = whole_or_zero(scale);
     mapped.divisor = mapped.multiplier != 0 ? 1 : 0;
     if (mapped.divisor != 0) return;
     const double inverse = std::round(1 / scale);
     if (1 / inverse != scale) return;
-    mapped.divisor = whole(inverse);
+    mapped.divisor = whole_or_zero(inverse);
     mapped.multiplier = mapped.divisor != 0 ? 1 : 0;
 }
 
