@@ -35,13 +35,13 @@ constexpr CommandDraw kinds[] = {
     {"MC_Power", "Enable"},
 };
 
-constexpr const char* tasks[] = {"servo", "interrupt", "main"};
+constexpr const char* three_tasks[] = {"servo", "interrupt", "main"};
 
 /// One to four axes with a command block of each kind each, in three tasks with costs.
 class Rules : public Sequences {
   public:
     explicit Rules(int number)
-        : Sequences({.axes = number, .commands = kinds, .tasks = tasks, .modulo = true}) {
+        : Sequences({.axes = number, .commands = kinds, .tasks = three_tasks, .modulo = true}) {
         for (const NamedCommand& command : commands())
             if (command.type != "MC_Power" && command.type != "MC_SetOverride")
                 watched_.push_back({command.name, command.block, {}, {}});

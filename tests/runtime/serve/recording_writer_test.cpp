@@ -32,7 +32,7 @@ n := n + 1;
 END_FUNCTION_BLOCK
 )";
 
-constexpr const char* program = R"(lineshaft: 1
+constexpr const char* recorded_program = R"(lineshaft: 1
 tasks: {main: {every: 2 ms}}
 sources: s.st
 inputs: {go: false, level: 1.5, count: 1, null: 1, true: 2}
@@ -75,7 +75,7 @@ Value random_value(const Target& target, std::mt19937_64& random) {
 TEST_CASE("whatever is recorded of any signal is played back") {
     const Folder folder;
     std::ofstream(folder / "s.st") << source;
-    std::ofstream(folder / "p.yaml") << program;
+    std::ofstream(folder / "p.yaml") << recorded_program;
     Diagnostics out;
     auto loaded = load_program(folder / "p.yaml", {}, standard_blocks(), out);
     INFO(out.render());
