@@ -22,7 +22,7 @@ bool fits(const CsvColumn& column, bool is_typed, const Field& input) {
     return (column.type == input.type || widens) && std::ranges::equal(column.names, input.names);
 }
 
-std::optional<Value> whole(double value) {
+std::optional<Value> as_whole(double value) {
     if (value != std::trunc(value) || std::abs(value) >= 9e15) return {};
     return static_cast<std::int64_t>(value);
 }
@@ -39,11 +39,11 @@ std::optional<Value> cell(const CsvColumn& column, std::size_t row, const Field&
     };
     switch (input.type) {
         case Type::boolean:
-            return among(2) && whole(value) ? std::optional<Value>(value == 1) : std::nullopt;
+            return among(2) && as_whole(value) ? std::optional<Value>(value == 1) : std::nullopt;
         case Type::enumeration:
-            return among(input.names.size()) ? whole(value) : std::nullopt;
+            return among(input.names.size()) ? as_whole(value) : std::nullopt;
         case Type::integer:
-            return whole(same_unit ? value : convert(value, from, to));
+            return as_whole(same_unit ? value : convert(value, from, to));
         case Type::real:
             break;
     }

@@ -223,10 +223,10 @@ blocks:
         add_pins("m", "actual_position", true);
         std::size_t number = 0;
         const auto add = [&](const Kind& kind, const char* references) {
-            constexpr const char* tasks[] = {"servo", "slow", "main"};
+            constexpr const char* task_names[] = {"servo", "slow", "main"};
             const std::string name = fmt::format("{}_{}", kind.type, number++);
             text += fmt::format("  {}: {{type: {}, task: {}, {}}}\n", name, kind.type,
-                                tasks[number % 3], references);
+                                task_names[number % 3], references);
             const std::string_view type = kind.type;
             add_pins(name, kind.pins, type == "MC_Power" || type == "MC_Stop");
         };

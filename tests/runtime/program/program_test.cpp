@@ -213,7 +213,10 @@ TEST_CASE("program: a link in the middle of a path does not lead out of the proj
     folder.write("secret.yaml", "");
     fs::create_directory_symlink("config/deep", folder.path() / "project/link");
     Diagnostics out;
-    CHECK_FALSE(resolve_path("link/../../secret.yaml", from, {}, {}, out).has_value());
+    CHECK_FALSE(resolve_path("link/../../../secret.yaml", from, {}, {}, out).has_value());
+    // The folder above config/deep, as the system has it, not the one above link.
+    CHECK(resolve_path("link/../../secret.yaml", from, {}, {}, out).has_value());
+    CHECK_FALSE(fs::exists(folder.path() / "project/link/../../secret.yaml"));
 }
 
 TEST_CASE("program: a path that cannot be followed is told") {

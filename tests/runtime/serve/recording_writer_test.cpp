@@ -35,7 +35,7 @@ END_FUNCTION_BLOCK
 constexpr const char* recorded_program = R"(lineshaft: 1
 tasks: {main: {every: 2 ms}}
 sources: s.st
-inputs: {go: false, level: 1.5, count: 1, null: 1, true: 2}
+inputs: {go: false, level: 1.5, count: 1, "null": 1, "true": 2}
 blocks:
   io: {type: Io, task: main}
   x: {type: axis, task: main, has_drive: true}
