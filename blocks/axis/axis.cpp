@@ -34,6 +34,12 @@ std::span<const Field> Axis::fields() {
         parameter("lowest_position", &A::lowest_position, "{unit}", "with `software_limits`"),
         parameter("highest_position", &A::highest_position, "{unit}", "with `software_limits`"),
         parameter("start_position", &A::start_position, "{unit}", "position at the first scan"),
+        parameter(
+            "transition_quantum", &A::transition_quantum, "s",
+            "a slave gets into gear in whole steps of this, from the start of its job, each at "
+            "one acceleration, as an interpolator that plans more coarsely than the motion "
+            "clock; 0: exactly")
+            .at_least(0),
         parameter("has_drive", &A::has_drive, "",
                   "`actual_position` comes from a drive; else it is the set-point"),
         input("actual_position", &A::actual_position, "{unit}", "with `has_drive`"),

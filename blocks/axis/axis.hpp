@@ -35,6 +35,7 @@ struct Axis {
     double default_velocity = 100, default_acceleration = 1000, default_deceleration = 1000,
            default_jerk = 5e4;
     double start_position = 0;
+    double transition_quantum = 0;
 
     double actual_position = 0;
 
@@ -224,6 +225,7 @@ struct Axis {
     MotionError approach(const Context& context, const MotionState& from, const Cam& table,
                          const Moment& at);
     MotionError lacks(const MotionState& guide, PlanResult result);
+    bool plans_in_steps() const;
     MotionError join_law(const Context& context, const Moment& at, const MotionState& from);
     MotionError place_cam(const Context& context, const MotionState& leader,
                           const MotionState& from);
@@ -232,6 +234,8 @@ struct Axis {
     void look_at_shift(const Context& context);
     void follow(const Context& context);
     void follow_guide(const Context& context);
+    bool follow_steps(const Context& context, const MotionState& guide);
+    bool is_matched(const MotionState& slave, const MotionState& guide) const;
     void follow_law(const Context& context);
     bool gets_onto(const Context& context, const MotionState& guide, bool with_scan);
     bool leaves(const Context& context, const MotionState& leader, const Cam& table);

@@ -165,7 +165,15 @@ MotionError Axis::get_onto_guide(const Context& context, const Moment& at,
     const MotionState guide = sync.guide(master(context), led_by(context, sync.coupling.second))
                                   .after(-at.until(scan_time));
     sync.goal_offset = from.position - guide.position;
+    if (plans_in_steps())
+        return lacks(guide, sync.step_towards(from, guide, at, transition_quantum));
     return lacks(guide, sync.get_onto(from, guide, at));
+}
+
+/// A change of the velocity alone, that is not made at once.
+bool Axis::plans_in_steps() const {
+    return transition_quantum > 0 && sync.coupling.catch_up == 0 &&
+           sync.coupling.transition != TransitionMode::step;
 }
 
 MotionError Axis::join_law(const Context& context, const Moment& at, const MotionState& from) {
@@ -291,7 +299,9 @@ void Axis::follow(const Context& context) {
 /// In gear it follows whatever its master has done since.
 void Axis::follow_guide(const Context& context) {
     const MotionState guide = sync.guide(master(context), led_by(context, sync.coupling.second));
-    if (sync.stage == Stage::in_transition) {
+    if (sync.stage == Stage::in_transition && sync.in_steps != 0) {
+        if (!follow_steps(context, guide)) return;
+    } else if (sync.stage == Stage::in_transition) {
         if (!gets_onto(context, guide, is_measured(sync.coupling))) return;
         sync.offset = sync.transition.plan.end.position;
         reach(context);
@@ -314,6 +324,36 @@ bool Axis::gets_onto(const Context& context, const MotionState& guide, bool with
         left = sync.transition.plan.duration - (with_scan ? seconds(scan_interval) : 0);
     }
     return left <= Moment::same_scan;
+}
+
+/// The steps last what they last, whatever the motion clock: where one ended between two scans, the
+/// next began. Whether the axis is in gear.
+bool Axis::follow_steps(const Context& context, const MotionState& guide) {
+    const MotionState steady = sync.as_foreseen(guide);
+    while (sync.start.has_passed(transition_quantum, scan_time)) {
+        const MotionState end = sync.step.after(transition_quantum);
+        const Moment at = sync.start.after(transition_quantum);
+        const MotionState guide_then = steady.after(-at.until(scan_time));
+        if (sync.steps_left == 0 && is_matched(end, guide_then)) {
+            sync.offset = end.position - guide_then.position;
+            reach(context);
+            return doing == Doing::following_axes && sync.stage == Stage::in_sync;
+        }
+        const MotionError why =
+            lacks(guide_then, sync.step_towards(end, guide_then, at, transition_quantum));
+        if (why != MotionError::none) {
+            fail(context, {scan_time}, why);
+            return false;
+        }
+    }
+    base = sync.step.after(sync.start.until(scan_time));
+    return false;
+}
+
+/// A guide that has not moved as foreseen is met as near as a scan's acceleration comes.
+bool Axis::is_matched(const MotionState& slave, const MotionState& guide) const {
+    const double a = std::max(sync.dynamics.acceleration, sync.dynamics.deceleration);
+    return std::abs(slave.velocity - guide.velocity) <= a * seconds(scan_interval);
 }
 
 void Axis::reach(const Context& context) {

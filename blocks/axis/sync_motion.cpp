@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lineshaft {
 
@@ -42,6 +43,29 @@ PlanResult SyncMotion::get_onto(const MotionState& slave, const MotionState& ont
     start = at;
     stage = Stage::in_transition;
     return result;
+}
+
+MotionState SyncMotion::as_foreseen(MotionState onto) const {
+    if (!(std::abs(onto.jerk) <= dynamics.jerk)) onto.jerk = 0;
+    if (std::abs(onto.acceleration) <= std::min(dynamics.acceleration, dynamics.deceleration))
+        return onto;
+    return {onto.position, onto.velocity};
+}
+
+PlanResult SyncMotion::step_towards(const MotionState& slave, const MotionState& onto,
+                                    const Moment& at, double quantum) {
+    const double towards = onto.velocity != 0 ? onto.velocity : slave.velocity;
+    TransitionLimits kept = limits(towards);
+    if (coupling.transition == TransitionMode::acceleration_limited)
+        kept.jerk = std::numeric_limits<double>::max();
+    const auto next = first_step(kept, quantum, slave, as_foreseen(onto), steps_left);
+    if (!next) return PlanResult::limit_not_positive;
+    step = {slave.position, slave.velocity, next->acceleration, 0};
+    steps_left = next->left;
+    in_steps = 1;
+    start = at;
+    stage = Stage::in_transition;
+    return PlanResult::ok;
 }
 
 CurvePoint SyncMotion::law_at(double x, const Cam& cam) const {

@@ -9,6 +9,7 @@
 #include "blocks/profile/cam.hpp"
 #include "blocks/profile/curve.hpp"
 #include "blocks/profile/forecast.hpp"
+#include "blocks/profile/stepped_transition.hpp"
 #include "blocks/profile/timed_motion.hpp"
 #include "blocks/profile/transition.hpp"
 
@@ -57,8 +58,11 @@ struct SyncMotion {
     // Of `geared`.
     Moment start;
     Transition transition;
-    double offset = 0;       ///< of the slave from its guide
-    double goal_offset = 0;  ///< the one that is caught up
+    std::int64_t in_steps = 0;    ///< of the axis' transition_quantum, not by `transition`
+    std::int64_t steps_left = 0;  ///< behind the one that began at `start`
+    MotionState step;             ///< at its start; its acceleration lasts for the step
+    double offset = 0;            ///< of the slave from its guide
+    double goal_offset = 0;       ///< the one that is caught up
 
     // Of a law.
     double direction = 1;  ///< of the master, on its way to sync_x
@@ -93,6 +97,13 @@ struct SyncMotion {
 
     /// A point of the cam, as one of the axes.
     CurvePoint on_axis(const CurvePoint& of_cam) const;
+
+    /// With no jerk and no acceleration that the slave could not follow.
+    MotionState as_foreseen(MotionState guide) const;
+
+    /// The next whole step of `quantum` seconds towards the guide.
+    PlanResult step_towards(const MotionState& slave, const MotionState& guide, const Moment& at,
+                            double quantum);
 
     /// The law at the master's position x, of a cam by its table.
     CurvePoint law_at(double x, const Cam& cam) const;

@@ -24,6 +24,8 @@ std::span<const Field> CircleFit::fields() {
         output("largest_deviation", &F::largest_deviation, "mm", "greatest of | |P| - R |"),
         output("worst_x", &F::worst_x, "mm", "where the deviation was largest"),
         output("worst_y", &F::worst_y, "mm", "where the deviation was largest"),
+        output("worst_x_share", &F::worst_x_share, "",
+               "|worst_x - x0| / R: 1 on the circle's left or right"),
         output("centre_x", &F::centre_x, "mm", "estimated centre"),
         output("centre_y", &F::centre_y, "mm", "estimated centre"),
         output("offset", &F::offset, "mm", "D, estimated to wanted centre"),
@@ -64,6 +66,7 @@ void CircleFit::add() {
         largest_deviation = deviation;
         worst_x = x;
         worst_y = y;
+        worst_x_share = std::abs(u);
     }
     solve();
 }

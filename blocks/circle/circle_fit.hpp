@@ -21,7 +21,7 @@ struct CircleFit {
     bool enable = false;
     double x = 0, y = 0;
 
-    double mean_deviation = 0, largest_deviation = 0, worst_x = 0, worst_y = 0;
+    double mean_deviation = 0, largest_deviation = 0, worst_x = 0, worst_y = 0, worst_x_share = 0;
     double centre_x = 0, centre_y = 0, offset = 0, fitted_radius = 0;
     double closing_gap = 0;
     std::int64_t samples = 0;

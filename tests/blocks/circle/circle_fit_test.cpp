@@ -86,6 +86,7 @@ TEST_CASE("mean, largest and worst deviation are those of the samples") {
     CHECK(fit.largest_deviation == Approx(0.5).epsilon(1e-14));
     CHECK(fit.worst_x == 0);
     CHECK(fit.worst_y == 10.5);
+    CHECK(fit.worst_x_share == 0);
 }
 
 TEST_CASE("before three samples that span a circle the wanted centre stands") {

@@ -83,6 +83,59 @@ blocks:
     CHECK(bench.number("s.position") == Approx(100.05 * (0.10005 / 2 + 0.00045)).margin(1e-6));
 }
 
+namespace {
+
+/// A slave that plans in steps of 3 ms, and a master that comes to 100 mm/s in a second.
+constexpr const char* in_steps = R"(
+tasks: {main: {every: 1 ms}}
+blocks:
+  m: {type: axis, task: main}
+  s: {type: axis, task: main, transition_quantum: 3 ms}
+  run: {type: MC_MoveVelocity, task: main, Axis: m, Velocity: 100 mm/s, Acceleration: 100 mm/s^2, Jerk: 1000 mm/s^3}
+  gear: {type: MC_GearIn, task: main, Master: m, Slave: s, Acceleration: 1000 mm/s^2, Deceleration: 1000 mm/s^2, Jerk: 0 mm/s^3}
+)";
+
+}  // namespace
+
+TEST_CASE("a slave gets in gear in whole steps of its axis, each at one acceleration") {
+    MotionBench bench(in_steps);
+    bench.set("run.Execute", true);
+    bench.step(2000);
+    bench.set("gear.Execute", true);
+    bench.step(2);
+    // 34 steps: 100 mm/s at 1000 mm/s^2 are 33.3.
+    const double a = 100 / (34 * 0.003);
+    for (int ms = 1; ms < 102; ++ms) {
+        CAPTURE(ms);
+        bench.step();
+        REQUIRE(bench.number("s.velocity") == Approx(a * ms * 1e-3));
+        REQUIRE_FALSE(bench.is("gear.InGear"));
+    }
+    bench.step(2);
+    CHECK(bench.is("gear.InGear"));
+    CHECK(bench.number("s.velocity") == 100);
+    CHECK(bench.number("s.acceleration") == 0);
+}
+
+TEST_CASE("a slave gets in gear in whole steps, whenever its master accelerates, without a jump") {
+    for (int begin = 5; begin < 1200; begin += 7) {
+        CAPTURE(begin);
+        MotionBench bench(in_steps);
+        bench.set("run.Execute", true);
+        bench.step(begin);
+        bench.set("gear.Execute", true);
+        double velocity = 0;
+        for (int ms = 0; ms < 1400 - begin; ++ms) {
+            bench.step();
+            const double now = bench.number("s.velocity");
+            REQUIRE(std::abs(now - velocity) <= 1.0001 + 0.1);
+            velocity = now;
+        }
+        REQUIRE(bench.is("gear.InGear"));
+        REQUIRE(bench.number("s.velocity") == Approx(100));
+    }
+}
+
 TEST_CASE("the profile s7_1500 takes ratios of whole numbers alone") {
     const auto answer = [](const std::string& profile, const std::string& ratio) {
         MotionBench bench(fmt::format(R"(
