@@ -1,6 +1,7 @@
 #include "blocks/catalog.hpp"
 
 #include "blocks/axis/axis.hpp"
+#include "blocks/axis/axis_valid.hpp"
 #include "blocks/axis/servo_drive.hpp"
 #include "blocks/circle/circle_fit.hpp"
 #include "blocks/circle/path_circle.hpp"
@@ -20,12 +21,14 @@
 #include "blocks/logic/timer.hpp"
 #include "blocks/motion/cam_table.hpp"
 #include "blocks/motion/cam_table_select.hpp"
+#include "blocks/motion/motion_valid.hpp"
 #include "blocks/motion/moves.hpp"
 #include "blocks/motion/probes.hpp"
 #include "blocks/motion/reads.hpp"
 #include "blocks/motion/settings.hpp"
 #include "blocks/motion/state_commands.hpp"
 #include "blocks/motion/synchronous.hpp"
+#include "blocks/other_valid.hpp"
 #include "blocks/pulse/pto.hpp"
 
 namespace lineshaft {

@@ -6,6 +6,7 @@ study.py LINESHAFT
 import csv
 import json
 import os
+import re
 import resource
 import signal
 import subprocess

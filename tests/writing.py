@@ -204,7 +204,7 @@ def outputs_over_inputs(c):
     for name in ("program.yaml", "plan.yaml"):
         c.run("study", "plan.yaml", "-o", name, expect=2, says="L0509")
     c.run("run", "program.yaml", "--trace", "t.csv", expect=0)
-    if has_pages(c.lineshaft, "a report over its trace"):
+    if has_pages(c.folder / "lineshaft", "a report over its trace"):
         c.run("report", "t.csv", "-o", "t.csv", expect=2, says="L0509")
     c.check_whole("t.csv")
     c.path("moves.csv").write_text("Vs,Ve,Vm,A,J,L\n0,0,1,1,1,1\n")
@@ -292,7 +292,7 @@ def idle_inputs(c):
     commands = [["check", "idle"], ["run", "idle"], ["run", "/dev/stdin"], ["check", "/dev/stdin"], ["diff", "idle", "idle"],
                 ["test", "idle"], ["study", "idle"], ["fit", "idle"], ["show", "idle"], ["plan", "-"], ["plan", "idle"],
                 ["verify", "/dev/stdin"]]
-    if has_pages(c.lineshaft, "a report of an idle pipe"):
+    if has_pages(c.folder / "lineshaft", "a report of an idle pipe"):
         commands.append(["report", "idle", "-o", "r.html"])
     waiting = [subprocess.Popen([c.lineshaft, *command], cwd=c.folder, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
                                 stderr=subprocess.PIPE) for command in commands]

@@ -123,6 +123,7 @@ struct Axis {
     static constexpr std::string_view doc = "axis that takes commands: see the MC_ blocks";
     static constexpr std::string_view handle = "AXIS_REF";
     static const std::string_view structured_text;
+    static constexpr bool sets_parameters = true;  ///< by MC_WriteParameter
     static std::span<const Field> fields();
     std::optional<Misfit> misfit(const IsConstant& is_constant) const;
     void scan(const Scan& now, const Context& context);
@@ -189,8 +190,8 @@ struct Axis {
         double below = 0, above = 0;  ///< tolerances
 
         bool contain(const Range& positions) const;
-        /// False for a position outside; one within the tolerance is put onto its limit.
-        bool admit(double& position) const;
+        /// False for a place outside; one within the tolerance is put onto its limit.
+        bool admit(double& place) const;
     };
     Bounds bounds() const;
     void watch_limits();

@@ -20,7 +20,9 @@ void Axis::link(const Context& context, Job& job, JobList& list, JobPlace in) co
 void Axis::unlink(const Context& context, Job& job, JobList& list) const {
     const std::int64_t place = context.place_of(job);
     std::int64_t before = nowhere;
-    for (std::int64_t at = list.first; at != place; at = context.at<Job>(at).next) before = at;
+    std::int64_t at = list.first;
+    for (; at != place && at != nowhere; at = context.at<Job>(at).next) before = at;
+    if (at == nowhere) return;
     (before == nowhere ? list.first : context.at<Job>(before).next) = job.next;
     if (list.last == place) list.last = before;
     job.in = JobPlace::no_list;
@@ -202,6 +204,7 @@ void Axis::end(const Context& context, Running& running, Progress how, MotionErr
 /// Nothing to a command that has been started anew.
 void Axis::tell(const Context& context, const Running& running, Progress how,
                 MotionError why) const {
+    if (!running.exists()) return;
     Job& job = context.at<Job>(running.place);
     if (job.ticket == running.ticket) tell(job, how, why);
 }

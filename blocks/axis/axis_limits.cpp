@@ -41,9 +41,9 @@ Axis::Bounds Axis::bounds() const {
             tolerance_of(lowest_position, size), tolerance_of(highest_position, size)};
 }
 
-bool Axis::Bounds::admit(double& position) const {
-    if (!contain({position, position})) return false;
-    position = std::clamp(position, lowest, highest);
+bool Axis::Bounds::admit(double& place) const {
+    if (!contain({place, place})) return false;
+    place = std::clamp(place, lowest, highest);
     return true;
 }
 

@@ -85,6 +85,7 @@ bool can_be_followed(AxisState state) {
 }
 
 std::optional<AxisState> next_state(Command command, AxisState now) {
+    if (command == Command::none) return {};
     return rows[static_cast<std::size_t>(command) - 1].next[static_cast<std::size_t>(now)];
 }
 

@@ -458,8 +458,10 @@ void Axis::look_for_end(const Context& context, const MotionState& leader, const
 /// What waits begins at the moment when the master was at the end, with the slave's motion there.
 void Axis::end_cam(const Context& context, const MotionState& leader, double x,
                    const CurvePoint& point) {
-    Job& job = context.at<Job>(active.place);
-    if (job.ticket == active.ticket) job.told_value += 1;
+    if (active.exists()) {
+        Job& job = context.at<Job>(active.place);
+        if (job.ticket == active.ticket) job.told_value += 1;
+    }
     tell(context, active, Progress::reached);
     const double end = (x - sync.cam_origin) / sync.coupling.master_scaling;
     const double since = sync.looked.until(scan_time);

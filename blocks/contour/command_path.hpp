@@ -45,6 +45,8 @@ class CommandPath {
     Point point(std::int64_t back) const {
         return points_[static_cast<std::size_t>((count_ - 1 - back) & (capacity - 1))];
     }
+    /// Whether so many points can have been added.
+    bool is_possible() const { return count_ >= 0 && count_ < std::int64_t{1} << 62; }
     /// Nearest command point to `actual`, as points before the newest. size() is not 0.
     std::int64_t nearest(Point actual) const;
     ContourEstimate estimate(Point actual) const;

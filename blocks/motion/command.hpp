@@ -36,6 +36,8 @@ struct CommandBlock {
     MotionError refusal = MotionError::none;  ///< of the pins: the axis has not got them
     Job job;
 
+    static constexpr auto linked_part = &CommandBlock::job;
+
     /// One scan: send(), then show().
     void run(const Scan& now, const Context& context);
 

@@ -17,7 +17,7 @@ double Forecast::end(std::size_t piece) const {
 
 MotionState Forecast::at(double t) const {
     std::size_t i = 0;
-    while (t >= end(i)) ++i;
+    while (i + 1 < count && t >= end(i)) ++i;
     return pieces[i].start.after(t - pieces[i].begin);
 }
 

@@ -82,6 +82,29 @@ double PulseTrain::rate(std::int64_t time) const {
     return last_rate_;
 }
 
+bool PulseTrain::is_possible(std::int64_t time) const {
+    constexpr std::int64_t most_rate = 100'000, most_count = 2'147'483'647;
+    constexpr std::int64_t far = std::int64_t{1} << 61;
+    const auto within = [](std::int64_t value, std::int64_t most) {
+        return value >= 1 && value <= most;
+    };
+    if (!within(segment_.start_rate, most_rate) || !within(segment_.end_rate, most_rate) ||
+        !within(segment_.count, most_count) || rate_update_ < RateUpdate::continuous ||
+        rate_update_ > RateUpdate::per_pulse || start_.nanoseconds < -far ||
+        start_.nanoseconds > far || !(start_.fraction >= 0 && start_.fraction < 1))
+        return false;
+    PulseTrain same;
+    same.begin(segment_, rate_update_, start_);
+    if (same.nominal_ != nominal_ || same.slope_ != slope_ || emitted_ < 0 ||
+        emitted_ > segment_.count)
+        return false;
+    if (is_closed_form()) return emitted_ == count_at(time);
+    const double longest = static_cast<double>(segment_.count) * second;
+    if (!(next_ >= 0 && next_ <= longest) || !(last_rate_ >= 1 && last_rate_ <= most_rate))
+        return false;
+    return emitted_ == segment_.count || rounded(next_) > time;
+}
+
 bool PulseTrain::is_closed_form() const {
     return rate_update_ == RateUpdate::continuous || segment_.start_rate == segment_.end_rate;
 }

@@ -68,6 +68,9 @@ class PulseTrain {
     /// Of a train whose edges have all been taken, or of a `continuous` one.
     PulseTime end() const;
 
+    /// Whether these can be the numbers of a train whose edges up to `time` [ns] have been taken.
+    bool is_possible(std::int64_t time) const;
+
     /// Rate of the pulse that is under way at `time` [Hz]; `continuous`: the rate at `time`.
     double rate(std::int64_t time) const;
 

@@ -34,6 +34,8 @@ struct Misfit {
 /// True of a field that has one value all the time: neither wired nor set from outside.
 using IsConstant = std::function<bool(std::string_view field)>;
 
+struct KeptState;
+
 /// Of an instance, by its number.
 using NameOf = std::function<std::string(std::int64_t instance)>;
 
@@ -53,6 +55,17 @@ struct BlockType {
     std::optional<Misfit> (*misfit)(const std::byte* block,
                                     const IsConstant& is_constant) = nullptr;         ///< or null
     void (*shift)(std::byte* block, std::int64_t by, const void* context) = nullptr;  ///< or null
+    /// Whether a block may go on with a state that was kept, whatever its bytes are; or null: any
+    /// that its fields admit. See KeptState.
+    bool (*valid)(const std::byte* block, const KeptState& machine) = nullptr;
+    /// Takes over of a kept state what outlives a scan, into a new block; or null: all of it.
+    void (*take)(std::byte* block, const std::byte* kept, const void* context) = nullptr;
+    /// Places in a block that others link into their lists, as the Job of a command.
+    void (*add_links)(std::vector<std::size_t>& places, const BlockType& type) = nullptr;
+    /// Of a block that was retained when others were not: what it was linked with is forgotten where
+    /// that is not linked with it. Or null.
+    void (*mend_links)(std::byte* block, const KeptState& machine) = nullptr;
+    bool sets_parameters = false;  ///< its own, while it runs
     /// Where its last error came from, for people; empty: nobody can say. Or null.
     std::string (*why)(const std::byte* block, const Context& context,
                        const NameOf& name_of) = nullptr;
@@ -115,7 +128,8 @@ class Catalog {
     /// `misfit(const IsConstant&) const`, for what its limits cannot say, and
     /// `why(const Context&, const NameOf&) const`, for what the number of its error cannot say. One
     /// that remembers moments has `shift(by)`, which moves them all by so many ns: a retained block
-    /// goes on in another run. An input that is mostly wired alone may be named as `main_input`.
+    /// goes on in another run. `is_valid(const Block&, const KeptState&)` beside it says which kept
+    /// states it can go on with, where its fields cannot say that. An input that is mostly wired alone may be named as `main_input`.
     template <class Block>
     Catalog& add() {
         static_assert(PlainData<Block>);
@@ -126,6 +140,7 @@ class Catalog {
         std::string_view structured_text;
         if constexpr (requires { Block::structured_text; })
             structured_text = Block::structured_text;
+        constexpr bool sets_parameters = requires { Block::sets_parameters; };
         return add({.name = Block::type,
                     .doc = Block::doc,
                     .fields = Block::fields(),
@@ -138,6 +153,10 @@ class Catalog {
                     .device = device_calls<Block>(),
                     .misfit = misfit<Block>(),
                     .shift = shift<Block>(),
+                    .valid = valid_state<Block>(),
+                    .add_links = add_links<Block>(),
+                    .mend_links = mend_links<Block>(),
+                    .sets_parameters = sets_parameters,
                     .why = why<Block>(),
                     .handle = handle,
                     .structured_text = structured_text});
@@ -167,6 +186,33 @@ class Catalog {
         if constexpr (requires(Block & block) { block.shift(std::int64_t{}); })
             return [](std::byte* block, std::int64_t by, const void*) {
                 std::launder(reinterpret_cast<Block*>(block))->shift(by);
+            };
+        return nullptr;
+    }
+
+    template <class Block>
+    static constexpr auto valid_state() -> decltype(BlockType::valid) {
+        if constexpr (requires(const Block& block, const KeptState& m) { is_valid(block, m); })
+            return [](const std::byte* block, const KeptState& machine) {
+                return is_valid(*std::launder(reinterpret_cast<const Block*>(block)), machine);
+            };
+        return nullptr;
+    }
+
+    template <class Block>
+    static constexpr auto mend_links() -> decltype(BlockType::mend_links) {
+        if constexpr (requires(Block & block, const KeptState& m) { mend(block, m); })
+            return [](std::byte* block, const KeptState& machine) {
+                mend(*std::launder(reinterpret_cast<Block*>(block)), machine);
+            };
+        return nullptr;
+    }
+
+    template <class Block>
+    static constexpr auto add_links() -> decltype(BlockType::add_links) {
+        if constexpr (requires { Block::linked_part; })
+            return [](std::vector<std::size_t>& places, const BlockType&) {
+                places.push_back(detail::offset_of(Block::linked_part));
             };
         return nullptr;
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -37,15 +38,31 @@ class StateWriter {
     std::string bytes_;
 };
 
-/// Reads in the order of the writing. What is not there leaves the target as it was and clears
-/// ok().
+/// Reads in the order of the writing, whatever the bytes are: what is not there, and a boolean that
+/// is none, leaves the target as it was and clears ok(). Whoever reads a number that not every value
+/// is good for says so: require().
 class StateReader {
   public:
     explicit StateReader(std::string_view bytes) : left_(bytes) {}
 
     template <Plain T>
     void get(T& value) {
+        static_assert(!std::is_enum_v<T>, "get its number, and look at that");
         take(reinterpret_cast<char*>(&value), sizeof value);
+    }
+    void get(bool& value) {
+        unsigned char byte = 0;
+        get(byte);
+        require(byte <= 1);
+        if (ok_) value = byte == 1;
+    }
+    /// Within limits, both included.
+    template <std::integral T>
+    void get(T& value, std::type_identity_t<T> least, std::type_identity_t<T> most) {
+        T read = value;
+        get(read);
+        require(read >= least && read <= most);
+        if (ok_) value = read;
     }
     /// `values` has the size that was written, or it is not the same machine.
     template <Plain T>
@@ -64,7 +81,16 @@ class StateReader {
         take(text.data(), size);
     }
 
+    /// Else what was read cannot be.
+    void require(bool condition) { ok_ = ok_ && condition; }
+    /// `the state of 'x' (axis)`: what it is that cannot be, of the first.
+    void require(bool condition, const std::string& what) {
+        if (ok_ && !condition) wrong_ = what;
+        require(condition);
+    }
+
     bool ok() const { return ok_; }
+    const std::string& wrong() const { return wrong_; }
     bool at_end() const { return ok_ && left_.empty(); }
 
   private:
@@ -76,6 +102,7 @@ class StateReader {
     }
 
     std::string_view left_;
+    std::string wrong_;
     bool ok_ = true;
 };
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "runtime/net/kept_memory.hpp"
 #include "runtime/source/input_file.hpp"
 #include "runtime/source/json_text.hpp"
 #include "runtime/source/text_hash.hpp"
@@ -94,35 +95,20 @@ Json json_of(const RetainedBlock& kept, const BlockPlace& block, std::int64_t no
 }
 
 /// All but what the program says itself.
-void restore(const BlockPlace& block, const Bytes& state) {
+void restore(const BlockPlace& block, const Bytes& state, KeptMemory& memory) {
     Bytes bytes = state;
     for (const Field& field : block.type->fields)
         if (field.direction != Direction::output && field.direction != Direction::local)
             std::memcpy(&bytes[field.offset], block.live + field.offset, size_of(field.type));
-    std::ranges::copy(bytes, block.live);
-    std::ranges::copy(bytes, block.published);
-}
-
-/// The first field with a boolean that is neither, or a number that no name of its enumeration has;
-/// null when there is none.
-const Field* find_damaged(const BlockPlace& block, const Bytes& state) {
-    const auto is_damaged = [&](const Field& field) {
-        if (field.direction != Direction::output && field.direction != Direction::local)
-            return false;
-        const std::byte* const place = state.data() + field.offset;
-        if (field.type == Type::boolean) return read<unsigned char>(place) > 1;
-        if (field.type != Type::enumeration) return false;
-        const auto number = read<std::int64_t>(place);
-        return number < 0 || number >= std::ssize(field.names);
-    };
-    const auto it = std::ranges::find_if(block.type->fields, is_damaged);
-    return it == block.type->fields.end() ? nullptr : &*it;
+    memory.take(block, block.live, bytes.data());
+    std::copy_n(block.live, block.type->size, block.published);
 }
 
 /// A file of retained values while it is read.
 struct Reading {
     const Json& root;
     Machine& machine;
+    KeptMemory& memory;
     std::shared_ptr<const SourceFile> file;
     Diagnostics& out;
 
@@ -163,11 +149,7 @@ bool set_block(const Reading& reading, const RetainedBlock& kept) {
                         block.name, block.type->name));
         return false;
     }
-    if (const Field* field = find_damaged(block, bytes)) {
-        reading.fail(fmt::format("'{}.{}' cannot be as the file has it", block.name, field->name));
-        return false;
-    }
-    restore(block, bytes);
+    restore(block, bytes, reading.memory);
     return true;
 }
 
@@ -228,6 +210,12 @@ std::string what_is_wrong(const Json& root, const std::string& text) {
     return {};
 }
 
+/// Blocks that were linked with others go on without those that were not retained.
+void mend_links(const Machine& machine, KeptMemory& memory) {
+    for (int round = 0; round < 2; ++round)  // an axis before its commands
+        for (const RetainedBlock& kept : machine.retained_blocks) memory.mend(kept.instance);
+}
+
 }  // namespace
 
 std::string write_retained(const std::string& path, const Machine& machine, std::int64_t now) {
@@ -255,7 +243,8 @@ int read_retained(const std::string& path, Machine& machine, Diagnostics& out) {
     const auto file = read_source(name, out, {}, retain_limits);
     if (!file) return 0;
     const Json root = parse_json(file->text);
-    const Reading reading{root, machine, file, out};
+    KeptMemory memory(machine, 0);
+    const Reading reading{root, machine, memory, file, out};
     if (const std::string wrong = what_is_wrong(root, file->text); !wrong.empty()) {
         reading.fail(wrong);
         return 0;
@@ -263,6 +252,9 @@ int read_retained(const std::string& path, Machine& machine, Diagnostics& out) {
     int set = 0;
     for (const Retained& kept : machine.retained) set += set_value(reading, kept);
     for (const RetainedBlock& kept : machine.retained_blocks) set += set_block(reading, kept);
+    mend_links(machine, memory);
+    if (const std::string damaged = memory.damaged(); out.empty() && !damaged.empty())
+        reading.fail(fmt::format("the state of {} cannot be as the file has it", damaged));
     return set;
 }
 

@@ -107,6 +107,7 @@ class SingleRun {
     RunResult step();
     bool restart();
     bool open_files();
+    std::vector<std::string> known_files() const;
     template <class Writer, class... Arguments>
     void open(std::optional<Writer>& writer, Arguments&&... arguments);
     void refuse(const std::string& error);
@@ -219,20 +220,31 @@ bool SingleRun::restart() {
     return report_.refused.empty();
 }
 
+/// That traces are written to.
+std::vector<std::string> SingleRun::known_files() const {
+    std::vector<std::string> known;
+    if (has_trace())
+        for (const TraceSetup& trace : loaded_.linked.traces)
+            for (std::string& path : trace_paths(options_.trace_path, trace))
+                known.push_back(std::move(path));
+    return known;
+}
+
 /// What a file of the checkpoint holds comes first in it, then the machine and its observers.
 bool SingleRun::open_files() {
-    std::array<bool, 3> files = {has_trace(), !options_.pulses_path.empty(),
-                                 options_.observer != nullptr},
-                        before = files;
-    if (begun_) begun_->get(before);
-    if (files != before) {
+    const std::array<bool, 3> files = {has_trace(), !options_.pulses_path.empty(),
+                                       options_.observer != nullptr};
+    std::array<bool, 3> before = files;
+    if (begun_)
+        for (bool& file : before) begun_->get(file);
+    if (files != before || (begun_ && !begun_->ok())) {
         report_.refused.add("L0506", {},
                             "the checkpoint was made with other files than this run has",
                             "give the same --trace, --pulses and --record as before");
         return false;
     }
     if (begun_) {
-        outputs_.restore(*begun_);
+        outputs_.restore(*begun_, known_files());
         refuse(outputs_.error());
     }
     if (has_trace()) open_traces();
@@ -277,10 +289,17 @@ void SingleRun::open_traces() {
 }
 
 bool SingleRun::resume() {
-    executive_->restore(*begun_);
-    for (Observer* observer : observers_) observer->restore(*begun_);
+    if (begun_->ok()) executive_->restore(*begun_);
+    for (Observer* observer : observers_)
+        if (begun_->ok()) observer->restore(*begun_);
+    for (const Tracing& trace : traces_)
+        begun_->require(trace.files.is_open() == trace.recorder.is_recording() &&
+                            std::ssize(trace.files.paths()) == trace.recorder.measurements(),
+                        "a trace");
     if (begun_->at_end()) return true;
-    refuse("the checkpoint does not fit the program");
+    refuse(begun_->wrong().empty()
+               ? "the checkpoint does not fit the program"
+               : fmt::format("the checkpoint is damaged: {} cannot be so", begun_->wrong()));
     return false;
 }
 
@@ -294,7 +313,8 @@ void SingleRun::tell_restart() {
 
 std::string SingleRun::checkpoint(std::int64_t time) {
     StateWriter out;
-    out.put(std::array<bool, 3>{has_trace(), pulses_.has_value(), options_.observer != nullptr});
+    for (const bool file : {has_trace(), pulses_.has_value(), options_.observer != nullptr})
+        out.put(file);
     outputs_.save(out);
     if (events_) events_->save(out);
     for (Tracing& trace : traces_) trace.save(out);

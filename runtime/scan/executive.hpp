@@ -16,6 +16,8 @@
 
 namespace lineshaft {
 
+class KeptMemory;
+
 /// Sees the machine run. Called in virtual time, single-threaded.
 class Observer {
   public:
@@ -127,7 +129,7 @@ class Executive {
 
     /// All that the run depends on, the machine's memory too: a machine of the same program, with
     /// restore() before run(), goes on as if there had been no end. The reader tells whether it
-    /// fits.
+    /// fits: nothing in it is believed, every number is looked at that the run rests on.
     void save(StateWriter& out) const;
     void restore(StateReader& in);
 
@@ -163,6 +165,11 @@ class Executive {
         std::int64_t id = 0;         ///< of the first
     };
 
+    void restore_memory(StateReader& in, KeptMemory& memory, const std::byte* kept);
+    void restore_forces(StateReader& in, const KeptMemory& memory);
+    void restore_mail(StateReader& in, const KeptMemory& memory);
+    void restore_states(StateReader& in);
+    bool is_possible(const State& state, const State& fresh, const Task& task) const;
     void settle(std::int64_t last);
     [[gnu::cold]] void look();
     std::int64_t next_event();

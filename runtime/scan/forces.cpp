@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "runtime/model/kept_state.hpp"
+
 namespace lineshaft {
 
 Forces::Forces(std::vector<Force>& forces) : forces_(forces) {
@@ -45,6 +47,18 @@ void Forces::forget_ended(std::int64_t now) {
         own_.erase(own_.begin() + static_cast<std::ptrdiff_t>(i));
     }
     look_ahead(now);
+}
+
+void Forces::restore(StateReader& in) {
+    in.get(own_);
+    const auto is_value = [](Type type, const std::byte* bytes) {
+        return type != Type::boolean || read<unsigned char>(bytes) <= 1;
+    };
+    for (std::size_t i = 0; i < own_.size(); ++i)
+        in.require(are_booleans(own_[i].active) && is_value(forces_[i].type, own_[i].live) &&
+                       is_value(forces_[i].type, own_[i].published),
+                   "a forced value");
+    if (!in.ok()) own_.assign(forces_.size(), {});
 }
 
 void Forces::begin(std::size_t index) {

@@ -41,7 +41,7 @@ class Forces {
     std::byte* own(std::byte* target);
 
     void save(StateWriter& out) const { out.put(own_); }
-    void restore(StateReader& in) { in.get(own_); }
+    void restore(StateReader& in);
 
     /// Finds the next begin or end after `now`; after restore(), and when the forces have changed.
     void look_ahead(std::int64_t now);

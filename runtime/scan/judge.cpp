@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "runtime/model/kept_state.hpp"
 #include "runtime/source/units.hpp"
 
 namespace lineshaft {
@@ -132,9 +133,15 @@ void Judge::restore(StateReader& in) {
         in.get(verdict.ok);
         in.get(verdict.deviation);
     }
+    const std::vector<Watch> fresh = watches_;
     in.get(watches_);
-    in.get(next_timed_);
-    in.get(next_);
+    for (const Watch& watch : watches_)
+        in.require(are_booleans(watch.level, watch.has_risen, watch.is_answered) &&
+                       is_count(watch.edges) && watch.awaits >= 0,
+                   "what is expected");
+    if (!in.ok()) watches_ = fresh;
+    in.get(next_timed_, 0, timed_.size());
+    in.get(next_, 0, never);
 }
 
 void Judge::fail(std::size_t index, std::string deviation) {

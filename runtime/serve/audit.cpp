@@ -10,6 +10,8 @@ namespace lineshaft {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 /// Of the wall's clock, to the millisecond.
 std::string date() {
     using namespace std::chrono;
@@ -40,7 +42,6 @@ std::string Audit::error() const {
 
 void Audit::note(const AuditEntry& entry) {
     constexpr std::size_t most = 1000;
-    using Json = nlohmann::ordered_json;
     Json line{{"date", date()},
               {"peer", entry.peer},
               {"by", entry.by},

@@ -44,7 +44,7 @@ std::string ModbusSession::answer(std::string_view frame) {
 }
 
 void converse(ModbusDesk& desk, Client& client, World& world) {
-    constexpr std::int64_t idle = 300 * one_second, write_time = 5 * one_second;
+    constexpr std::int64_t idle = 300 * one_second, answer_time = 5 * one_second;
     ModbusSession session(desk, {client.peer, Address{client.peer}.is_loopback()});
     std::array<char, 4096> bytes;
     while (!session.is_lost()) {
@@ -54,7 +54,7 @@ void converse(ModbusDesk& desk, Client& client, World& world) {
         const std::string answers = session.take({bytes.data(), count});
         if (!answers.empty()) client.has_asked(world.now());
         for (std::string_view rest = answers; !rest.empty();) {
-            const std::size_t sent = client.socket->send(rest, world.now() + write_time);
+            const std::size_t sent = client.socket->send(rest, world.now() + answer_time);
             if (sent == 0) return;
             rest.remove_prefix(sent);
         }

@@ -1,10 +1,14 @@
 #include "runtime/st/library.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "runtime/model/kept_state.hpp"
 #include "runtime/st/compiled.hpp"
 #include "runtime/st/elementary.hpp"
 #include "runtime/st/standard_source.hpp"
@@ -31,6 +35,7 @@ struct KindContext {
         const BlockType* kind;
     };
     std::vector<Part> with_moments;         ///< instances of the catalogue that remember when
+    const Type* type = nullptr;             ///< of the instances
     std::vector<Check> checks;              ///< inputs narrower than what a wire brings
     std::vector<std::uint32_t> references;  ///< slots of VAR_IN_OUT, which a call fills
 };
@@ -96,6 +101,129 @@ std::string why(const std::byte* block, const Context& context, const NameOf&) {
 void shift(std::byte* block, std::int64_t by, const void* context) {
     for (const auto& part : static_cast<const KindContext*>(context)->with_moments)
         part.kind->shift(block + part.offset, by, part.kind->context);
+}
+
+/// Each value that outlives a scan, and where: `value(type, slot)`; `reference(slots, slot)` of a
+/// VAR_IN_OUT.
+template <class Value, class Reference>
+void visit(const Type& type, std::size_t slot, const Value& value, const Reference& reference) {
+    if (type.kind == Kind::array) {
+        const Type& element = *type.element;
+        const std::size_t step =
+            element.kind == Kind::block ? element.routine->frame : element.slots;
+        for (std::int64_t i = type.lower; i <= type.upper; ++i, slot += step)
+            visit(element, slot, value, reference);
+    } else if (type.kind == Kind::structure) {
+        for (const Variable* member : type.members)
+            visit(*member->type, slot + member->slot, value, reference);
+    } else if (type.kind == Kind::block) {
+        for (const Variable& member : type.routine->variables) {
+            if (!member.type || member.section == Section::temp) continue;
+            if (member.space == Space::reference)
+                reference(member.type->is_open ? 2 : 1, slot + member.slot);
+            else if (member.space == Space::frame && !member.constant)
+                visit(*member.type, slot + member.slot, value, reference);
+        }
+    } else {
+        value(type, slot);
+    }
+}
+
+std::size_t slots_of(const Type& type) {
+    return type.kind == Kind::text ? 1 + (type.length + 7U) / 8 : type.slots;
+}
+
+/// What a scan leaves to the next one, and the next call gives anew: temporaries, frames of
+/// functions and the addresses of VAR_IN_OUT, stays as in a new block.
+void take(std::byte* block, const std::byte* kept, const void* context) {
+    const auto& kind = *static_cast<const KindContext*>(context);
+    const auto copy = [&](std::size_t slot, std::size_t slots) {
+        std::memcpy(block + 8 * slot, kept + 8 * slot, 8 * slots);
+    };
+    if (kind.routine)
+        for (const std::size_t slot : {error_slot, error_id_slot, cut_slot}) copy(slot, 1);
+    visit(
+        *kind.type, 0, [&](const Type& type, std::size_t slot) { copy(slot, slots_of(type)); },
+        [](std::size_t, std::size_t) {});
+}
+
+bool is_handle(const Type& type, std::int64_t number, const Context& context) {
+    if (number < 0) return number == -1;
+    return number < context.blocks && context.types[number] == type.standard;
+}
+
+bool is_value(const Type& type, const std::byte* place, const KeptState& machine) {
+    const auto number = read<std::int64_t>(place);
+    switch (type.kind) {
+        case Kind::boolean:
+            return number == 0 || number == 1;
+        case Kind::enumeration:
+            return number >= 0 && number < std::ssize(type.values);
+        case Kind::integer:
+        case Kind::bits:
+            if (type.bits == 64 && !type.is_subrange) return true;
+            return number >= smallest(type) && number <= largest(type);
+        case Kind::real: {
+            const auto value = read<double>(place);
+            return type.bits == 64 || !std::isfinite(value) ||
+                   std::abs(value) <= double{std::numeric_limits<float>::max()};
+        }
+        case Kind::handle:
+            return is_handle(type, number, machine.context);
+        case Kind::text:
+            return number >= 0 && number <= std::int64_t{type.length};
+        case Kind::standard:
+            return lineshaft::is_valid(*type.standard, place, machine);
+        default:
+            return true;
+    }
+}
+
+/// Before each scan: a wire may have brought any number.
+bool is_checked(const KindContext& kind, std::size_t slot) {
+    return std::ranges::any_of(kind.checks, [&](const auto& check) { return check.slot == slot; });
+}
+
+bool is_valid(const std::byte* block, const KeptState& machine) {
+    const auto& kind = *static_cast<const KindContext*>(machine.context.kind);
+    bool good = true;
+    if (kind.routine)
+        good = read<std::uint64_t>(block + 8 * cut_slot) <= kind.code->places.size() &&
+               read<std::uint64_t>(block + 8 * error_slot) <= 1;
+    visit(
+        *kind.type, 0,
+        [&](const Type& type, std::size_t slot) {
+            good = good &&
+                   (is_value(type, block + 8 * slot, machine) || is_checked(kind, slot));
+        },
+        [](std::size_t, std::size_t) {});
+    return good;
+}
+
+template <class Do>
+void visit_standard(const Type& type, const Do& act) {
+    visit(
+        type, 0,
+        [&](const Type& inner, std::size_t slot) {
+            if (inner.kind == Kind::standard) act(*inner.standard, 8 * slot);
+        },
+        [](std::size_t, std::size_t) {});
+}
+
+void add_links(std::vector<std::size_t>& places, const BlockType& block) {
+    const auto& kind = *static_cast<const KindContext*>(block.context);
+    visit_standard(*kind.type, [&](const BlockType& inner, std::size_t offset) {
+        const std::size_t before = places.size();
+        if (inner.add_links) inner.add_links(places, inner);
+        for (std::size_t i = before; i < places.size(); ++i) places[i] += offset;
+    });
+}
+
+void mend_links(std::byte* block, const KeptState& machine) {
+    const auto& kind = *static_cast<const KindContext*>(machine.context.kind);
+    visit_standard(*kind.type, [&](const BlockType& inner, std::size_t offset) {
+        if (inner.mend_links) inner.mend_links(block + offset, machine);
+    });
 }
 
 void make(std::byte* place, const void* context) {
@@ -354,6 +482,7 @@ KindContext& add_kind(Library::Made& made, std::string name, const Type& type,
     const auto& image = made.generated.images.at(&type);
     kind.image = image.data();
     kind.size = 8 * image.size();
+    kind.type = &type;
     find_moments(type, 0, kind);
     return kind;
 }
@@ -420,6 +549,10 @@ BlockType block_type(const KindContext& kind, const std::shared_ptr<const Librar
     type.make = make;
     type.scan_blocks = scan_blocks;
     type.shift = shift;
+    type.valid = is_valid;
+    type.take = take;
+    type.add_links = add_links;
+    type.mend_links = mend_links;
     type.why = why;
     type.single = !kind.routine;
     if (kind.routine && kind.options.times) type.time_taken = 8 * std::size_t{time_slot};

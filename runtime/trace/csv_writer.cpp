@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -65,7 +66,7 @@ CsvWriter::CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& 
       signals_(setup.signals),
       style_(style),
       separator_(style.excel_de ? ';' : ',') {
-    begun.get(row_count_);
+    begun.get(row_count_, 0, std::numeric_limits<std::int64_t>::max());
     begun.get(checksum_);
     make_room();
 }

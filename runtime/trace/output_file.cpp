@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <utility>
 
 #include <fcntl.h>
@@ -32,6 +33,13 @@ std::string tail_of(const std::string& path, std::int64_t size) {
     return file ? tail : "";
 }
 
+/// Of a part's name: `.part`, `.part2`.
+bool is_suffix(std::string_view text) {
+    constexpr std::string_view begin = ".part";
+    return text.starts_with(begin) &&
+           text.find_first_not_of("0123456789", begin.size()) == std::string_view::npos;
+}
+
 bool is_name_of(int descriptor, const std::string& path) {
     struct stat opened {
     }, named{};
@@ -48,9 +56,12 @@ OutputFile::OutputFile(std::string path, std::int64_t keep) : path_(std::move(pa
 OutputFile::OutputFile(std::string path, StateReader& begun) : path_(std::move(path)) {
     std::int64_t size = 0;
     std::string tail;
-    begun.get(size);
+    begun.get(size, 0, std::numeric_limits<std::int64_t>::max());
     begun.get(tail);
     begun.get(suffix_);
+    begun.require(is_suffix(suffix_), fmt::format("the place in '{}'", path_));
+    if (!begun.ok()) set_error(fmt::format("the checkpoint does not fit '{}'", path_));
+    if (!begun.ok()) return;
     if (!look()) return;
     if (!regular_)
         open(0);

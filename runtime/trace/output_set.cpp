@@ -1,5 +1,6 @@
 #include "runtime/trace/output_set.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -72,12 +73,14 @@ void OutputSet::save(StateWriter& out) {
     }
 }
 
-void OutputSet::restore(StateReader& in) {
+void OutputSet::restore(StateReader& in, const std::vector<std::string>& known) {
     std::uint64_t count = 0;
-    in.get(count);
+    in.get(count, 0, known.size());
     for (; in.ok() && entries_.size() < count;) {
         std::string path, sidecar;
         in.get(path);
+        in.require(std::ranges::find(known, path) != known.end(), "a file");
+        if (!in.ok()) return;
         auto file = std::make_unique<OutputFile>(path, in);
         in.get(sidecar);
         check(*file);

@@ -43,9 +43,18 @@ void Recorder::save(StateWriter& out) const {
 void Recorder::restore(StateReader& in) {
     watch_.restore(in);
     in.get(ring_);
-    in.get(ring_next_);
-    for (std::int64_t* n : {&ring_rows_, &origin_, &rows_, &recorded_, &measurements_}) in.get(*n);
+    in.get(ring_next_, 0, ring_.empty() ? 0 : ring_.size() - row_words_);
+    in.require(ring_next_ % row_words_ == 0, "a trace");
+    in.get(ring_rows_, 0, setup_.pre_trigger);
+    in.get(origin_, 0, never - 1);
+    in.get(rows_, 0, never - 1);
+    in.get(recorded_, 0, never - 1);
+    in.get(measurements_, 0, setup_.repeat);
     in.get(recording_);
+    const bool is_full = setup_.samples > 0 && rows_ >= setup_.samples;
+    in.require(!recording_ || (measurements_ > 0 && !is_full), "a trace");
+    const auto next = static_cast<std::int64_t>(ring_next_ / row_words_);
+    in.require(ring_rows_ == setup_.pre_trigger || ring_rows_ == next, "a trace");
 }
 
 void Recorder::begin(std::int64_t time) {

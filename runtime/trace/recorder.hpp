@@ -67,6 +67,8 @@ class Recorder : public Observer {
     std::int64_t recorded() const { return recorded_; }          ///< rows given to the sink
     std::int64_t measurements() const { return measurements_; }  ///< begun so far
 
+    bool is_recording() const { return recording_; }  ///< a measurement has begun and not ended
+
     /// Called with the scan in which the trigger came; not for an immediate one.
     std::function<void(const Scan&)> on_trigger;
 

@@ -66,8 +66,9 @@ void TraceFiles::save(StateWriter& out) {
 void TraceFiles::restore(StateReader& in) {
     std::uint64_t files = 0;
     bool is_open = false;
-    in.get(files);
+    in.get(files, 0, static_cast<std::uint64_t>(setup_.repeat));
     in.get(is_open);
+    in.require(!is_open || files > 0, "a trace");
     while (in.ok() && paths_.size() < files) paths_.push_back(next_path());
     if (!in.ok() || !is_open) return;
     open(in);

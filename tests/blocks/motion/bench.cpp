@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/net/kept_memory.hpp"
 #include "runtime/program/program.hpp"
 #include "tests/blocks/scanning.hpp"
 
@@ -98,6 +99,9 @@ void MotionBench::resume(const std::string& state, std::int64_t next) {
 void MotionBench::step(std::int64_t milliseconds) {
     next_ += milliseconds;
     executive_->run_until((next_ - 1) * millisecond);
+    constexpr std::int64_t seldom = 16;
+    if (next_ % seldom == 0)
+        REQUIRE(KeptMemory(linked_.machine, now() * millisecond).damaged() == "");
 }
 
 std::string MotionBench::text(std::string_view signal) const {

@@ -10,7 +10,8 @@
 
 namespace lineshaft::test {
 
-/// A program of the standard blocks that is stepped millisecond by millisecond.
+/// A program of the standard blocks that is stepped millisecond by millisecond. Now and then it is
+/// asked whether a run could go on with its state, which must always be so.
 class MotionBench {
   public:
     /// The text of a program without its `run`; mistakes in it fail the test.

@@ -90,8 +90,12 @@ TEST_CASE("a set is taken up where it was saved, in whatever part that is") {
     }
     OutputSet set;
     StateReader in(state);
-    set.restore(in);
+    set.restore(in, {path});
     CHECK(in.at_end());
+    OutputSet of_others;
+    StateReader again(state);
+    of_others.restore(again, {folder / "other.txt"});
+    CHECK(!again.ok());
     CHECK(set.commit());
     CHECK(read(path) == "kept");
     CHECK(read(path + "-metadata.json") == "of kept");

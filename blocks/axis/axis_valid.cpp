@@ -1,0 +1,186 @@
+#include "blocks/axis/axis_valid.hpp"
+
+#include <set>
+#include <vector>
+
+#include "blocks/motion/cam_table.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+bool is_valid(const Moment& moment, const KeptState& machine) {
+    constexpr double longest = 1e-6;
+    return machine.is_moment(moment.time) && moment.later >= 0 && moment.later <= longest;
+}
+
+bool is_duration(double seconds) {
+    return std::isfinite(seconds) && seconds >= 0;
+}
+
+bool is_valid(const MotionPlan& plan) {
+    return plan.count <= MotionPlan::most_phases && is_duration(plan.duration);
+}
+
+bool is_valid(const PointMotion& motion, const KeptState& machine) {
+    return is_valid(motion.start, machine) && is_valid(motion.plan) &&
+           (motion.phase == 0 || motion.phase < motion.plan.count);
+}
+
+bool is_valid(const VelocityMotion& motion, const KeptState& machine) {
+    const auto most = static_cast<int>(motion.ramp.phases.size());
+    return is_valid(motion.start, machine) && motion.ramp.count >= 0 && motion.ramp.count <= most &&
+           is_duration(motion.ramp.duration);
+}
+
+bool is_valid(const MasterLink& link, const KeptState& machine) {
+    return is_one_of(link.source, MasterValueSource::actual_value) && link.axis >= -1 &&
+           (link.axis == -1 || is_instance<Axis>(machine.context, link.axis));
+}
+
+/// With points, so that it can be followed.
+bool is_cam(std::int64_t table, const KeptState& machine) {
+    if (!is_instance<CamTable>(machine.context, table)) return false;
+    return !machine.context.instance<CamTable>(table).cam(false).points.empty();
+}
+
+bool is_valid(const ProfileMotion& motion, bool is_followed, const KeptState& machine) {
+    if (!is_valid(motion.start, machine) || !is_duration(motion.duration)) return false;
+    return !is_followed || (is_cam(motion.table, machine) && motion.time_scale > 0);
+}
+
+bool is_valid(const Shortage& shortage) {
+    return is_one_of(shortage.limit, CurveFault::jerk);
+}
+
+bool is_valid(const SyncMotion& sync, bool is_followed, const KeptState& machine) {
+    if (!is_one_of(sync.law, SyncMotion::Law::cammed) ||
+        !is_one_of(sync.stage, SyncMotion::Stage::in_sync) || !is_valid(sync.coupling, machine) ||
+        !is_valid(sync.start, machine) || !is_valid(sync.transition.plan) ||
+        !is_valid(sync.shifting, machine) || !is_one_of(sync.way, SyncMotion::Way::rest) ||
+        !is_valid(sync.timed.plan) || !is_valid(sync.looked, machine))
+        return false;
+    if (!is_followed) return true;
+    return sync.coupling.master.axis >= 0 &&
+           (sync.law != SyncMotion::Law::cammed ||
+            is_cam(CamTableId::of(sync.coupling.cam).table, machine));
+}
+
+bool is_valid(const Axis::Running& running, const KeptState& machine) {
+    if (!running.exists()) return true;
+    return machine.is_link(running.place) && is_count(running.ticket) &&
+           is_valid(running.request, machine);
+}
+
+/// Every job once, each knows where it is, and the last is the last.
+bool is_valid(const Axis::JobList& list, JobPlace in, std::set<std::int64_t>& seen,
+              const KeptState& machine) {
+    std::int64_t last = nowhere;
+    for (std::int64_t place = list.first; place != nowhere;) {
+        if (!machine.is_link(place) || !seen.insert(place).second) return false;
+        const Job& job = machine.context.at<Job>(place);
+        if (job.in != in) return false;
+        last = place;
+        place = job.next;
+    }
+    return list.first == nowhere || last == list.last;
+}
+
+bool lists_are_valid(const Axis& axis, const KeptState& machine) {
+    std::set<std::int64_t> seen;
+    return is_valid(axis.inbox, JobPlace::inbox, seen, machine) &&
+           is_valid(axis.queue, JobPlace::queue, seen, machine);
+}
+
+/// A slave makes up for the steps since its last scan: not for more than a task would leave out.
+bool steps_are_few(const Axis& axis, const KeptState& machine) {
+    const SyncMotion& sync = axis.sync;
+    const bool steps = axis.doing == Axis::Doing::following_axes && sync.in_steps != 0 &&
+                       sync.stage == SyncMotion::Stage::in_transition;
+    constexpr double most = 1e6;
+    return !steps || (axis.transition_quantum > 0 &&
+                      sync.start.until(machine.now) <= most * axis.transition_quantum);
+}
+
+/// Nobody follows itself, over however many others: way_to ends.
+bool leads_nowhere(const Axis& axis, const KeptState& machine) {
+    std::vector<const Axis*> open{&axis};
+    std::set<std::int64_t> seen;
+    while (!open.empty()) {
+        const Axis& follower = *open.back();
+        open.pop_back();
+        if (follower.doing != Axis::Doing::following_axes) continue;
+        for (const MasterLink* link :
+             {&follower.sync.coupling.master, &follower.sync.coupling.second}) {
+            if (!is_valid(*link, machine)) return false;
+            if (link->axis < 0 || !seen.insert(link->axis).second) continue;
+            open.push_back(&machine.context.seen_instance<Axis>(link->axis));
+            if (open.back() == &axis) return false;
+        }
+    }
+    return true;
+}
+
+bool motions_are_valid(const Axis& axis, const KeptState& machine) {
+    using Doing = Axis::Doing;
+    return is_one_of(axis.doing, Doing::following_profile) &&
+           is_valid(axis.velocity_motion, machine) && is_valid(axis.point_motion, machine) &&
+           is_valid(axis.added_motion, machine) &&
+           is_valid(axis.profile_motion, axis.doing == Doing::following_profile, machine) &&
+           is_valid(axis.sync, axis.doing == Doing::following_axes, machine);
+}
+
+}  // namespace
+
+bool is_valid(const Coupling& coupling, const KeptState& machine) {
+    return is_valid(coupling.master, machine) && is_valid(coupling.second, machine) &&
+           is_one_of(coupling.combine, CombineMode::subtract) &&
+           is_one_of(coupling.transition, TransitionMode::step) &&
+           is_one_of(coupling.sync_mode, SyncMode::slow_down) &&
+           is_one_of(coupling.start_mode, StartMode::ramp_in);
+}
+
+bool is_valid(const Request& request, const KeptState& machine) {
+    if (request.command < Command::none ||
+        static_cast<std::size_t>(request.command) > state_table().size() ||
+        !is_one_of(request.mode, BufferMode::blending_high) ||
+        !is_one_of(request.direction, MoveDirection::current) ||
+        !is_valid(request.coupling, machine))
+        return false;
+    const std::int64_t table = CamTableId::of(request.coupling.cam).table;
+    return !is_profile(request.command) || table < 0 ||
+           is_instance<CamTable>(machine.context, table);
+}
+
+bool is_valid(const Job& job, const KeptState& machine) {
+    return is_valid(job.request, machine) && is_count(job.ticket) && machine.is_task(job.task) &&
+           is_one_of(job.in, JobPlace::queue) && is_one_of(job.progress, Progress::failed) &&
+           is_one_of(job.before, Progress::failed) &&
+           (job.told_by == nowhere || machine.is_task(job.told_by)) &&
+           is_one_of(job.error, static_cast<MotionError>(std::size(motion_error_names) - 1)) &&
+           is_valid(job.shortage) && (job.next == nowhere || machine.is_link(job.next));
+}
+
+bool is_valid(const Axis& axis, const KeptState& machine) {
+    return motions_are_valid(axis, machine) && is_valid(axis.active, machine) &&
+           is_valid(axis.added, machine) && is_valid(axis.phased, machine) &&
+           is_valid(axis.overriding, machine) && machine.is_task(axis.task) &&
+           is_count(axis.scan_index) && machine.is_moment(axis.scan_time) &&
+           machine.is_moment(axis.shown.time) && is_valid(axis.shortage) &&
+           is_count(axis.scan_interval) && is_count(axis.renamed) &&
+           is_count(axis.trigger_aborts) && leads_nowhere(axis, machine) &&
+           steps_are_few(axis, machine) && (!machine.is_live || lists_are_valid(axis, machine));
+}
+
+void mend(Axis& axis, const KeptState& machine) {
+    if (!lists_are_valid(axis, machine)) axis.inbox = axis.queue = {};
+}
+
+bool is_valid(const ServoDrive& drive, const KeptState& machine) {
+    return are_booleans(drive.checked, drive.in_simulation, drive.first_scan, drive.last_home) &&
+           drive.newest >= 0 && drive.newest <= ServoDrive::longest_delay &&
+           is_one_of(drive.contradiction, ServoError::no_time_constant) &&
+           machine.is_moment(drive.last_time);
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,70 @@
+#include "blocks/motion/motion_valid.hpp"
+
+#include "blocks/axis/axis_valid.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+/// Whether the list leads to the job, however it goes on: it may be that of a damaged axis.
+bool leads_to(std::int64_t first, std::int64_t job, const KeptState& machine) {
+    std::int64_t place = first;
+    for (std::size_t n = 0; n <= machine.links->size() && machine.is_link(place); ++n) {
+        if (place == job) return true;
+        place = machine.context.at<Job>(place).next;
+    }
+    return false;
+}
+
+/// In one list of one axis, or in none.
+bool is_where_it_says(const Job& job, const KeptState& machine) {
+    const Context& context = machine.context;
+    const std::int64_t place = context.place_of(job);
+    int lists = 0;
+    for (std::int64_t n = 0; n < context.blocks; ++n) {
+        if (!is_instance<Axis>(context, n)) continue;
+        const Axis& axis = context.instance<Axis>(n);
+        lists += leads_to(axis.inbox.first, place, machine);
+        lists += leads_to(axis.queue.first, place, machine);
+    }
+    return lists == (job.in == JobPlace::no_list ? 0 : 1);
+}
+
+}  // namespace
+
+bool is_valid(const CommandBlock& command, const KeptState& machine) {
+    return are_booleans(command.last_execute, command.told, command.started, command.execute,
+                        command.continuous_update, command.done, command.busy, command.active,
+                        command.command_aborted, command.error, command.reached,
+                        command.reached_shown, command.updating) &&
+           is_one_of(command.refusal,
+                     static_cast<MotionError>(std::size(motion_error_names) - 1)) &&
+           is_valid(command.pins, machine) && is_valid(command.job, machine) &&
+           (!machine.is_live || is_where_it_says(command.job, machine));
+}
+
+void mend(CommandBlock& command, const KeptState& machine) {
+    if (is_where_it_says(command.job, machine)) return;
+    command.job.in = JobPlace::no_list;
+    command.job.next = nowhere;
+}
+
+bool is_valid(const Home& home, const KeptState& machine) {
+    return are_booleans(home.signalled, home.last_signal) &&
+           is_valid(static_cast<const CommandBlock&>(home), machine);
+}
+
+bool is_valid(const CamTableSelect& select, const KeptState&) {
+    return are_booleans(select.last_execute);
+}
+
+bool is_valid(const TouchProbe& probe, const KeptState&) {
+    return are_booleans(probe.last_execute, probe.last_trigger, probe.told) &&
+           is_one_of(probe.phase, TouchProbe::Phase::refused);
+}
+
+bool is_valid(const DigitalCamSwitch& cam_switch, const KeptState&) {
+    return are_booleans(cam_switch.last_on, cam_switch.last_off);
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "blocks/motion/cam_table_select.hpp"
+#include "blocks/motion/moves.hpp"
+#include "blocks/motion/probes.hpp"
+#include "blocks/motion/settings.hpp"
+#include "blocks/motion/state_commands.hpp"
+#include "blocks/motion/synchronous.hpp"
+#include "runtime/model/kept_state.hpp"
+
+/// Which states that were kept commands can go on with.
+namespace lineshaft {
+
+bool is_valid(const CommandBlock& command, const KeptState& machine);
+/// Leaves a list that it is not in: its axis was not retained.
+void mend(CommandBlock& command, const KeptState& machine);
+bool is_valid(const Home& home, const KeptState& machine);
+bool is_valid(const CamTableSelect& select, const KeptState& machine);
+bool is_valid(const TouchProbe& probe, const KeptState& machine);
+bool is_valid(const DigitalCamSwitch& cam_switch, const KeptState& machine);
+
+}  // namespace lineshaft
