@@ -37,8 +37,10 @@ TEST_CASE("a run goes on with its own checkpoint, and is safe with any that is d
     }
 }
 
-TEST_CASE("every case goes on with its own checkpoint", "[resume]") {
+TEST_CASE("every case goes on with its own checkpoint, and is safe with any that is damaged",
+          "[resume]") {
     const Folder folder;
+    std::mt19937_64 random(43);
     int resumed = 0;
     const auto cases = all_cases();
     for (const std::string& program : cases)
@@ -49,6 +51,8 @@ TEST_CASE("every case goes on with its own checkpoint", "[resume]") {
             if (run.checkpoint().empty()) continue;
             CHECK(run.resume(run.checkpoint()));
             ++resumed;
+            for (int i = 0; i < rounds() / 5; ++i)
+                run.resume(damaged(run.checkpoint(), random_damage(random)));
         }
     CHECK(resumed > std::ssize(cases));
 }
