@@ -432,7 +432,9 @@ void Axis::fail_before(const Context& context, MotionError why) {
 void Axis::follow_in_sync(const Context& context, const MotionState& leader, const Cam& table) {
     base = sync.law_at(leader.position, table).led_by(leader);
     if (sync.finished != 0) base = velocity_motion.at(scan_time);
+    const Running before = active;
     if (sync.reached == 0 || !active.exists()) reach(context);
+    if (active.place != before.place || active.ticket != before.ticket) return;
     if (doing == Doing::following_axes && sync.law == Law::cammed && sync.finished == 0)
         look_for_end(context, leader, table);
 }

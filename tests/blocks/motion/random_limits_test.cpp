@@ -354,6 +354,11 @@ blocks:
 
 }  // namespace
 
+TEST_CASE("a cam that begins as a gear is reached looks for its end in a table of its own") {
+    LimitedAxes axes;
+    CHECK(axes.run(axes.draw(3907)) == "");
+}
+
 /// LINESHAFT_LIMITS makes it longer: tools/long.
 TEST_CASE("random programs never lead an axis out of its software limits") {
     const char* wanted = std::getenv("LINESHAFT_LIMITS");
