@@ -77,6 +77,7 @@ double within_period(double position, double period) {
 void Axis::scan(const Scan& now, const Context& context) {
     if (started == 0) start(now);
     watch_limits();
+    if (withdrawn != 0) blend_anew(context, {scan_time});
     task = context.task;
     scan_index = now.index;
     scan_time = now.time;
@@ -103,6 +104,7 @@ void Axis::shift(std::int64_t by) {
                            &profile_motion.start, &sync.start, &sync.looked, &sync.shifting.start})
         moment->time += by;
     shown.time += by;
+    scan_time += by;
 }
 
 void Axis::watch_drive(const Context& context, const Scan& now) {
@@ -144,7 +146,7 @@ void Axis::look(const Context& context, std::int64_t now) {
 }
 
 std::pair<MotionState, Moment> Axis::end_of_motion(const Context& context) const {
-    if (doing == Doing::moving_to_point) return {point_motion.plan.end, point_motion.end()};
+    if (doing == Doing::moving_to_point) return {point_motion.end_state, point_motion.end()};
     if (doing == Doing::following_velocity)
         return {velocity_motion.end_state(), velocity_motion.end()};
     return {profile_motion.end(profile_table(context)),
@@ -154,10 +156,14 @@ std::pair<MotionState, Moment> Axis::end_of_motion(const Context& context) const
 /// What comes next begins at that very moment; from standstill with the scan that it belongs to.
 void Axis::end_motion(const Context& context) {
     auto [end_state, at] = end_of_motion(context);
-    if (leg.exists != 0) return end_leg(at);
+    const bool is_cut = doing == Doing::moving_to_point && point_motion.is_cut();
+    if (leg.exists != 0 && !is_cut) return end_leg(at);
+    const Stretch rest{point_motion, leg};
+    const bool goes_on = is_cut && offset == 0 && added_goal == 0;
     if (end_state.velocity == 0 && at.until(scan_time) < 0) at = {scan_time};
     const bool pauses = paused != 0, of_profile = doing == Doing::following_profile;
     hold(end_state, at);
+    base = end_state;
     if (of_profile) lasting = end_state.velocity;
     if (added.exists()) extra = added_motion.at(at.time);
     paused = pauses ? 1 : 0;
@@ -173,7 +179,8 @@ void Axis::end_motion(const Context& context) {
         tell(context, active, Progress::reached);
     else
         end_done(context);
-    if (queue.first != nowhere && !is_held()) return begin_next(context, at);
+    if (queue.first != nowhere && !is_held())
+        return begin_next(context, at, goes_on ? &rest : nullptr);
     settle();
 }
 
@@ -202,8 +209,9 @@ void Axis::end_hold(const Context& context, const Moment& at) {
 
 void Axis::end_leg(const Moment& at) {
     const Leg next = leg;
-    base = point_motion.plan.end;
+    base = point_motion.end_state;
     point_motion.begin(base, next.goal, next.velocity, next.dynamics, at);
+    point_motion.end_at(next.passed, next.velocity);
     leg.exists = 0;
 }
 

@@ -75,6 +75,13 @@ struct Axis {
         std::int64_t exists = 0;
         double goal = 0, velocity = 0;
         Dynamics dynamics;
+        double passed = 0;  ///< where the job ends, on the way to the goal
+    };
+
+    /// What is left of a stretch (Ahead) when a move on it ends.
+    struct Stretch {
+        PointMotion motion;
+        Leg leg;
     };
 
     /// The set-point that was shown last, as long as software limits count.
@@ -115,6 +122,7 @@ struct Axis {
     std::int64_t renamed = 0;                     ///< times that the place got another position
     std::int64_t trigger_aborts = 0;
     Shown shown;
+    std::int64_t withdrawn = 0;  ///< a job has left the queue that `active` may count on
     std::int64_t started = 0;
     std::int64_t task = 0, scan_index = 0;  ///< of the scan under way, to stamp what is told
     std::int64_t scan_time = 0, scan_interval = 0;  ///< [ns]
@@ -258,9 +266,8 @@ struct Axis {
     void change(const Context& context, const Moment& at, Running& running, const Job& job);
     Progress begun() const;
     void wait(const Context& context, const Moment& at, Job& job);
-    void begin(const Context& context, const Moment& at, Job& job);
-    void stop_again(const Context& context, const Moment& at, Job& job);
-    void begin_next(const Context& context, const Moment& at);
+    void begin(const Context& context, const Moment& at, Job& job, const Stretch* along = nullptr);
+    void begin_next(const Context& context, const Moment& at, const Stretch* rest = nullptr);
     void abort_all(const Context& context, MotionError why = MotionError::none);
     void end_waiting(const Context& context, Progress how, MotionError why = MotionError::none);
     void end(const Context& context, Running& running, Progress how,
@@ -287,15 +294,17 @@ struct Axis {
 
     // axis_commands.cpp: what each command does.
     MotionError administer(const Context& context, const Moment& at, const Request& request);
-    MotionError set_position(const Request& request);
+    MotionError set_position(const Context& context, const Moment& at, const Request& request);
     MotionError set_override(const Context& context, const Moment& at, const Request& request);
-    MotionError write_parameter(std::int64_t number, double value);
+    MotionError write_parameter(const Context& context, std::int64_t number, double value);
     double* limit_of(std::int64_t number);
     void switch_power(const Context& context, const Moment& at, bool on);
     void come_to_rest(const Context& context);
+    void stop_again(const Context& context, const Moment& at, Job& job);
     void leave_error();
     void fail(const Context& context, const Moment& at, MotionError why);
     void brake(const Moment& at);
+    void come_to_stand(const Moment& at);
     void hold(const MotionState& as, const Moment& at);
     MotionError plan_any(const Context& context, const Request& request, const Moment& at,
                          const Start& from);
@@ -315,13 +324,25 @@ struct Axis {
     double modulo_target(const Request& request, const Start& from) const;
 
     // axis_blending.cpp: from one move into the next.
+    struct Before {
+        const Request& request;
+        double end = 0, direction = 0;
+    };
     struct Junction;
+    void foresee_way(const Request& request, double start, double direction, Ahead& to) const;
+    void foresee_speeds(const Request& request, const Request& before, double start,
+                        double direction, const Ahead* behind, Ahead& to) const;
+    Before before(const Context& context, const Job& job) const;
+    bool look_back(const Context& context, Job& job) const;
+    void look_ahead(const Context& context);
+    bool look_ahead(const Context& context, Job& last);
     void blend(const Context& context, const Moment& at);
+    void blend_anew(const Context& context, const Moment& at);
+    bool leads_along(const Stretch& stretch, const Job& next) const;
+    void go_along(const Stretch& stretch, const Job& next, const Start& from);
+    std::optional<Speeds> brakeable(const Speeds& exit, const Junction& junction) const;
     bool plan_to_junction(const Junction& junction, double end_velocity, PointMotion& motion,
                           Leg& rest, const Moment& at) const;
-    bool goes_on(const Request& next, const Junction& junction, double velocity_there) const;
-    double direction_of(const Request& next) const;
-    Start start_of_next() const;
 };
 
 /// Whether the axis does it at once, whatever it is doing.
@@ -329,6 +350,9 @@ bool is_administrative(Command command);
 
 /// Whether it moves to a position, wherever it begins.
 bool is_absolute(Command command);
+
+/// Whether it goes on from a position with a velocity.
+bool is_continuous(Command command);
 
 /// Whether it acts on what is on top of the motion.
 bool is_superimposed(Command command);

@@ -9,11 +9,6 @@ namespace lineshaft {
 
 namespace {
 
-bool is_continuous(Command command) {
-    return command == Command::move_continuous_absolute ||
-           command == Command::move_continuous_relative;
-}
-
 double sign_of(double x) {
     return x < 0 ? -1 : 1;
 }
@@ -41,6 +36,11 @@ Dynamics Axis::defaults() const {
 bool is_absolute(Command command) {
     using enum Command;
     return command == move_absolute || command == move_continuous_absolute || command == home;
+}
+
+bool is_continuous(Command command) {
+    return command == Command::move_continuous_absolute ||
+           command == Command::move_continuous_relative;
 }
 
 Dynamics Axis::dynamics_with(const Request& request, const Factors& by) const {
@@ -83,14 +83,14 @@ MotionError Axis::administer(const Context& context, const Moment& at, const Req
             if (state == AxisState::error_stop) leave_error();
             return MotionError::none;
         case Command::set_position:
-            return set_position(request);
+            return set_position(context, at, request);
         case Command::set_override:
             return set_override(context, at, request);
         case Command::abort_trigger:
             ++trigger_aborts;
             return MotionError::none;
         default:
-            return write_parameter(request.option, request.position);
+            return write_parameter(context, request.option, request.position);
     }
 }
 
@@ -145,7 +145,7 @@ void Axis::leave_error() {
     state = powered != 0 ? AxisState::standstill : AxisState::disabled;
 }
 
-MotionError Axis::set_position(const Request& request) {
+MotionError Axis::set_position(const Context& context, const Moment& at, const Request& request) {
     const bool relative = request.option != 0;
     if (modulo && !relative && (request.position < 0 || request.position >= period))
         return MotionError::out_of_range;
@@ -155,6 +155,7 @@ MotionError Axis::set_position(const Request& request) {
     relocated += by;
     goal += by;
     origin += by;
+    if (queue.first != nowhere) blend_anew(context, at);
     return MotionError::none;
 }
 
@@ -194,6 +195,13 @@ void Axis::brake(const Moment& at) {
     base = from;
     if (from.velocity == 0 && from.acceleration == 0) return hold(from, at);
     velocity_motion.begin(from, 0, defaults(), at);
+    doing = Doing::following_velocity;
+}
+
+/// What was to go on from the end of a move does not.
+void Axis::come_to_stand(const Moment& at) {
+    if (base.velocity == 0 && base.acceleration == 0) return;
+    velocity_motion.begin(base, 0, defaults(), at);
     doing = Doing::following_velocity;
 }
 
@@ -405,6 +413,7 @@ bool Axis::stands_sooner(const Dynamics& d, const Moment& at, const Start& from)
 
 /// The motion under way with other limits, or with another way left, and what is blended into it.
 void Axis::replan(const Context& context, const Moment& at) {
+    look_ahead(context);
     if (state == AxisState::disabled || state == AxisState::error_stop) return;
     const Start from = start_again();
     const Dynamics d = dynamics_of(active.request);

@@ -3,7 +3,10 @@
 namespace lineshaft {
 
 void Axis::send(const Context& context, const Scan& now, Job& job) {
-    if (job.in == JobPlace::queue) unlink(context, job, queue);
+    if (job.in == JobPlace::queue) {
+        unlink(context, job, queue);
+        withdrawn = 1;
+    }
     job.task = context.task;
     job.scan = now.index;
     if (job.in != JobPlace::inbox) link(context, job, inbox, JobPlace::inbox);
@@ -12,6 +15,7 @@ void Axis::send(const Context& context, const Scan& now, Job& job) {
 void Axis::link(const Context& context, Job& job, JobList& list, JobPlace in) const {
     const std::int64_t place = context.place_of(job);
     job.in = in;
+    job.previous = list.last;
     job.next = nowhere;
     (list.first == nowhere ? list.first : context.at<Job>(list.last).next) = place;
     list.last = place;
@@ -19,14 +23,13 @@ void Axis::link(const Context& context, Job& job, JobList& list, JobPlace in) co
 
 void Axis::unlink(const Context& context, Job& job, JobList& list) const {
     const std::int64_t place = context.place_of(job);
-    std::int64_t before = nowhere;
     std::int64_t at = list.first;
-    for (; at != place && at != nowhere; at = context.at<Job>(at).next) before = at;
+    while (at != place && at != nowhere) at = context.at<Job>(at).next;
     if (at == nowhere) return;
-    (before == nowhere ? list.first : context.at<Job>(before).next) = job.next;
-    if (list.last == place) list.last = before;
+    (job.previous == nowhere ? list.first : context.at<Job>(job.previous).next) = job.next;
+    (job.next == nowhere ? list.last : context.at<Job>(job.next).previous) = job.previous;
     job.in = JobPlace::no_list;
-    job.next = nowhere;
+    job.previous = job.next = nowhere;
 }
 
 Job& Axis::front(const Context& context) const {
@@ -110,7 +113,10 @@ void Axis::change(const Context& context, const Moment& at, Running& running, co
         running.request = before;
         return;
     }
-    if (queue.first != nowhere) blend(context, at);
+    if (queue.first != nowhere) {
+        look_ahead(context);
+        blend(context, at);
+    }
     tell(context, running, begun());
 }
 
@@ -121,19 +127,17 @@ Progress Axis::begun() const {
     return leaves ? Progress::approaching : Progress::active;
 }
 
-/// Behind what waits already. A command that has waited before, and is begun anew, is no longer
-/// where the motion was to be joined to it.
 void Axis::wait(const Context& context, const Moment& at, Job& job) {
     if (!may_wait(context, job.request))
         return tell(job, Progress::failed, MotionError::software_limit);
     link(context, job, queue, JobPlace::queue);
     tell(job, Progress::waiting);
     if (job.request.command == Command::reset) return;
-    const bool joins_another =
-        doing == Doing::moving_to_point &&
-        (leg.exists != 0 || point_motion.plan.end.velocity != lasting * factors.velocity);
-    if (joins_another) return replan(context, at);
-    if (&front(context) != &job) return;
+    const bool changes = look_ahead(context, job);
+    if (&front(context) != &job) {
+        if (changes) blend(context, at);
+        return;
+    }
     const bool holds =
         (state == AxisState::continuous_motion && doing == Doing::holding && !is_held()) ||
         (doing == Doing::following_axes && sync.holds());
@@ -142,7 +146,7 @@ void Axis::wait(const Context& context, const Moment& at, Job& job) {
 }
 
 /// From the state in which the axis is at that moment.
-void Axis::begin(const Context& context, const Moment& at, Job& job) {
+void Axis::begin(const Context& context, const Moment& at, Job& job, const Stretch* along) {
     const Request request = job.request;
     const bool aborts = request.mode == BufferMode::aborting;
     const bool stands = base.velocity == 0 && base.acceleration == 0;
@@ -150,8 +154,12 @@ void Axis::begin(const Context& context, const Moment& at, Job& job) {
         next_state(request.command, stands && !aborts ? AxisState::standstill : state);
     if (!next) return tell(job, Progress::failed, refusal());
     const Start from = start_of(request, !aborts);
-    const MotionError why = plan_any(context, request, at, from);
-    if (why != MotionError::none) return tell(job, Progress::failed, why);
+    if (along) {
+        go_along(*along, job, from);
+    } else if (const MotionError why = plan_any(context, request, at, from);
+               why != MotionError::none) {
+        return tell(job, Progress::failed, why);
+    }
     take_in(from.taken);
     if (aborts) {
         clear_added();
@@ -167,15 +175,20 @@ void Axis::begin(const Context& context, const Moment& at, Job& job) {
 }
 
 /// The first of the queue that can be begun.
-void Axis::begin_next(const Context& context, const Moment& at) {
+void Axis::begin_next(const Context& context, const Moment& at, const Stretch* rest) {
+    bool as_foreseen = true;
     while (queue.first != nowhere) {
         Job& job = front(context);
         unlink(context, job, queue);
-        begin(context, at, job);
+        const bool along = rest && as_foreseen && leads_along(*rest, job);
+        begin(context, at, job, along ? rest : nullptr);
+        as_foreseen = as_foreseen && !is_end(job.progress) && goal == job.ahead.goal;
         if (is_end(job.progress)) continue;
-        if (queue.first != nowhere) blend(context, at);
-        return;
+        if (along || queue.first == nowhere) return;
+        if (!as_foreseen) look_ahead(context);
+        return blend(context, at);
     }
+    if (!active.exists() && state == AxisState::discrete_motion) come_to_stand(at);
     settle();
 }
 

@@ -86,7 +86,7 @@ bool Axis::goes_on_inside() const {
     if (added.exists()) way.add(added_motion);
     const double further = added.exists() ? offset : offset + extra.position;
     if (leg.exists == 0) return leads_inside(way, further);
-    const Moment end = point_motion.end();
+    const Moment end = point_motion.start.after(point_motion.plan.duration);
     const Range passed = way.positions(std::max(0.0, -end.until(scan_time)));
     if (!bounds().contain({passed.least + further, passed.greatest + further})) return false;
     PointMotion rest;
@@ -209,8 +209,7 @@ bool Axis::may_wait(const Context& context, const Request& request) const {
     using enum Command;
     if (!software_limits) return true;
     Start there;
-    bool is_known =
-        doing == Doing::moving_to_point && !added.exists() && point_motion.plan.end.velocity == 0;
+    bool is_known = doing == Doing::moving_to_point && !added.exists() && lasting == 0;
     there.state.position = there.origin = goal + added_goal;
     const auto go_on = [&](const Request& next) {
         const bool has_target = is_absolute(next.command) &&

@@ -75,8 +75,27 @@ PlanResult PointMotion::begin(const MotionState& from, double goal, double end_v
         lineshaft::plan(limits, from, {goal, end_velocity}, plan);
     }
     start = at;
+    duration = plan.duration;
+    end_state = plan.end;
     phase = 0;
     return result;
+}
+
+void PointMotion::end_at(double position, double direction) {
+    duration = plan.duration;
+    end_state = plan.end;
+    if (!((plan.end.position - position) * direction > 0)) return;
+    const auto is_before = [&](double t) {
+        return (plan.at(t).position - position) * direction < 0;
+    };
+    double low = 0, high = plan.duration;
+    for (int i = 0; i < 64; ++i) {
+        const double middle = 0.5 * (low + high);
+        (is_before(middle) ? low : high) = middle;
+    }
+    duration = high;
+    end_state = plan.at(high);
+    end_state.position = position;
 }
 
 MotionState PointMotion::at(std::int64_t now) {

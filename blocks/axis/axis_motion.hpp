@@ -35,6 +35,7 @@ struct Dynamics {
     double velocity = 0, acceleration = 0, deceleration = 0, jerk = 0;
 
     bool valid() const;
+    bool operator==(const Dynamics&) const = default;
 };
 
 /// The lesser of acceleration and deceleration for both: of a motion that turns round.
@@ -47,12 +48,19 @@ double effective_jerk(double jerk, double acceleration, double deceleration);
 struct PointMotion {
     Moment start;
     MotionPlan plan;
+    double duration = 0;    ///< the plan's, or until the position that it passes
+    MotionState end_state;  ///< then
     std::size_t phase = 0;  ///< of the plan, where the last look found it
 
     /// The sign of end_velocity says in which direction the goal is passed. not_finite when the
     /// numbers leave what doubles can hold; *this is then unchanged.
     PlanResult begin(const MotionState& from, double goal, double end_velocity,
                      const Dynamics& dynamics, const Moment& at);
+
+    /// Ends where it passes a position, if the goal is beyond it: what follows goes on from there,
+    /// with velocity and acceleration. It must not turn round before.
+    void end_at(double position, double direction);
+    bool is_cut() const { return duration < plan.duration; }
 
     /// Whether it runs against the direction (its sign) at some time.
     bool turns(double direction) const;
@@ -61,8 +69,8 @@ struct PointMotion {
     void move(double by);
 
     MotionState at(std::int64_t now);
-    bool has_ended(std::int64_t now) const { return start.has_passed(plan.duration, now); }
-    Moment end() const { return start.after(plan.duration); }
+    bool has_ended(std::int64_t now) const { return start.has_passed(duration, now); }
+    Moment end() const { return start.after(duration); }
 };
 
 /// To a velocity, and on with it. In the least time from any state.

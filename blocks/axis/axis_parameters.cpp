@@ -35,7 +35,7 @@ std::optional<double> Axis::read_parameter(std::int64_t number) const {
 }
 
 /// What an axis needs to be able to stop stays above 0, and limits that count stay in order.
-MotionError Axis::write_parameter(std::int64_t number, double value) {
+MotionError Axis::write_parameter(const Context& context, std::int64_t number, double value) {
     if (number == 4 || number == 5) {
         const bool wanted = value != 0;
         if (wanted && (modulo || !(lowest_position < highest_position)))
@@ -51,6 +51,7 @@ MotionError Axis::write_parameter(std::int64_t number, double value) {
     if (!good || !std::isfinite(value)) return MotionError::out_of_range;
     const double before = *limit;
     *limit = value;
+    look_ahead(context);
     if (!software_limits || lowest_position < highest_position) return MotionError::none;
     *limit = before;
     return MotionError::out_of_range;

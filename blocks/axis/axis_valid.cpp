@@ -24,7 +24,7 @@ bool is_valid(const MotionPlan& plan) {
 
 bool is_valid(const PointMotion& motion, const KeptState& machine) {
     return is_valid(motion.start, machine) && is_valid(motion.plan) &&
-           (motion.phase == 0 || motion.phase < motion.plan.count);
+           is_duration(motion.duration) && (motion.phase == 0 || motion.phase < motion.plan.count);
 }
 
 bool is_valid(const VelocityMotion& motion, const KeptState& machine) {
@@ -79,7 +79,7 @@ bool is_valid(const Axis::JobList& list, JobPlace in, std::set<std::int64_t>& se
     for (std::int64_t place = list.first; place != nowhere;) {
         if (!machine.is_link(place) || !seen.insert(place).second) return false;
         const Job& job = machine.context.at<Job>(place);
-        if (job.in != in) return false;
+        if (job.in != in || job.previous != last) return false;
         last = place;
         place = job.next;
     }
@@ -158,7 +158,8 @@ bool is_valid(const Job& job, const KeptState& machine) {
            is_one_of(job.before, Progress::failed) &&
            (job.told_by == nowhere || machine.is_task(job.told_by)) &&
            is_one_of(job.error, static_cast<MotionError>(std::size(motion_error_names) - 1)) &&
-           is_valid(job.shortage) && (job.next == nowhere || machine.is_link(job.next));
+           is_valid(job.shortage) && (job.previous == nowhere || machine.is_link(job.previous)) &&
+           (job.next == nowhere || machine.is_link(job.next));
 }
 
 bool is_valid(const Axis& axis, const KeptState& machine) {

@@ -7,6 +7,7 @@
 
 #include "blocks/axis/axis_states.hpp"
 #include "blocks/axis/coupling.hpp"
+#include "blocks/axis/look_ahead.hpp"
 
 namespace lineshaft {
 
@@ -136,9 +137,9 @@ enum class JobPlace : std::int64_t { no_list, inbox, queue };
 /// `progress` was.
 struct Job {
     Request request;
-    std::int64_t ticket = 0;          ///< a number for each start of the command
-    std::int64_t task = 0, scan = 0;  ///< of the request
-    std::int64_t next = nowhere;      ///< place of the job behind it in a list of the axis
+    std::int64_t ticket = 0;                          ///< a number for each start of the command
+    std::int64_t task = 0, scan = 0;                  ///< of the request
+    std::int64_t previous = nowhere, next = nowhere;  ///< places of jobs in a list of the axis
     JobPlace in = JobPlace::no_list;
     Progress progress = Progress::sent, before = Progress::sent;
     std::int64_t has_reached =
@@ -147,6 +148,7 @@ struct Job {
     MotionError error = MotionError::none;  ///< of `failed`
     Shortage shortage;                      ///< of sync_limits
     double told_value = 0;                  ///< what the axis answers beside the progress
+    Ahead ahead;                            ///< in the queue
 };
 
 }  // namespace lineshaft
