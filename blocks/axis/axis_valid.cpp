@@ -83,7 +83,7 @@ bool is_valid(const Axis::JobList& list, JobPlace in, std::set<std::int64_t>& se
         last = place;
         place = job.next;
     }
-    return list.first == nowhere || last == list.last;
+    return last == list.last;
 }
 
 bool lists_are_valid(const Axis& axis, const KeptState& machine) {

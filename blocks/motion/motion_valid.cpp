@@ -46,7 +46,7 @@ bool is_valid(const CommandBlock& command, const KeptState& machine) {
 void mend(CommandBlock& command, const KeptState& machine) {
     if (is_where_it_says(command.job, machine)) return;
     command.job.in = JobPlace::no_list;
-    command.job.next = nowhere;
+    command.job.previous = command.job.next = nowhere;
 }
 
 bool is_valid(const Home& home, const KeptState& machine) {
