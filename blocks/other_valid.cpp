@@ -7,9 +7,7 @@ namespace {
 constexpr std::int64_t far = std::int64_t{1} << 61;
 
 bool is_valid(const PulseSegment& segment) {
-    const auto within = [](std::int64_t value) {
-        return value > -far && value < far;
-    };
+    const auto within = [](std::int64_t value) { return value > -far && value < far; };
     return within(segment.start_rate) && within(segment.end_rate) && within(segment.count);
 }
 

@@ -33,8 +33,8 @@ struct GearInPos : CommandBlock {
     void scan(const Scan& now, const Context& context);
 };
 
-/// MC_CamIn: as MC_GearInPos, onto a cam. MasterSyncPosition is a position on the cam. A cam that is
-/// not periodic is executed once.
+/// MC_CamIn: as MC_GearInPos, onto a cam. MasterSyncPosition is a position on the cam. A cam that
+/// is not periodic is executed once.
 struct CamIn : CommandBlock {
     bool start_sync = false, end_of_profile = false;
     double ends = 0;  ///< of the profile, that have been shown

@@ -157,7 +157,7 @@ class CsvReader {
     std::size_t blank_ = 0;   ///< lines up to it that may be the last
     std::size_t mistakes_ = 0;
     char separator_ = ',';
-    std::vector<CsvColumn*> order_;  ///< of the file's columns; null: not wanted
+    std::vector<CsvColumn*> order_;          ///< of the file's columns; null: not wanted
     std::unordered_set<std::string> names_;  ///< and titles, of the columns so far
     std::unordered_map<std::string_view, const CsvMetadata::Column*> described_;  ///< by title
     std::shared_ptr<const SourceFile> shown_;  ///< the last line with a mistake, alone

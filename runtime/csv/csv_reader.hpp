@@ -47,10 +47,10 @@ struct CsvOptions {
 };
 
 /// Reads a CSV file (RFC 4180) whose first line names its columns and whose cells are numbers,
-/// empty where a value is missing: a trace, or what another tool wrote. Quoted cells, lines that end
-/// with CR LF or CR, a byte order mark and blanks around numbers are taken; with semicolons between cells the decimal point
-/// may be a comma. A pipe will do. Empty when anything is wrong; then `out` says what, at most 20
-/// mistakes:
+/// empty where a value is missing: a trace, or what another tool wrote. Quoted cells, lines that
+/// end with CR LF or CR, a byte order mark and blanks around numbers are taken; with semicolons
+/// between cells the decimal point may be a comma. A pipe will do. Empty when anything is wrong;
+/// then `out` says what, at most 20 mistakes:
 ///   L0001  the file cannot be read
 ///   L0701  empty file, a first line that names no columns, or a program (YAML)
 ///   L0702  a column that was asked for is not there

@@ -62,8 +62,8 @@ struct BlockType {
     void (*take)(std::byte* block, const std::byte* kept, const void* context) = nullptr;
     /// Places in a block that others link into their lists, as the Job of a command.
     void (*add_links)(std::vector<std::size_t>& places, const BlockType& type) = nullptr;
-    /// Of a block that was retained when others were not: what it was linked with is forgotten where
-    /// that is not linked with it. Or null.
+    /// Of a block that was retained when others were not: what it was linked with is forgotten
+    /// where that is not linked with it. Or null.
     void (*mend_links)(std::byte* block, const KeptState& machine) = nullptr;
     bool sets_parameters = false;  ///< its own, while it runs
     /// Where its last error came from, for people; empty: nobody can say. Or null.
@@ -129,7 +129,8 @@ class Catalog {
     /// `why(const Context&, const NameOf&) const`, for what the number of its error cannot say. One
     /// that remembers moments has `shift(by)`, which moves them all by so many ns: a retained block
     /// goes on in another run. `is_valid(const Block&, const KeptState&)` beside it says which kept
-    /// states it can go on with, where its fields cannot say that. An input that is mostly wired alone may be named as `main_input`.
+    /// states it can go on with, where its fields cannot say that. An input that is mostly wired
+    /// alone may be named as `main_input`.
     template <class Block>
     Catalog& add() {
         static_assert(PlainData<Block>);
@@ -140,7 +141,9 @@ class Catalog {
         std::string_view structured_text;
         if constexpr (requires { Block::structured_text; })
             structured_text = Block::structured_text;
-        constexpr bool sets_parameters = requires { Block::sets_parameters; };
+        constexpr bool sets_parameters = requires {
+            Block::sets_parameters;
+        };
         return add({.name = Block::type,
                     .doc = Block::doc,
                     .fields = Block::fields(),

@@ -39,8 +39,8 @@ class StateWriter {
 };
 
 /// Reads in the order of the writing, whatever the bytes are: what is not there, and a boolean that
-/// is none, leaves the target as it was and clears ok(). Whoever reads a number that not every value
-/// is good for says so: require().
+/// is none, leaves the target as it was and clears ok(). Whoever reads a number that not every
+/// value is good for says so: require().
 class StateReader {
   public:
     explicit StateReader(std::string_view bytes) : left_(bytes) {}

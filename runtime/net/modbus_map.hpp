@@ -35,7 +35,8 @@ struct MappedSignal {
     std::int64_t multiplier = 1, divisor = 1;
     bool is_writable = false;
     Signal signal;
-    const std::byte* set_to = nullptr;  ///< what is set from outside, where that is what is read, too
+    const std::byte* set_to =
+        nullptr;  ///< what is set from outside, where that is what is read, too
 
     int end() const { return address + count; }
 };

@@ -173,8 +173,8 @@ void Executive::restore_memory(StateReader& in, KeptMemory& memory, const std::b
 void Executive::restore_forces(StateReader& in, const KeptMemory& memory) {
     restore_list(in, machine_, machine_.forces);
     for (const Force& force : machine_.forces) {
-        const bool is_of_block =
-            !force.block || std::ranges::count(machine_.blocks, force.block, &BlockPlace::live) == 1;
+        const bool is_of_block = !force.block || std::ranges::count(machine_.blocks, force.block,
+                                                                    &BlockPlace::live) == 1;
         in.require(force.live && is_of_block && memory.is_signal(force.live, force.type, false) &&
                        (!force.published || memory.is_signal(force.published, force.type, true)),
                    "a force");
@@ -187,9 +187,9 @@ void Executive::restore_forces(StateReader& in, const KeptMemory& memory) {
 void Executive::restore_mail(StateReader& in, const KeptMemory& memory) {
     restore_list(in, machine_, mail_);
     for (const Stimulus& value : mail_)
-        in.require(value.target && memory.is_signal(value.target, value.type, false) &&
-                       value.at >= now_,
-                   "a value from outside");
+        in.require(
+            value.target && memory.is_signal(value.target, value.type, false) && value.at >= now_,
+            "a value from outside");
     if (!in.ok()) mail_.clear();
 }
 
@@ -205,7 +205,8 @@ void Executive::restore_states(StateReader& in) {
     in.get(error_levels_);
     in.get(warned_);
     for (std::size_t i = 0; i < warned_.size(); ++i) {
-        const auto names = std::max<std::int64_t>(std::ssize(machine_.devices[i].warnings.names), 1);
+        const auto names =
+            std::max<std::int64_t>(std::ssize(machine_.devices[i].warnings.names), 1);
         in.require(is_count(warned_[i].count) && warned_[i].id >= 0 && warned_[i].id < names,
                    "a count of warnings");
     }
@@ -214,8 +215,8 @@ void Executive::restore_states(StateReader& in) {
     for (; in.ok() && running > 0; --running) {
         int index = 0;
         in.get(index, 0, static_cast<int>(states_.size()) - 1);
-        in.require(std::ranges::find(running_, index) == running_.end() &&
-                   state(index).active && state(index).remaining > 0);
+        in.require(std::ranges::find(running_, index) == running_.end() && state(index).active &&
+                   state(index).remaining > 0);
         running_.push_back(index);
     }
     for (std::size_t i = 0; i < states_.size(); ++i)
@@ -229,13 +230,13 @@ bool Executive::is_possible(const State& state, const State& fresh, const Task& 
     const auto is_later = [this](std::int64_t time) { return time >= now_; };
     return are_booleans(state.pending, state.active, state.may_err) &&
            is_later(later(state.due, task.every)) &&
-           (task.on_event == (state.due == never) || state.due == never) &&
-           state.released >= 0 && state.released <= now_ && is_count(state.cost) &&
-           is_count(state.remaining) && state.remaining <= state.cost &&
-           is_later(state.deadline) && is_count(state.index) && is_count(state.repeats) &&
-           state.next_stimulus <= task.stimuli.size() && state.next_cost <= task.costs.size() &&
-           state.first_error == fresh.first_error && state.scan.time >= 0 &&
-           state.scan.time <= now_ && state.scan.interval >= 0 && is_count(state.scan.index);
+           (task.on_event == (state.due == never) || state.due == never) && state.released >= 0 &&
+           state.released <= now_ && is_count(state.cost) && is_count(state.remaining) &&
+           state.remaining <= state.cost && is_later(state.deadline) && is_count(state.index) &&
+           is_count(state.repeats) && state.next_stimulus <= task.stimuli.size() &&
+           state.next_cost <= task.costs.size() && state.first_error == fresh.first_error &&
+           state.scan.time >= 0 && state.scan.time <= now_ && state.scan.interval >= 0 &&
+           is_count(state.scan.index);
 }
 
 }  // namespace lineshaft

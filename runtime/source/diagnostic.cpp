@@ -180,8 +180,8 @@ std::size_t longest_part(std::string_view word) {
 void Diagnostics::add(std::string code, Mark mark, std::string message, std::string help) {
     ++count_;
     if (list_.size() < most_kept)
-        list_.push_back({std::move(code), std::move(mark), kept(std::move(message)),
-                         kept(std::move(help))});
+        list_.push_back(
+            {std::move(code), std::move(mark), kept(std::move(message)), kept(std::move(help))});
 }
 
 void Diagnostics::warn(std::string code, Mark mark, std::string message, std::string help) {

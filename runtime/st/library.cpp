@@ -193,8 +193,7 @@ bool is_valid(const std::byte* block, const KeptState& machine) {
     visit(
         *kind.type, 0,
         [&](const Type& type, std::size_t slot) {
-            good = good &&
-                   (is_value(type, block + 8 * slot, machine) || is_checked(kind, slot));
+            good = good && (is_value(type, block + 8 * slot, machine) || is_checked(kind, slot));
         },
         [](std::size_t, std::size_t) {});
     return good;

@@ -124,9 +124,7 @@ bool ResultFile::resume(const std::function<void(const CaseResult&)>& take,
 bool ResultFile::take_whole(const std::function<void(const CaseResult&)>& take) const {
     const auto identity = read_identity(path_);
     const CaseRange range = chunk_.value_or(Chunk{}).range(study_.case_count());
-    if (!identity || !belongs(*identity) ||
-        identity->rows != range.count())
-        return false;
+    if (!identity || !belongs(*identity) || identity->rows != range.count()) return false;
     for (const bool second : {false, true}) {  // first whether it is whole
         ResultReader reader(path_, csv_);
         std::int64_t rows = 0;

@@ -25,8 +25,8 @@ class OutputSet {
     /// False when any step failed: see error().
     bool commit();
 
-    /// For a run that goes on later: restore() takes the files up that were there at save(), if they
-    /// are among `known`: no others are touched.
+    /// For a run that goes on later: restore() takes the files up that were there at save(), if
+    /// they are among `known`: no others are touched.
     void save(StateWriter& out);
     void restore(StateReader& in, const std::vector<std::string>& known);
 

@@ -10,8 +10,8 @@
 namespace lineshaft {
 
 /// The files of a trace's measurements: the trace `name` of `out.csv` goes to `out.name.csv`, one
-/// that may repeat to `out.name.1.csv`, `out.name.2.csv`, ... `out` is what the user named, the file
-/// of the trace without a name.
+/// that may repeat to `out.name.1.csv`, `out.name.2.csv`, ... `out` is what the user named, the
+/// file of the trace without a name.
 std::vector<std::string> trace_paths(const std::string& out, const TraceSetup& setup);
 
 /// Writes each measurement of a trace to a CSV file of its own, see CsvWriter and trace_paths().

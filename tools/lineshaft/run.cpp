@@ -5,9 +5,9 @@
 #include <spdlog/spdlog.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/csv/csv_metadata.hpp"
 #include "runtime/run/signal_json.hpp"
 #include "runtime/source/reader.hpp"
-#include "runtime/csv/csv_metadata.hpp"
 #include "runtime/trace/event_writer.hpp"
 #include "runtime/trace/trace_files.hpp"
 #include "tools/lineshaft/run_command.hpp"
