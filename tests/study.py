@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 PROGRAM = """lineshaft: 1
@@ -279,15 +280,29 @@ def interrupted(c, kill):
         rounds += 1
 
 
+def stops_at_once(c):
+    """A study that is told to stop while its workers read the program keeps nothing of what they could not read."""
+    for delay in range(200):
+        process = subprocess.Popen([c.lineshaft, "study", "plan.yaml", "--quiet", "--resume", "-j", "8", "-o",
+                                    "stopped.csv"], cwd=c.folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL)
+        time.sleep(delay % 50 * 3e-4)
+        process.send_signal(signal.SIGINT)
+        assert process.wait() in (1, -signal.SIGINT, 130)
+    c.run("--resume", "-o", "stopped.csv", expect=1)
+    assert c.bytes("stopped.csv") == c.bytes("one.csv")
+
+
 def kills(c):
     part = c.folder / "killed.csv.part"
     for kill in (signal.SIGKILL, signal.SIGINT, signal.SIGTERM):
-        for _ in range(100):
-            rounds = interrupted(c, kill)
+        rounds = 0
+        for _ in range(100):  # a study takes a few milliseconds on a quick machine, and may end first
+            rounds += interrupted(c, kill)
             assert c.bytes("killed.csv") == c.bytes("one.csv"), kill
-            if rounds:
+            if rounds >= 40:
                 break
-            (c.folder / "killed.csv").unlink()  # a study takes a few milliseconds on a quick machine
+            (c.folder / "killed.csv").unlink()
         assert rounds >= 1, "never interrupted"
         assert not part.exists()
         assert c.table("--resume", "-o", "killed.csv") == c.table("-o", "one.csv")
@@ -336,8 +351,8 @@ def command_lines(c):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         c = Checks(os.path.abspath(sys.argv[1]), Path(folder))
-        for check in (threads, contents, traces, chunks, broken_merges, replayed_files, kills, torn_rows, full_disks,
-                      command_lines):
+        for check in (threads, contents, traces, chunks, broken_merges, replayed_files, stops_at_once, kills, torn_rows,
+                      full_disks, command_lines):
             check(c)
             print("ok ", check.__name__, flush=True)
 

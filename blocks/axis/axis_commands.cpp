@@ -227,6 +227,7 @@ Axis::Start Axis::start_again() const {
 
 MotionError Axis::plan_any(const Context& context, const Request& request, const Moment& at,
                            const Start& from) {
+    shortage = {};
     if (is_synchronous(request.command)) return plan_sync(context, request, at, from);
     if (is_profile(request.command)) return plan_profile(context, request, at, from);
     return plan(request, at, from);

@@ -74,7 +74,7 @@ std::size_t InputFile::read(char* to, std::size_t size) {
 }
 
 bool InputFile::wait() {
-    if (!waits_ && !interrupt_requested) return true;
+    if (!waits_) return true;
     constexpr int wake_ms = 200;
     pollfd waiting{.fd = descriptor_, .events = POLLIN, .revents = 0};
     while (!interrupt_requested)
