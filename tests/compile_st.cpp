@@ -2,7 +2,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/source/yaml.hpp"
-#include "runtime/st/library.hpp"
+#include "runtime/st/library/library.hpp"
 
 /// Compiles Structured Text and prints what is wrong. Exit code 2 for an error.
 int main(int count, char** arguments) {

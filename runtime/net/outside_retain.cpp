@@ -4,7 +4,7 @@
 
 #include "runtime/net/outside.hpp"
 #include "runtime/source/text_hash.hpp"
-#include "runtime/st/library.hpp"
+#include "runtime/st/library/library.hpp"
 #include "runtime/version.hpp"
 
 namespace lineshaft {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "runtime/net/resolve.hpp"
-#include "runtime/st/library.hpp"
+#include "runtime/st/library/library.hpp"
 
 namespace lineshaft {
 

@@ -10,7 +10,7 @@
 #include "runtime/program/shared_folder.hpp"
 #include "runtime/program/templates.hpp"
 #include "runtime/source/encoding.hpp"
-#include "runtime/st/test_sources.hpp"
+#include "runtime/st/library/test_sources.hpp"
 
 namespace lineshaft {
 

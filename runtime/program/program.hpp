@@ -12,7 +12,7 @@
 #include "runtime/source/diagnostic.hpp"
 #include "runtime/source/reader.hpp"
 #include "runtime/source/yaml_files.hpp"
-#include "runtime/st/op_class.hpp"
+#include "runtime/st/code/op_class.hpp"
 
 namespace lineshaft {
 

@@ -8,7 +8,7 @@
 #include "runtime/net/outside.hpp"
 #include "runtime/net/resolve.hpp"
 #include "runtime/scan/expectations.hpp"
-#include "runtime/st/library.hpp"
+#include "runtime/st/library/library.hpp"
 #include "runtime/trace/report_setup.hpp"
 #include "runtime/trace/trace_setup.hpp"
 

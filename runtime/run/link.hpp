@@ -10,7 +10,7 @@
 #include "runtime/net/net.hpp"
 #include "runtime/program/program.hpp"
 #include "runtime/scan/judge.hpp"
-#include "runtime/st/library.hpp"
+#include "runtime/st/library/library.hpp"
 #include "runtime/trace/recorder.hpp"
 
 namespace lineshaft {

@@ -10,7 +10,7 @@
 #include "runtime/restart/checkpoint.hpp"
 #include "runtime/restart/retain.hpp"
 #include "runtime/run/origin.hpp"
-#include "runtime/st/library.hpp"
+#include "runtime/st/library/library.hpp"
 #include "runtime/trace/event_writer.hpp"
 #include "runtime/trace/pulse_writer.hpp"
 #include "runtime/trace/trace_files.hpp"

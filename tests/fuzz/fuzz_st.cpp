@@ -5,9 +5,9 @@
 #include <cstdlib>
 
 #include "blocks/catalog.hpp"
-#include "runtime/st/checker.hpp"
-#include "runtime/st/library.hpp"
-#include "runtime/st/parser.hpp"
+#include "runtime/st/check/checker.hpp"
+#include "runtime/st/library/library.hpp"
+#include "runtime/st/syntax/parser.hpp"
 
 using namespace lineshaft;
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "runtime/model/random.hpp"
-#include "runtime/st/library.hpp"
+#include "runtime/st/library/library.hpp"
 
 namespace lineshaft::test {
 

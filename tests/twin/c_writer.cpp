@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "runtime/st/elementary.hpp"
-#include "runtime/st/standard.hpp"
+#include "runtime/st/functions/standard.hpp"
+#include "runtime/st/types/elementary.hpp"
 
 namespace lineshaft::st {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "runtime/st/checker.hpp"
+#include "runtime/st/check/checker.hpp"
 
 namespace lineshaft::st {
 

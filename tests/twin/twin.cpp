@@ -20,9 +20,9 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/model/random.hpp"
-#include "runtime/st/elementary.hpp"
-#include "runtime/st/generator.hpp"
-#include "runtime/st/parser.hpp"
+#include "runtime/st/generate/generator.hpp"
+#include "runtime/st/syntax/parser.hpp"
+#include "runtime/st/types/elementary.hpp"
 #include "tests/fuzz/random_source.hpp"
 #include "tests/runtime/st/instance.hpp"
 #include "tests/twin/c_writer.hpp"

@@ -10,7 +10,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/model/value.hpp"
-#include "runtime/st/library.hpp"
+#include "runtime/st/library/library.hpp"
 #include "tools/bench/quickest.hpp"
 
 using namespace lineshaft;

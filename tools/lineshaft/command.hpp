@@ -12,7 +12,7 @@
 #include "runtime/model/catalog.hpp"
 #include "runtime/program/program.hpp"
 #include "runtime/source/input_file.hpp"
-#include "runtime/st/library.hpp"
+#include "runtime/st/library/library.hpp"
 
 namespace lineshaft {
 

@@ -10,7 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "runtime/run/side_by_side.hpp"
-#include "runtime/st/coverage.hpp"
+#include "runtime/st/library/coverage.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
 #include "tools/lineshaft/test_files.hpp"

@@ -9,7 +9,7 @@
 #include "runtime/fit/fit.hpp"
 #include "runtime/run/single_run.hpp"
 #include "runtime/source/encoding.hpp"
-#include "runtime/st/test_suite.hpp"
+#include "runtime/st/library/test_suite.hpp"
 #include "runtime/study/report.hpp"
 #include "runtime/study/study_reader.hpp"
 #include "tools/lineshaft/command.hpp"

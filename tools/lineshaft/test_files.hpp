@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "runtime/st/test_sources.hpp"
-#include "runtime/st/test_suite.hpp"
+#include "runtime/st/library/test_sources.hpp"
+#include "runtime/st/library/test_suite.hpp"
 #include "runtime/study/junit.hpp"
 
 namespace lineshaft {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/st/lexer.hpp"
-#include "runtime/st/test_suite.hpp"
+#include "runtime/st/library/test_suite.hpp"
+#include "runtime/st/syntax/lexer.hpp"
 #include "tests/runtime/st/instance.hpp"
 
 using namespace lineshaft;

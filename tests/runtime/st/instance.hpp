@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/st/library.hpp"
+#include "runtime/st/library/library.hpp"
 
 namespace lineshaft::st {
 

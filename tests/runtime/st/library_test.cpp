@@ -1,4 +1,4 @@
-#include "runtime/st/library.hpp"
+#include "runtime/st/library/library.hpp"
 
 #include <cstring>
 #include <random>
@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/st/elementary.hpp"
-#include "runtime/st/literals.hpp"
+#include "runtime/st/types/elementary.hpp"
+#include "runtime/st/types/literals.hpp"
 #include "tests/allocations.hpp"
 #include "tests/runtime/st/instance.hpp"
 

@@ -1,4 +1,4 @@
-#include "runtime/st/machine.hpp"
+#include "runtime/st/code/machine.hpp"
 
 #include <cstring>
 #include <random>

@@ -1,4 +1,4 @@
-#include "runtime/st/standard_source.hpp"
+#include "runtime/st/prelude/standard_source.hpp"
 
 #include <catch2/catch.hpp>
 

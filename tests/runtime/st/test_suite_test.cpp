@@ -1,4 +1,4 @@
-#include "runtime/st/test_suite.hpp"
+#include "runtime/st/library/test_suite.hpp"
 
 #include <filesystem>
 #include <numeric>
@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/st/test_sources.hpp"
-#include "runtime/st/value_text.hpp"
+#include "runtime/st/library/test_sources.hpp"
+#include "runtime/st/types/value_text.hpp"
 #include "tests/runtime/st/instance.hpp"
 
 using namespace lineshaft;

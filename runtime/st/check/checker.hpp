@@ -1,0 +1,27 @@
+#pragma once
+
+#include "runtime/st/types/types.hpp"
+
+namespace lineshaft::st {
+
+/// What the sources mean: names resolved, types known, conversions put in, constants folded.
+struct Checked {
+    std::deque<Type> types;
+    std::deque<Routine> routines;    ///< methods included
+    std::deque<Variable> variables;  ///< of structures, data blocks and the catalogue
+    std::vector<Global> globals;     ///< `VAR_GLOBAL` and data blocks, by number
+    std::vector<Routine*> order;     ///< each behind all that it calls or holds
+    std::deque<std::string> names;   ///< of variables that no source declares
+};
+
+/// Checks `tree` and notes in it what it found. With a mistake in `out` the result is of no use.
+///   L0904  a name that is not declared     L0905  a type that does not fit
+///   L0906  a conversion that may lose      L0907  wrong arguments
+///   L0908  a value out of range            L0909  declared twice
+///   L0910  not to be assigned              L0911  a recursion
+///   L0913  not a constant                  L0914  a statement in a wrong place
+///   L0921  warning: never used             L0922  warning: never reached
+///   L0923  warning: an argument not taken
+Checked check(Tree& tree, const Catalog& standard, Diagnostics& out);
+
+}  // namespace lineshaft::st

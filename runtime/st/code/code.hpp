@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runtime/model/catalog.hpp"
+#include "runtime/st/code/opcodes.hpp"
+#include "runtime/st/syntax/token.hpp"
+
+namespace lineshaft::st {
+
+/// Characters that the result of a function of texts may have.
+inline constexpr std::int64_t longest_result = 254;
+
+struct Instruction {
+    Op op = Op::leave;
+    std::uint32_t a = 0, b = 0, d = 0;
+    std::uint64_t c = 0;
+};
+static_assert(sizeof(Instruction) == 24);
+
+/// Of a value that is one of `count` from `lower` on: the place of an element in an array, or in
+/// `Code::numbers` of an enumeration's number or a CASE's jump.
+struct IndexTable {
+    std::int64_t lower = 0;
+    std::uint64_t count = 0, stride = 1, first = 0;
+
+    bool contains(std::uint64_t value) const {
+        return value - static_cast<std::uint64_t>(lower) < count;
+    }
+    std::uint64_t place(std::uint64_t value) const {
+        return first + (value - static_cast<std::uint64_t>(lower)) * stride;
+    }
+    auto operator<=>(const IndexTable&) const = default;
+};
+
+struct CodeRoutine {
+    std::string name;
+    std::uint32_t entry = 0, end = 0;  ///< instructions
+    std::uint32_t frame = 0;           ///< slots that it may use, from its base on
+    std::uint32_t depth = 0;           ///< levels of calls below it
+};
+
+/// What an Op::cover counts the passes of.
+struct CoverPoint {
+    enum class Kind : std::uint8_t { function, branch, statement };
+    Kind kind = Kind::statement;
+    Place place = {};
+    std::uint32_t branch = 0;  ///< of the IF, the CASE or the loop at `place`
+    std::string name = {};     ///< of a function
+};
+
+/// An instance begins with these slots. Then come the numbers of the data blocks among the
+/// program's instances, two slots for each call that runs (where it goes on, and on which frame),
+/// and its variables.
+enum HeaderSlot : std::uint32_t {
+    error_slot,     ///< BOOL: the last scan ended with a fault
+    error_id_slot,  ///< Fault
+    place_slot,     ///< the instruction it ended with
+    depth_slot,     ///< calls that ran then
+    time_slot,      ///< what its instructions took [ns], if they are counted
+    cut_slot,       ///< 1 + the first instruction that cut a text short, or 0
+    counts_slot,    ///< executed instructions of each class, if they are counted
+    globals_slot = counts_slot + op_classes,
+};
+
+/// What all the sources together are compiled to.
+struct Code {
+    std::vector<Instruction> instructions;
+    std::vector<Place> places;  ///< of each instruction
+    std::vector<CodeRoutine> routines;
+    std::vector<IndexTable> tables;
+    std::vector<std::int64_t> numbers;       ///< of enumerations; addresses of jumps
+    std::vector<std::uint64_t> images;       ///< frames as they begin
+    std::vector<const BlockType*> standard;  ///< kinds of the catalogue that are called
+    std::uint32_t globals = 0;
+    std::vector<CoverPoint> points;                      ///< only with coverage
+    std::unique_ptr<std::atomic<std::uint64_t>[]> hits;  ///< of each of them
+
+    /// Of a jump's address; none of this code if it is not one.
+    std::uint64_t place_of(std::uint64_t address) const {
+        const auto first = reinterpret_cast<std::uint64_t>(instructions.data());
+        const std::uint64_t distance = address - first;
+        return distance % sizeof(Instruction) == 0 ? distance / sizeof(Instruction) : ~distance;
+    }
+};
+
+/// Empty when every operand is within its routine's frame, every jump within its routine, every
+/// call's callee within the caller's frame, and every table is there; else what is wrong.
+std::string verify(const Code& code);
+
+/// An instruction a line: `12  add_lreal 4 5 6`.
+std::string listing(const Code& code);
+
+}  // namespace lineshaft::st

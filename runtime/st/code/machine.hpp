@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+
+#include "runtime/model/scan.hpp"
+#include "runtime/st/code/code.hpp"
+
+namespace lineshaft::st {
+
+/// Why a scan of a block ended before its end.
+enum class Fault : std::int64_t {
+    none,
+    array_bounds,
+    division_by_zero,
+    out_of_range,  ///< a value beyond its type: of a conversion, a subrange, an enumeration
+    no_reference,  ///< a block with VAR_IN_OUT that no other block calls, or has called yet
+    no_end,        ///< more loops and calls than one scan may have
+    assertion,     ///< of a TEST, which ends with it
+};
+
+inline constexpr std::string_view fault_names[] = {
+    "none", "array_bounds", "division_by_zero", "out_of_range", "no_reference", "no_end"};
+
+/// Executes the routine on an instance. Its header then says how that ended: the fault, and the
+/// instruction; the return addresses of the calls that ran are left for messages. Allocates
+/// nothing, throws nothing, and ends after at most `fuel` passes of loops and calls. With `times`
+/// of an instruction of each class [ns] the header has how many were executed and what they took.
+/// ADVANCE_TIME of a test changes `now`.
+Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, Scan& now,
+              const Context& context, std::int64_t fuel, const std::int64_t* times);
+
+}  // namespace lineshaft::st

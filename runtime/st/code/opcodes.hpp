@@ -1,0 +1,249 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "runtime/st/code/op_class.hpp"
+
+/// The instructions, one line each: name, class, operands, meaning.
+///
+///     Instruction   | op 16 | - | a 32 | b 32 | d 32 | c 64 |      a is written, the others are
+///     read
+///
+/// An operand is a slot of the frame (w written, r read), a number (n), an instruction of the same
+/// routine, by its address (j), a routine (f), an index table (x), the first of several slots (s),
+/// or unused (-). In meanings `I(b)` is slot b as std::int64_t, `U(b)` as std::uint64_t, `R(b)` as
+/// double; `put` writes; ELEMENT(b, c) finds the `element` of an array; GO(to) jumps to c,
+/// AGAIN(to) too and takes fuel; CALL and LEAVE begin and end a call; FAIL ends the scan with a
+/// fault.
+///
+/// Fused instructions do what two or more of the others do. Code that is counted has none.
+// clang-format off
+#define LINESHAFT_ST_OPCODES(OP)                                                                     \
+    OP(move, move, "wr--", put(a, U(b)))                                                             \
+    OP(copy, move, "ssn-", copy_slots(at(a), at(b), c))                                              \
+    OP(set_address, move, "ws--", put(a, frames.address_of(b)))                                      \
+    OP(set_global, move, "wn--", put(a, frames.global(b)))                                           \
+    OP(set_global_number, move, "wn--", put(a, frames.global_number(b)))                             \
+    OP(address_of_number, move, "wr--", put(a, (U(b) + 1) << 32))                                    \
+    OP(offset, move, "wrn-", put(a, U(b) + c))                                                       \
+    OP(offset_by, move, "wrr-", put(a, U(b) + U(c)))                                                 \
+    OP(load, move, "wrn-", put(a, word(target(U(b)), c)))                                            \
+    OP(store, move, "rrn-", set_word(target(U(b)), c, U(a)))                                         \
+    OP(load_byte, move, "wrn-", put(a, byte(target(U(b)), c)))                                       \
+    OP(store_byte, move, "rrn-", set_byte(target(U(b)), c, U(a)))                                    \
+    OP(get_byte, move, "wsn-", put(a, byte(at(b), c)))                                               \
+    OP(set_byte, move, "rsn-", set_byte(at(b), c, U(a)))                                             \
+    OP(load_at, move, "wsr-", put(a, word(at(b), U(c))))                                             \
+    OP(store_at, move, "rsr-", set_word(at(b), U(c), U(a)))                                          \
+    OP(copy_from, move, "srn-", copy_slots(at(a), target(U(b)), c))                                  \
+    OP(copy_between, move, "rrn-", copy_slots(target(U(a)), target(U(b)), c))                        \
+    OP(copy_to, move, "rsn-", copy_slots(target(U(a)), at(b), c))                                    \
+    OP(initialise, move, "snn-", std::memcpy(at(a), &code.images[b], 8 * std::size_t{c}))            \
+    OP(index, integer, "wrx-", ELEMENT(b, c); put(a, element))                                       \
+    OP(index_more, integer, "wrx-", ELEMENT(b, c); put(a, U(a) + element))                           \
+    OP(load_element, integer, "wsrx", ELEMENT(c, d); put(a, word(at(b), element)))                   \
+    OP(store_element, integer, "rsrx", ELEMENT(c, d); set_word(at(b), element, U(a)))                \
+    OP(within, integer, "-rx-", if (!within(U(b), c)) FAIL(out_of_range))                            \
+    OP(bound, integer, "-r--", if (U(b) == 0) FAIL(no_reference))                                     \
+    OP(jump, jump, "--j-", GO(to))                                                                   \
+    OP(jump_if, jump, "-rj-", if (U(b) != 0) GO(to))                                                 \
+    OP(jump_unless, jump, "-rj-", if (U(b) == 0) GO(to))                                             \
+    OP(move_twice, move, "wrwr", put(a, U(b)); put(c, U(d)))                                         \
+    OP(move_and_jump, jump, "wrj-", put(a, U(b)); GO(to))                                            \
+    OP(choose, jump, "-rx-", if (within(U(b), c)) GO(number_of(U(b), c)))                            \
+    OP(repeat, jump, "--j-", AGAIN(to))                                                              \
+    OP(repeat_if, jump, "-rj-", if (U(b) != 0) AGAIN(to))                                            \
+    OP(repeat_next, jump, "wsj-", if (next<std::int64_t>(at(a), at(b))) AGAIN(to))                   \
+    OP(skip_loop, jump, "rsj-", if (!is_within<std::int64_t>(at(a), at(b))) GO(to))                  \
+    OP(repeat_next_unsigned, jump, "wsj-", if (next<std::uint64_t>(at(a), at(b))) AGAIN(to))         \
+    OP(skip_loop_unsigned, jump, "rsj-", if (!is_within<std::uint64_t>(at(a), at(b))) GO(to))        \
+    OP(call, call, "sf--", CALL(frames.address_of(a), b))                                            \
+    OP(call_at, call, "rf--", CALL(U(a), b))                                                         \
+    OP(call_block, call, "sn--", frames.call_block(at(a), b))                                        \
+    OP(call_block_at, call, "rn--", frames.call_block(target(U(a)), b))                              \
+    OP(advance_time, call, "-rr-", if (!frames.advance(I(b), I(c))) FAIL(out_of_range); fuel = frames.fuel) \
+    OP(message, none, "r---", (void)a)                                                                \
+    OP(cover, none, "n---", code.hits[a].fetch_add(1, std::memory_order_relaxed))                     \
+    OP(stop, jump, "rrr-", FAIL(assertion))                                                           \
+    OP(leave, jump, "----", LEAVE)                                                                   \
+    OP(and_bits, boolean, "wrr-", put(a, U(b) & U(c)))                                               \
+    OP(or_bits, boolean, "wrr-", put(a, U(b) | U(c)))                                                \
+    OP(xor_bits, boolean, "wrr-", put(a, U(b) ^ U(c)))                                               \
+    OP(not_bool, boolean, "wr--", put(a, U(b) ^ 1))                                                  \
+    OP(not_bits, boolean, "wrn-", put(a, ~U(b) & mask(c)))                                           \
+    OP(swap_bytes, boolean, "wrn-", put(a, __builtin_bswap64(U(b)) >> (64 - c)))                      \
+    OP(lowest_bit, boolean, "wr--", put(a, U(b) == 0 ? 0 : static_cast<std::uint64_t>(std::countr_zero(U(b))))) \
+    OP(get_bits, boolean, "wrn-", put(a, U(b) >> (c & 63) & mask(c >> 6)))                           \
+    OP(set_bits, boolean, "wrn-", put(a, (U(a) & ~(mask(c >> 6) << (c & 63))) | (U(b) & mask(c >> 6)) << (c & 63))) \
+    OP(shr_signed, boolean, "wrr-", put(a, I(b) >> std::min<std::uint64_t>(U(c), 63)))               \
+    LINESHAFT_ST_SHIFTS(OP, 8) LINESHAFT_ST_SHIFTS(OP, 16)                                           \
+    LINESHAFT_ST_SHIFTS(OP, 32) LINESHAFT_ST_SHIFTS(OP, 64)                                          \
+    LINESHAFT_ST_INTEGER(OP, sint, std::int8_t) LINESHAFT_ST_INTEGER(OP, int, std::int16_t)          \
+    LINESHAFT_ST_INTEGER(OP, dint, std::int32_t) LINESHAFT_ST_INTEGER(OP, lint, std::int64_t)        \
+    LINESHAFT_ST_INTEGER(OP, usint, std::uint8_t) LINESHAFT_ST_INTEGER(OP, uint, std::uint16_t)      \
+    LINESHAFT_ST_INTEGER(OP, udint, std::uint32_t) LINESHAFT_ST_INTEGER(OP, ulint, std::uint64_t)    \
+    LINESHAFT_ST_ORDER(OP, signed, integer, I) LINESHAFT_ST_ORDER(OP, unsigned, integer, U)          \
+    LINESHAFT_ST_ORDER(OP, float, real, R)                                                           \
+    LINESHAFT_ST_EQUAL(OP, word, integer, U) LINESHAFT_ST_EQUAL(OP, float, real, R)                  \
+    OP(add_lreal, real, "wrr-", put(a, R(b) + R(c)))                                                 \
+    OP(sub_lreal, real, "wrr-", put(a, R(b) - R(c)))                                                 \
+    OP(mul_lreal, real, "wrr-", put(a, R(b) * R(c)))                                                 \
+    OP(div_lreal, real, "wrr-", put(a, R(b) / R(c)))                                                 \
+    OP(add_real, real, "wrr-", put(a, narrow(R(b) + R(c))))                                          \
+    OP(sub_real, real, "wrr-", put(a, narrow(R(b) - R(c))))                                          \
+    OP(mul_real, real, "wrr-", put(a, narrow(R(b) * R(c))))                                          \
+    OP(div_real, real, "wrr-", put(a, narrow(R(b) / R(c))))                                          \
+    OP(mod_lreal, real, "wrr-", put(a, std::fmod(R(b), R(c))))                                       \
+    OP(neg_lreal, real, "wr--", put(a, -R(b)))                                                       \
+    OP(abs_lreal, real, "wr--", put(a, std::fabs(R(b))))                                             \
+    OP(abs_signed, integer, "wr--", put(a, I(b) < 0 ? 0 - U(b) : U(b)))                              \
+    OP(min_lreal, real, "wrr-", put(a, R(c) < R(b) ? R(c) : R(b)))                                   \
+    OP(max_lreal, real, "wrr-", put(a, R(b) < R(c) ? R(c) : R(b)))                                   \
+    OP(min_signed, integer, "wrr-", put(a, I(c) < I(b) ? I(c) : I(b)))                               \
+    OP(max_signed, integer, "wrr-", put(a, I(b) < I(c) ? I(c) : I(b)))                               \
+    OP(min_unsigned, integer, "wrr-", put(a, U(c) < U(b) ? U(c) : U(b)))                             \
+    OP(max_unsigned, integer, "wrr-", put(a, U(b) < U(c) ? U(c) : U(b)))                             \
+    OP(sqrt, real, "wr--", put(a, std::sqrt(R(b))))                                                  \
+    OP(ln, real, "wr--", put(a, Sleef_cinz_logd1_u10purec(R(b))))                                    \
+    OP(log10, real, "wr--", put(a, Sleef_cinz_log10d1_u10purec(R(b))))                               \
+    OP(exp, real, "wr--", put(a, Sleef_cinz_expd1_u10purec(R(b))))                                   \
+    OP(sin, real, "wr--", put(a, Sleef_cinz_sind1_u10purec(R(b))))                                   \
+    OP(cos, real, "wr--", put(a, Sleef_cinz_cosd1_u10purec(R(b))))                                   \
+    OP(tan, real, "wr--", put(a, Sleef_cinz_tand1_u10purec(R(b))))                                   \
+    OP(asin, real, "wr--", put(a, Sleef_cinz_asind1_u10purec(R(b))))                                 \
+    OP(acos, real, "wr--", put(a, Sleef_cinz_acosd1_u10purec(R(b))))                                 \
+    OP(atan, real, "wr--", put(a, Sleef_cinz_atand1_u10purec(R(b))))                                 \
+    OP(atan2, real, "wrr-", put(a, Sleef_cinz_atan2d1_u10purec(R(b), R(c))))                         \
+    OP(power, real, "wrr-", put(a, Sleef_cinz_powd1_u10purec(R(b), R(c))))                           \
+    OP(floor, real, "wr--", put(a, std::floor(R(b))))                                                \
+    OP(ceil, real, "wr--", put(a, std::ceil(R(b))))                                                  \
+    OP(truncate, real, "wr--", put(a, std::trunc(R(b))))                                             \
+    OP(round, real, "wr--", put(a, std::nearbyint(R(b))))                                            \
+    OP(narrow, real, "wr--", put(a, narrow(R(b))))                                                   \
+    OP(real_from_signed, real, "wr--", put(a, double{static_cast<float>(I(b))}))                     \
+    OP(real_from_unsigned, real, "wr--", put(a, double{static_cast<float>(U(b))}))                   \
+    OP(lreal_from_signed, real, "wr--", put(a, static_cast<double>(I(b))))                           \
+    OP(lreal_from_unsigned, real, "wr--", put(a, static_cast<double>(U(b))))                         \
+    OP(real_bits, real, "wr--", put(a, std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(R(b)))})) \
+    OP(real_of_bits, real, "wr--", put(a, double{std::bit_cast<float>(static_cast<std::uint32_t>(U(b)))})) \
+    OP(is_finite, real, "wr--", put(a, std::uint64_t{std::isfinite(R(b))}))                          \
+    OP(text_copy, text, "rrr-", if (word(target(U(b)), 0) > U(c)) frames.note_cut(pc); copy_text(target(U(a)), target(U(b)), U(c))) \
+    OP(text_append, text, "rrs-", if (!append_text(target(U(a)), target(U(b)), I(c), I(c + 1))) frames.note_cut(pc)) \
+    OP(text_length, text, "wr--", put(a, word(target(U(b)), 0)))                                     \
+    OP(text_compare, text, "wrr-", put(a, compare_texts(target(U(b)), target(U(c)))))                \
+    OP(text_character, text, "wrrn", if (const auto n = character_of(target(U(b)), I(c), d)) put(a, *n); else FAIL(array_bounds)) \
+    OP(set_character, text, "rrr-", if (!set_character(target(U(b)), I(c), U(a))) FAIL(array_bounds)) \
+    OP(text_find, text, "wrr-", put(a, find_text(target(U(b)), target(U(c)))))                       \
+    OP(text_of_signed, text, "rrn-", write_number(target(U(a)), I(b), c != 0))                       \
+    OP(text_of_unsigned, text, "rrn-", write_number(target(U(a)), U(b), c != 0))                     \
+    OP(text_of_real, text, "rr--", write_number(target(U(a)), R(b)))                                 \
+    OP(text_of_float, text, "rr--", write_number(target(U(a)), static_cast<float>(R(b))))            \
+    OP(integer_of_text, text, "wr--", put(a, number_of_text<std::uint64_t>(target(U(b)))))            \
+    OP(real_of_text, text, "wr--", put(a, number_of_text<double>(target(U(b)))))                     \
+    OP(text_of_truth, text, "rr--", write_text(target(U(a)), U(b) != 0 ? "TRUE" : "FALSE"))          \
+    OP(text_of_time, text, "rrn-", write_time(target(U(a)), c, I(b)))                               \
+    OP(truth_of_text, text, "wr--", put(a, truth_of_text(target(U(b)))))                             \
+    OP(time_of_text, text, "wrn-", put(a, time_of_text(c, target(U(b)))))                            \
+    LINESHAFT_ST_EXACT(OP, signed, std::int64_t) LINESHAFT_ST_EXACT(OP, unsigned, std::uint64_t)      \
+    OP(from_bcd, integer, "wr--", if (const auto n = from_bcd(U(b))) put(a, *n); else FAIL(out_of_range)) \
+    OP(to_bcd, integer, "wrn-", if (const auto n = to_bcd(U(b), c)) put(a, *n); else FAIL(out_of_range)) \
+    OP(is_bcd, integer, "wr--", put(a, std::uint64_t{from_bcd(U(b)).has_value()}))                    \
+    OP(time_now, move, "w---", put(a, frames.now.time))                                               \
+    OP(select, move, "wrs-", put(a, word(at(c), U(b) & 1)))                                          \
+    OP(look_up, move, "wrx-", if (!within(U(b), c)) FAIL(out_of_range); put(a, number_of(U(b), c)))  \
+    LINESHAFT_ST_PAIRS(OP, lreal, real, R, exact) LINESHAFT_ST_PAIRS(OP, real, real, R, narrow)      \
+    LINESHAFT_ST_PAIRS(OP, int, integer, U, wrap<std::int16_t>)                                      \
+    LINESHAFT_ST_PAIRS(OP, dint, integer, U, wrap<std::int32_t>)                                     \
+    LINESHAFT_ST_PAIRS(OP, lint, integer, U, wrap<std::int64_t>)                                     \
+    LINESHAFT_ST_COUNT(OP, int, std::int16_t) LINESHAFT_ST_COUNT(OP, dint, std::int32_t)             \
+    LINESHAFT_ST_COUNT(OP, lint, std::int64_t)
+
+/// Arithmetic in a width: what is beyond it wraps. Division truncates towards zero.
+#define LINESHAFT_ST_INTEGER(OP, type, T)                                                            \
+    OP(add_##type, integer, "wrr-", put(a, wrap<T>(U(b) + U(c))))                                    \
+    OP(sub_##type, integer, "wrr-", put(a, wrap<T>(U(b) - U(c))))                                    \
+    OP(mul_##type, integer, "wrr-", put(a, wrap<T>(U(b) * U(c))))                                    \
+    OP(div_##type, integer, "wrr-", if (U(c) == 0) FAIL(division_by_zero); put(a, quotient<T>(U(b), U(c)))) \
+    OP(mod_##type, integer, "wrr-", if (U(c) == 0) FAIL(division_by_zero); put(a, remainder<T>(U(b), U(c)))) \
+    OP(neg_##type, integer, "wr--", put(a, wrap<T>(0 - U(b))))                                       \
+    OP(wrap_##type, integer, "wr--", put(a, wrap<T>(U(b))))                                          \
+    OP(round_##type, real, "wr--", if (!fits<T>(std::nearbyint(R(b)))) FAIL(out_of_range); put(a, whole<T>(std::nearbyint(R(b)))))
+
+/// Arithmetic of 64 bits: what is beyond them is a fault.
+#define LINESHAFT_ST_EXACT(OP, type, T)                                                              \
+    OP(add_exact_##type, integer, "wrr-", T sum; if (__builtin_add_overflow(T(U(b)), T(U(c)), &sum)) FAIL(out_of_range); put(a, sum)) \
+    OP(sub_exact_##type, integer, "wrr-", T sum; if (__builtin_sub_overflow(T(U(b)), T(U(c)), &sum)) FAIL(out_of_range); put(a, sum)) \
+    OP(mul_exact_##type, integer, "wrr-", T sum; if (__builtin_mul_overflow(T(U(b)), T(U(c)), &sum)) FAIL(out_of_range); put(a, sum))
+
+#define LINESHAFT_ST_SHIFTS(OP, bits)                                                                \
+    OP(shl_##bits, boolean, "wrr-", put(a, shift_left<bits>(U(b), U(c))))                            \
+    OP(shr_##bits, boolean, "wrr-", put(a, shift_right<bits>(U(b), U(c))))                           \
+    OP(rol_##bits, boolean, "wrr-", put(a, rotate_left<bits>(U(b), U(c))))                           \
+    OP(ror_##bits, boolean, "wrr-", put(a, rotate_right<bits>(U(b), U(c))))
+
+/// Comparisons, jumps where they do not hold, loops and moves where they do.
+#define LINESHAFT_ST_ORDER(OP, type, class, V)                                                       \
+    OP(lt_##type, class, "wrr-", put(a, std::uint64_t{V(b) < V(c)}))                                 \
+    OP(le_##type, class, "wrr-", put(a, std::uint64_t{V(b) <= V(c)}))                                \
+    OP(jump_unless_lt_##type, class, "rrj-", if (!(V(a) < V(b))) GO(to))                             \
+    OP(jump_unless_le_##type, class, "rrj-", if (!(V(a) <= V(b))) GO(to))                            \
+    OP(move_if_lt_##type, class, "rrwr", if (V(a) < V(b)) put(c, U(d)))                              \
+    OP(move_if_le_##type, class, "rrwr", if (V(a) <= V(b)) put(c, U(d)))                             \
+    OP(repeat_if_lt_##type, class, "rrj-", if (V(a) < V(b)) AGAIN(to))                               \
+    OP(repeat_if_le_##type, class, "rrj-", if (V(a) <= V(b)) AGAIN(to))
+
+#define LINESHAFT_ST_EQUAL(OP, type, class, V)                                                       \
+    OP(eq_##type, class, "wrr-", put(a, std::uint64_t{V(b) == V(c)}))                                \
+    OP(ne_##type, class, "wrr-", put(a, std::uint64_t{V(b) != V(c)}))                                \
+    OP(jump_unless_eq_##type, class, "rrj-", if (!(V(a) == V(b))) GO(to))                            \
+    OP(jump_unless_ne_##type, class, "rrj-", if (!(V(a) != V(b))) GO(to))                            \
+    OP(move_if_eq_##type, class, "rrwr", if (V(a) == V(b)) put(c, U(d)))                             \
+    OP(move_if_ne_##type, class, "rrwr", if (V(a) != V(b)) put(c, U(d)))                             \
+    OP(repeat_if_eq_##type, class, "rrj-", if (V(a) == V(b)) AGAIN(to))                              \
+    OP(repeat_if_ne_##type, class, "rrj-", if (V(a) != V(b)) AGAIN(to))
+
+/// Two operations, each rounded or wrapped (`to`): `add_mul` is `(b + c) * d`, `add_from` is
+/// `d - (b + c)`.
+#define LINESHAFT_ST_PAIRS(OP, type, class, V, to)                                                   \
+    LINESHAFT_ST_PAIR(OP, add, type, class, V, to, V(b) + V(c))                                      \
+    LINESHAFT_ST_PAIR(OP, sub, type, class, V, to, V(b) - V(c))                                      \
+    LINESHAFT_ST_PAIR(OP, mul, type, class, V, to, V(b) * V(c))
+
+#define LINESHAFT_ST_PAIR(OP, first, type, class, V, to, value)                                      \
+    OP(first##_add_##type, class, "wrrr", put(a, to(to(value) + V(d))))                              \
+    OP(first##_sub_##type, class, "wrrr", put(a, to(to(value) - V(d))))                              \
+    OP(first##_mul_##type, class, "wrrr", put(a, to(to(value) * V(d))))                              \
+    OP(first##_from_##type, class, "wrrr", put(a, to(V(d) - to(value))))
+
+/// The end of a WHILE that counts.
+#define LINESHAFT_ST_COUNT(OP, type, T)                                                              \
+    OP(count_lt_##type, integer, "wrjr", put(a, wrap<T>(U(a) + U(b))); if (I(a) < I(d)) AGAIN(to))   \
+    OP(count_le_##type, integer, "wrjr", put(a, wrap<T>(U(a) + U(b))); if (I(a) <= I(d)) AGAIN(to))
+// clang-format on
+
+namespace lineshaft::st {
+
+enum class Op : std::uint16_t {
+#define OP(name, class, operands, ...) name,
+    LINESHAFT_ST_OPCODES(OP)
+#undef OP
+};
+
+struct OpInfo {
+    std::string_view name;
+    OpClass cost;
+    std::string_view operands;
+};
+
+inline constexpr OpInfo op_infos[] = {
+#define OP(name, class, operands, ...) {#name, OpClass::class, operands},
+    LINESHAFT_ST_OPCODES(OP)
+#undef OP
+};
+
+constexpr const OpInfo& info(Op op) {
+    return op_infos[static_cast<std::size_t>(op)];
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,80 @@
+#include "runtime/st/library/compiled.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <set>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "runtime/st/library/coverage.hpp"
+#include "runtime/st/prelude/standard_source.hpp"
+#include "runtime/st/syntax/parser.hpp"
+
+namespace lineshaft::st {
+
+Compiled::~Compiled() {
+    if (generated.code.hits) record(generated.code);
+}
+
+bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOptions options,
+             const SourceFile* tests) {
+    bool uses_standard = false;
+    std::set<const BlockType*> used;
+    for (const auto& source : to.sources) {
+        Tokens tokens = read_tokens(source, out);
+        uses_standard = uses_standard || uses_standard_source(tokens);
+        for (const BlockType& type : standard.types())
+            if (uses_source_of(type, tokens)) used.insert(&type);
+        parse(std::move(tokens), to.tree, out, source.get() == tests);
+    }
+    to.tree.leave_lost_out();
+    if (uses_standard) parse(read_tokens(standard_source(), out), to.tree, out);
+    for (const BlockType& type : standard.types())
+        if (used.contains(&type))
+            parse(read_tokens(to.of_standard.emplace_back(source_of(type)), out), to.tree, out);
+    to.checked = check(to.tree, standard, out);
+    if (!out.empty()) return false;
+    options.covered = is_covered();
+    to.generated = generate(to.checked, out, options);
+    if (!out.empty()) return false;
+    const std::string wrong = verify(to.generated.code);
+    if (!wrong.empty()) throw std::logic_error("Structured Text was compiled wrong: " + wrong);
+    Code& code = to.generated.code;
+    if (is_covered())
+        code.hits = std::make_unique<std::atomic<std::uint64_t>[]>(code.points.size());
+    return true;
+}
+
+FaultPlace fault_of(const Code& code, const std::byte* instance) {
+    const auto slot = [&](std::uint32_t number) {
+        std::uint64_t value = 0;
+        std::memcpy(&value, instance + 8 * std::size_t{number}, sizeof value);
+        return value;
+    };
+    const auto place = [&](std::uint64_t instruction) { return code.places[instruction].mark(); };
+    const auto routine = [&](std::uint64_t instruction) -> const std::string& {
+        std::size_t i = 0;
+        while (code.routines[i].end <= instruction) ++i;
+        return code.routines[i].name;
+    };
+    FaultPlace found;
+    found.fault = static_cast<Fault>(slot(error_id_slot));
+    if (found.fault == Fault::none) return found;
+    std::uint64_t at = slot(place_slot);
+    found.mark = place(at);
+    const std::uint32_t stack = globals_slot + code.globals;
+    for (std::uint64_t level = slot(depth_slot);; --level) {
+        found.calls.push_back(fmt::format("{} (line {})", routine(at), place(at).line));
+        if (level == 0) return found;
+        at = slot(stack + 2 * static_cast<std::uint32_t>(level - 1)) - 1;
+    }
+}
+
+std::optional<Mark> cut_of(const Code& code, const std::byte* instance) {
+    std::uint64_t behind = 0;
+    std::memcpy(&behind, instance + 8 * std::size_t{cut_slot}, sizeof behind);
+    return behind == 0 ? std::nullopt : std::optional(code.places[behind - 1].mark());
+}
+
+}  // namespace lineshaft::st

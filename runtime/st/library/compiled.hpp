@@ -1,0 +1,35 @@
+#pragma once
+
+#include <deque>
+
+#include "runtime/st/generate/generator.hpp"
+#include "runtime/st/library/library.hpp"
+
+namespace lineshaft::st {
+
+/// What sources are compiled to, with all that it refers to: so it is not moved.
+struct Compiled {
+    std::vector<std::shared_ptr<const SourceFile>> sources;
+    std::deque<std::shared_ptr<const SourceFile>> of_standard;  ///< what kinds of the catalogue say
+    Tree tree;
+    Checked checked;
+    Generated generated;
+
+    Compiled() = default;
+    ~Compiled();  ///< records what was covered
+    Compiled(const Compiled&) = delete;
+    Compiled& operator=(const Compiled&) = delete;
+};
+
+/// Compiles all `sources` together; of them `tests`, if any, is a file of tests. False with all
+/// that is wrong in `out`.
+bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOptions options = {},
+             const SourceFile* tests = nullptr);
+
+/// Where the last execution on an instance ended with a fault.
+FaultPlace fault_of(const Code& code, const std::byte* instance);
+
+/// Where an instance first cut a text short.
+std::optional<Mark> cut_of(const Code& code, const std::byte* instance);
+
+}  // namespace lineshaft::st

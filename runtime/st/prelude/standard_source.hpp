@@ -1,0 +1,26 @@
+#pragma once
+
+#include "runtime/model/catalog.hpp"
+#include "runtime/st/syntax/lexer.hpp"
+
+namespace lineshaft::st {
+
+/// Standard types and functions that are Structured Text themselves: DTL and its conversions, and
+/// those of IEC 61131-3:2013, table 35, that put dates together and take them apart. What is no
+/// date (the 30th of February) is the fault `out_of_range`. A source may declare one of their names
+/// itself.
+const std::shared_ptr<const SourceFile>& standard_source();
+
+/// A source has one of its names.
+bool uses_standard_source(const Tokens& tokens);
+
+/// What a kind of the catalogue says in Structured Text.
+std::shared_ptr<const SourceFile> source_of(const BlockType& type);
+
+/// A source has a name of a part or of a block that `type` says.
+bool uses_source_of(const BlockType& type, const Tokens& tokens);
+
+/// The source is none of a user's, whose name ends as `.st` does.
+bool is_standard_source(const SourceFile& source);
+
+}  // namespace lineshaft::st

@@ -1,0 +1,490 @@
+#include "runtime/st/syntax/lexer.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "runtime/source/encoding.hpp"
+#include "runtime/source/habits.hpp"
+#include "runtime/source/letters.hpp"
+#include "runtime/source/utf8.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+constexpr std::string_view word_names[] = {
+#define WORD(name) #name,
+    LINESHAFT_ST_WORDS(WORD)
+#undef WORD
+};
+
+/// Of what is neither a word nor a sign, in the order of Word.
+constexpr std::string_view other_names[] = {
+    "the end of the file", "a name", "a type", "a number", "a number", "a time", "a text",
+    "a direct address"};
+
+const NameMap<Word>& words() {
+    static const NameMap<Word> map = [] {
+        NameMap<Word> made;
+        for (std::size_t i = 0; i < std::size(word_names); ++i)
+            made.emplace(word_names[i], static_cast<Word>(i));
+        return made;
+    }();
+    return map;
+}
+
+struct Sign {
+    std::string_view text;
+    Word word;
+};
+
+// The longer ones first.
+constexpr Sign signs[] = {{":=", Word::assign},
+                          {"+=", Word::plus_assign},
+                          {"-=", Word::minus_assign},
+                          {"*=", Word::times_assign},
+                          {"/=", Word::divided_assign},
+                          {"S=", Word::set_assign},
+                          {"R=", Word::reset_assign},
+                          {"=>", Word::output},
+                          {"?=", Word::reference_assign},
+                          {"**", Word::power},
+                          {"<=", Word::less_or_equal},
+                          {">=", Word::greater_or_equal},
+                          {"<>", Word::unequal},
+                          {"..", Word::range},
+                          {"*", Word::times},
+                          {"/", Word::divided},
+                          {"+", Word::plus},
+                          {"-", Word::minus},
+                          {"<", Word::less},
+                          {">", Word::greater},
+                          {"=", Word::equal},
+                          {"&", Word::ampersand},
+                          {"^", Word::caret},
+                          {"(", Word::open},
+                          {")", Word::close},
+                          {"[", Word::open_bracket},
+                          {"]", Word::close_bracket},
+                          {".", Word::dot},
+                          {",", Word::comma},
+                          {";", Word::semicolon},
+                          {":", Word::colon}};
+
+constexpr int deepest_comment = 200;
+
+constexpr std::string_view time_prefixes[] = {"t", "time", "lt", "ltime", "s5t", "s5time"};
+constexpr std::string_view date_prefixes[] = {
+    "d",    "date",         "ld",  "ldate",          "tod", "time_of_day", "dt", "date_and_time",
+    "ltod", "ltime_of_day", "ldt", "ldate_and_time", "dtl"};
+
+/// One class, as each kind of token is a function that moves the same place in the text.
+class Lexer {
+  public:
+    Lexer(const std::shared_ptr<const SourceFile>& file, Diagnostics& out)
+        : file_(file), text_(file->text), out_(out) {}
+
+    Tokens read() {
+        if (text_.starts_with(utf8_byte_order_mark)) at_ = utf8_byte_order_mark.size();
+        if (const std::size_t zero = text_.find('\0'); zero != std::string_view::npos)
+            fail_as_binary(place(zero, zero + 1));
+        tokens_.tokens.reserve(text_.size() / 4 + 1);
+        for (skip_blanks(); at_ < text_.size(); skip_blanks()) read_token();
+        start_ = at_ = text_.size();
+        add(Word::end_of_file);
+        return std::move(tokens_);
+    }
+
+  private:
+    char peek(std::size_t ahead = 0) const {
+        return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0';
+    }
+    bool at(std::string_view text) const {
+        return peek() == text[0] && text_.substr(at_).starts_with(text);
+    }
+    Place place(std::size_t begin, std::size_t end) const {
+        return {&file_, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+    }
+    template <class Condition>
+    void skip_while(Condition condition) {
+        while (at_ < text_.size() && condition(text_[at_])) ++at_;
+    }
+
+    /// Bytes of a letter beyond ASCII that is next; 0 where there is none.
+    std::size_t national_letter() const {
+        if (at_ >= text_.size() || is_ascii(text_[at_])) return 0;
+        const Utf8Character character = first_character(text_.substr(at_));
+        return character.valid && is_national_letter(character.code) ? character.bytes : 0;
+    }
+
+    void skip_name() {
+        for (std::size_t bytes = 1; bytes != 0; at_ += bytes)
+            bytes = is_letter(peek()) || is_digit(peek()) ? 1 : national_letter();
+    }
+
+    Token& add(Word word) {
+        Token& token = tokens_.tokens.emplace_back();
+        token.word = word;
+        token.first_in_line = new_line_;
+        token.place = place(start_, at_);
+        token.text = text_.substr(start_, at_ - start_);
+        new_line_ = false;
+        return token;
+    }
+
+    void skip_blanks() {
+        for (; at_ < text_.size(); ++at_) {
+            const char c = text_[at_];
+            if (c == ' ' || (c >= '\t' && c <= '\r' && c != '\n')) continue;
+            if (c == '\n')
+                new_line_ = true;
+            else if (at("(*") || at("/*") || is_translated_comment())
+                note_comment(&Lexer::skip_comment);
+            else if (at("//"))
+                note_comment(&Lexer::skip_line);
+            else if (c == '{')
+                skip_pragma();
+            else
+                return;
+        }
+    }
+
+    void note_comment(void (Lexer::*skip)()) {
+        const std::size_t begin = at_;
+        (this->*skip)();
+        tokens_.comments.push_back(
+            {tokens_.tokens.size(), new_line_, place(begin, std::min(at_ + 1, text_.size()))});
+    }
+
+    /// Stops before the end of the line.
+    void skip_line() {
+        skip_while([](char c) { return c != '\n'; });
+        --at_;
+    }
+
+    /// TIA's comment in several languages: `(/* ... */)`. Behind a name that is a call.
+    bool is_translated_comment() const {
+        const auto& tokens = tokens_.tokens;
+        if (!at("(/*") || (!tokens.empty() && tokens.back().word == Word::name)) return false;
+        const std::size_t end = text_.find("*/", at_);
+        return end != std::string_view::npos && text_.substr(end).starts_with("*/)");
+    }
+
+    /// Stops at the comment's last character.
+    void skip_comment() {
+        const std::size_t begin = at_;
+        const bool standard = at("(*"), translated = at("(/*");
+        const std::string_view open = standard ? "(*" : translated ? "(/*" : "/*";
+        const std::string_view close = standard ? "*)" : translated ? "*/)" : "*/";
+        int depth = 0;
+        for (; at_ < text_.size(); ++at_) {
+            if (at(open)) {
+                if (++depth > deepest_comment) return too_deep(place(at_, at_ + 2));
+                at_ += open.size() - 1;
+            } else if (at(close)) {
+                at_ += close.size() - 1;
+                if (--depth == 0) return;
+            }
+        }
+        fail(place(begin, begin + 2), "the comment does not end",
+             fmt::format("it ends with '{}'; comments nest, so each '{}' needs one", close, open));
+    }
+
+    void too_deep(Place where) {
+        tokens_.mistakes.push_back(where.begin);
+        out_.add("L0912", where.mark(),
+                 fmt::format("comments are nested deeper than {} levels", deepest_comment),
+                 "a comment in a comment needs an end of its own");
+        at_ = text_.size();
+    }
+
+    void skip_pragma() {
+        const std::size_t begin = at_;
+        for (; at_ < text_.size() && text_[at_] != '}'; ++at_)
+            if (const std::size_t end = end_of_quoted(at_)) at_ = end;
+        if (at_ == text_.size())
+            fail(place(begin, begin + 1), "the pragma does not end", "it ends with '}'");
+        tokens_.pragmas.push_back(
+            {tokens_.tokens.size(), new_line_, place(begin, std::min(at_ + 1, text_.size()))});
+    }
+
+    /// Of what is quoted in a pragma from `begin` on; 0 if nothing is. It may go over lines, where
+    /// neither the brace stands in its first one, nor the other quote belongs to something else.
+    std::size_t end_of_quoted(std::size_t begin) const {
+        const char quote = text_[begin];
+        if (quote != '\'' && quote != '"') return 0;
+        const std::size_t end = text_.find(quote, begin + 1);
+        if (end == std::string_view::npos) return 0;
+        const std::string_view quoted = text_.substr(begin, end - begin);
+        if (quoted.find('\n') == std::string_view::npos) return end;
+        const bool closes = quoted.substr(0, quoted.find('\n')).find('}') != std::string_view::npos;
+        const std::size_t behind = text_.find_first_not_of(" \t\r\n", end + 1);
+        const bool goes_on =
+            behind != std::string_view::npos &&
+            std::string_view("},;:)").find(text_[behind]) != std::string_view::npos;
+        return !closes && goes_on ? end : 0;
+    }
+
+    void read_token() {
+        start_ = at_;
+        const char c = peek();
+        if (is_letter(c) || national_letter() != 0) return read_word();
+        if (is_digit(c)) return read_number();
+        if (c == '\'') return read_text();
+        if (c == '"' || c == '#') return read_marked_name();
+        if (c == '%' && is_direct()) return read_direct();
+        for (const Sign& sign : signs) {
+            if (!at(sign.text)) continue;
+            at_ += sign.text.size();
+            add(sign.word);
+            return;
+        }
+        read_foreign();
+    }
+
+    void read_word() {
+        skip_name();
+        const std::string_view text = text_.substr(start_, at_ - start_);
+        const bool after_dot = !tokens_.tokens.empty() && tokens_.tokens.back().word == Word::dot;
+        if (peek() == '#' && !after_dot) return read_prefix(text);
+        if (const auto word = read_letter_assign(text)) {
+            ++at_;
+            add(*word);
+            return;
+        }
+        const auto it = words().find(text);
+        const bool is_variable = it != words().end() && it->second == Word::region_ &&
+                                 (!new_line_ || is_declared_or_assigned());
+        if (it == words().end() || after_dot || is_variable) {
+            add(Word::name);
+            return;
+        }
+        add(it->second);
+        if (it->second == Word::region_ || it->second == Word::end_region_) skip_title();
+    }
+
+    /// `REF=`, and behind what may be assigned `S=` and `R=`.
+    std::optional<Word> read_letter_assign(std::string_view text) const {
+        if (peek() != '=' || tokens_.tokens.empty()) return {};
+        if (same_name(text, "ref")) return Word::reference_assign;
+        const Token& before = tokens_.tokens.back();
+        const bool assigned = before.word == Word::name || before.word == Word::close_bracket ||
+                              before.word == Word::direct || before.word == Word::integer;
+        if (!assigned || new_line_) return {};
+        if (same_name(text, "s")) return Word::set_assign;
+        return same_name(text, "r") ? std::optional(Word::reset_assign) : std::nullopt;
+    }
+
+    /// A ':', ':=' or ',' follows.
+    bool is_declared_or_assigned() const {
+        const std::size_t next = text_.find_first_not_of(" \t", at_);
+        return next != std::string_view::npos && (text_[next] == ':' || text_[next] == ',');
+    }
+
+    /// `REGION any text`: up to the end of the line.
+    void skip_title() {
+        skip_while([](char c) { return c != '\n'; });
+    }
+
+    void read_prefix(std::string_view text) {
+        add(Word::prefix);
+        start_ = ++at_;
+        const auto is_prefix = [&](std::string_view p) { return same_name(p, text); };
+        if (std::ranges::any_of(date_prefixes, is_prefix) && is_digit(peek())) {
+            skip_while(
+                [](char c) { return is_digit(c) || c == '_' || c == '-' || c == ':' || c == '.'; });
+            add(Word::duration);
+            return;
+        }
+        if (std::ranges::none_of(time_prefixes, is_prefix)) return;
+        if (peek() == '-' || peek() == '+') ++at_;
+        skip_while([](char c) { return is_letter(c) || is_digit(c) || c == '.'; });
+        add(Word::duration);
+    }
+
+    void read_number() {
+        const auto digits = [&] { skip_while([](char c) { return is_digit(c) || c == '_'; }); };
+        digits();
+        if (peek() == '#') {
+            ++at_;
+            skip_while([](char c) { return is_letter(c) || is_digit(c); });
+            add(Word::integer);
+            return;
+        }
+        bool real = false;
+        if (peek() == '.' && is_digit(peek(1)) && !after_partial_dot()) {
+            real = true;
+            ++at_;
+            digits();
+        }
+        const std::size_t sign = peek(1) == '-' || peek(1) == '+' ? 2 : 1;
+        if (lower(peek()) == 'e' && is_digit(peek(sign))) {
+            real = true;
+            at_ += sign;
+            digits();
+        }
+        add(real ? Word::real : Word::integer);
+    }
+
+    /// After `word.` a number is that of a bit.
+    bool after_partial_dot() const {
+        return !tokens_.tokens.empty() && tokens_.tokens.back().word == Word::dot;
+    }
+
+    void read_text() {
+        ++at_;
+        const auto is_pair = [&] {
+            return peek() == '$' ? peek(1) != '\n' && peek(1) != '\0' : at("''");
+        };
+        while (at_ < text_.size() && text_[at_] != '\n' && (text_[at_] != '\'' || is_pair()))
+            at_ += is_pair() ? 2 : 1;
+        const bool ends = peek() == '\'';
+        const bool escapes = text_.substr(start_, at_ - start_).find("$'") != text_.npos;
+        if (!ends)
+            fail(place(start_, start_ + 1), "the text does not end",
+                 escapes ? "it ends with \"'\"; $' is a quote in it, $$ is '$'"
+                         : "it ends with \"'\"");
+        if (ends) ++at_;
+        Token& token = add(Word::text);
+        token.text = token.text.substr(1, token.text.size() - (ends ? 2 : 1));
+    }
+
+    void read_marked_name() {
+        const bool local = peek() == '#';
+        if (local) ++at_;
+        if (peek() == '"') {
+            const std::size_t begin = ++at_;
+            skip_while([](char c) { return c != '"' && c != '\n'; });
+            const std::string_view text = text_.substr(begin, at_ - begin);
+            if (peek() == '"')
+                ++at_;
+            else
+                fail(place(start_, start_ + 1), "the quoted name does not end",
+                     "it ends with '\"'");
+            const bool is_prefix =
+                !local && peek() == '#' && (is_letter(peek(1)) || peek(1) == '"');
+            Token& token = add(is_prefix ? Word::prefix : Word::name);
+            token.text = text;
+            token.quoted = !local;
+            token.local = local;
+            if (is_prefix) ++at_;
+            return;
+        }
+        skip_name();
+        Token& token = add(Word::name);
+        token.local = true;
+        token.text.remove_prefix(1);
+        if (!token.text.empty()) return;
+        fail(token.place, "'#' stands before a name, or between a type and its value", {});
+        tokens_.tokens.pop_back();
+    }
+
+    /// `%X0`, or what follows the dot of a bit.
+    bool is_direct() const { return is_letter(peek(1)) || text_.substr(0, at_).ends_with('.'); }
+
+    void read_direct() {
+        ++at_;
+        skip_while([](char c) { return is_letter(c) || is_digit(c); });
+        const bool partial = after_partial_dot();
+        while (!partial && peek() == '.' && is_digit(peek(1))) {
+            ++at_;
+            skip_while(is_digit);
+        }
+        add(Word::direct);
+    }
+
+    void read_foreign() {
+        const Utf8Character character = first_character(text_.substr(at_));
+        at_ += character.bytes;
+        const Place here = place(start_, at_);
+        tokens_.mistakes.push_back(here.begin);
+        if (const auto alike = find_look_alike(here.text()))
+            return out_.add("L0109", here.mark(),
+                            fmt::format("{} stands where {} is meant", alike->name, alike->instead),
+                            fmt::format("type {}", alike->instead));
+        if (last_foreign_ == start_) {
+            last_foreign_ = at_;
+            return;
+        }
+        last_foreign_ = at_;
+        if (!character.valid || is_control(character.code) || character.code == 0xFFFD)
+            return fail_as_binary(here);
+        fail(here, fmt::format("'{}' has no meaning here", here.text()),
+             std::string(instead_of(text_.substr(start_))));
+    }
+
+    /// What other languages write with signs that this one has not.
+    static std::string_view instead_of(std::string_view text) {
+        if (text.starts_with("!=")) return "write '<>'";
+        if (text.starts_with('!')) return "write NOT";
+        if (text.starts_with('?')) return "write IF, or SEL(condition, otherwise, then)";
+        if (text.starts_with('%')) return "write MOD";
+        if (text.starts_with("||")) return "write OR";
+        return "names have letters, digits and '_'; others stand in quotes";
+    }
+
+    /// Once, and nothing else can be meant.
+    void fail_as_binary(Place where) {
+        at_ = text_.size();
+        fail(where, "the file is not a text", "save it as UTF-8");
+    }
+
+    void fail(Place where, std::string message, std::string help) {
+        tokens_.mistakes.push_back(where.begin);
+        out_.add("L0901", where.mark(), std::move(message), std::move(help));
+    }
+
+    const std::shared_ptr<const SourceFile>& file_;
+    std::string_view text_;
+    Diagnostics& out_;
+    Tokens tokens_;
+    std::size_t at_ = 0, start_ = 0;
+    std::size_t last_foreign_ = std::string_view::npos;  ///< end of the last character of no token
+    bool new_line_ = true;
+};
+
+}  // namespace
+
+Mark Place::mark() const {
+    std::string_view before = std::string_view((*file)->text).substr(0, begin);
+    if (before.starts_with(utf8_byte_order_mark)) before.remove_prefix(utf8_byte_order_mark.size());
+    int line = 1;
+    std::size_t line_begin = 0;
+    for (std::size_t i = before.find('\n'); i != before.npos; i = before.find('\n', line_begin)) {
+        ++line;
+        line_begin = i + 1;
+    }
+    const std::string_view marked = text().substr(0, text().find('\n'));
+    return {*file, line, static_cast<int>(count_characters(before.substr(line_begin))) + 1,
+            std::max(1, static_cast<int>(count_characters(marked)))};
+}
+
+bool SameName::operator()(std::string_view a, std::string_view b) const {
+    return std::ranges::equal(a, b, [](char x, char y) { return lower(x) == lower(y); });
+}
+
+std::size_t NameHash::operator()(std::string_view name) const {
+    std::size_t hash = 0xcbf29ce484222325;
+    for (const char c : name) hash = (hash ^ static_cast<unsigned char>(lower(c))) * 0x100000001b3;
+    return hash;
+}
+
+std::string_view shown(Word word) {
+    static const auto capitals = [] {
+        std::vector<std::string> made;
+        for (const std::string_view name : word_names) made.push_back(upper(name));
+        return made;
+    }();
+    const auto i = static_cast<std::size_t>(word);
+    if (i < capitals.size()) return capitals[i];
+    const auto* sign = std::ranges::find(signs, word, &Sign::word);
+    return sign != std::end(signs) ? sign->text : other_names[i - capitals.size()];
+}
+
+Tokens read_tokens(const std::shared_ptr<const SourceFile>& file, Diagnostics& out) {
+    return Lexer(file, out).read();
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "runtime/st/syntax/lexer.hpp"
+#include "runtime/st/syntax/tree.hpp"
+
+namespace lineshaft::st {
+
+/// Adds what stands in a source to `tree`. After a mistake it goes on at the next `;` or `END_...`,
+/// so that all of a file is told at once; a declaration with a mistake is lost:
+///   L0902  what is expected, and stands there instead; a block that does not end
+///   L0903  a part of the language that is not supported
+///   L0912  nested too deep
+/// In a file of tests TEST, SETUP and TEARDOWN stand beside blocks; elsewhere they are refused.
+void parse(Tokens tokens, Tree& tree, Diagnostics& out, bool is_tests = false);
+
+}  // namespace lineshaft::st

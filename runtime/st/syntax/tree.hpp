@@ -1,0 +1,204 @@
+#pragma once
+
+#include <deque>
+#include <memory_resource>
+#include <string_view>
+#include <vector>
+
+#include "runtime/st/syntax/constant.hpp"
+#include "runtime/st/syntax/testing.hpp"
+#include "runtime/st/syntax/token.hpp"
+
+/// What the parser makes of a source, and what the checker notes in it.
+namespace lineshaft::st {
+
+struct Type;
+struct Variable;
+struct Routine;
+struct Expression;
+
+/// `a := 1`, `q => x`, or a value by position: of a call, an index, an initial value.
+struct Argument {
+    Token name = {};         ///< `end_of_file` by position
+    bool is_output = false;  ///< `=>`
+    Expression* value = nullptr;
+    Variable* variable = nullptr;  ///< that it goes to or comes from, noted by the checker
+    bool is_left_out = false;      ///< in a test: taken only if nothing was given before
+
+    bool is_named() const { return name.word != Word::end_of_file; }
+};
+
+struct Expression {
+    enum class Kind : std::uint8_t {
+        constant,  ///< a literal, or what the checker has folded to one
+        name,
+        member,  ///< operands[0] . name
+        index,   ///< operands[0] [arguments]
+        bit,     ///< operands[0] . %X3, .%B1, .3
+        call,    ///< operands[0] (arguments)
+        unary,
+        binary,
+        typed,      ///< `INT#5`, `Colour#red`: token.text # operands[0]
+        list,       ///< `[1, 4(0.0)]`: of arguments, or `(x := 1, y := 2)`, `(1, 2)`
+        repeated,   ///< `4(0.0)`: operands[0] times what is in `arguments`
+        converted,  ///< operands[0] to `type`, put in by the checker
+    };
+
+    Kind kind = Kind::constant;
+    Word op = Word::end_of_file;  ///< of unary and binary
+    std::uint16_t depth = 1;      ///< of the tree
+    Token token = {};             ///< name, literal or operator
+    Place place = {};
+    Expression* operands[2] = {};
+    std::vector<Argument> arguments = {};
+
+    // Noted by the checker.
+    const Type* type = nullptr;    ///< null: wrong, already reported
+    Constant constant = {};        ///< of a constant
+    Variable* variable = nullptr;  ///< that a name or a member means
+    Routine* routine = nullptr;    ///< that a name means, or a call calls
+    int standard = -1;             ///< the standard function that a call calls
+
+    TestCall test = TestCall::none;  ///< the statement of tests that a call is
+
+    /// `s[3]` of a text, which is no place of its own.
+    bool is_character() const;
+
+    /// Of a list: `(x := 1, y := 2)`, `(1, 2)`, `()`.
+    bool is_structure() const {
+        return token.word == Word::open || (!arguments.empty() && arguments.front().is_named());
+    }
+
+    /// Of a list: it has lists of elements again, `[[1, 2], 2([3, 4])]`, not structures,
+    /// `[(x := 1)]`.
+    bool is_nested() const {
+        for (const Argument& argument : arguments) {
+            const Expression& e = *argument.value;
+            if (e.kind == Kind::list && !e.is_structure()) return true;
+            if (e.kind == Kind::repeated && e.is_nested()) return true;
+        }
+        return false;
+    }
+};
+
+struct Statement;
+using Block = std::vector<Statement*>;
+
+/// The condition of an IF, or the values of a CASE, and what is then done.
+struct Branch {
+    using Label = std::pair<Expression*, Expression*>;  ///< from, to; to may be null
+
+    Expression* condition = nullptr;
+    std::vector<Label> labels = {};
+    Block body = {};
+};
+
+struct Statement {
+    enum class Kind : std::uint8_t {
+        assign,
+        call,
+        if_,
+        case_,
+        for_,
+        while_,
+        repeat,
+        exit,
+        continue_,
+        return_
+    };
+
+    Kind kind = Kind::assign;
+    Word op = Word::assign;  ///< `:=`, `+=`
+    Place place = {};
+    Expression* target = nullptr;  ///< of an assignment; of a FOR its variable
+    Expression* value = nullptr;   ///< assigned, called, tested; of a FOR its first one
+    Expression *limit = nullptr, *step = nullptr;  ///< of a FOR
+    std::vector<Branch> branches = {};             ///< of IF and CASE
+    Block body = {};                               ///< of a loop; of IF and CASE what ELSE does
+};
+
+/// A type as it is written.
+struct TypeText {
+    enum class Kind : std::uint8_t { name, array, structure, enumeration, subrange, text };
+
+    Kind kind = Kind::name;
+    Token name = {};  ///< also of the base of an enumeration or a subrange
+    Place place = {};
+    std::vector<std::pair<Expression*, Expression*>> ranges = {};  ///< of array and subrange
+    Expression* length = nullptr;                                  ///< STRING[length]
+    TypeText* element = nullptr;
+    std::vector<struct Declaration*> members = {};
+    std::vector<Argument> values = {};  ///< of an enumeration, with their numbers if given
+};
+
+/// `a, b : INT := 5;` has one for each name.
+struct Declaration {
+    Token name = {};
+    TypeText* type = nullptr;
+    Expression* initial = nullptr;
+    Token edge = {};  ///< R_EDGE or F_EDGE behind the type; else `end_of_file`
+    std::string_view unit = {};
+    Place unit_place = {};
+    std::string_view doc = {};  ///< the comments behind it
+};
+
+enum class Section : std::uint8_t { input, output, in_out, local, temp, global, external, result };
+
+struct DeclarationBlock {
+    Section section = Section::local;
+    bool constant = false, retain = false;
+    bool is_lost = false;  ///< not understood
+    std::vector<Declaration*> declarations = {};
+};
+
+enum class PouKind : std::uint8_t { program, function_block, function, method, data_block };
+
+/// A program organization unit.
+struct Pou {
+    PouKind kind = PouKind::program;
+    Token name = {};
+    Place place = {};            ///< its first line
+    TypeText* result = nullptr;  ///< null: none
+    TypeText* base = nullptr;    ///< of a data block that is an instance, or a structure
+    std::string_view doc = {};   ///< the comments before it, else below its first line
+    bool is_private = false;
+    bool is_lost = false;   ///< not understood
+    bool is_tests = false;  ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it
+    std::vector<DeclarationBlock> blocks = {};
+    Block body = {};
+    std::vector<Pou*> methods = {};
+};
+
+struct TypeDeclaration {
+    Token name = {};
+    TypeText* type = nullptr;
+    Expression* initial = nullptr;
+    bool is_lost = false;  ///< not understood
+};
+
+/// Owns all nodes, so that they need no owners among themselves.
+struct Tree {
+    std::pmr::monotonic_buffer_resource memory;  ///< of the nodes: a deque asks for each
+    std::pmr::deque<Expression> expressions{&memory};
+    std::pmr::deque<Statement> statements{&memory};
+    std::pmr::deque<TypeText> type_texts{&memory};
+    std::pmr::deque<Declaration> declarations{&memory};
+    std::pmr::deque<Pou> pous{&memory};
+
+    std::vector<TypeDeclaration> types;  ///< in the order of the sources, as all lists
+    std::vector<Pou*> units;             ///< all but methods
+    std::vector<DeclarationBlock> globals;
+    NameMap<bool> lost;  ///< what stands in those not understood; true: their names
+
+    void leave_lost_out() {
+        for (const TypeDeclaration& type : types)
+            if (type.is_lost) lost[type.name.text] = true;
+        for (const Pou* unit : units)
+            if (unit->is_lost) lost[unit->name.text] = true;
+        std::erase_if(types, [](const auto& type) { return type.is_lost; });
+        std::erase_if(units, [](const auto* unit) { return unit->is_lost; });
+        std::erase_if(globals, [](const auto& block) { return block.is_lost; });
+    }
+};
+
+}  // namespace lineshaft::st

@@ -1,0 +1,201 @@
+#include "runtime/st/types/elementary.hpp"
+
+#include <algorithm>
+
+namespace lineshaft::st {
+
+namespace {
+
+using Kind = Type::Kind;
+
+Type elementary(Kind kind, std::string name, int bits = 64, bool is_signed = false) {
+    Type type;
+    type.kind = kind;
+    type.name = std::move(name);
+    type.bits = bits;
+    type.is_signed = is_signed;
+    return type;
+}
+
+Type character() {
+    Type type = elementary(Kind::bits, "CHAR", 8);
+    type.is_character = true;
+    return type;
+}
+
+Type text_type(bool is_open = false) {
+    Type type = elementary(Kind::text, "STRING");
+    type.length = 254;
+    type.slots = 0;
+    type.is_open = is_open;
+    return type;
+}
+
+// STRING without a length holds 254 characters, as Siemens has it.
+const Type table[] = {elementary(Kind::boolean, "BOOL", 1),
+                      elementary(Kind::integer, "SINT", 8, true),
+                      elementary(Kind::integer, "INT", 16, true),
+                      elementary(Kind::integer, "DINT", 32, true),
+                      elementary(Kind::integer, "LINT", 64, true),
+                      elementary(Kind::integer, "USINT", 8),
+                      elementary(Kind::integer, "UINT", 16),
+                      elementary(Kind::integer, "UDINT", 32),
+                      elementary(Kind::integer, "ULINT", 64),
+                      elementary(Kind::bits, "BYTE", 8),
+                      elementary(Kind::bits, "WORD", 16),
+                      elementary(Kind::bits, "DWORD", 32),
+                      elementary(Kind::bits, "LWORD", 64),
+                      elementary(Kind::real, "REAL", 32),
+                      elementary(Kind::real, "LREAL", 64),
+                      elementary(Kind::time, "TIME", 64, true),
+                      elementary(Kind::time, "LTIME", 64, true),
+                      text_type(),
+                      elementary(Kind::date, "DATE", 64, true),
+                      elementary(Kind::date, "LDATE", 64, true),
+                      elementary(Kind::clock, "TOD", 64, true),
+                      elementary(Kind::clock, "TIME_OF_DAY", 64, true),
+                      elementary(Kind::clock, "LTOD", 64, true),
+                      elementary(Kind::clock, "LTIME_OF_DAY", 64, true),
+                      elementary(Kind::moment, "DT", 64, true),
+                      elementary(Kind::moment, "DATE_AND_TIME", 64, true),
+                      elementary(Kind::moment, "LDT", 64, true),
+                      elementary(Kind::moment, "LDATE_AND_TIME", 64, true),
+                      character()};
+
+const Type open_string = text_type(true);
+const Type any_integer = elementary(Kind::any_integer, "a whole number", 64, true);
+const Type any_real = elementary(Kind::any_real, "a real number");
+const Type any_bits = elementary(Kind::any_bits, "a whole number");
+
+struct Foreign {
+    std::string_view name, instead;
+};
+
+constexpr Foreign foreign[] = {{"wstring", "write STRING; texts are bytes"},
+                               {"wchar", "write CHAR"},
+                               {"s5time", "write TIME"},
+                               {"any", "write the type; a block for each"},
+                               {"variant", "write the type; a block for each"},
+                               {"pointer", "pass the variable as VAR_IN_OUT"},
+                               {"db_any", "name the data block"},
+                               {"hw_io", "wire an input of the program"},
+                               {"hw_any", "wire an input of the program"},
+                               {"pid_compact", "write the controller as a FUNCTION_BLOCK"},
+                               {"program_alarm", "write a BOOL output, and expect it"},
+                               {"mb_client", "serve the machine: lineshaft serve --modbus"},
+                               {"mb_server", "serve the machine: lineshaft serve --modbus"},
+                               {"counter", "declare an instance of CTU, CTD or CTUD"},
+                               {"timer", "declare an instance of TON, TOF or TP"}};
+
+}  // namespace
+
+const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
+           &lint_type = table[4], &ulint_type = table[8], &real_type = table[13],
+           &lreal_type = table[14], &time_type = table[15], &date_type = table[18],
+           &clock_type = table[20], &moment_type = table[24], &any_integer_type = any_integer,
+           &any_real_type = any_real, &any_bits_type = any_bits, &string_type = table[17],
+           &open_string_type = open_string, &char_type = table[28];
+
+const Type* find_prefix(std::string_view name) {
+    static constexpr std::pair<std::string_view, std::string_view> shorter[] = {
+        {"b", "byte"}, {"w", "word"}, {"dw", "dword"}, {"lw", "lword"},
+        {"l", "dint"}, {"d", "date"}, {"ld", "ldate"}};
+    const auto* it =
+        std::ranges::find_if(shorter, [&](const auto& s) { return same_name(s.first, name); });
+    return find_elementary(it == std::end(shorter) ? name : it->second);
+}
+
+const Type* find_elementary(std::string_view name) {
+    const auto* it =
+        std::ranges::find_if(table, [&](const Type& type) { return same_name(type.name, name); });
+    return it == std::end(table) ? nullptr : it;
+}
+
+const Type& integer_type(int bits, bool is_signed) {
+    return *std::ranges::find_if(table, [&](const Type& type) {
+        return type.kind == Kind::integer && type.bits == bits && type.is_signed == is_signed;
+    });
+}
+
+const Type& bits_type(int bits) {
+    return *std::ranges::find_if(
+        table, [&](const Type& type) { return type.kind == Kind::bits && type.bits == bits; });
+}
+
+std::string_view instead_of_type(std::string_view name) {
+    const auto* it = std::ranges::find_if(
+        foreign, [&](const Foreign& type) { return same_name(type.name, name); });
+    return it == std::end(foreign) ? std::string_view() : it->instead;
+}
+
+bool widens(const Type& given_from, const Type& given_to) {
+    const Type &from = given_from.plain(), &to = given_to.plain();
+    if (same_type(from, to)) return true;
+    if (from.kind == Kind::integer && to.kind == Kind::integer)
+        return from.bits < to.bits && (to.is_signed || !from.is_signed);
+    if (from.kind == Kind::integer && to.kind == Kind::real)
+        return from.bits <= (to.bits == 32 ? 16 : 32);
+    if (from.kind == Kind::boolean) return to.kind == Kind::bits;
+    if (from.is_code) return (to.kind == Kind::integer || to.kind == Kind::bits) && to.bits >= 16;
+    return from.kind == to.kind && (from.kind == Kind::real || from.kind == Kind::bits) &&
+           from.bits < to.bits;
+}
+
+const Type* common_type(const Type& given_a, const Type& given_b) {
+    const Type &a = given_a.plain(), &b = given_b.plain();
+    if (widens(a, b)) return &b;
+    if (widens(b, a)) return &a;
+    for (const Type& type : table)
+        if (widens(a, type) && widens(b, type)) return &type;
+    return nullptr;
+}
+
+bool same_type(const Type& a, const Type& b) {
+    if (&a == &b) return true;
+    if (a.kind != b.kind) return false;
+    switch (a.kind) {
+        case Kind::time:
+        case Kind::date:
+        case Kind::clock:
+        case Kind::moment:
+        case Kind::boolean:
+            return true;
+        case Kind::integer:
+        case Kind::bits:
+        case Kind::real:
+            return a.bits == b.bits && a.is_signed == b.is_signed && !a.is_subrange &&
+                   !b.is_subrange;
+        case Kind::text:
+            return a.length == b.length && a.is_open == b.is_open;
+        case Kind::array:
+            return a.lower == b.lower && a.upper == b.upper && same_type(*a.element, *b.element);
+        case Kind::structure:
+            return a.name == "STRUCT" && b.name == "STRUCT" &&
+                   std::ranges::equal(a.members, b.members,
+                                      [](const Variable* x, const Variable* y) {
+                                          return same_name(x->text, y->text) && x->type &&
+                                                 y->type && same_type(*x->type, *y->type);
+                                      });
+        default:
+            return false;
+    }
+}
+
+Wide smallest(const Type& type) {
+    if (type.is_subrange) return type.lower;
+    return type.is_signed ? -(Wide{1} << (type.bits - 1)) : 0;
+}
+
+Wide largest(const Type& type) {
+    if (type.is_subrange) return type.upper;
+    return (Wide{1} << (type.is_signed ? type.bits - 1 : type.bits)) - 1;
+}
+
+Wide wrapped(const Type& type, Wide value) {
+    const Wide range = Wide{1} << type.bits;
+    Wide rest = value % range;
+    if (rest < 0) rest += range;
+    return type.is_signed && rest >= range / 2 ? rest - range : rest;
+}
+
+}  // namespace lineshaft::st

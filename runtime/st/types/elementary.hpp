@@ -1,0 +1,48 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "runtime/st/types/types.hpp"
+
+namespace lineshaft::st {
+
+/// Bytes that a text may have: LEN, FIND and MAX_LEN are INT.
+inline constexpr Wide longest_text = 32767;
+
+/// `INT`, `ARRAY[0..3] OF LREAL`: for messages.
+std::string describe(const Type& type);
+
+/// BOOL, SINT, ..., LTIME; null for another name.
+const Type* find_elementary(std::string_view name);
+
+/// What stands before '#': also Siemens' B, W, DW, LW and L.
+const Type* find_prefix(std::string_view name);
+
+extern const Type &bool_type, &int_type, &dint_type, &lint_type, &ulint_type, &real_type,
+    &lreal_type, &time_type, &date_type, &clock_type, &moment_type, &any_integer_type,
+    &any_real_type, &any_bits_type, &string_type, &open_string_type, &char_type;
+
+/// The integer or bit string of that width.
+const Type& integer_type(int bits, bool is_signed);
+const Type& bits_type(int bits);
+
+/// What a name is that other controllers know and this one does not: what to write instead of it.
+std::string_view instead_of_type(std::string_view name);
+
+/// True where every value of `from` is one of `to`.
+bool widens(const Type& from, const Type& to);
+
+/// The smallest type that holds all values of both; null if there is none.
+const Type* common_type(const Type& a, const Type& b);
+
+bool same_type(const Type& a, const Type& b);
+
+/// Limits of an integer, a bit string, a boolean; of a subrange its own.
+Wide smallest(const Type& type);
+Wide largest(const Type& type);
+
+/// `value` in the type's width: what is beyond it wraps.
+Wide wrapped(const Type& type, Wide value);
+
+}  // namespace lineshaft::st

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "runtime/st/types/types.hpp"
+
+namespace lineshaft::st {
+
+/// `1_000`, `16#FF`, `2#1010_0000`; empty if it is none, or beyond 64 bits.
+std::optional<Wide> read_integer(std::string_view text);
+
+/// `1_000.5`, `1e3`; empty if it is beyond a double.
+std::optional<double> read_real(std::string_view text);
+
+/// What follows `T#`, in ns: `1h2m3.5s`, `-5ms`, `1d_2h`. Empty if it is none, or beyond 64 bits.
+std::optional<Wide> read_duration(std::string_view text);
+
+/// `2020-02-29` [ns since 1970], `12:30:15.25` [ns], `2020-02-29-12:30:15`, as the kind has it.
+std::optional<Wide> read_date(std::string_view text, Type::Kind kind);
+
+/// The characters of a text between its quotes: `$'`, `$$`, `$L`, `$N`, `$P`, `$R`, `$T`, `$0A`.
+std::optional<std::string> read_text(std::string_view text);
+
+std::string to_string(Wide value);
+
+}  // namespace lineshaft::st

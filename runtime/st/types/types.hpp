@@ -1,0 +1,167 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/model/catalog.hpp"
+#include "runtime/st/syntax/tree.hpp"
+
+namespace lineshaft::st {
+
+struct Variable;
+struct Routine;
+struct Layout;
+
+/// How values of a type are kept. Each scalar has a slot of 64 bits: an integer as std::int64_t
+/// (ULINT and LWORD as std::uint64_t), a REAL as a double that a float holds too, an enumeration as
+/// the place of its value in the list. An array or structure has those of its parts one behind the
+/// other, a text its length and then its characters, eight to a slot.
+struct Type {
+    enum class Kind : std::uint8_t {
+        boolean,
+        integer,  ///< SINT to ULINT
+        bits,     ///< BYTE to LWORD
+        real,     ///< REAL, LREAL
+        time,     ///< TIME, LTIME [ns]
+        handle,   ///< AXIS_REF: the number of an instance of `standard`, -1 of none
+        date,     ///< DATE, LDATE: its midnight [ns since 1970-01-01]
+        clock,    ///< TOD, LTOD [ns since midnight]
+        moment,   ///< DT, LDT [ns since 1970-01-01]
+        text,     ///< STRING[length]
+        enumeration,
+        array,
+        structure,
+        block,        ///< an instance of a FUNCTION_BLOCK or PROGRAM of the sources
+        standard,     ///< an instance of a kind of the catalogue
+        any_integer,  ///< of a number without type, before it is known where it goes
+        any_real,
+        any_bits,  ///< `16#FF`: a number that is a bit string where one is wanted
+    };
+
+    Kind kind = Kind::integer;
+    bool is_signed = false;
+    bool is_character = false;  ///< of bits: CHAR
+    int bits = 64;              ///< of integer, bits, real
+    std::string name = {};      ///< as messages show it
+    std::uint32_t slots = 1;
+    std::int64_t lower = 0, upper = -1;  ///< of an array's index; of a subrange's values
+    bool is_subrange = false;
+    const Type* base = nullptr;                ///< of a subrange; of an enumeration with numbers
+    const Type* element = nullptr;             ///< of an array
+    bool has_inner = false;                    ///< of an array: its element is its next dimension
+    std::uint32_t length = 0;                  ///< of a text, in characters
+    bool is_open = false;                      ///< VAR_IN_OUT STRING: of what length is given
+    std::vector<Variable*> members = {};       ///< of a structure
+    std::vector<std::string> values = {};      ///< of an enumeration
+    std::vector<std::int64_t> numbers = {};    ///< of its values
+    bool counted = true;                       ///< those are 0, 1, 2, ...
+    std::vector<std::int64_t> of_number = {};  ///< what SCL's numbers mean; -1, or beyond: nothing
+    bool is_code = false;  ///< of an enumeration: one that the standards make a WORD, as ErrorID
+    Routine* routine = nullptr;  ///< of a block
+    const BlockType* standard = nullptr;
+    std::vector<std::pair<std::string_view, Constant>> presets = {};  ///< parameters of `standard`
+    Constant initial = {};
+    const Expression* initial_value = nullptr;  ///< of a declared type
+
+    bool is_integer() const { return kind == Kind::integer || kind == Kind::any_integer; }
+    bool is_bits() const { return kind == Kind::bits || kind == Kind::any_bits; }
+    bool is_date() const { return kind >= Kind::date && kind <= Kind::moment; }
+    bool is_time() const { return kind == Kind::time || is_date(); }
+    bool is_real() const { return kind == Kind::real || kind == Kind::any_real; }
+    bool is_number() const { return is_integer() || is_real() || kind == Kind::any_bits; }
+    bool is_any() const { return kind >= Kind::any_integer; }
+    bool is_scalar() const { return kind < Kind::text || kind == Kind::enumeration || is_any(); }
+    /// A reference to a block of the program, or an array of them: passed on by value.
+    bool is_handle() const {
+        return kind == Kind::handle || (kind == Kind::array && element->is_handle());
+    }
+    /// References to it are values, `AXIS_REF`.
+    bool is_object() const { return kind == Kind::standard && !standard->handle.empty(); }
+    bool is_instance() const { return kind == Kind::block || kind == Kind::standard; }
+    bool is_unsigned_64() const {
+        return (is_bits() || kind == Kind::integer) && !is_signed && bits == 64;
+    }
+    /// Of an array of all its dimensions.
+    const Type& innermost() const { return has_inner ? element->innermost() : *element; }
+    const Type& plain() const { return is_subrange ? *base : *this; }
+};
+
+inline bool Expression::is_character() const {
+    return kind == Kind::index && operands[0]->type && operands[0]->type->kind == Type::Kind::text;
+}
+
+/// A function or a method is called in it, which may write variables.
+bool has_call(const Expression& expression);
+
+/// Where a variable is.
+enum class Space : std::uint8_t {
+    frame,      ///< of its routine, or of the block that a method belongs to
+    reference,  ///< its slot has the address: VAR_IN_OUT
+    global,     ///< of a data block: `global` is its number
+    none,       ///< a constant
+};
+
+struct Variable {
+    Token name = {};
+    const Type* type = nullptr;
+    Section section = Section::local;
+    bool constant = false, retain = false;
+    Space space = Space::frame;
+    std::uint32_t slot = 0;  ///< in the frame, the structure or the data block
+    std::uint32_t byte = 0;  ///< of a boolean of a kind of the catalogue, in its memory
+    bool is_byte = false;
+    int global = -1;
+    Constant value = {};  ///< of a constant scalar
+    const Expression* initial = nullptr;
+    std::string unit = {};
+    const Pou* of = nullptr;  ///< null: a member of a structure, or of the catalogue
+    bool used = false;
+    Variable* edge = nullptr;    ///< of `x : BOOL R_EDGE`: the R_TRIG whose Q its name means inside
+    std::string_view text = {};  ///< its name
+    std::string_view doc = {};   ///< comments, as they are written
+};
+
+/// What runs: the body of a POU, or a method.
+struct Routine {
+    const Pou* pou = nullptr;
+    std::string name = {};     ///< `Clamp`, `Motor.Start`
+    Routine* owner = nullptr;  ///< of a method: its block
+    std::deque<Variable> variables = {};
+    NameMap<Variable*> names = {};
+    NameMap<Routine*> methods = {};
+    Variable* result = nullptr;
+    Type* type = nullptr;  ///< of its instances, of a block
+    std::vector<Routine*> calls = {};
+    std::vector<Place> call_places = {};
+    std::vector<int> objects = {};  ///< globals that are blocks of the program, and that it names
+    enum class State : std::uint8_t { fresh, visiting, done } state = State::fresh;
+
+    const Variable *mock_flag = nullptr, *mock_value = nullptr;  ///< of a function: MOCK_FUNCTION
+
+    bool is_function() const { return pou->kind == PouKind::function; }
+    bool is_test() const { return owner && owner->pou->is_tests; }
+    bool has_instances() const {
+        return pou->kind == PouKind::function_block || pou->kind == PouKind::program;
+    }
+
+    // What the generator gives it.
+    std::uint32_t entry = 0;          ///< first instruction
+    std::uint32_t end = 0;            ///< behind the last
+    std::uint32_t temps_begin = 0;    ///< first slot of what is initialised at each call
+    std::uint32_t variables_end = 0;  ///< behind its own variables
+    std::uint32_t frame = 0;          ///< slots with temporaries and what its functions need
+    std::uint32_t depth = 0;          ///< levels of calls below it
+};
+
+/// `VAR_GLOBAL`, or a DATA_BLOCK: memory that all blocks see.
+struct Global {
+    std::string name;
+    const Type* type = nullptr;  ///< structure, or block
+    const Pou* pou = nullptr;
+    const Variable* object = nullptr;  ///< a block of the program, which sources name only
+};
+
+}  // namespace lineshaft::st

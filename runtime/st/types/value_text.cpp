@@ -1,0 +1,129 @@
+#include "runtime/st/types/value_text.hpp"
+
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+
+#include "runtime/source/utf8.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+using Kind = Type::Kind;
+
+/// The shortest number that reads back as the same value of its width.
+std::string real_text(double value, bool is_long) {
+    if (std::isnan(value)) return "NaN";
+    std::string text =
+        is_long ? fmt::format("{}", value) : fmt::format("{}", static_cast<float>(value));
+    const bool plain = std::isfinite(value) && text.find_first_of(".e") == std::string::npos;
+    return plain ? text + ".0" : text;
+}
+
+using Out = std::back_insert_iterator<fmt::memory_buffer>;
+
+void add_duration(Out to, std::int64_t nanoseconds) {
+    constexpr std::pair<std::uint64_t, const char*> units[] = {{86'400'000'000'000, "d"},
+                                                               {3'600'000'000'000, "h"},
+                                                               {60'000'000'000, "m"},
+                                                               {1'000'000'000, "s"},
+                                                               {1'000'000, "ms"},
+                                                               {1'000, "us"},
+                                                               {1, "ns"}};
+    auto left = static_cast<std::uint64_t>(nanoseconds);
+    if (nanoseconds < 0) left = 0 - left;
+    fmt::format_to(to, "T#{}{}", nanoseconds < 0 ? "-" : "", nanoseconds == 0 ? "0s" : "");
+    for (const auto& [size, unit] : units) {
+        if (left >= size) fmt::format_to(to, "{}{}", left / size, unit);
+        left %= size;
+    }
+}
+
+void add_date(Out to, Kind kind, std::int64_t since_1970) {
+    using namespace std::chrono;
+    const sys_time<nanoseconds> moment{nanoseconds(since_1970)};
+    const auto midnight = floor<days>(moment);
+    const year_month_day day(midnight);
+    const hh_mm_ss clock(moment - midnight);
+    fmt::format_to(to, "{}", kind == Kind::date ? "D#" : kind == Kind::clock ? "TOD#" : "DT#");
+    if (kind != Kind::clock)
+        fmt::format_to(to, "{:04}-{:02}-{:02}", static_cast<int>(day.year()),
+                       static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()));
+    if (kind == Kind::date) return;
+    fmt::format_to(to, "{}{:02}:{:02}:{:02}", kind == Kind::moment ? "-" : "",
+                   clock.hours().count(), clock.minutes().count(), clock.seconds().count());
+    const auto rest = clock.subseconds().count();
+    if (rest % 1'000'000 != 0)
+        fmt::format_to(to, ".{:09}", rest);
+    else if (rest != 0)
+        fmt::format_to(to, ".{:03}", rest / 1'000'000);
+}
+
+std::string literal(Kind kind, std::int64_t nanoseconds) {
+    fmt::memory_buffer text;
+    add_time(text, kind, nanoseconds);
+    return fmt::to_string(text);
+}
+
+}  // namespace
+
+std::string value_text(const Type& type, std::uint64_t slot) {
+    const auto number = static_cast<std::int64_t>(slot);
+    switch (type.kind) {
+        case Kind::boolean:
+            return slot != 0 ? "TRUE" : "FALSE";
+        case Kind::bits:
+            if (type.is_character) return text_literal(std::string(1, static_cast<char>(slot)));
+            return fmt::format("16#{:X}", slot);
+        case Kind::real:
+        case Kind::any_real:
+            return real_text(std::bit_cast<double>(slot), type.bits != 32);
+        case Kind::time:
+        case Kind::date:
+        case Kind::clock:
+        case Kind::moment:
+            return literal(type.kind, number);
+        case Kind::enumeration:
+            return slot < type.values.size() ? fmt::format("{}#{}", type.name, type.values[slot])
+                                             : std::to_string(number);
+        default:
+            return type.is_unsigned_64() ? std::to_string(slot) : std::to_string(number);
+    }
+}
+
+std::string time_literal(std::int64_t nanoseconds) {
+    return literal(Kind::time, nanoseconds);
+}
+
+void add_time(fmt::memory_buffer& to, Kind kind, std::int64_t nanoseconds) {
+    if (kind == Kind::time)
+        add_duration(std::back_inserter(to), nanoseconds);
+    else
+        add_date(std::back_inserter(to), kind, nanoseconds);
+}
+
+std::string printable(std::string_view text) {
+    std::string out;
+    while (!text.empty()) {
+        const Utf8Character c = first_character(text);
+        if (!c.valid || c.code < 0x20)
+            out += fmt::format("${:02X}", static_cast<unsigned char>(text.front()));
+        else
+            out += text.substr(0, c.bytes);
+        text.remove_prefix(c.bytes);
+    }
+    return out;
+}
+
+std::string text_literal(std::string_view text) {
+    std::string marked;
+    for (const char c : text) {
+        if (c == '$' || c == '\'') marked += '$';
+        marked += c;
+    }
+    return "'" + printable(marked) + "'";
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include <fmt/format.h>
+
+#include "runtime/st/types/types.hpp"
+
+namespace lineshaft::st {
+
+/// A scalar as the language writes it, from what its slot has: `TRUE`, `5`, `16#FF`, `2.0`,
+/// `T#1s500ms`, `Colour#red`.
+std::string value_text(const Type& type, std::uint64_t slot);
+
+/// `T#1d2h3m4s5ms6us7ns`
+std::string time_literal(std::int64_t nanoseconds);
+
+/// Adds it, of a kind with a time: `T#1s500ms`, `D#2020-02-29`, `TOD#12:30:15.250`,
+/// `DT#2020-02-29-12:30:15`. Allocates nothing.
+void add_time(fmt::memory_buffer& to, Type::Kind kind, std::int64_t nanoseconds);
+
+/// With `$E4` for a byte that is no UTF-8, `$0A` for a new line.
+std::string printable(std::string_view text);
+
+/// `'it$'s'`
+std::string text_literal(std::string_view text);
+
+}  // namespace lineshaft::st
