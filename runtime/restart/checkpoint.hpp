@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "runtime/net/machine.hpp"
+#include "runtime/machine/machine.hpp"
 #include "runtime/program/program.hpp"
 
 namespace lineshaft {

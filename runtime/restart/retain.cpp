@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "runtime/net/kept_memory.hpp"
+#include "runtime/machine/kept_memory.hpp"
 #include "runtime/source/input_file.hpp"
 #include "runtime/source/json_text.hpp"
 #include "runtime/source/text_hash.hpp"

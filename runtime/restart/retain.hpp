@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "runtime/net/machine.hpp"
+#include "runtime/machine/machine.hpp"
 #include "runtime/source/diagnostic.hpp"
 
 namespace lineshaft {

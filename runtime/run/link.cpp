@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "runtime/net/lay_out.hpp"
-#include "runtime/net/outside.hpp"
-#include "runtime/net/resolve.hpp"
+#include "runtime/machine/lay_out.hpp"
+#include "runtime/names/resolve.hpp"
+#include "runtime/outside/outside.hpp"
 #include "runtime/scan/expectations.hpp"
 #include "runtime/st/library/library.hpp"
 #include "runtime/trace/report_setup.hpp"

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/model/catalog.hpp"
-#include "runtime/net/modbus_map.hpp"
-#include "runtime/net/net.hpp"
+#include "runtime/names/net.hpp"
+#include "runtime/outside/modbus_map.hpp"
 #include "runtime/program/program.hpp"
 #include "runtime/scan/judge.hpp"
 #include "runtime/st/library/library.hpp"

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runtime/net/machine.hpp"
+#include "runtime/machine/machine.hpp"
 
 namespace lineshaft {
 

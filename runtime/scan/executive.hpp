@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "runtime/machine/machine.hpp"
 #include "runtime/model/random.hpp"
 #include "runtime/model/state.hpp"
-#include "runtime/net/machine.hpp"
 #include "runtime/scan/event.hpp"
 #include "runtime/scan/forces.hpp"
 

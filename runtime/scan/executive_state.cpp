@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/net/kept_memory.hpp"
+#include "runtime/machine/kept_memory.hpp"
 #include "runtime/scan/executive.hpp"
 
 namespace lineshaft {

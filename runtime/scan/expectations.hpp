@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/net/outside.hpp"
+#include "runtime/outside/outside.hpp"
 #include "runtime/scan/judge.hpp"
 
 namespace lineshaft {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "runtime/machine/machine.hpp"
 #include "runtime/model/state.hpp"
-#include "runtime/net/machine.hpp"
 #include "runtime/scan/event.hpp"
 
 namespace lineshaft {

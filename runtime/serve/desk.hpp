@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/net/outside.hpp"
+#include "runtime/outside/outside.hpp"
 #include "runtime/run/single_run.hpp"
 #include "runtime/serve/recording_writer.hpp"
 

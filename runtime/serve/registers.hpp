@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "runtime/net/modbus_map.hpp"
+#include "runtime/outside/modbus_map.hpp"
 
 namespace lineshaft {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/net/machine.hpp"
+#include "runtime/machine/machine.hpp"
 
 namespace lineshaft {
 

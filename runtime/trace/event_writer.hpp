@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/net/machine.hpp"
+#include "runtime/machine/machine.hpp"
 #include "runtime/scan/event.hpp"
 #include "runtime/trace/output_set.hpp"
 

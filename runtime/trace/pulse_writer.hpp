@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "runtime/machine/machine.hpp"
 #include "runtime/model/device.hpp"
-#include "runtime/net/machine.hpp"
 #include "runtime/trace/csv_writer.hpp"
 
 namespace lineshaft {

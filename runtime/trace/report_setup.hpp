@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runtime/net/outside.hpp"
+#include "runtime/outside/outside.hpp"
 #include "runtime/trace/recorder.hpp"
 
 namespace lineshaft {

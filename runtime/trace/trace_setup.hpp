@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "runtime/net/outside.hpp"
+#include "runtime/outside/outside.hpp"
 #include "runtime/trace/recorder.hpp"
 
 namespace lineshaft {

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
+#include "runtime/machine/machine.hpp"
 #include "runtime/model/state.hpp"
-#include "runtime/net/machine.hpp"
 #include "runtime/program/program.hpp"
 
 namespace lineshaft {

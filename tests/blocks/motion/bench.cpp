@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/net/kept_memory.hpp"
+#include "runtime/machine/kept_memory.hpp"
 #include "runtime/program/program.hpp"
 #include "tests/blocks/scanning.hpp"
 

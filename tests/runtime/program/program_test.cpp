@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/runtime/net/small_blocks.hpp"
+#include "tests/runtime/names/small_blocks.hpp"
 
 using namespace lineshaft;
 namespace fs = std::filesystem;

@@ -1,7 +1,7 @@
 #include "runtime/program/schema.hpp"
 
 #include "runtime/program/program_form.hpp"
-#include "tests/runtime/net/small_blocks.hpp"
+#include "tests/runtime/names/small_blocks.hpp"
 
 using namespace lineshaft;
 using Json = nlohmann::ordered_json;

@@ -1,7 +1,7 @@
 #include "runtime/run/link.hpp"
 
 #include "runtime/scan/executive.hpp"
-#include "tests/runtime/net/small_blocks.hpp"
+#include "tests/runtime/names/small_blocks.hpp"
 
 using namespace lineshaft;
 

@@ -1,6 +1,6 @@
 #include "tools/lineshaft/block_text.hpp"
 
-#include "tests/runtime/net/small_blocks.hpp"
+#include "tests/runtime/names/small_blocks.hpp"
 
 using namespace lineshaft;
 

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+
+#include "runtime/machine/machine.hpp"
+#include "runtime/names/net.hpp"
+#include "runtime/program/program.hpp"
+
+namespace lineshaft {
+
+/// A machine while it is connected with what comes from outside of its blocks.
+struct Connecting {
+    const Program& program;
+    const Net& net;
+    Machine& machine;
+    Reader read;
+};
+
+/// Each puts into the machine what the program says of it; what is wrong is reported.
+void connect_outside(Connecting& to);                ///< all of these
+void connect_events(Connecting& to);                 ///< outside_run.cpp: what starts event tasks
+void connect_run(Connecting& to);                    ///< likewise: duration, seed, `until`
+void connect_stimuli(Connecting& to);                ///< outside.cpp
+void connect_replays(Connecting& to);                ///< outside_replays.cpp
+void connect_forces(Connecting& to);                 ///< outside.cpp
+void connect_recorded(Connecting& to);               ///< likewise: what is played back
+void connect_retained(Connecting& to);               ///< outside_retain.cpp
+void check_constants(Connecting& to);                ///< outside_checks.cpp: what comes to nothing
+void warn_of_what_comes_late(const Connecting& to);  ///< likewise
+
+/// What a value from outside is written to.
+struct Target {
+    Signal signal;     ///< with the unit that it takes
+    Field field = {};  ///< of a block, or made up for an input; named as the program does
+    std::byte* live = nullptr;
+    std::byte* published = nullptr;  ///< may be the live one
+
+    bool is_of_block() const { return signal.port.instance >= 0; }
+};
+
+/// The readable signal, so an output before an input of the same name; of an output of the program
+/// the signal that it shows.
+std::optional<Target> find_target(const Connecting& to, const Node& node);
+
+/// What a stimulus may set: an input that no wire feeds.
+std::optional<Target> find_settable(const Connecting& to, const Node& node);
+
+/// A value for an input, or for a signal to keep, checked; reported if it cannot be. Their times
+/// are still to be said.
+std::optional<Stimulus> find_stimulus(const Connecting& to, const Node& signal, const Node& value);
+std::optional<Force> find_force(const Connecting& to, const Node& signal, const Node& value);
+
+}  // namespace lineshaft
