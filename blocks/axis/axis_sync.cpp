@@ -103,16 +103,29 @@ MotionState Axis::master(const Context& context) const {
 
 std::int64_t Axis::way_to(const Context& context, const Axis& leader,
                           const Coupling& coupling) const {
-    for (const MasterLink* link : {&coupling.master, &coupling.second})
-        if (link->axis >= 0 &&
-            (&context.instance<Axis>(link->axis) == &leader ||
-             context.seen_instance<Axis>(link->axis).way_to(context, leader) >= 0))
-            return link->axis;
-    return nowhere;
+    int links_left = 1000;
+    return way_to(context, leader, coupling, links_left);
 }
 
 std::int64_t Axis::way_to(const Context& context, const Axis& leader) const {
     return doing == Doing::following_axes ? way_to(context, leader, sync.coupling) : nowhere;
+}
+
+/// Others may follow each other in a circle until they see it: the search ends all the same.
+std::int64_t Axis::way_to(const Context& context, const Axis& leader, const Coupling& coupling,
+                          int& links_left) const {
+    const auto leads = [&](const Axis& seen) {
+        return seen.doing == Doing::following_axes &&
+               seen.way_to(context, leader, seen.sync.coupling, links_left) >= 0;
+    };
+    for (const MasterLink* link : {&coupling.master, &coupling.second}) {
+        if (link->axis < 0) continue;
+        if (--links_left < 0) return nowhere;
+        if (&context.instance<Axis>(link->axis) == &leader ||
+            leads(context.seen_instance<Axis>(link->axis)))
+            return link->axis;
+    }
+    return nowhere;
 }
 
 /// Siemens' ratios are two DINT, the denominator above 0.
@@ -288,7 +301,9 @@ void Axis::look_at_shift(const Context& context) {
     end(context, phased, Progress::done);
 }
 
+/// Axes of different tasks that are coupled to each other in the same moment do not see it then.
 void Axis::follow(const Context& context) {
+    if (way_to(context, *this) >= 0) return fail_before(context, MotionError::master_loop);
     look_at_shift(context);
     if (sync.law == Law::geared)
         follow_guide(context);
