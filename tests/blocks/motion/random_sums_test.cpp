@@ -39,7 +39,12 @@ class Ledger {
     /// Where the axis will end; empty where it goes on, or where a move has begun between two
     /// scans at a place that is nowhere written.
     std::optional<double> end() const { return end_; }
-    void forget() { end_ = {}; }
+    /// What has waited is aborted; it may have begun in the same scan, between two.
+    void forget() {
+        end_ = {};
+        moves_ = true;
+        goes_on_ = false;
+    }
     void stands_at(double position) { end_ = position; }
 
     /// A command begins and aborts the motion, and what is superimposed.
