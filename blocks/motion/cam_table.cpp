@@ -1,8 +1,48 @@
 #include "blocks/motion/cam_table.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
 #include "blocks/motion/cam_table_select.hpp"
 
 namespace lineshaft {
+
+namespace {
+
+constexpr double rounding_of_cams = 1e-9;  ///< of a slope, of a period
+
+template <class Block>
+const Block& block_at(const InstanceAt& at, std::int64_t number) {
+    return *std::launder(reinterpret_cast<const Block*>(at(number)));
+}
+
+/// With the slave's position it goes on from the end by `lift`: on a modulo axis whole turns lead
+/// back to the beginning.
+bool leads_back(const Cam& cam, const Axis& slave) {
+    const double turns = slave.modulo ? cam.lift() / slave.period : 0;
+    const double off = slave.modulo ? turns - std::round(turns) : cam.lift();
+    const double whole = slave.modulo ? std::max(1.0, std::abs(turns)) : cam.extremes().y;
+    return std::abs(off) <= rounding_of_cams * whole;
+}
+
+}  // namespace
+
+std::string seam_of(const Cam& cam) {
+    const double first = cam.at(cam.begin()).slope, last = cam.last().slope;
+    if (std::abs(last - first) <= rounding_of_cams * cam.extremes().slope) return {};
+    return fmt::format(
+        "ends with a slope of {:.6g} and begins with {:.6g}: the slave's velocity jumps there. "
+        "Give both ends the same velocity; a periodic table does where they are left open",
+        last, first);
+}
+
+std::optional<Misfit> CamTable::doubt(const InstanceAt&) const {
+    if (!periodic || table.size == 0) return {};
+    const std::string why = seam_of(cam(true));
+    return why.empty() ? std::nullopt : std::optional(Misfit{"periodic", why});
+}
 
 std::span<const Field> CamTable::fields() {
     static const Field fields[] = {
@@ -74,6 +114,23 @@ std::span<const Field> CamTableSelect::fields() {
         output("CamTableID", &S::id, "", "for MC_CamIn"),
     };
     return fields;
+}
+
+std::optional<Misfit> CamTableSelect::doubt(const InstanceAt& at) const {
+    if (!periodic || cam_table == nowhere || slave == nowhere) return {};
+    const auto& table = block_at<CamTable>(at, cam_table);
+    if (table.table.size == 0) return {};
+    const Cam cam = table.cam(true);
+    if (slave_absolute && !leads_back(cam, block_at<Axis>(at, slave)))
+        return Misfit{"Periodic",
+                      fmt::format("begins a cam anew that ends {:.6g} further than it begins: the "
+                                  "slave goes on by that each period, though SlaveAbsolute says "
+                                  "that the cam gives its position. Close the cam, or write "
+                                  "SlaveAbsolute: false",
+                                  cam.lift())};
+    const std::string why = table.periodic ? "" : seam_of(cam);
+    if (why.empty()) return {};
+    return Misfit{"Periodic", "begins a cam anew that " + why};
 }
 
 void CamTableSelect::scan(const Scan&, const Context& context) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "blocks/axis/axis_unit.hpp"
@@ -47,6 +48,9 @@ struct CamTable {
                    static_cast<std::int64_t>(of_axis) + (of_velocity ? rates : 0);
     }
 
+    /// A periodic cam whose velocity jumps from its end to its beginning.
+    std::optional<Misfit> doubt(const InstanceAt&) const;
+
     /// Puts in what the points leave open.
     std::optional<TableFault> complete();
 
@@ -54,6 +58,9 @@ struct CamTable {
         return {{table.rows.data(), static_cast<std::size_t>(table.size)}, repeats};
     }
 };
+
+/// Why the velocity of a slave jumps where the cam begins anew; empty where it does not.
+std::string seam_of(const Cam& cam);
 
 /// What MC_CamTableSelect has selected, in one number: 0 is nothing.
 struct CamTableId {

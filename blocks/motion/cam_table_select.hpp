@@ -18,6 +18,8 @@ struct CamTableSelect {
     static constexpr std::string_view doc = "selects a cam table";
     static std::span<const Field> fields();
     void scan(const Scan& now, const Context& context);
+    /// A cam that begins anew without leading on from its end.
+    std::optional<Misfit> doubt(const InstanceAt& at) const;
 };
 
 }  // namespace lineshaft

@@ -36,6 +36,9 @@ using IsConstant = std::function<bool(std::string_view field)>;
 
 struct KeptState;
 
+/// The bytes of an instance, by its number.
+using InstanceAt = std::function<const std::byte*(std::int64_t instance)>;
+
 /// Of an instance, by its number.
 using NameOf = std::function<std::string(std::int64_t instance)>;
 
@@ -53,7 +56,9 @@ struct BlockType {
     MainInput main_input = {};
     DeviceCalls device = {};
     std::optional<Misfit> (*misfit)(const std::byte* block,
-                                    const IsConstant& is_constant) = nullptr;         ///< or null
+                                    const IsConstant& is_constant) = nullptr;  ///< or null
+    /// What the first state of a block makes likely to be a mistake: a warning; or null.
+    std::optional<Misfit> (*doubt)(const std::byte* block, const InstanceAt& at) = nullptr;
     void (*shift)(std::byte* block, std::int64_t by, const void* context) = nullptr;  ///< or null
     /// Whether a block may go on with a state that was kept, whatever its bytes are; or null: any
     /// that its fields admit. See KeptState.
@@ -125,7 +130,8 @@ class Catalog {
   public:
     /// A block is a struct with `type`, `doc`, `fields()` and `scan(const Scan&)`, or
     /// `scan(const Scan&, const Context&)`. An output `error` is its member `error`. It may have
-    /// `misfit(const IsConstant&) const`, for what its limits cannot say, and
+    /// `misfit(const IsConstant&) const`, for what its limits cannot say,
+    /// `doubt(const InstanceAt&) const`, for what is likely to be a mistake, and
     /// `why(const Context&, const NameOf&) const`, for what the number of its error cannot say. One
     /// that remembers moments has `shift(by)`, which moves them all by so many ns: a retained block
     /// goes on in another run. `is_valid(const Block&, const KeptState&)` beside it says which kept
@@ -155,6 +161,7 @@ class Catalog {
                     .main_input = main_input<Block>(),
                     .device = device_calls<Block>(),
                     .misfit = misfit<Block>(),
+                    .doubt = doubt<Block>(),
                     .shift = shift<Block>(),
                     .valid = valid_state<Block>(),
                     .add_links = add_links<Block>(),
@@ -180,6 +187,15 @@ class Catalog {
         if constexpr (requires(const Block& block, const IsConstant& f) { block.misfit(f); })
             return [](const std::byte* block, const IsConstant& is_constant) {
                 return std::launder(reinterpret_cast<const Block*>(block))->misfit(is_constant);
+            };
+        return nullptr;
+    }
+
+    template <class Block>
+    static constexpr auto doubt() -> decltype(BlockType::doubt) {
+        if constexpr (requires(const Block& block, const InstanceAt& at) { block.doubt(at); })
+            return [](const std::byte* block, const InstanceAt& at) {
+                return std::launder(reinterpret_cast<const Block*>(block))->doubt(at);
             };
         return nullptr;
     }

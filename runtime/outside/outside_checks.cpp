@@ -47,6 +47,20 @@ void check_block(Connecting& to, int number, const Places& set) {
         to.read.fail("L0305", place, fmt::format("'{}' is not used", misfit->field), misfit->why);
 }
 
+void warn_of_doubt(const Connecting& to, int number) {
+    const Instance& block = to.net.instance(number);
+    if (!block.known() || !block.type->doubt) return;
+    const auto at = [&](std::int64_t instance) {
+        return to.machine.blocks[static_cast<std::size_t>(instance)].live;
+    };
+    const auto doubt = block.type->doubt(at(number), at);
+    if (!doubt) return;
+    const BlockPlan& plan = to.program.blocks[static_cast<std::size_t>(number)];
+    to.read.diagnostics().warn(
+        "L0808", plan.name.mark,
+        fmt::format("'{}' of {} {}", doubt->field, block.described(), doubt->why));
+}
+
 /// A command, which refers to an axis, begins at a rising edge: where nothing makes one, it never
 /// does. Other blocks with such an input may have other ways to begin.
 void warn_of_idle_command(const Connecting& to, int number, const Places& set) {
@@ -91,6 +105,7 @@ void check_constants(Connecting& to) {
     for (int i = 0; i < static_cast<int>(to.net.instances.size()); ++i) {
         check_block(to, i, set);
         warn_of_idle_command(to, i, set);
+        warn_of_doubt(to, i);
     }
 }
 

@@ -507,6 +507,14 @@ the first scan on:
     blocks:
       feed: {type: MC_MoveVelocity, task: servo, Axis: shaft, Velocity: 10 mm/s, Execute: inputs.start})"},
 
+    {"L0808", "a periodic cam whose end does not lead on to its beginning",
+     R"(A warning. The cam begins anew at its end, and there its slope, the slave's velocity per that of
+the master, is another one: the slave's velocity jumps each period. Or it ends at another position
+of the slave than it begins with, and SlaveAbsolute says that the cam gives that position: it goes on
+by the difference each period. A modulo axis may go on by whole turns. Close the cam:
+    blocks:
+      wave: {type: cam_table, task: servo, periodic: true, points: [[0 mm, 0 mm], [100 mm, 40 mm], [200 mm, 0 mm]]})"},
+
     {"L0901", "a character of no word",
      R"(The Structured Text has a character that begins no name, number, text or sign, or a comment
 or text that does not end, or the file is no text at all. It is UTF-8, UTF-16 that begins with its
