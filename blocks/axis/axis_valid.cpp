@@ -102,8 +102,8 @@ bool steps_are_few(const Axis& axis, const KeptState& machine) {
                       sync.start.until(machine.now) <= most * axis.transition_quantum);
 }
 
-/// Nobody follows itself, over however many others: way_to ends.
-bool leads_nowhere(const Axis& axis, const KeptState& machine) {
+/// Of the axis and all that it follows as it sees them. They may follow each other (Axis::follow).
+bool masters_are_valid(const Axis& axis, const KeptState& machine) {
     std::vector<const Axis*> open{&axis};
     std::set<std::int64_t> seen;
     while (!open.empty()) {
@@ -115,7 +115,6 @@ bool leads_nowhere(const Axis& axis, const KeptState& machine) {
             if (!is_valid(*link, machine)) return false;
             if (link->axis < 0 || !seen.insert(link->axis).second) continue;
             open.push_back(&machine.context.seen_instance<Axis>(link->axis));
-            if (open.back() == &axis) return false;
         }
     }
     return true;
@@ -169,7 +168,7 @@ bool is_valid(const Axis& axis, const KeptState& machine) {
            is_count(axis.scan_index) && machine.is_moment(axis.scan_time) &&
            machine.is_moment(axis.shown.time) && is_valid(axis.shortage) &&
            is_count(axis.scan_interval) && is_count(axis.renamed) &&
-           is_count(axis.trigger_aborts) && leads_nowhere(axis, machine) &&
+           is_count(axis.trigger_aborts) && masters_are_valid(axis, machine) &&
            steps_are_few(axis, machine) && (!machine.is_live || lists_are_valid(axis, machine));
 }
 
