@@ -47,6 +47,7 @@ struct PathMotion {
 struct Path {
     std::uint64_t first = 0;  ///< number of the piece under way, counted from 0
     std::uint64_t count = 0;  ///< pieces appended so far
+    double total = 0;         ///< length of all pieces appended [u]
     double travelled = 0;     ///< length of the pieces before the one under way [u]
     double time = 0;          ///< since the plan began [s]
     double override = 1;      ///< factor of the velocity, >= 0
@@ -81,7 +82,7 @@ struct Path {
     bool finished() const { return first == count; }
 
     /// What is left to its end [u].
-    double remaining(std::span<const PathPiece> ring) const;
+    double remaining() const;
 };
 
 }  // namespace lineshaft

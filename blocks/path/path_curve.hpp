@@ -61,8 +61,8 @@ PathFault arc_through(const PathVector& from, const PathVector& border, const Pa
                       PathCurve& out);
 
 /// The arc about `centre`, the shorter way or the longer one. The radius at the end may be off by
-/// 1e-9 of it, which is spread over the arc's last point alone; the half of a circle has no plane
-/// and is no_arc.
+/// 1e-6 of it: the centre is moved to where both ends are equally far. The half of a circle has no
+/// plane and is no_arc.
 PathFault arc_about(const PathVector& from, const PathVector& centre, const PathVector& to,
                     bool longer, PathCurve& out);
 

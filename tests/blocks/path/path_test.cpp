@@ -1,0 +1,226 @@
+#include "blocks/path/path.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "blocks/profile/seven_segment.hpp"
+
+using namespace lineshaft;
+
+namespace {
+
+PathLimits wide_limits(const PathLimit& path) {
+    PathLimits limits{path, {}};
+    limits.axes.fill({1e9, 1e9, 1e9});
+    return limits;
+}
+
+class Random {
+  public:
+    explicit Random(std::uint64_t seed) : numbers(seed) {}
+    double share() { return static_cast<double>(numbers() >> 11) * 0x1p-53; }
+    double between(double least, double most) { return least + (most - least) * share(); }
+    double decades(double least, double most) { return std::pow(10, between(least, most)); }
+
+  private:
+    std::mt19937_64 numbers;
+};
+
+PathVector random_point(Random& random, std::size_t axes, double size) {
+    PathVector x{};
+    for (std::size_t i = 0; i < axes; ++i) x[i] = random.between(-size, size);
+    return x;
+}
+
+struct RandomPath {
+    std::vector<PathCurve> curves;
+    std::vector<PathLimits> limits;
+};
+
+/// Lines and arcs, some of them cut in two, so that there are smooth joints.
+RandomPath random_path(Random& random, std::size_t most) {
+    RandomPath out;
+    const auto axes = static_cast<std::size_t>(random.between(2, 6.999));
+    const double size = random.decades(-2, 3);
+    PathLimits limits{{random.decades(-1, 3), random.decades(-1, 4), random.decades(0, 6)}, {}};
+    for (PathLimit& axis : limits.axes) {
+        axis = {random.decades(-1, 3), random.decades(-1, 4), random.decades(0, 6)};
+    }
+    const double mean = random.share() < 0.05 ? 200 : 15;
+    const auto wanted = std::min<double>(500, 1 - mean * std::log(1 - random.share()));
+    PathVector from = random_point(random, axes, size);
+    while (static_cast<double>(out.curves.size()) < wanted && out.curves.size() < most) {
+        const PathVector to = random_point(random, axes, size);
+        PathCurve curve;
+        const bool line = random.share() < 0.5;
+        if ((line ? line_to(from, to, curve)
+                  : arc_through(from, random_point(random, axes, size), to, curve)) !=
+            PathFault::none) {
+            continue;
+        }
+        PathCurve half;
+        if (line && random.share() < 0.5 &&
+            line_to(from, curve.at(curve.length * random.share()).position, half) ==
+                PathFault::none &&
+            line_to(half.end, to, curve) == PathFault::none) {
+            out.curves.push_back(half);
+            out.limits.push_back(limits);
+        }
+        out.curves.push_back(curve);
+        out.limits.push_back(limits);
+        from = to;
+    }
+    return out;
+}
+
+bool above(double value, double limit) {
+    return !(std::abs(value) <= limit * (1 + 1e-9));
+}
+
+std::string violation(const PathMotion& m, const PathLimits& limits) {
+    if (m.path.velocity < -1e-9 * limits.path.velocity) return "backwards";
+    if (above(m.path.velocity, limits.path.velocity)) return "path velocity";
+    if (above(m.path.acceleration, limits.path.acceleration)) return "path acceleration";
+    if (above(m.path.jerk, limits.path.jerk)) return "path jerk";
+    for (std::size_t i = 0; i < most_path_axes; ++i) {
+        const std::string axis = " of axis " + std::to_string(i);
+        if (above(m.velocity[i], limits.axes[i].velocity)) return "velocity" + axis;
+        if (above(m.acceleration[i], limits.axes[i].acceleration)) return "acceleration" + axis;
+        if (above(m.jerk[i], limits.axes[i].jerk)) return "jerk" + axis;
+    }
+    return "";
+}
+
+void command(Path& path, Random& random) {
+    const double what = random.share();
+    if (what < 0.3) {
+        path.set_override(random.share() < 0.2 ? 0 : random.share());
+    } else if (what < 0.6) {
+        path.halt();
+    } else {
+        path.resume();
+        path.set_override(random.share() < 0.5 ? 1 : random.between(0.1, 1.5));
+    }
+}
+
+/// What is wrong with the path of a seed, cut to `most` pieces; empty if nothing.
+std::string fault_of(std::uint64_t seed, std::size_t most) {
+    Random random(seed);
+    const RandomPath wanted = random_path(random, most);
+    std::vector<PathPiece> ring(wanted.curves.size() < 8 ? 8 : wanted.curves.size() / 2 + 2);
+    Path path;
+    std::size_t given = 0;
+    double length = 0, before = 0;
+    for (const PathCurve& curve : wanted.curves) length += curve.length;
+    const double dt = random.decades(-3, -1) * length / wanted.limits[0].path.velocity;
+    const double commands = random.share() < 0.3 ? 0 : random.decades(-3, -1);
+    for (long scan = 0; scan < 200'000; ++scan) {
+        while (given < wanted.curves.size()) {
+            const PathFault fault = path.append(ring, wanted.curves[given], wanted.limits[given]);
+            if (fault == PathFault::full) break;
+            if (fault != PathFault::none) return "append";
+            ++given;
+        }
+        if (random.share() < commands && scan < 2000) command(path, random);
+        if (scan == 2000) path.resume(), path.set_override(1);
+        const double step = scan < 20'000 ? dt * random.share() : 100 * dt;
+        const PathMotion m = path.advance(ring, step);
+        const std::string what = violation(m, wanted.limits[0]);
+        if (!what.empty()) return what + " in scan " + std::to_string(scan);
+        if (path.lost) return "lost";
+        if (m.path.position < before - 1e-9 * length) return "position falls";
+        before = m.path.position;
+        if (path.finished() && given == wanted.curves.size()) {
+            return m.position == wanted.curves.back().end && path.remaining() == 0 ? "" : "end";
+        }
+    }
+    return "does not end";
+}
+
+long wanted_paths() {
+    const char* const text = std::getenv("LINESHAFT_PATHS");
+    return text == nullptr ? 300 : std::atol(text);
+}
+
+}  // namespace
+
+TEST_CASE("path: a single line takes the time of the seven-segment move") {
+    std::vector<PathPiece> ring(4);
+    Path path;
+    PathCurve line;
+    REQUIRE(line_to({0, 0}, {30, 40}, line) == PathFault::none);
+    REQUIRE(path.append(ring, line, wide_limits({20, 100, 1000})) == PathFault::none);
+    SevenSegmentPlan least;
+    REQUIRE(plan(SevenSegment{0, 0, 20, 100, 1000, 50}, least) == PlanResult::ok);
+    path.advance(ring, 0);
+    CHECK(path.plan.duration == Approx(least.duration).epsilon(1e-12));
+    path.advance(ring, 100);
+    CHECK(path.finished());
+    CHECK(path.now(ring).position == PathVector{30, 40});
+}
+
+TEST_CASE("path: on an arc the speed does not ripple and keeps what the axes allow") {
+    std::vector<PathPiece> ring(4);
+    Path path;
+    PathCurve arc;
+    REQUIRE(arc_through({20, 0}, {0, 20}, {-20, 0}, arc) == PathFault::none);
+    PathLimits limits = wide_limits({10, 100, 1000});
+    REQUIRE(path.append(ring, arc, limits) == PathFault::none);
+    path.advance(ring, 1);
+    for (int scan = 0; scan < 400; ++scan) {
+        const PathMotion m = path.advance(ring, 0.01);
+        CHECK(std::abs(std::hypot(m.velocity[0], m.velocity[1]) - 10) <= 1e-8);
+        CHECK(std::hypot(m.position[0], m.position[1]) == Approx(20).epsilon(1e-14));
+    }
+}
+
+TEST_CASE("path: a corner is a stop, a line cut in two is not") {
+    std::vector<PathPiece> ring(4);
+    Path path;
+    PathCurve a, b, c;
+    REQUIRE(line_to({0, 0}, {10, 0}, a) == PathFault::none);
+    REQUIRE(line_to({10, 0}, {30, 0}, b) == PathFault::none);
+    REQUIRE(line_to({30, 0}, {30, 10}, c) == PathFault::none);
+    const PathLimits limits = wide_limits({10, 100, 1000});
+    for (const PathCurve& curve : {a, b, c}) {
+        REQUIRE(path.append(ring, curve, limits) == PathFault::none);
+    }
+    CHECK(ring[0].exit == Approx(10).epsilon(1e-8));
+    CHECK(ring[1].exit == 0);
+    CHECK(path.append(ring, a, limits) == PathFault::not_joined);
+}
+
+TEST_CASE("path: a copy of its bytes goes on alike") {
+    Random random(7);
+    const RandomPath wanted = random_path(random, 20);
+    std::vector<PathPiece> ring(wanted.curves.size());
+    Path path;
+    for (std::size_t i = 0; i < wanted.curves.size(); ++i) {
+        REQUIRE(path.append(ring, wanted.curves[i], wanted.limits[i]) == PathFault::none);
+    }
+    path.advance(ring, 0.1);
+    path.halt();
+    Path copy = path;
+    std::vector<PathPiece> other = ring;
+    for (int scan = 0; scan < 100; ++scan) {
+        const PathMotion m = path.advance(ring, 0.01), n = copy.advance(other, 0.01);
+        CHECK(std::memcmp(&m, &n, sizeof m) == 0);
+    }
+}
+
+TEST_CASE("path: random paths keep all limits and end exactly") {
+    for (long seed = 0; seed < wanted_paths(); ++seed) {
+        const auto number = static_cast<std::uint64_t>(seed);
+        if (fault_of(number, 500).empty()) continue;
+        std::size_t most = 1;
+        while (fault_of(number, most).empty()) ++most;
+        FAIL("seed " << seed << ", cut to " << most << " pieces: " << fault_of(number, most));
+    }
+}
