@@ -123,7 +123,8 @@ bool plan_piece(const PathPiece& piece, const MotionState& from, double factor, 
         const double way = way_to(from, 0, piece.cap);
         if (way <= room) {
             const double V = piece.cap.velocity;
-            return plan_within(piece.cap, V, from, {from.position + way, 0}, out);
+            return plan_within(piece.cap, V, from,
+                               {std::min(from.position + way, piece.curve.length), 0}, out);
         }
     }
     const double wanted = std::min(piece.exit, factor * piece.joint);

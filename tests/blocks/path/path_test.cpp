@@ -218,6 +218,10 @@ TEST_CASE("path: a copy of its bytes goes on alike") {
     }
 }
 
+TEST_CASE("path: a halt that ends at a joint but for rounding goes on from there") {
+    CHECK(fault_of(1144, 500).empty());
+}
+
 TEST_CASE("path: random paths keep all limits and end exactly") {
     for (long seed = 0; seed < wanted_paths(); ++seed) {
         const auto number = static_cast<std::uint64_t>(seed);
