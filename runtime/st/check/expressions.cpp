@@ -5,7 +5,8 @@
 #include "runtime/source/units.hpp"
 #include "runtime/source/utf8.hpp"
 #include "runtime/st/check/checker_class.hpp"
-#include "runtime/st/types/literals.hpp"
+#include "runtime/st/syntax/literals.hpp"
+#include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft::st {
 
@@ -130,7 +131,7 @@ const Type* Checker::check_number(Expression& e) {
 const Type* Checker::check_time(Expression& e) {
     const std::string_view prefix = e.place.text().substr(0, e.place.text().find('#'));
     if (const Type* type = find_prefix(prefix); type && type->is_date()) {
-        const auto value = read_date(e.token.text, type->kind);
+        const auto value = read_time(e.token.text, type->kind);
         if (!value)
             return fail("L0908", e.place,
                         fmt::format("'{}' is not a {}", e.place.text(), type->name),
@@ -148,7 +149,7 @@ const Type* Checker::check_time(Expression& e) {
 }
 
 std::optional<Wide> Checker::read_dtl(const Expression& e) {
-    const auto value = read_date(e.token.text, Kind::moment);
+    const auto value = read_moment(e.token.text);
     if (!value)
         fail("L0908", e.place, fmt::format("'{}' is not a DTL", e.place.text()),
              "write DTL#2020-02-29-12:30:15.25");

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "runtime/st/check/checker_class.hpp"
-#include "runtime/st/types/literals.hpp"
+#include "runtime/st/syntax/literals.hpp"
 
 namespace lineshaft::st {
 

@@ -14,7 +14,6 @@
 
 #include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/constant.hpp"
-#include "runtime/st/types/literals.hpp"
 #include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft::st {
@@ -250,9 +249,7 @@ void write_time(std::byte* to, std::uint64_t kind, std::int64_t value) {
 std::int64_t time_of_text(std::uint64_t kind, const std::byte* from) {
     std::string_view text = text_at(from);
     text.remove_prefix(text.find('#') + 1);  // 0 without one
-    const auto of = static_cast<Type::Kind>(kind);
-    const auto value = of == Type::Kind::time ? read_duration(text) : read_date(text, of);
-    return static_cast<std::int64_t>(value.value_or(0));
+    return static_cast<std::int64_t>(read_time(text, static_cast<Type::Kind>(kind)).value_or(0));
 }
 
 /// What a scan needs besides where it is: apart, so that the registers are left to that.

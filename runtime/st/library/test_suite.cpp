@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "runtime/st/library/compiled.hpp"
-#include "runtime/st/types/literals.hpp"
+#include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft::st {

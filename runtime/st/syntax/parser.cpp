@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/elementary.hpp"
-#include "runtime/st/types/literals.hpp"
 
 namespace lineshaft::st {
 

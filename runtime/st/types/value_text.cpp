@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "runtime/source/utf8.hpp"
+#include "runtime/st/syntax/literals.hpp"
 
 namespace lineshaft::st {
 
@@ -102,6 +103,12 @@ void add_time(fmt::memory_buffer& to, Kind kind, std::int64_t nanoseconds) {
         add_duration(std::back_inserter(to), nanoseconds);
     else
         add_date(std::back_inserter(to), kind, nanoseconds);
+}
+
+std::optional<Wide> read_time(std::string_view text, Kind kind) {
+    if (kind == Kind::date) return read_date(text);
+    if (kind == Kind::clock) return read_clock(text);
+    return kind == Kind::moment ? read_moment(text) : read_duration(text);
 }
 
 std::string printable(std::string_view text) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -18,6 +19,9 @@ std::string time_literal(std::int64_t nanoseconds);
 /// Adds it, of a kind with a time: `T#1s500ms`, `D#2020-02-29`, `TOD#12:30:15.250`,
 /// `DT#2020-02-29-12:30:15`. Allocates nothing.
 void add_time(fmt::memory_buffer& to, Type::Kind kind, std::int64_t nanoseconds);
+
+/// What stands behind the '#' of a literal of a kind with a time, in ns; empty if it is none.
+std::optional<Wide> read_time(std::string_view text, Type::Kind kind);
 
 /// With `$E4` for a byte that is no UTF-8, `$0A` for a new line.
 std::string printable(std::string_view text);

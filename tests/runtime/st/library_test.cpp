@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/elementary.hpp"
-#include "runtime/st/types/literals.hpp"
 #include "tests/allocations.hpp"
 #include "tests/runtime/st/instance.hpp"
 

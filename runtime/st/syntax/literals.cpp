@@ -1,4 +1,4 @@
-#include "runtime/st/types/literals.hpp"
+#include "runtime/st/syntax/literals.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -132,7 +132,35 @@ std::optional<Wide> read_duration(std::string_view given) {
 
 namespace {
 
-/// `12:30` and `12:30:15.25`.
+/// Midnight [ns since 1970].
+std::optional<Wide> read_day(std::string_view text) {
+    int parts[3] = {};
+    for (int& part : parts) {
+        const std::size_t end = &part == &parts[2] ? text.size() : text.find('-');
+        if (end == std::string_view::npos) return {};
+        const auto number = read_digits(text.substr(0, end), 10);
+        if (!number || *number > 9999) return {};
+        part = static_cast<int>(*number);
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    const std::chrono::year_month_day day{std::chrono::year(parts[0]),
+                                          std::chrono::month(static_cast<unsigned>(parts[1])),
+                                          std::chrono::day(static_cast<unsigned>(parts[2]))};
+    if (!day.ok()) return {};
+    return Wide{std::chrono::sys_days(day).time_since_epoch().count()} * time_units[0].nanoseconds;
+}
+
+std::optional<Wide> within_64_bits(Wide value) {
+    return value < beyond / 2 && value >= -beyond / 2 ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Wide> read_date(std::string_view text) {
+    const auto day = read_day(text);
+    return day ? within_64_bits(*day) : day;
+}
+
 std::optional<Wide> read_clock(std::string_view text) {
     constexpr std::string_view names[] = {"h", "m", "s"};
     constexpr int ends[] = {24, 60, 60};
@@ -148,29 +176,12 @@ std::optional<Wide> read_clock(std::string_view text) {
     return read_duration(view(duration));
 }
 
-}  // namespace
-
-std::optional<Wide> read_date(std::string_view text, Type::Kind kind) {
-    if (kind == Type::Kind::clock) return read_clock(text);
-    int parts[3] = {};
-    const bool has_time = kind == Type::Kind::moment;
-    for (int& part : parts) {
-        const bool is_last = &part == &parts[2];
-        const std::size_t end = is_last && !has_time ? text.size() : text.find('-');
-        if (end == std::string_view::npos) return {};
-        const auto number = read_digits(text.substr(0, end), 10);
-        if (!number || *number > 9999) return {};
-        part = static_cast<int>(*number);
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    const std::chrono::year_month_day day{std::chrono::year(parts[0]),
-                                          std::chrono::month(static_cast<unsigned>(parts[1])),
-                                          std::chrono::day(static_cast<unsigned>(parts[2]))};
-    const auto clock = has_time ? read_clock(text) : Wide{0};
-    if (!day.ok() || !clock) return {};
-    const Wide days = std::chrono::sys_days(day).time_since_epoch().count();
-    const Wide moment = days * 86'400'000'000'000 + *clock;
-    return moment < beyond / 2 && moment >= -beyond / 2 ? std::optional(moment) : std::nullopt;
+std::optional<Wide> read_moment(std::string_view text) {
+    const std::size_t end = text.rfind('-');
+    if (end == std::string_view::npos) return {};
+    const auto day = read_day(text.substr(0, end));
+    const auto clock = read_clock(text.substr(end + 1));
+    return day && clock ? within_64_bits(*day + *clock) : std::nullopt;
 }
 
 std::optional<std::string> read_text(std::string_view text) {

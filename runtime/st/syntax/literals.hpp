@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/st/types/types.hpp"
+#include "runtime/st/syntax/constant.hpp"
 
 namespace lineshaft::st {
 
@@ -17,8 +17,11 @@ std::optional<double> read_real(std::string_view text);
 /// What follows `T#`, in ns: `1h2m3.5s`, `-5ms`, `1d_2h`. Empty if it is none, or beyond 64 bits.
 std::optional<Wide> read_duration(std::string_view text);
 
-/// `2020-02-29` [ns since 1970], `12:30:15.25` [ns], `2020-02-29-12:30:15`, as the kind has it.
-std::optional<Wide> read_date(std::string_view text, Type::Kind kind);
+/// What follows `D#`, `TOD#`, `DT#`: `2020-02-29` [ns since 1970], `12:30:15.25` [ns],
+/// `2020-02-29-12:30:15` [ns since 1970]. Empty if it is none, or beyond 64 bits.
+std::optional<Wide> read_date(std::string_view text);
+std::optional<Wide> read_clock(std::string_view text);
+std::optional<Wide> read_moment(std::string_view text);
 
 /// The characters of a text between its quotes: `$'`, `$$`, `$L`, `$N`, `$P`, `$R`, `$T`, `$0A`.
 std::optional<std::string> read_text(std::string_view text);
