@@ -1,0 +1,220 @@
+#include "runtime/st/generate/calls.hpp"
+
+#include <algorithm>
+
+#include "runtime/st/generate/assertions.hpp"
+#include "runtime/st/generate/conversions.hpp"
+#include "runtime/st/generate/layout.hpp"
+#include "runtime/st/generate/places.hpp"
+#include "runtime/st/generate/standard_functions.hpp"
+#include "runtime/st/generate/values.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+using Kind = Type::Kind;
+using E = Expression::Kind;
+using Mode = Location::Mode;
+
+/// What a call is given only when all its arguments are known.
+struct Later {
+    Location to;
+    Slot slot;
+    std::uint32_t slots = 0;  ///< of an array, a structure or a text
+};
+
+/// A test sets an output or a local by its name.
+bool is_set(const Argument& argument) {
+    return argument.name.word != Word::end_of_file && !argument.is_output;
+}
+
+/// The instance that a method works on.
+Location method_base(Writing& w, const Expression& e) {
+    const Expression& callee = *e.operands[0];
+    if (callee.kind == E::member) return locate(w, *callee.operands[0]);
+    return {Mode::slot, 0};
+}
+
+/// Where the value of a VAR_IN_OUT is, and what it holds if any length may be given.
+void refer(Writing& w, const Location& to, const Variable& variable, const Expression& value,
+           std::vector<Later>& later) {
+    const Location at = locate(w, value);
+    later.push_back({to, address_of(w, at)});
+    if (variable.type->is_open) later.push_back({behind(to, 1), capacity_of(w, at, *value.type)});
+}
+
+void give_left_out(Writing& w, const Location& frame, const Expression& e) {
+    for (const Argument& argument : e.arguments) {
+        if (!argument.is_left_out) continue;
+        const Location reference = behind(frame, argument.variable->slot);
+        Jumps given;
+        w.jump(Op::jump_if, 0, load(w, reference), given);
+        std::vector<Later> later;
+        refer(w, reference, *argument.variable, *argument.value, later);
+        for (const Later& value : later) store(w, value.to, value.slot);
+        w.land(given);
+    }
+}
+
+/// Inputs and references, and what is left out.
+void give(Writing& w, const Location& frame, const Expression& e, const Routine& routine) {
+    const auto is_given = [](const Argument& argument) {
+        const Section section = argument.variable->section;
+        return !argument.is_left_out &&
+               (section == Section::input || section == Section::in_out || is_set(argument));
+    };
+    give_left_out(w, frame, e);
+    const bool nested = std::ranges::any_of(
+        e.arguments, [&](const Argument& a) { return is_given(a) && has_call(*a.value); });
+    std::vector<Later> later;
+    for (const Argument& argument : e.arguments) {
+        if (!is_given(argument)) continue;
+        const Variable& variable = *argument.variable;
+        const Type& type = *variable.type;
+        const Location to = behind(frame, variable.slot);
+        if (variable.space == Space::reference) {
+            refer(w, to, variable, *argument.value, later);
+        } else if (!nested) {
+            assign(w, to, type, *argument.value);
+        } else if (type.is_scalar()) {
+            later.push_back({to, w.new_temporary()});
+            value_to(w, *argument.value, later.back().slot);
+        } else {
+            const std::uint32_t slots = slots_of(w, type);
+            later.push_back({to, w.new_temporary(slots), slots});
+            assign(w, {Mode::slot, later.back().slot}, type, *argument.value);
+        }
+    }
+    for (const Later& value : later) {
+        if (value.slots > 0)
+            copy(w, value.to, {Mode::slot, value.slot}, value.slots);
+        else
+            store(w, value.to, value.slot);
+    }
+    if (routine.has_instances()) return;
+    for (const Variable& variable : routine.variables) {
+        const bool missing = variable.section == Section::input &&
+                             std::ranges::none_of(e.arguments, [&](const Argument& argument) {
+                                 return argument.variable == &variable;
+                             });
+        if (!missing || variable.space == Space::none) continue;
+        const std::uint32_t slots = slots_of(w, *variable.type);
+        const Type* block = routine.owner ? routine.owner->type : nullptr;
+        const Slot made =
+            frame.mode == Mode::slot ? frame.slot + variable.slot : w.new_temporary(slots);
+        w.image_uses.push_back({w.next(), block, &routine});
+        w.put(Op::initialise, made, variable.slot, slots);
+        if (frame.mode != Mode::slot)
+            copy(w, behind(frame, variable.slot), {Mode::slot, made}, slots);
+    }
+}
+
+/// Outputs.
+void take(Writing& w, const Location& frame, const Expression& e) {
+    for (const Argument& argument : e.arguments) {
+        const Variable& variable = *argument.variable;
+        const bool is_taken = argument.is_output || variable.section == Section::output;
+        if (!is_taken || is_set(argument)) continue;
+        const Location from = part(w, frame, variable);
+        const Type &given = *variable.type, &wanted = *argument.value->type;
+        if (argument.value->kind == E::bit) {
+            store_bits(w, *argument.value, convert(w, load(w, from), given, wanted, false, none));
+            continue;
+        }
+        const Location to = locate(w, *argument.value);
+        if (given.kind == Kind::text)
+            w.put(Op::text_copy, address_of(w, to), address_of(w, from),
+                  capacity_of(w, to, wanted));
+        else if (!given.is_scalar())
+            copy(w, to, from, slots_of(w, given));
+        else
+            store(w, to, convert(w, load(w, from), given, wanted, false, none));
+    }
+}
+
+}  // namespace
+
+Slot call(Writing& w, const Expression& e, Slot wanted) {
+    if (!e.routine) return standard(w, e, wanted);
+    const Location frame = call_routine(w, e);
+    const Routine& routine = *e.routine;
+    const Type& type = *routine.result->type;
+    const std::uint32_t slots = slots_of(w, type);
+    if (routine.is_function()) {
+        const Slot from = frame.slot + routine.result->slot;
+        const Slot to = slots == 1 ? w.result(wanted) : w.new_temporary(slots);
+        if (slots == 1)
+            w.put(Op::move, to, from);
+        else
+            w.put(Op::copy, to, from, slots);
+        return to;
+    }
+    const Location from = part(w, method_base(w, e), *routine.result);
+    const Slot to = slots == 1 ? w.result(wanted) : w.new_temporary(slots);
+    if (slots == 1)
+        store(w, {Mode::slot, to}, load(w, from, to));
+    else
+        copy(w, {Mode::slot, to}, from, slots);
+    return to;
+}
+
+Location call_routine(Writing& w, const Expression& e) {
+    const Routine& routine = *e.routine;
+    const bool is_function = routine.is_function();
+    Location frame = is_function ? Location{Mode::slot, Region::window} : method_base(w, e);
+    if (frame.mode == Mode::indexed) frame = as_address(w, frame);
+    give(w, frame, e, routine);
+    w.place = e.place;
+    if (frame.mode == Mode::slot)
+        w.put(Op::call, frame.slot, w.routine_number(routine));
+    else
+        w.put(Op::call_at, address_of(w, frame), w.routine_number(routine));
+    if (is_function) w.windows = std::max(w.windows, routine.frame);
+    const auto is_called_for = [](const Argument& a) {
+        return (a.is_output || a.variable->section == Section::output) && has_call(*a.value);
+    };
+    if (is_function && std::ranges::any_of(e.arguments, is_called_for)) {
+        frame.slot = w.new_temporary(routine.variables_end);
+        w.put(Op::copy, frame.slot, Region::window, routine.variables_end);
+    }
+    take(w, frame, e);
+    return frame;
+}
+
+void call_instance(Writing& w, const Expression& e) {
+    const Expression& callee = *e.operands[0];
+    const Type& type = *callee.type;
+    Location frame = locate(w, callee);
+    if (frame.mode == Mode::indexed) frame = as_address(w, frame);
+    if (type.kind == Kind::block) {
+        const Routine& routine = *type.routine;
+        give(w, frame, e, routine);
+        w.place = e.place;
+        if (frame.mode == Mode::slot)
+            w.put(Op::call, frame.slot, w.routine_number(routine));
+        else
+            w.put(Op::call_at, address_of(w, frame), w.routine_number(routine));
+        return take(w, frame, e);
+    }
+    for (const Argument& argument : e.arguments)
+        if (argument.variable->section != Section::output || is_set(argument))
+            assign(w, part(w, frame, *argument.variable), *argument.variable->type,
+                   *argument.value);
+    const std::uint32_t number = w.standard_number(*type.standard);
+    w.place = e.place;
+    Jumps runs, mocked;
+    if (w.has_tests) {
+        count_call(w, behind(frame, type.slots - 1), runs);
+        w.jump(Op::jump, 0, 0, mocked);
+        w.land(runs);
+    }
+    if (frame.mode == Mode::slot)
+        w.put(Op::call_block, frame.slot, number);
+    else
+        w.put(Op::call_block_at, address_of(w, frame), number);
+    w.land(mocked);
+    take(w, frame, e);
+}
+
+}  // namespace lineshaft::st

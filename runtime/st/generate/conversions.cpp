@@ -1,0 +1,133 @@
+#include "runtime/st/generate/conversions.hpp"
+
+#include "runtime/st/generate/places.hpp"
+#include "runtime/st/generate/texts.hpp"
+#include "runtime/st/generate/values.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+using Kind = Type::Kind;
+
+Slot look_up(Writing& w, Slot slot, const std::vector<std::int64_t>& numbers) {
+    const std::uint64_t first = w.code.numbers.size();
+    w.code.numbers.insert(w.code.numbers.end(), numbers.begin(), numbers.end());
+    return w.emit(Op::look_up, none, slot, w.table({0, numbers.size(), 1, first}));
+}
+
+Slot convert_real(Writing& w, Slot slot, const Type& from, const Type& to, bool truncates,
+                  Slot wanted) {
+    if (from.is_real() && to.is_real())
+        return to.bits < from.bits ? w.emit(Op::narrow, wanted, slot) : slot;
+    if (to.is_real()) {
+        if (from.kind == Kind::bits && from.bits == to.bits)
+            return to.bits == 32 ? w.emit(Op::real_of_bits, wanted, slot) : slot;
+        const bool big = from.is_unsigned_64();
+        if (to.bits == 32)
+            return w.emit(big ? Op::real_from_unsigned : Op::real_from_signed, wanted, slot);
+        return w.emit(big ? Op::lreal_from_unsigned : Op::lreal_from_signed, wanted, slot);
+    }
+    if (to.kind == Kind::boolean) return w.emit(Op::ne_float, wanted, slot, w.constant_slot(0));
+    if (to.kind == Kind::bits && from.bits == to.bits)
+        return to.bits == 32 ? w.emit(Op::real_bits, wanted, slot) : slot;
+    if (truncates) slot = w.emit(Op::truncate, none, slot);
+    return w.emit(of_type(Op::round_sint, to), wanted, slot);
+}
+
+/// Of a DT its DATE and its TOD; all others keep their ns.
+Slot convert_date(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
+    if (from.kind != Kind::moment || (to.kind != Kind::date && to.kind != Kind::clock)) return slot;
+    const Slot day = w.constant_slot(86'400'000'000'000);
+    const Slot rest = w.emit(Op::mod_lint, none, slot, day);
+    const Slot above = w.emit(Op::add_lint, none, rest, day);
+    const bool is_date = to.kind == Kind::date;
+    const Slot clock = w.emit(Op::mod_lint, is_date ? none : wanted, above, day);
+    return is_date ? w.emit(Op::sub_lint, wanted, slot, clock) : clock;
+}
+
+/// A time is in ns as an integer of 64 bits. As any other number a TIME and a TOD are in ms, as
+/// IEC 61131-3's vendors have it, a DT and a DATE in s, and an LTIME as a real number in ns; in 16
+/// bits a DATE is in days since 1990, as Siemens has it.
+Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
+    const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
+    if (to.kind == Kind::boolean) return w.emit(Op::ne_word, wanted, slot, w.constant_slot(0));
+    const bool in_seconds = time.kind == Kind::date || time.kind == Kind::moment;
+    if (number.is_real()) {
+        const double unit = in_seconds ? 1e9 : time.name == "LTIME" ? 1 : 1e6;
+        const Slot one = w.constant_slot(lreal_type, {.real = unit});
+        if (from.is_real())
+            return w.emit(Op::round_lint, wanted, w.emit(Op::mul_lreal, none, slot, one));
+        const Slot real = w.emit(Op::lreal_from_signed, none, slot);
+        const Slot counted = w.emit(Op::div_lreal, wanted, real, one);
+        return to.bits == 32 ? w.emit(Op::narrow, wanted, counted) : counted;
+    }
+    if (number.bits == 64) return slot;
+    constexpr std::uint64_t day = 86'400'000'000'000;
+    const bool in_days = time.kind == Kind::date && number.bits == 16;
+    const Slot unit = w.constant_slot(in_days ? day : in_seconds ? 1'000'000'000 : 1'000'000);
+    const Slot start = w.constant_slot(in_days ? 7305 * day : 0);
+    if (to.is_time()) {
+        if (!in_days) return w.emit(Op::mul_lint, wanted, slot, unit);
+        return w.emit(Op::add_lint, wanted, w.emit(Op::mul_lint, none, slot, unit), start);
+    }
+    if (in_days) slot = w.emit(Op::sub_lint, none, slot, start);
+    return w.emit(of_type(Op::wrap_sint, to), wanted, w.emit(Op::div_lint, none, slot, unit));
+}
+
+}  // namespace
+
+Slot converted(Writing& w, const Expression& e, Slot wanted) {
+    const Expression& operand = *e.operands[0];
+    if (e.type->kind == Kind::handle)
+        return w.emit(Op::set_global_number, wanted, static_cast<Slot>(operand.variable->global));
+    if (operand.type->kind == Kind::text) {
+        const Slot text = text_address(w, operand);
+        if (e.type->kind == Kind::real) {
+            const Slot real = w.emit(Op::real_of_text, none, text);
+            return e.type->bits == 32 ? w.emit(Op::narrow, wanted, real) : real;
+        }
+        if (e.type->kind == Kind::boolean) return w.emit(Op::truth_of_text, wanted, text);
+        if (e.type->is_time())
+            return w.emit(Op::time_of_text, wanted, text, static_cast<Slot>(e.type->kind));
+        if (e.type->is_character) {
+            const Slot to = w.result(wanted);
+            w.put(Op::text_character, to, text, w.constant_slot(1), 1);
+            return to;
+        }
+        return w.emit(of_type(Op::wrap_sint, e.type->plain()), wanted,
+                      w.emit(Op::integer_of_text, none, text));
+    }
+    return convert(w, value(w, operand), *operand.type, *e.type, e.op == Word::divided, wanted);
+}
+
+Slot convert(Writing& w, Slot slot, const Type& given_from, const Type& given_to, bool truncates,
+             Slot wanted) {
+    const Type &from = given_from.plain(), &to = given_to.plain();
+    if (given_to.is_subrange) {
+        const Slot whole = convert(w, slot, from, to, truncates, none);
+        w.put(Op::within, 0, whole,
+              w.table({given_to.lower,
+                       static_cast<std::uint64_t>(given_to.upper - given_to.lower) + 1, 1}));
+        return whole;
+    }
+    if (from.kind == Kind::enumeration && !from.counted) {
+        slot = look_up(w, slot, from.numbers);
+        return convert(w, slot, *from.base, to, truncates, wanted);
+    }
+    if (to.kind == Kind::enumeration) {
+        if (!to.of_number.empty() && from.is_integer()) slot = look_up(w, slot, to.of_number);
+        if (from.is_real()) slot = convert_real(w, slot, from, lint_type, truncates, none);
+        w.put(Op::within, 0, slot, w.table({0, to.values.size(), 1}));
+        return slot;
+    }
+    if (from.is_time() && to.is_time()) return convert_date(w, slot, from, to, wanted);
+    if (from.is_time() || to.is_time()) return convert_time(w, slot, from, to, wanted);
+    if (from.is_real() || to.is_real()) return convert_real(w, slot, from, to, truncates, wanted);
+    if (to.kind == Kind::boolean) return w.emit(Op::ne_word, wanted, slot, w.constant_slot(0));
+    if (widens(from, to) || from.kind == Kind::boolean || from.kind == Kind::enumeration)
+        return slot;
+    return w.emit(of_type(Op::wrap_sint, to), wanted, slot);
+}
+
+}  // namespace lineshaft::st

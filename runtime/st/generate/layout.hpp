@@ -1,0 +1,18 @@
+#pragma once
+
+#include "runtime/st/generate/writing.hpp"
+
+namespace lineshaft::st {
+
+/// The slots that a value of the type takes; lays it out. Of a block only after it is laid out,
+/// with all its methods. L0912: more memory than a block may have.
+std::uint32_t slots_of(Writing& w, const Type& type);
+
+/// Variables that live for one call only come last, to be initialised in one go.
+void lay_out(Writing& w, Routine& block);
+void lay_out_function(Writing& w, Routine& routine);
+
+/// A method's frame is a part of its block's.
+void lay_out_method(Writing& w, Routine& method);
+
+}  // namespace lineshaft::st

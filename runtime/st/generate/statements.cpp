@@ -1,0 +1,290 @@
+#include "runtime/st/generate/statements.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "runtime/st/generate/assertions.hpp"
+#include "runtime/st/generate/calls.hpp"
+#include "runtime/st/generate/places.hpp"
+#include "runtime/st/generate/texts.hpp"
+#include "runtime/st/generate/values.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+using Kind = Type::Kind;
+using S = Statement::Kind;
+
+void write_assignment(Writing& w, const Statement& s) {
+    if (s.target->kind == Expression::Kind::bit)
+        return store_bits(w, *s.target, value_before(w, *s.value, *s.target));
+    if (s.target->is_character()) {
+        const Slot from = value_before(w, *s.value, *s.target);
+        const Slot text = text_address(w, *s.target->operands[0]);
+        return w.put(Op::set_character, from, text, value(w, *s.target->arguments[0].value));
+    }
+    assign(w, locate(w, *s.target), *s.target->type, *s.value);
+}
+
+void jump_unless(Writing& w, const Expression& condition, Jumps& to) {
+    const Expression& e = condition;
+    const bool binary = e.kind == Expression::Kind::binary;
+    if (binary && (e.op == Word::and_then_)) {
+        jump_unless(w, *e.operands[0], to);
+        return jump_unless(w, *e.operands[1], to);
+    }
+    if (e.kind == Expression::Kind::unary && e.op == Word::not_)
+        return w.jump(Op::jump_if, 0, value(w, *e.operands[0]), to);
+    const bool compares = binary && e.op >= Word::less && e.op <= Word::unequal &&
+                          e.operands[0]->type->kind != Kind::text;
+    if (!compares) return w.jump(Op::jump_unless, 0, value(w, e), to);
+    const Type& type = *e.operands[0]->type;
+    Slot a = value_before(w, *e.operands[0], *e.operands[1]), b = value(w, *e.operands[1]);
+    const bool swapped = e.op == Word::greater || e.op == Word::greater_or_equal;
+    if (swapped) std::swap(a, b);
+    const bool equal = e.op == Word::equal || e.op == Word::unequal;
+    if (equal) {
+        const bool is_equal = e.op == Word::equal;
+        if (type.is_real())
+            return w.jump(is_equal ? Op::jump_unless_eq_float : Op::jump_unless_ne_float, a, b, to);
+        return w.jump(is_equal ? Op::jump_unless_eq_word : Op::jump_unless_ne_word, a, b, to);
+    }
+    const bool less = e.op == Word::less || e.op == Word::greater;
+    const Op op = type.is_real() ? (less ? Op::jump_unless_lt_float : Op::jump_unless_le_float)
+                  : type.is_unsigned_64()
+                      ? (less ? Op::jump_unless_lt_unsigned : Op::jump_unless_le_unsigned)
+                      : (less ? Op::jump_unless_lt_signed : Op::jump_unless_le_signed);
+    w.jump(op, a, b, to);
+}
+
+void write_if(Writing& w, const Statement& s) {
+    Jumps ends, skip;
+    for (const Branch& branch : s.branches) {
+        const std::uint32_t kept = w.temporaries;
+        w.place = branch.condition->place;
+        if (&branch != &s.branches.front()) w.cover(CoverPoint::Kind::statement, w.place);
+        jump_unless(w, *branch.condition, skip);
+        w.temporaries = kept;
+        w.cover_branch(s, static_cast<std::size_t>(&branch - s.branches.data()));
+        write_block(w, branch.body);
+        if (&branch != &s.branches.back() || !s.body.empty() || w.options.covered)
+            w.jump(Op::jump, 0, 0, ends);
+        else
+            w.fuse_guarded_move(skip);
+        w.land(skip);
+    }
+    w.cover_branch(s, s.branches.size());
+    write_block(w, s.body);
+    w.land(ends);
+}
+
+/// From the least to the greatest value of a CASE, if that is a table worth having.
+std::optional<IndexTable> jump_table(Writing& w, const Statement& s) {
+    if (!w.fuses || s.value->type->is_unsigned_64()) return {};
+    std::int64_t least = std::numeric_limits<std::int64_t>::max(), greatest = ~least;
+    std::uint64_t labels = 0;
+    for (const Branch& branch : s.branches) {
+        for (const auto& [from, to] : branch.labels) {
+            least = std::min(least, static_cast<std::int64_t>(from->constant.integer));
+            greatest =
+                std::max(greatest, static_cast<std::int64_t>((to ? to : from)->constant.integer));
+            ++labels;
+        }
+    }
+    const auto range = static_cast<std::uint64_t>(greatest) - static_cast<std::uint64_t>(least);
+    if (labels < 8 || range >= 8 * labels) return {};
+    return IndexTable{least, range + 1, 1, w.code.numbers.size()};
+}
+
+void write_choice(Writing& w, const Statement& s, Slot selector, const IndexTable& table) {
+    Jumps ends, otherwise;
+    w.put(Op::choose, 0, selector, w.table(table));
+    w.jump(Op::jump, 0, 0, otherwise);
+    const auto places = static_cast<std::ptrdiff_t>(table.first);
+    w.code.numbers.resize(table.first + table.count, -1);
+    for (const Branch& branch : s.branches) {
+        w.land();
+        for (const auto& [from, to] : branch.labels)
+            for (auto i = from->constant.integer; i <= (to ? to : from)->constant.integer; ++i)
+                w.code.numbers[table.place(static_cast<std::uint64_t>(i))] = w.next();
+        write_block(w, branch.body);
+        w.jump(Op::jump, 0, 0, ends);
+    }
+    w.land(otherwise);
+    std::replace(w.code.numbers.begin() + places,
+                 w.code.numbers.begin() + places + static_cast<std::ptrdiff_t>(table.count),
+                 std::int64_t{-1}, std::int64_t{w.next()});
+    write_block(w, s.body);
+    w.land(ends);
+}
+
+/// Jumps `here` if the selector is one of the label; of the last one goes on, or jumps `past`.
+void test_label(Writing& w, const Statement& s, Slot selector, const Branch::Label& label,
+                bool is_last, Jumps& here, Jumps& past) {
+    const Type& type = *s.value->type;
+    const auto& [from, to] = label;
+    const Slot lower = w.constant_slot(type, from->constant);
+    if (!to)
+        return is_last ? w.jump(Op::jump_unless_eq_word, selector, lower, past)
+                       : w.jump(Op::jump_unless_ne_word, selector, lower, here);
+    const bool is_unsigned = type.is_unsigned_64();
+    const Op le = is_unsigned ? Op::jump_unless_le_unsigned : Op::jump_unless_le_signed;
+    const Op lt = is_unsigned ? Op::jump_unless_lt_unsigned : Op::jump_unless_lt_signed;
+    const Slot upper = w.constant_slot(type, to->constant);
+    Jumps beyond;
+    w.jump(le, lower, selector, is_last ? past : beyond);
+    if (is_last) return w.jump(le, selector, upper, past);
+    w.jump(lt, upper, selector, here);
+    w.land(beyond);
+}
+
+void write_case(Writing& w, const Statement& s) {
+    const Slot selector = value(w, *s.value);
+    Jumps ends;
+    if (const auto table = jump_table(w, s)) return write_choice(w, s, selector, *table);
+    for (const Branch& branch : s.branches) {
+        Jumps here, past;
+        for (const auto& label : branch.labels)
+            test_label(w, s, selector, label, &label == &branch.labels.back(), here, past);
+        w.land(here);
+        w.cover_branch(s, static_cast<std::size_t>(&branch - s.branches.data()));
+        write_block(w, branch.body);
+        w.jump(Op::jump, 0, 0, ends);
+        w.land(past);
+    }
+    w.cover_branch(s, s.branches.size());
+    write_block(w, s.body);
+    w.land(ends);
+}
+
+void write_for(Writing& w, const Statement& s) {
+    const Location target = locate(w, *s.target);
+    const Type& type = *s.target->type;
+    const bool direct = target.mode == Location::Mode::slot && !type.is_subrange;
+    const Slot counter = direct ? target.slot : w.new_temporary();
+    value_to(w, *s.value, counter);
+    const Slot limit = w.new_temporary(2);
+    value_to(w, *s.limit, limit);
+    if (s.step)
+        value_to(w, *s.step, limit + 1);
+    else
+        w.put(Op::move, limit + 1, w.constant_slot(1));
+    if (type.is_subrange) store(w, target, counter);
+    Writing::Loop loop;
+    const bool is_long = type.is_unsigned_64();
+    w.jump(is_long ? Op::skip_loop_unsigned : Op::skip_loop, counter, limit, loop.exits);
+    w.loops.push_back(std::move(loop));
+    w.land();
+    const std::uint32_t start = w.next();
+    if (type.is_subrange) within(w, type, counter);
+    if (!direct) store(w, target, counter);
+    w.cover_branch(s, 0);
+    write_block(w, s.body);
+    w.land(w.loops.back().nexts);
+    w.place = s.place;
+    if (!direct) w.put(Op::move, counter, load(w, target));
+    w.put(is_long ? Op::repeat_next_unsigned : Op::repeat_next, counter, limit, start);
+    w.land(w.loops.back().exits);
+    w.cover_branch(s, 1);
+    w.loops.pop_back();
+    if (type.is_subrange) return;  // its last value
+    if (type.bits < 64) w.put(of_type(Op::wrap_sint, type.plain()), counter, counter);
+    if (!direct) store(w, target, counter);
+}
+
+/// The test of a WHILE once more at its end, if it is short: saves a jump in each pass.
+bool repeat_test(Writing& w, std::uint32_t start, std::uint32_t end) {
+    constexpr std::uint32_t longest = 4;
+    if (!w.fuses || end - start > longest || end == start) return false;
+    for (std::uint32_t i = start; i + 1 < end; ++i) {
+        const Op op = w.code.instructions[i].op;
+        const bool goes_on = info(op).operands.find('j') == std::string_view::npos &&
+                             info(op).cost != OpClass::call && op != Op::initialise;
+        if (!goes_on) return false;
+    }
+    Instruction test = w.code.instructions[end - 1];
+    const Op op = test.op == Op::jump_unless ? Op::repeat_if : after(test.op, 4);
+    if (!info(op).name.starts_with("repeat_if")) return false;
+    for (std::uint32_t i = start; i + 1 < end; ++i) {
+        const Instruction in = w.code.instructions[i];
+        w.put(in.op, in.a, in.b, Slot(in.c), in.d);
+    }
+    w.put(op, test.a, test.b, end);
+    return true;
+}
+
+void write_loop(Writing& w, const Statement& s) {
+    w.loops.emplace_back();
+    w.land();
+    const std::uint32_t start = w.next();
+    const bool is_while = s.kind == S::while_;
+    if (is_while) jump_unless(w, *s.value, w.loops.back().exits);
+    w.land();
+    const std::uint32_t first = w.next();
+    w.cover_branch(s, 0);
+    write_block(w, s.body);
+    w.land(w.loops.back().nexts);
+    Jumps again;
+    w.place = s.value->place;
+    if (!is_while) {
+        jump_unless(w, *s.value, again);
+        w.jump(Op::jump, 0, 0, w.loops.back().exits);
+        w.land(again);
+    }
+    if (!is_while || !repeat_test(w, start, first)) w.put(Op::repeat, 0, 0, start);
+    w.land(w.loops.back().exits);
+    w.cover_branch(s, 1);
+    w.loops.pop_back();
+}
+
+void write_statement(Writing& w, const Statement& s) {
+    w.place = s.place;
+    switch (s.kind) {
+        case S::assign:
+            return write_assignment(w, s);
+        case S::call:
+            if (s.value->kind == Expression::Kind::constant) return;
+            if (s.value->test != TestCall::none)
+                write_test_statement(w, *s.value);
+            else if (s.value->routine && s.value->routine->has_instances())
+                call_instance(w, *s.value);
+            else if (s.value->operands[0]->type && s.value->operands[0]->type->is_instance())
+                call_instance(w, *s.value);
+            else if (s.value->routine)
+                call_routine(w, *s.value);
+            else if (s.value->type->kind == Type::Kind::text)
+                text_address(w, *s.value);
+            else
+                value(w, *s.value);
+            return;
+        case S::if_:
+            return write_if(w, s);
+        case S::case_:
+            return write_case(w, s);
+        case S::for_:
+            return write_for(w, s);
+        case S::while_:
+        case S::repeat:
+            return write_loop(w, s);
+        case S::exit:
+            return w.jump(Op::jump, 0, 0, w.loops.back().exits);
+        case S::continue_:
+            return w.jump(Op::jump, 0, 0, w.loops.back().nexts);
+        case S::return_:
+            return w.put(Op::leave);
+    }
+}
+
+}  // namespace
+
+void write_block(Writing& w, const Block& block) {
+    for (const Statement* statement : block) {
+        const std::uint32_t kept = w.temporaries;
+        w.cover(CoverPoint::Kind::statement, statement->place);
+        write_statement(w, *statement);
+        w.temporaries = kept;
+    }
+}
+
+}  // namespace lineshaft::st
