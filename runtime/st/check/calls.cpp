@@ -3,6 +3,7 @@
 #include "runtime/source/letters.hpp"
 #include "runtime/st/check/checker_class.hpp"
 #include "runtime/st/functions/standard.hpp"
+#include "runtime/st/vendors/instead.hpp"
 
 namespace lineshaft::st {
 

@@ -4,6 +4,7 @@
 #include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/st/check/checker_class.hpp"
+#include "runtime/st/vendors/instead.hpp"
 
 namespace lineshaft::st {
 

@@ -58,9 +58,6 @@ std::span<const StandardFunction> standard_functions();
 /// Its place in the list, or -1.
 int find_standard_function(std::string_view name);
 
-/// What to write instead of a function that other controllers have; empty for another name.
-std::string_view instead_of_function(std::string_view name);
-
 /// `IN1`, `MN`: the standard's name of an argument.
 std::string argument_name(const StandardFunction& function, int argument);
 

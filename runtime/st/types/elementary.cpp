@@ -67,26 +67,6 @@ const Type any_integer = elementary(Kind::any_integer, "a whole number", 64, tru
 const Type any_real = elementary(Kind::any_real, "a real number");
 const Type any_bits = elementary(Kind::any_bits, "a whole number");
 
-struct Foreign {
-    std::string_view name, instead;
-};
-
-constexpr Foreign foreign[] = {{"wstring", "write STRING; texts are bytes"},
-                               {"wchar", "write CHAR"},
-                               {"s5time", "write TIME"},
-                               {"any", "write the type; a block for each"},
-                               {"variant", "write the type; a block for each"},
-                               {"pointer", "pass the variable as VAR_IN_OUT"},
-                               {"db_any", "name the data block"},
-                               {"hw_io", "wire an input of the program"},
-                               {"hw_any", "wire an input of the program"},
-                               {"pid_compact", "write the controller as a FUNCTION_BLOCK"},
-                               {"program_alarm", "write a BOOL output, and expect it"},
-                               {"mb_client", "serve the machine: lineshaft serve --modbus"},
-                               {"mb_server", "serve the machine: lineshaft serve --modbus"},
-                               {"counter", "declare an instance of CTU, CTD or CTUD"},
-                               {"timer", "declare an instance of TON, TOF or TP"}};
-
 }  // namespace
 
 const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
@@ -120,12 +100,6 @@ const Type& integer_type(int bits, bool is_signed) {
 const Type& bits_type(int bits) {
     return *std::ranges::find_if(
         table, [&](const Type& type) { return type.kind == Kind::bits && type.bits == bits; });
-}
-
-std::string_view instead_of_type(std::string_view name) {
-    const auto* it = std::ranges::find_if(
-        foreign, [&](const Foreign& type) { return same_name(type.name, name); });
-    return it == std::end(foreign) ? std::string_view() : it->instead;
 }
 
 bool widens(const Type& given_from, const Type& given_to) {

@@ -27,9 +27,6 @@ extern const Type &bool_type, &int_type, &dint_type, &lint_type, &ulint_type, &r
 const Type& integer_type(int bits, bool is_signed);
 const Type& bits_type(int bits);
 
-/// What a name is that other controllers know and this one does not: what to write instead of it.
-std::string_view instead_of_type(std::string_view name);
-
 /// True where every value of `from` is one of `to`.
 bool widens(const Type& from, const Type& to);
 
