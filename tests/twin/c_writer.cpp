@@ -116,7 +116,7 @@ class CWriter {
         declared_[&type] = true;
         std::string inside;
         const auto add = [&](const Variable& variable) {
-            if (variable.space == Space::none) return;
+            if (variable.space == Space::constant) return;
             const bool reference = variable.space == Space::reference;
             if (!reference || variable.type->kind != Kind::block) declare(*variable.type);
             inside += fmt::format("{} {}{}; ", c_type(*variable.type), reference ? "*" : "",
@@ -260,7 +260,7 @@ class CWriter {
 
     void write(const Routine& routine) {
         for (const Variable& variable : routine.variables)
-            if (variable.space != Space::none) declare(*variable.type);
+            if (variable.space != Space::constant) declare(*variable.type);
         routine_ = &routine;
         std::string parameters;
         const auto add = [&](const std::string& text) {
@@ -270,7 +270,7 @@ class CWriter {
         const Routine* block = is_block ? &routine : routine.owner;
         if (block) add(c_type(*block->type) + "* self");
         for (const Variable& v : routine.variables) {
-            if (is_block || v.space == Space::none) continue;
+            if (is_block || v.space == Space::constant) continue;
             if (v.section == Section::input) add(c_type(*v.type) + " " + name_of(v));
             if (v.section == Section::in_out) add(c_type(*v.type) + "* " + name_of(v));
             if (v.section == Section::output) add(c_type(*v.type) + "* out_" + name_of(v));
@@ -381,8 +381,8 @@ class CWriter {
     }
 
     static std::pair<int, std::string> bits_of(const Expression& e) {
-        const int number = static_cast<int>(e.constant.integer), count = number >> 6;
-        return {number & 63, fmt::format("{:#x}ull", count >= 64 ? ~0ULL : (1ULL << count) - 1)};
+        const auto [first, count] = e.bits;
+        return {first, fmt::format("{:#x}ull", count >= 64 ? ~0ULL : (1ULL << count) - 1)};
     }
 
     void assign(const std::string& to, const Type& type, const Expression& from) {
@@ -670,7 +670,10 @@ class CWriter {
             return made(*e.type, fmt::format("twin_read_{}({}, {})",
                                              e.type->is_real() ? "real" : "integer", from, line_));
         }
-        return convert(value(operand), *operand.type, *e.type, e.op == Word::divided);
+        if (e.conversion.is_bcd)
+            return made(*e.type, fmt::format("twin_to_bcd({}, {}, {})", value(operand),
+                                             e.type->bits / 4, line_));
+        return convert(value(operand), *operand.type, *e.type, e.conversion.truncates);
     }
 
     void check_range(const std::string& x, std::int64_t least, std::int64_t most) {
@@ -721,7 +724,7 @@ class CWriter {
         if (to.kind == Kind::boolean) return made(to, x + " != 0");
         const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
         const bool is_date = time.kind == Kind::date, in_days = is_date && number.bits == 16;
-        const bool in_ns = number.is_real() && time.name == "LTIME";
+        const bool in_ns = number.is_real() && time.counts_ns;
         const char* const unit = in_days                                ? "86400000000000"
                                  : is_date || time.kind == Kind::moment ? "1000000000"
                                  : in_ns                                ? "1"
@@ -770,7 +773,7 @@ class CWriter {
     }
 
     std::string text_function(const Expression& e) {
-        const StandardFunction& f = standard_functions()[static_cast<std::size_t>(e.standard)];
+        const StandardFunction& f = *e.standard;
         std::vector<std::string> a;
         for (const Argument& argument : e.arguments) a.push_back(this->argument(*argument.value));
         std::string made = new_text();
@@ -830,7 +833,7 @@ class CWriter {
         for (const Argument& argument : e.arguments)
             if (is_input(*argument.variable)) values[argument.variable] = argument_of(argument);
         for (const Variable& v : routine.variables) {
-            if (v.space == Space::none || v.section == Section::result) continue;
+            if (v.space == Space::constant || v.section == Section::result) continue;
             if (is_input(v) && values.contains(&v)) add(values[&v]);
             if (v.section != Section::output &&
                 (v.section != Section::input || values.contains(&v)))
@@ -906,7 +909,7 @@ class CWriter {
     // Standard functions.
 
     std::string standard(const Expression& e) {
-        const StandardFunction& f = standard_functions()[static_cast<std::size_t>(e.standard)];
+        const StandardFunction& f = *e.standard;
         const Type& type = *e.type;
         if (f.rule == Rule::text) return text_function(e);
         std::vector<std::string> a;
@@ -954,9 +957,6 @@ class CWriter {
                 return made(type, fmt::format("{0} ? __builtin_ctzll({0}) : 0", a[0]));
             case Rule::decode:
                 return made(type, fmt::format("1ull << ((u64){} & {})", a[0], type.bits - 1));
-            case Rule::to_bcd:
-                return made(type,
-                            fmt::format("twin_to_bcd({}, {}, {})", a[0], type.bits / 4, line_));
             case Rule::time:
                 return made(type, "twin_now");
             case Rule::statement: {

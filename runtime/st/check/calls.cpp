@@ -63,9 +63,8 @@ const Type* Checker::check_call(Expression& call, bool as_statement, const Type*
                 return check_routine_call(call, *it->second, as_statement);
         Routine* routine = find_routine(callee.token);
         if (routine && !routine->type) return check_routine_call(call, *routine, as_statement);
-        const bool is_function =
-            (routine || !callee.token.quoted) && !callee.token.local &&
-            (find_standard_function(name) >= 0 || !find_variable(callee.token));
+        const bool is_function = (routine || !callee.token.quoted) && !callee.token.local &&
+                                 (find_standard_function(name) || !find_variable(callee.token));
         if (is_function && find_test_statement(name) != TestCall::none)
             return check_test_statement(call, as_statement);
         if (is_function) return check_standard_function(call, expected);
@@ -343,9 +342,8 @@ bool Checker::put_in_order(Expression& call, const StandardFunction& f) {
 bool is_typed_function(std::string_view name) {
     const std::size_t end = name.rfind('_');
     if (end == name.npos || !find_elementary(name.substr(end + 1))) return false;
-    const int standard = find_standard_function(name.substr(0, end));
-    return standard >= 0 &&
-           standard_functions()[static_cast<std::size_t>(standard)].rule != Rule::statement;
+    const StandardFunction* standard = find_standard_function(name.substr(0, end));
+    return standard && standard->rule != Rule::statement;
 }
 
 const Type* Checker::check_typed_function(Expression& call) {
@@ -368,20 +366,18 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
     if (is_lost(name)) return nullptr;
     call.standard = find_standard_function(name.text);
     const std::string_view instead = instead_of_function(name.text);
-    if (call.standard < 0 && !instead.empty() && !tree_.lost.contains(name.text))
+    if (!call.standard && !instead.empty() && !tree_.lost.contains(name.text))
         return fail("L0903", name.place, fmt::format("the function {} is not supported", name.text),
                     std::string(instead));
-    if (call.standard >= 0 &&
-        standard_functions()[static_cast<std::size_t>(call.standard)].rule == Rule::statement)
+    if (call.standard && call.standard->rule == Rule::statement)
         return fail("L0905", call.place, fmt::format("{} has no value", name.text),
                     "write it as a statement of its own");
     for (Argument& argument : call.arguments)
-        if (argument.is_output && call.standard >= 0)
+        if (argument.is_output && call.standard)
             return fail("L0907", argument.name.place,
                         "a standard function has no output but its value");
-    if (call.standard < 0) {
-        if (const Type* type = check_conversion(call, name.text)) return type;
-        if (call.type || call.standard == -2) return nullptr;
+    if (!call.standard) {
+        if (const auto converted = check_conversion(call, name.text)) return *converted;
         if (find_routine(name) || standard_type(name.text))
             return fail("L0907", name.place,
                         fmt::format("'{}' is a kind of block, not an instance", name.text),
@@ -394,7 +390,7 @@ const Type* Checker::check_standard_function(Expression& call, const Type* expec
         for (Argument& argument : call.arguments) check(*argument.value);
         return undeclared(name, name.place, names);
     }
-    const StandardFunction& f = standard_functions()[static_cast<std::size_t>(call.standard)];
+    const StandardFunction& f = *call.standard;
     if (!check_count(call, f) || !put_in_order(call, f)) return nullptr;
     const int count = static_cast<int>(call.arguments.size());
     const bool first_differs = f.rule == Rule::select || f.rule == Rule::multiplex;
@@ -436,7 +432,7 @@ const Type& real_for(const Type& type) {
 
 /// Bounds of an array, and how many elements it has, are constants.
 const Type* Checker::check_bound(Expression& call) {
-    const StandardFunction& f = standard_functions()[static_cast<std::size_t>(call.standard)];
+    const StandardFunction& f = *call.standard;
     const Type* array = call.arguments[0].value->type;
     if (array->kind != Kind::array)
         return fail("L0905", call.arguments[0].value->place,
@@ -460,7 +456,7 @@ const Type* Checker::check_bound(Expression& call) {
 }
 
 const Type* Checker::standard_result(Expression& call, const Type* expected) {
-    const StandardFunction& f = standard_functions()[static_cast<std::size_t>(call.standard)];
+    const StandardFunction& f = *call.standard;
     auto& arguments = call.arguments;
     const auto coerce_from = [&](std::size_t first, const Type& type) {
         bool good = true;
@@ -610,8 +606,6 @@ const Type* Checker::standard_result(Expression& call, const Type* expected) {
         }
         case Rule::time:
         case Rule::statement:
-        case Rule::from_bcd:
-        case Rule::to_bcd:
             return nullptr;
         case Rule::operation: {
             Expression* joined = join(call, f.word);
@@ -679,7 +673,6 @@ const Type* Checker::convert_result(Expression& call, const Type& from, const Ty
 /// `WORD_BCD_TO_UINT(x)`, `UINT_TO_BCD_WORD(x)`: a decimal digit in each four bits.
 const Type* Checker::check_bcd(Expression& call, const Type* source, const Type& target,
                                bool to_bcd) {
-    call.standard = -2;
     const auto is_digits = [](const Type& type) { return type.kind == Kind::bits; };
     const auto is_number = [](const Type& type) { return type.kind == Kind::integer; };
     if (call.arguments.size() != 1)
@@ -693,12 +686,16 @@ const Type* Checker::check_bcd(Expression& call, const Type* source, const Type&
     if (!fits)
         return fail("L0905", call.place, "BCD digits are those of a bit string, of an integer",
                     "as in WORD_BCD_TO_UINT(x) and UINT_TO_BCD_WORD(x)");
-    call.standard = find_standard_function(to_bcd ? "to BCD" : "from BCD");
+    Expression* converted = make(Expression::Kind::converted, call);
+    converted->operands[0] = value;
+    converted->conversion.is_bcd = true;
+    call = Expression(*converted);
     return &target;
 }
 
-/// `INT_TO_REAL(x)`, `TO_REAL(x)`, `REAL_TRUNC_INT(x)`: the call becomes a conversion.
-const Type* Checker::check_conversion(Expression& call, std::string_view name) {
+/// `INT_TO_REAL(x)`, `TO_REAL(x)`, `REAL_TRUNC_INT(x)`: the call becomes a conversion. Empty if the
+/// name is none of one.
+std::optional<const Type*> Checker::check_conversion(Expression& call, std::string_view name) {
     std::string upper(name);
     for (char& c : upper) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
     for (const std::size_t prefix : {4U, 5U})  // of any type, of an enumeration
@@ -708,13 +705,14 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
     const std::size_t trunc = upper.starts_with("TRUNC_") ? 0 : upper.find("_TRUNC_");
     const bool truncates = to == std::string::npos && trunc != std::string::npos;
     const std::size_t at = truncates ? trunc : to;
-    if (at == std::string::npos) return nullptr;
+    if (at == std::string::npos) return {};
     const std::size_t skip = (truncates ? 6 : 3) + (at == 0 ? 0U : 1U);
+    bool is_told = false;
     const auto find = [&](std::string_view text) -> const Type* {
         if (const Type* type = find_elementary(text)) return type;
         Token named = call.token;
         named.text = text;
-        if (is_lost(named)) call.standard = -2;
+        is_told |= is_lost(named);
         const NamedType* type = look_up(&Names::types, named);
         return type ? type->type : nullptr;
     };
@@ -727,8 +725,8 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
     const Type* source = from_name.empty() ? nullptr : find(from_name);
     if (target && (to_bcd || from_bcd) && (from_name.empty() || source))
         return check_bcd(call, source, *target, to_bcd);
-    if (!target || (at != 0 && !source)) return nullptr;
-    call.standard = -2;
+    if (!target || (at != 0 && !source))
+        return is_told ? std::optional<const Type*>(nullptr) : std::nullopt;
     if (call.arguments.size() != 1)
         return fail("L0907", call.operands[0]->place, fmt::format("{} takes 1 argument", name));
     Expression*& value = call.arguments[0].value;
@@ -774,9 +772,10 @@ const Type* Checker::check_conversion(Expression& call, std::string_view name) {
                     "write a CASE");
     Expression* operand = value;
     convert(operand, *target);
-    if (operand->kind == Expression::Kind::converted && truncates) operand->op = Word::divided;
+    if (operand->kind == Expression::Kind::converted && truncates)
+        operand->conversion.truncates = true;
     const bool has_sign = target->kind == Kind::text && from.is_integer() && is_scl(call);
-    if (has_sign) operand->op = Word::plus;
+    if (has_sign) operand->conversion.has_sign = true;
     const Place place = call.place;
     call = Expression(*operand);
     call.place = place;

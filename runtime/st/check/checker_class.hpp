@@ -175,7 +175,7 @@ class Checker {
     bool put_in_order(Expression& call, const StandardFunction& function);
     const Type* check_typed_function(Expression& call);
     const Type* check_standard_function(Expression& call, const Type* expected);
-    const Type* check_conversion(Expression& call, std::string_view name);
+    std::optional<const Type*> check_conversion(Expression& call, std::string_view name);
     const Type* check_bcd(Expression& call, const Type* source, const Type& target, bool to_bcd);
     const Type* convert_result(Expression& call, const Type& from, const Type& to);
     const Type* check_scale(Expression& call, const Type* expected);

@@ -190,7 +190,7 @@ Variable* Checker::declare_global(const Declaration& declared, bool constant, bo
     variable->space = Space::global;
     variable->global = 0;
     if (constant) make_constant(*variable);
-    if (variable->space != Space::none) all.members.push_back(variable);
+    if (variable->space != Space::constant) all.members.push_back(variable);
     globals_.emplace(declared.name.text, variable);
     return variable;
 }
@@ -361,7 +361,7 @@ void Checker::make_constant(Variable& variable) {
              "an instance changes when it is called, so it is no constant",
              "declare it in VAR, without CONSTANT");
     if (!variable.type || !variable.type->is_scalar()) return;
-    variable.space = Space::none;
+    variable.space = Space::constant;
     if (!variable.initial) {
         variable.value = variable.type->initial;
         if (is_scl(variable.name.place)) return;
@@ -397,7 +397,7 @@ void Checker::depend(const Type* type, Place place) {
 
 void Checker::check_initial_values() {
     const auto check_one = [&](const Variable& variable) {
-        if (!variable.initial || !variable.type || variable.space == Space::none) return;
+        if (!variable.initial || !variable.type || variable.space == Space::constant) return;
         auto* value = const_cast<Expression*>(variable.initial);
         check_initial(value, *variable.type);
         const_cast<Variable&>(variable).initial = value;
@@ -624,7 +624,11 @@ const Type* Checker::resolve_declared(NamedType& named) {
     named.visiting = false;
     if (!type) return nullptr;
     const bool is_own = declared.type->kind != TypeText::Kind::name;
-    if (is_own) const_cast<Type*>(type)->name = std::string(declared.name.text);
+    if (is_own) {
+        auto& own = const_cast<Type&>(*type);
+        own.name = std::string(declared.name.text);
+        own.is_unnamed = false;
+    }
     if (declared.initial) {
         Type& copy = checked_.types.emplace_back(*type);
         copy.initial_value = declared.initial;
@@ -671,6 +675,7 @@ const Type* Checker::resolve_array(const TypeText& text) {
 
 const Type* Checker::resolve_structure(const TypeText& text) {
     Type& type = make_type(Kind::structure, "STRUCT");
+    type.is_unnamed = true;
     NameMap<Place> names;
     for (const Declaration* declared : text.members) {
         const Type* member = resolve(*declared->type);

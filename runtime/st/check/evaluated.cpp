@@ -15,9 +15,7 @@ namespace {
 bool is_fixed(const Expression& e) {
     using E = Expression::Kind;
     if (e.kind == E::call) {
-        const bool is_standard =
-            e.standard >= 0 && e.type &&
-            standard_functions()[static_cast<std::size_t>(e.standard)].rule != Rule::time;
+        const bool is_standard = e.standard && e.type && e.standard->rule != Rule::time;
         return is_standard && std::ranges::all_of(e.arguments, [](const Argument& a) {
                    return is_fixed(*a.value);
                });

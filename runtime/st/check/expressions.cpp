@@ -270,7 +270,7 @@ const Type* Checker::use(Expression& e, Variable& variable) {
     variable.used = true;
     e.variable = &variable;
     if (!variable.type) return nullptr;
-    if (variable.space == Space::none) {
+    if (variable.space == Space::constant) {
         become(e, *variable.type, variable.value);
         return variable.type;
     }
@@ -418,11 +418,11 @@ const Type* Checker::check_member(Expression& e) {
         Routine& routine = *type->routine;
         for (Variable& variable : routine.variables) {
             if (!same_name(variable.text, name)) continue;
-            if (variable.space == Space::none && is_in_test()) {
+            if (variable.space == Space::constant && is_in_test()) {
                 become(e, *variable.type, variable.value);
                 return variable.type;
             }
-            if (variable.section == Section::temp || variable.space == Space::none)
+            if (variable.section == Section::temp || variable.space == Space::constant)
                 return fail("L0904", e.token.place,
                             fmt::format("'{}' of {} is not seen from outside", name, type->name),
                             "make it a VAR_OUTPUT");
@@ -521,8 +521,8 @@ const Type* Checker::check_bit(Expression& e) {
                                 type->bits / bits - 1));
     const Expression& part = *e.operands[0];
     const bool of_part = part.kind == Expression::Kind::bit;
-    const Wide first = *number * bits + (of_part ? part.constant.integer & 63 : 0);
-    e.constant.integer = first + (Wide{bits} << 6);
+    const Wide first = *number * bits + (of_part ? part.bits.first : 0);
+    e.bits = {static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(bits)};
     if (of_part) e.operands[0] = part.operands[0];
     return bits == 1 ? &bool_type : &bits_type(bits);
 }
@@ -1118,7 +1118,6 @@ void Checker::convert(Expression*& e, const Type& to) {
     Expression* converted = make(Expression::Kind::converted, *e);
     converted->operands[0] = e;
     converted->type = &to;
-    converted->depth = e->depth;
     e = converted;
 }
 

@@ -45,11 +45,10 @@ bool Checker::rewrite(Statement& s) {
         const Variable* variable = find_variable(callee.token);
         routine = find_routine(callee.token);
         if (variable && variable->type) routine = variable->type->routine;
-        const int number = find_standard_function(callee.token.text);
+        const StandardFunction* standard = find_standard_function(callee.token.text);
         const bool is_known = variable || routine || callee.token.quoted || callee.token.local;
-        if (s.kind == S::call && number >= 0 && !is_known &&
-            standard_functions()[static_cast<std::size_t>(number)].rule == Rule::statement) {
-            call.standard = number;
+        if (s.kind == S::call && standard && !is_known && standard->rule == Rule::statement) {
+            call.standard = standard;
             check_special(s);
             return true;
         }
@@ -148,7 +147,7 @@ const Type* Checker::use_edge(Expression& e, Variable& input) {
 
 void Checker::check_special(Statement& s) {
     Expression& call = *s.value;
-    const StandardFunction& f = standard_functions()[static_cast<std::size_t>(call.standard)];
+    const StandardFunction& f = *call.standard;
     if (!check_count(call, f) || !put_in_order(call, f)) return;
     call.type = &bool_type;  // which nothing takes
     if (f.least == 1) return check_timer(*call.arguments[0].value, f.name);

@@ -39,7 +39,7 @@ void Checker::check(Block& block) {
 void Checker::check_call(Statement& s) {
     if (s.value->type) return;
     const Type* type = check_call(*s.value, true, nullptr);
-    if (!type || s.value->standard < 0) return;
+    if (!type || !s.value->standard) return;
     s.value->type = type;
     make_concrete(s.value, *type);
 }

@@ -238,7 +238,7 @@ void Checker::check_mock_function(Expression& call) {
     Routine* const named = name.kind == E::name ? find_routine(name.token) : nullptr;
     if (!named && tree_.lost.contains(name.token.text)) return;
     if (!named || !named->is_function() || !named->result) {
-        const bool standard = find_standard_function(name.token.text) >= 0;
+        const bool standard = find_standard_function(name.token.text) != nullptr;
         fail("L0904", name.place,
              fmt::format("'{}' is not a FUNCTION of the sources that has a value",
                          name.place.text()),

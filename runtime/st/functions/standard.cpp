@@ -67,8 +67,6 @@ constexpr StandardFunction functions[] = {
     {"SCALE_X", Rule::scale, 3, 3},
     {"IS_VALID", Rule::finite},
     {"IS_VALID_BCD", Rule::valid_bcd},
-    {"from BCD", Rule::from_bcd},
-    {"to BCD", Rule::to_bcd},
     {"TIME", Rule::time, 0, 0},
     {"LTIME", Rule::time, 0, 0},
     {"TIME_TCK", Rule::time, 0, 0},
@@ -122,10 +120,10 @@ std::span<const StandardFunction> standard_functions() {
     return functions;
 }
 
-int find_standard_function(std::string_view name) {
+const StandardFunction* find_standard_function(std::string_view name) {
     const auto* it = std::ranges::find_if(
         functions, [&](const StandardFunction& f) { return same_name(f.name, name); });
-    return it == std::end(functions) ? -1 : static_cast<int>(it - std::begin(functions));
+    return it == std::end(functions) ? nullptr : it;
 }
 
 std::string argument_name(const StandardFunction& function, int argument) {

@@ -31,8 +31,6 @@ enum class Rule : std::uint8_t {
     find,       ///< FIND(text, text)
     text,       ///< CONCAT, LEFT, ...: texts, then numbers; gives a text
     finite,     ///< IS_VALID, of a real
-    from_bcd,   ///< WORD_BCD_TO_UINT
-    to_bcd,     ///< UINT_TO_BCD_WORD
     valid_bcd,  ///< IS_VALID_BCD
     time,       ///< TIME(), of the scan
     swap,       ///< SWAP: the bytes the other way round
@@ -55,8 +53,8 @@ struct StandardFunction {
 
 std::span<const StandardFunction> standard_functions();
 
-/// Its place in the list, or -1.
-int find_standard_function(std::string_view name);
+/// Null for another name.
+const StandardFunction* find_standard_function(std::string_view name);
 
 /// `IN1`, `MN`: the standard's name of an argument.
 std::string argument_name(const StandardFunction& function, int argument);

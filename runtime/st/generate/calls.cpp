@@ -98,7 +98,7 @@ void give(Writing& w, const Location& frame, const Expression& e, const Routine&
                              std::ranges::none_of(e.arguments, [&](const Argument& argument) {
                                  return argument.variable == &variable;
                              });
-        if (!missing || variable.space == Space::none) continue;
+        if (!missing || variable.space == Space::constant) continue;
         const std::uint32_t slots = slots_of(w, *variable.type);
         const Type* block = routine.owner ? routine.owner->type : nullptr;
         const Slot made =

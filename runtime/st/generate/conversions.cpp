@@ -54,7 +54,7 @@ Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
     if (to.kind == Kind::boolean) return w.emit(Op::ne_word, wanted, slot, w.constant_slot(0));
     const bool in_seconds = time.kind == Kind::date || time.kind == Kind::moment;
     if (number.is_real()) {
-        const double unit = in_seconds ? 1e9 : time.name == "LTIME" ? 1 : 1e6;
+        const double unit = in_seconds ? 1e9 : time.counts_ns ? 1 : 1e6;
         const Slot one = w.constant_slot(lreal_type, {.real = unit});
         if (from.is_real())
             return w.emit(Op::round_lint, wanted, w.emit(Op::mul_lreal, none, slot, one));
@@ -73,6 +73,13 @@ Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
     }
     if (in_days) slot = w.emit(Op::sub_lint, none, slot, start);
     return w.emit(of_type(Op::wrap_sint, to), wanted, w.emit(Op::div_lint, none, slot, unit));
+}
+
+Slot convert_bcd(Writing& w, const Expression& e, Slot wanted) {
+    const Slot from = value(w, *e.operands[0]);
+    if (e.type->is_bits())
+        return w.emit(Op::to_bcd, wanted, from, static_cast<Slot>(e.type->bits / 4));
+    return w.emit(of_type(Op::wrap_sint, *e.type), wanted, w.emit(Op::from_bcd, none, from));
 }
 
 }  // namespace
@@ -98,7 +105,8 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
         return w.emit(of_type(Op::wrap_sint, e.type->plain()), wanted,
                       w.emit(Op::integer_of_text, none, text));
     }
-    return convert(w, value(w, operand), *operand.type, *e.type, e.op == Word::divided, wanted);
+    if (e.conversion.is_bcd) return convert_bcd(w, e, wanted);
+    return convert(w, value(w, operand), *operand.type, *e.type, e.conversion.truncates, wanted);
 }
 
 Slot convert(Writing& w, Slot slot, const Type& given_from, const Type& given_to, bool truncates,

@@ -72,7 +72,7 @@ void store_bits(Writing& w, const Expression& target, Slot bits) {
     w.land();
     const Type& type = *target.operands[0]->type;
     const Slot slot = load(w, whole);
-    w.put(Op::set_bits, slot, bits, static_cast<Slot>(target.constant.integer));
+    w.put(Op::set_bits, slot, bits, packed(target.bits));
     if (type.is_signed && type.bits < 64) w.put(of_type(Op::wrap_sint, type), slot, slot);
     if (whole.mode != Mode::slot) store(w, whole, slot);
 }

@@ -31,6 +31,10 @@ Slot capacity_of(Writing& w, const Location& text, const Type& type);
 /// Scalars; `load` gives the slot that a value is in, if it is in one.
 Slot load(Writing& w, const Location& from, Slot wanted = none);
 void store(Writing& w, const Location& to, Slot from);
+/// Bits as the operand of `get_bits` and `set_bits`.
+constexpr Slot packed(BitRange bits) {
+    return bits.first | Slot{bits.count} << 6;
+}
 void store_bits(Writing& w, const Expression& target, Slot bits);
 
 /// Slots as they are.

@@ -77,7 +77,7 @@ Slot several(Writing& w, const Expression& e, std::size_t first) {
 }  // namespace
 
 Slot standard(Writing& w, const Expression& e, Slot wanted) {
-    const StandardFunction& f = standard_functions()[static_cast<std::size_t>(e.standard)];
+    const StandardFunction& f = *e.standard;
     const auto argument = [&](std::size_t i) { return value_before(w, *e.arguments[i].value, e); };
     const Type& type = *e.type;
     const bool narrow = type.kind == Kind::real && type.bits == 32;
@@ -172,11 +172,6 @@ Slot standard(Writing& w, const Expression& e, Slot wanted) {
             return w.emit(Op::is_finite, wanted, argument(0));
         case Rule::valid_bcd:
             return w.emit(Op::is_bcd, wanted, argument(0));
-        case Rule::from_bcd:
-            return w.emit(of_type(Op::wrap_sint, type), wanted,
-                          w.emit(Op::from_bcd, none, argument(0)));
-        case Rule::to_bcd:
-            return w.emit(Op::to_bcd, wanted, argument(0), static_cast<Slot>(type.bits / 4));
         case Rule::time:
             return w.emit(Op::time_now, wanted, 0);
         case Rule::swap:

@@ -35,7 +35,7 @@ void append(Writing& w, Slot to, Slot from, Slot first, Slot count) {
 }
 
 Slot text_function(Writing& w, const Expression& e) {
-    const std::string_view name = standard_functions()[static_cast<std::size_t>(e.standard)].name;
+    const std::string_view name = e.standard->name;
     const auto text = [&](std::size_t i) { return text_address(w, *e.arguments[i].value); };
     const auto number = [&](std::size_t i) { return value(w, *e.arguments[i].value); };
     const Slot zero = w.constant_slot(0), one = w.constant_slot(1), all = w.constant_slot(1U << 30);
@@ -99,7 +99,7 @@ Slot text_conversion(Writing& w, const Expression& e) {
                       ? (from.type->bits == 32 ? Op::text_of_float : Op::text_of_real)
                   : from.type->is_unsigned_64() ? Op::text_of_unsigned
                                                 : Op::text_of_signed;
-    w.put(op, made, number, e.op == Word::plus ? 1 : 0);
+    w.put(op, made, number, e.conversion.has_sign ? 1 : 0);
     return made;
 }
 
@@ -117,7 +117,7 @@ Slot text_address(Writing& w, const Expression& e) {
     }
     if (e.kind == E::call && e.routine) return w.emit(Op::set_address, none, call(w, e, none));
     if (e.kind == E::call) {
-        const Rule rule = standard_functions()[static_cast<std::size_t>(e.standard)].rule;
+        const Rule rule = e.standard->rule;
         return rule == Rule::text ? text_function(w, e) : standard(w, e, none);
     }
     if (e.kind == E::converted) return text_conversion(w, e);

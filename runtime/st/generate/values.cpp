@@ -120,8 +120,7 @@ Slot binary(Writing& w, const Expression& e, Slot wanted) {
 }
 
 Slot bit(Writing& w, const Expression& e, Slot wanted) {
-    return w.emit(Op::get_bits, wanted, value(w, *e.operands[0]),
-                  static_cast<Slot>(e.constant.integer));
+    return w.emit(Op::get_bits, wanted, value(w, *e.operands[0]), packed(e.bits));
 }
 
 Slot character(Writing& w, const Expression& e, Slot wanted) {

@@ -15,6 +15,7 @@ namespace lineshaft::st {
 struct Type;
 struct Variable;
 struct Routine;
+struct StandardFunction;
 struct Expression;
 
 /// `a := 1`, `q => x`, or a value by position: of a call, an index, an initial value.
@@ -26,6 +27,18 @@ struct Argument {
     bool is_left_out = false;      ///< in a test: taken only if nothing was given before
 
     bool is_named() const { return name.word != Word::end_of_file; }
+};
+
+/// How a conversion differs from what its types say.
+struct Conversion {
+    bool truncates = false;  ///< a real number towards zero, else to the nearest
+    bool has_sign = false;   ///< into a text: `+5`, as SCL writes it
+    bool is_bcd = false;     ///< the bit string of both has a decimal digit in each four bits
+};
+
+/// Bits of a whole number or a bit string, from the lowest on.
+struct BitRange {
+    std::uint8_t first = 0, count = 0;
 };
 
 struct Expression {
@@ -53,11 +66,13 @@ struct Expression {
     std::vector<Argument> arguments = {};
 
     // Noted by the checker.
-    const Type* type = nullptr;    ///< null: wrong, already reported
-    Constant constant = {};        ///< of a constant
-    Variable* variable = nullptr;  ///< that a name or a member means
-    Routine* routine = nullptr;    ///< that a name means, or a call calls
-    int standard = -1;             ///< the standard function that a call calls
+    const Type* type = nullptr;                  ///< null: wrong, already reported
+    Constant constant = {};                      ///< of a constant
+    Conversion conversion = {};                  ///< of what is converted
+    BitRange bits = {};                          ///< of `bit`
+    Variable* variable = nullptr;                ///< that a name or a member means
+    Routine* routine = nullptr;                  ///< that a name means, or a call calls
+    const StandardFunction* standard = nullptr;  ///< that a call calls
 
     TestCall test = TestCall::none;  ///< the statement of tests that a call is
 

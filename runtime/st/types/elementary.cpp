@@ -23,6 +23,12 @@ Type character() {
     return type;
 }
 
+Type long_time() {
+    Type type = elementary(Kind::time, "LTIME", 64, true);
+    type.counts_ns = true;
+    return type;
+}
+
 Type text_type(bool is_open = false) {
     Type type = elementary(Kind::text, "STRING");
     type.length = 254;
@@ -48,7 +54,7 @@ const Type table[] = {elementary(Kind::boolean, "BOOL", 1),
                       elementary(Kind::real, "REAL", 32),
                       elementary(Kind::real, "LREAL", 64),
                       elementary(Kind::time, "TIME", 64, true),
-                      elementary(Kind::time, "LTIME", 64, true),
+                      long_time(),
                       text_type(),
                       elementary(Kind::date, "DATE", 64, true),
                       elementary(Kind::date, "LDATE", 64, true),
@@ -144,7 +150,7 @@ bool same_type(const Type& a, const Type& b) {
         case Kind::array:
             return a.lower == b.lower && a.upper == b.upper && same_type(*a.element, *b.element);
         case Kind::structure:
-            return a.name == "STRUCT" && b.name == "STRUCT" &&
+            return a.is_unnamed && b.is_unnamed &&
                    std::ranges::equal(a.members, b.members,
                                       [](const Variable* x, const Variable* y) {
                                           return same_name(x->text, y->text) && x->type &&

@@ -49,15 +49,17 @@ struct Type {
     std::uint32_t slots = 1;
     std::int64_t lower = 0, upper = -1;  ///< of an array's index; of a subrange's values
     bool is_subrange = false;
-    const Type* base = nullptr;                ///< of a subrange; of an enumeration with numbers
-    const Type* element = nullptr;             ///< of an array
-    bool has_inner = false;                    ///< of an array: its element is its next dimension
-    std::uint32_t length = 0;                  ///< of a text, in characters
-    bool is_open = false;                      ///< VAR_IN_OUT STRING: of what length is given
-    std::vector<Variable*> members = {};       ///< of a structure
-    std::vector<std::string> values = {};      ///< of an enumeration
-    std::vector<std::int64_t> numbers = {};    ///< of its values
-    bool counted = true;                       ///< those are 0, 1, 2, ...
+    bool is_unnamed = false;                 ///< STRUCT without a TYPE: any of its members is equal
+    bool counts_ns = false;                  ///< LTIME, of which a real number is in ns, not ms
+    const Type* base = nullptr;              ///< of a subrange; of an enumeration with numbers
+    const Type* element = nullptr;           ///< of an array
+    bool has_inner = false;                  ///< of an array: its element is its next dimension
+    std::uint32_t length = 0;                ///< of a text, in characters
+    bool is_open = false;                    ///< VAR_IN_OUT STRING: of what length is given
+    std::vector<Variable*> members = {};     ///< of a structure
+    std::vector<std::string> values = {};    ///< of an enumeration
+    std::vector<std::int64_t> numbers = {};  ///< of its values
+    bool counted = true;                     ///< those are 0, 1, 2, ...
     std::vector<std::int64_t> of_number = {};  ///< what SCL's numbers mean; -1, or beyond: nothing
     bool is_code = false;  ///< of an enumeration: one that the standards make a WORD, as ErrorID
     Routine* routine = nullptr;  ///< of a block
@@ -101,7 +103,7 @@ enum class Space : std::uint8_t {
     frame,      ///< of its routine, or of the block that a method belongs to
     reference,  ///< its slot has the address: VAR_IN_OUT
     global,     ///< of a data block: `global` is its number
-    none,       ///< a constant
+    constant,   ///< nowhere: its value is known
 };
 
 struct Variable {
