@@ -2,6 +2,7 @@
 
 #include "blocks/axis/axis.hpp"
 #include "blocks/axis/axis_valid.hpp"
+#include "blocks/axis/cam_table.hpp"
 #include "blocks/axis/servo_drive.hpp"
 #include "blocks/circle/circle_fit.hpp"
 #include "blocks/circle/path_circle.hpp"
@@ -19,7 +20,6 @@
 #include "blocks/logic/select.hpp"
 #include "blocks/logic/signal.hpp"
 #include "blocks/logic/timer.hpp"
-#include "blocks/motion/cam_table.hpp"
 #include "blocks/motion/cam_table_select.hpp"
 #include "blocks/motion/motion_valid.hpp"
 #include "blocks/motion/moves.hpp"

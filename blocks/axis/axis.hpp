@@ -224,6 +224,7 @@ struct Axis {
     // axis_sync.cpp: other axes are followed.
     std::int64_t way_to(const Context& context, const Axis& leader, const Coupling& coupling,
                         int& links_left) const;
+    bool follows_itself(const Context& context) const;
     MotionState led_by(const Context& context, const MasterLink& link) const;
     MotionState master(const Context& context) const;
     bool admits(const MasterLink& link) const;

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "blocks/axis/axis.hpp"
+#include "blocks/axis/cam_table.hpp"
 #include "blocks/inputs.hpp"
-#include "blocks/motion/cam_table.hpp"
 
 namespace lineshaft {
 

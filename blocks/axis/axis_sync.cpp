@@ -5,7 +5,7 @@
 #include <span>
 
 #include "blocks/axis/axis.hpp"
-#include "blocks/motion/cam_table.hpp"
+#include "blocks/axis/cam_table.hpp"
 
 namespace lineshaft {
 
@@ -302,8 +302,18 @@ void Axis::look_at_shift(const Context& context) {
 }
 
 /// Axes of different tasks that are coupled to each other in the same moment do not see it then.
+bool Axis::follows_itself(const Context& context) const {
+    const auto is_of_other_task = [&](const MasterLink& link) {
+        return link.axis >= 0 &&
+               &context.seen_instance<Axis>(link.axis) != &context.instance<Axis>(link.axis);
+    };
+    const Coupling& c = sync.coupling;
+    return (is_of_other_task(c.master) || is_of_other_task(c.second)) &&
+           way_to(context, *this) >= 0;
+}
+
 void Axis::follow(const Context& context) {
-    if (way_to(context, *this) >= 0) return fail_before(context, MotionError::master_loop);
+    if (follows_itself(context)) return fail_before(context, MotionError::master_loop);
     look_at_shift(context);
     if (sync.law == Law::geared)
         follow_guide(context);

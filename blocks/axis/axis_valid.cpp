@@ -3,7 +3,7 @@
 #include <set>
 #include <vector>
 
-#include "blocks/motion/cam_table.hpp"
+#include "blocks/axis/cam_table.hpp"
 
 namespace lineshaft {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "blocks/axis/axis.hpp"
-#include "blocks/motion/cam_table.hpp"
+#include "blocks/axis/cam_table.hpp"
 
 namespace lineshaft {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "blocks/motion/cam_table.hpp"
+#include "blocks/axis/cam_table.hpp"
 
 namespace lineshaft {
 

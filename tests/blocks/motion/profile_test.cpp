@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
-#include "blocks/motion/cam_table.hpp"
+#include "blocks/axis/cam_table.hpp"
 #include "blocks/motion/synchronous.hpp"
 #include "tests/blocks/motion/bench.hpp"
 

@@ -6,8 +6,8 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include "blocks/axis/cam_table.hpp"
 #include "blocks/inputs.hpp"
-#include "blocks/motion/cam_table.hpp"
 #include "runtime/model/random.hpp"
 #include "tests/blocks/motion/bench.hpp"
 #include "tests/blocks/scanning.hpp"

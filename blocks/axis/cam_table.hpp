@@ -59,6 +59,9 @@ struct CamTable {
     }
 };
 
+/// Slopes and ends of cams are equal within this part of the greatest.
+inline constexpr double rounding_of_cams = 1e-9;
+
 /// Why the velocity of a slave jumps where the cam begins anew; empty where it does not.
 std::string seam_of(const Cam& cam);
 
