@@ -7,7 +7,7 @@ namespace lineshaft::st {
 namespace {
 
 constexpr std::string_view written =
-#include "prelude.inc"
+#include "runtime/st/prelude/prelude.inc"
     ;
 
 /// Adds to `names` what stands behind each `before`, up to a blank or a character of `ends`.
