@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "blocks/catalog.hpp"
-#include "runtime/st/check/checker.hpp"
+#include "runtime/st/check/check.hpp"
 #include "runtime/st/library/library.hpp"
 #include "runtime/st/syntax/parser.hpp"
 

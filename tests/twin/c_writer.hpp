@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "runtime/st/check/checker.hpp"
+#include "runtime/st/check/check.hpp"
 
 namespace lineshaft::st {
 

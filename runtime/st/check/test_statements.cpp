@@ -1,18 +1,17 @@
+#include "runtime/st/check/test_statements.hpp"
+
 #include <algorithm>
 
-#include "runtime/st/check/checker_class.hpp"
+#include "runtime/st/check/catalog_types.hpp"
+#include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/names.hpp"
+#include "runtime/st/check/nodes.hpp"
 #include "runtime/st/functions/standard.hpp"
 
 namespace lineshaft::st {
 
 namespace {
-
-using Kind = Type::Kind;
-using E = Expression::Kind;
-
-bool is_place(const Expression& e) {
-    return e.kind == E::name || e.kind == E::member || e.kind == E::index;
-}
 
 /// Each is compared by instructions of its own.
 constexpr Wide most_parts = 4096;
@@ -31,56 +30,19 @@ bool is_whole(const Type& type) {
     return type.kind == Kind::integer || type.kind == Kind::bits || type.kind == Kind::boolean;
 }
 
-}  // namespace
-
-TestCall find_test_statement(std::string_view name) {
-    const auto* it = std::ranges::find_if(
-        test_statements, [&](const TestStatement& known) { return same_name(known.name, name); });
-    if (it == std::end(test_statements)) return TestCall::none;
-    return static_cast<TestCall>(it - std::begin(test_statements));
-}
-
-const Type* Checker::check_test_statement(Expression& call, bool as_statement) {
-    const Token& name = call.operands[0]->token;
-    const TestCall which = find_test_statement(name.text);
-    const TestStatement& known = info(which);
-    const bool anywhere = which == TestCall::advance_time && has_tests_;
-    if (!anywhere && !is_in_test())
-        return fail("L0914", name.place, fmt::format("{} stands outside of a TEST", known.name),
-                    "only TEST, SETUP and TEARDOWN have it");
-    if (!as_statement)
-        return fail("L0905", call.place, fmt::format("{} has no value", known.name),
-                    "write it as a statement of its own");
-    if (!check_test_arguments(call, known)) return nullptr;
-    call.test = which;
-    switch (which) {
-        case TestCall::assert_true:
-        case TestCall::assert_false:
-        case TestCall::advance_time:
-            check_single(call);
-            return nullptr;
-        case TestCall::assert_near:
-            check_distance(call);
-            return nullptr;
-        case TestCall::mock_function:
-            check_mock_function(call);
-            return nullptr;
-        case TestCall::mock:
-        case TestCall::mock_verify_called:
-        case TestCall::mock_verify_call_count:
-            check_mocked(call);
-            return nullptr;
-        default:
-            check_compared(call);
-            return nullptr;
-    }
+/// `"text"` is a text where it names nothing.
+void become_text(Checking& c, Expression& e) {
+    if (e.kind != E::name || !e.token.quoted || find_variable(c, e.token)) return;
+    e.kind = E::constant;
+    e.type = &string_type;
+    e.constant.text = e.token.text;
 }
 
 /// Their number, and the message.
-bool Checker::check_test_arguments(Expression& call, const TestStatement& known) {
+bool check_test_arguments(Checking& c, Expression& call, const TestStatement& known) {
     const auto values = static_cast<std::size_t>(known.values), count = call.arguments.size();
     const auto refuse = [&](Place place, std::string message, std::string help = {}) {
-        fail("L0907", place, std::move(message), std::move(help));
+        c.fail("L0907", place, std::move(message), std::move(help));
         return false;
     };
     if (count < values || count > values + (known.has_message ? 1 : 0))
@@ -93,100 +55,77 @@ bool Checker::check_test_arguments(Expression& call, const TestStatement& known)
             return refuse(argument.name.place,
                           fmt::format("the arguments of {} have no names", known.name),
                           "leave the name out");
-    for (Argument& argument : call.arguments) become_text(*argument.value);
+    for (Argument& argument : call.arguments) become_text(c, *argument.value);
     if (count == values) return true;
     Expression& message = *call.arguments.back().value;
-    const Type* type = check(message, &string_type);
+    const Type* type = check(c, message, &string_type);
     if (type && type->kind != Kind::text)
-        fail("L0905", message.place,
-             fmt::format("the message of {} is a STRING, not {}", known.name, describe(*type)));
+        c.fail("L0905", message.place,
+               fmt::format("the message of {} is a STRING, not {}", known.name, describe(*type)));
     return type && type->kind == Kind::text;
 }
 
 /// A condition, or a duration.
-void Checker::check_single(Expression& call) {
+void check_single(Checking& c, Expression& call) {
     Expression*& value = call.arguments[0].value;
     const bool is_time = call.test == TestCall::advance_time;
-    const Type* given = check(*value, is_time ? &time_type : &bool_type);
+    const Type* given = check(c, *value, is_time ? &time_type : &bool_type);
     if (!given) return;
-    if (given->is_any() && !given->is_real()) coerce(value, lint_type);
+    if (given->is_any() && !given->is_real()) coerce(c, value, lint_type);
     const Type& type = *value->type;
     if (is_time ? type.kind == Kind::time || type.kind == Kind::integer : is_whole(type)) return;
-    fail("L0905", value->place,
-         fmt::format("{} takes {}, not {}", info(call.test).name,
-                     is_time ? "a TIME, or a whole number of ns" : "a BOOL", describe(*given)),
-         is_time ? "write it as in T#20ms" : "");
+    c.fail("L0905", value->place,
+           fmt::format("{} takes {}, not {}", info(call.test).name,
+                       is_time ? "a TIME, or a whole number of ns" : "a BOOL", describe(*given)),
+           is_time ? "write it as in T#20ms" : "");
 }
 
-void Checker::check_mocked(Expression& call) {
+void check_mocked(Checking& c, Expression& call) {
     Expression& instance = *call.arguments[0].value;
     const TestStatement& known = info(call.test);
-    if (instance.kind == E::name && !find_variable(instance.token)) {
-        const Routine* routine = find_routine(instance.token);
+    if (instance.kind == E::name && !find_variable(c, instance.token)) {
+        const Routine* routine = c.find_routine(instance.token);
         if (routine && routine->is_function())
-            fail("L0905", instance.place,
-                 fmt::format("{} takes an instance of a function block, and '{}' is a function",
-                             known.name, instance.token.text),
-                 "MOCK_FUNCTION replaces a function; its calls are not counted");
-        else if (routine || standard_type(instance.token.text))
-            fail("L0905", instance.place,
-                 fmt::format("{} takes an instance, and '{}' is a kind of block", known.name,
-                             instance.token.text),
-                 "name the variable");
+            c.fail("L0905", instance.place,
+                   fmt::format("{} takes an instance of a function block, and '{}' is a function",
+                               known.name, instance.token.text),
+                   "MOCK_FUNCTION replaces a function; its calls are not counted");
+        else if (routine || standard_type(c, instance.token.text))
+            c.fail("L0905", instance.place,
+                   fmt::format("{} takes an instance, and '{}' is a kind of block", known.name,
+                               instance.token.text),
+                   "name the variable");
         else
-            check(instance);
+            check(c, instance);
         return;
     }
-    const Type* type = check(instance);
+    const Type* type = check(c, instance);
     if (!type) return;
     if (!is_place(instance) || !type->is_instance())
-        fail("L0905", instance.place,
-             fmt::format("{} takes an instance of a function block, not {}", known.name,
-                         describe(*type)),
-             "MOCK_FUNCTION replaces a function");
-    if (known.values == 2 && check(*call.arguments[1].value, &lint_type))
-        coerce(call.arguments[1].value, lint_type);
-}
-
-/// `"text"` is a text where it names nothing.
-void Checker::become_text(Expression& e) {
-    if (e.kind != E::name || !e.token.quoted || find_variable(e.token)) return;
-    e.kind = E::constant;
-    e.type = &string_type;
-    e.constant.text = e.token.text;
-}
-
-/// Gives a number without type that of the other one, if it fits.
-bool Checker::make_concrete(Expression*& e, const Type& other) {
-    const Type& type = *e->type;
-    if (!type.is_any()) return true;
-    const Type& plain = other.plain();
-    const bool whole = e->kind == E::constant && !type.is_real();
-    const Wide value = e->constant.integer;
-    if (plain.is_real() && !plain.is_any()) return coerce(e, plain);
-    if (type.is_real()) return coerce(e, lreal_type);
-    const bool fits = (plain.kind == Kind::integer || plain.kind == Kind::bits) && whole &&
-                      value >= smallest(plain) && value <= largest(plain);
-    if (fits) return coerce(e, plain);
-    return coerce(e, whole && value > largest(lint_type) ? ulint_type : lint_type);
+        c.fail("L0905", instance.place,
+               fmt::format("{} takes an instance of a function block, not {}", known.name,
+                           describe(*type)),
+               "MOCK_FUNCTION replaces a function");
+    if (known.values == 2 && check(c, *call.arguments[1].value, &lint_type))
+        coerce(c, call.arguments[1].value, lint_type);
 }
 
 /// Numbers of any two types are compared by value, a BOOL as 0 or 1, a time by its nanoseconds.
-bool Checker::check_compared(Expression& call) {
+bool check_compared(Checking& c, Expression& call) {
     const TestStatement& known = info(call.test);
     Expression *&a = call.arguments[0].value, *&b = call.arguments[1].value;
-    if (a->kind == E::name && !find_variable(a->token)) check(*b);
-    const Type* first = check(*a, b->type);
-    const Type* second = check(*b, first);
+    if (a->kind == E::name && !find_variable(c, a->token)) check(c, *b);
+    const Type* first = check(c, *a, b->type);
+    const Type* second = check(c, *b, first);
     if (!first || !second) return false;
-    unite_texts(a, b);
+    unite_texts(c, a, b);
     first = a->type, second = b->type;
     const bool parts = first->kind == Kind::array || first->kind == Kind::structure;
     const auto refuse = [&](std::string help) {
-        fail("L0905", call.place,
-             fmt::format("{} does not go with {} and {}", known.name, describe(*first),
-                         describe(*second)),
-             std::move(help));
+        c.fail("L0905", call.place,
+               fmt::format("{} does not go with {} and {}", known.name, describe(*first),
+                           describe(*second)),
+               std::move(help));
         return false;
     };
     if (first->kind == Kind::text && second->kind == Kind::text) return true;
@@ -204,87 +143,116 @@ bool Checker::check_compared(Expression& call) {
     const bool one_is_time = (first->kind == Kind::time) != (second->kind == Kind::time);
     if (one_is_time && (first->is_real() || second->is_real()))
         return refuse("write a time with its unit: T#500ms");
-    if (!make_concrete(a, *second) || !make_concrete(b, *a->type)) return false;
+    if (!make_concrete(c, a, *second) || !make_concrete(c, b, *a->type)) return false;
     if (enumerations) return true;
     const bool real = a->type->is_real() || b->type->is_real();
     for (Expression** operand : {&a, &b})
         if ((real && !(*operand)->type->is_real()) || (*operand)->type->kind == Kind::enumeration)
-            convert(*operand, real ? lreal_type : lint_type);
+            convert(c, *operand, real ? lreal_type : lint_type);
     return true;
 }
 
-bool Checker::check_distance(Expression& call) {
+bool check_distance(Checking& c, Expression& call) {
     const Type* like = nullptr;
     for (int i = 0; i < 3; ++i) {
         Expression*& value = call.arguments[static_cast<std::size_t>(i)].value;
-        const Type* type = check(*value, like);
+        const Type* type = check(c, *value, like);
         if (!type) return false;
         if (!type->is_number() && type->kind != Kind::time) {
-            fail("L0905", value->place,
-                 fmt::format("ASSERT_NEAR takes numbers, not {}", describe(*type)));
+            c.fail("L0905", value->place,
+                   fmt::format("ASSERT_NEAR takes numbers, not {}", describe(*type)));
             return false;
         }
         if (!like && !type->is_any()) like = type;
     }
     for (int i = 0; i < 3; ++i)
-        if (!make_concrete(call.arguments[static_cast<std::size_t>(i)].value,
+        if (!make_concrete(c, call.arguments[static_cast<std::size_t>(i)].value,
                            like && like->is_real() ? *like : lreal_type))
             return false;
     return true;
 }
 
-void Checker::check_mock_function(Expression& call) {
+/// Two variables that the function looks at: whether it is replaced, and its value then.
+void add_mock(Checking& c, Routine& function) {
+    if (!c.mocks) {
+        c.mocks = &c.make_type(Kind::structure, "the mocks");
+        c.checked.globals.push_back({c.mocks->name, c.mocks});
+    }
+    const auto number = std::ranges::find(c.checked.globals, c.mocks, &Global::type);
+    for (const Type* type : {&bool_type, function.result->type}) {
+        Variable& variable = c.checked.variables.emplace_back();
+        variable.type = type;
+        variable.section = Section::global;
+        variable.space = Space::global;
+        variable.global = static_cast<int>(number - c.checked.globals.begin());
+        c.mocks->members.push_back(&variable);
+        (type == &bool_type && !function.mock_flag ? function.mock_flag : function.mock_value) =
+            &variable;
+    }
+}
+
+void check_mock_function(Checking& c, Expression& call) {
     const Expression& name = *call.arguments[0].value;
-    Routine* const named = name.kind == E::name ? find_routine(name.token) : nullptr;
-    if (!named && tree_.lost.contains(name.token.text)) return;
+    Routine* const named = name.kind == E::name ? c.find_routine(name.token) : nullptr;
+    if (!named && c.tree.lost.contains(name.token.text)) return;
     if (!named || !named->is_function() || !named->result) {
         const bool standard = find_standard_function(name.token.text) != nullptr;
-        fail("L0904", name.place,
-             fmt::format("'{}' is not a FUNCTION of the sources that has a value",
-                         name.place.text()),
-             standard               ? "call it in a FUNCTION of your own, and replace that"
-             : name.kind == E::call ? "write its name alone: the value is that of every call"
-                                    : "");
+        c.fail("L0904", name.place,
+               fmt::format("'{}' is not a FUNCTION of the sources that has a value",
+                           name.place.text()),
+               standard               ? "call it in a FUNCTION of your own, and replace that"
+               : name.kind == E::call ? "write its name alone: the value is that of every call"
+                                      : "");
         return;
     }
     Routine& function = *named;
     const Type* type = function.result->type;
     if (!type) return;
     Expression*& value = call.arguments[1].value;
-    if (check(*value, type)) coerce(value, *type);
-    if (!function.mock_flag) add_mock(function);
+    if (check(c, *value, type)) coerce(c, value, *type);
+    if (!function.mock_flag) add_mock(c, function);
     call.routine = &function;
 }
 
-/// A VAR_IN_OUT that a test does not give stays what it was; at first it is a variable of its own.
-void Checker::leave_out(Expression& call, Variable& parameter) {
-    if (!parameter.type) return;
-    Variable& own = routine_->variables.emplace_back();
-    own.type = parameter.type->is_open ? &string_type : parameter.type;
-    own.of = routine_->pou;
-    Expression* value = make(E::name, call);
-    value->variable = &own;
-    value->type = own.type;
-    call.arguments.push_back({parameter.name, false, value, &parameter, true});
-    depend(own.type, call.place);
+}  // namespace
+
+bool is_place(const Expression& e) {
+    return e.kind == E::name || e.kind == E::member || e.kind == E::index;
 }
 
-/// Two variables that the function looks at: whether it is replaced, and its value then.
-void Checker::add_mock(Routine& function) {
-    if (!mocks_) {
-        mocks_ = &make_type(Kind::structure, "the mocks");
-        checked_.globals.push_back({mocks_->name, mocks_});
-    }
-    const auto number = std::ranges::find(checked_.globals, mocks_, &Global::type);
-    for (const Type* type : {&bool_type, function.result->type}) {
-        Variable& variable = checked_.variables.emplace_back();
-        variable.type = type;
-        variable.section = Section::global;
-        variable.space = Space::global;
-        variable.global = static_cast<int>(number - checked_.globals.begin());
-        mocks_->members.push_back(&variable);
-        (type == &bool_type && !function.mock_flag ? function.mock_flag : function.mock_value) =
-            &variable;
+const Type* check_test_statement(Checking& c, Expression& call, bool as_statement) {
+    const Token& name = call.operands[0]->token;
+    const TestCall which = find_test_statement(name.text);
+    const TestStatement& known = info(which);
+    const bool anywhere = which == TestCall::advance_time && c.has_tests;
+    if (!anywhere && !c.is_in_test())
+        return c.fail("L0914", name.place, fmt::format("{} stands outside of a TEST", known.name),
+                      "only TEST, SETUP and TEARDOWN have it");
+    if (!as_statement)
+        return c.fail("L0905", call.place, fmt::format("{} has no value", known.name),
+                      "write it as a statement of its own");
+    if (!check_test_arguments(c, call, known)) return nullptr;
+    call.test = which;
+    switch (which) {
+        case TestCall::assert_true:
+        case TestCall::assert_false:
+        case TestCall::advance_time:
+            check_single(c, call);
+            return nullptr;
+        case TestCall::assert_near:
+            check_distance(c, call);
+            return nullptr;
+        case TestCall::mock_function:
+            check_mock_function(c, call);
+            return nullptr;
+        case TestCall::mock:
+        case TestCall::mock_verify_called:
+        case TestCall::mock_verify_call_count:
+            check_mocked(c, call);
+            return nullptr;
+        default:
+            check_compared(c, call);
+            return nullptr;
     }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "runtime/st/check/checker.hpp"
+#include "runtime/st/check/check.hpp"
 #include "runtime/st/code/code.hpp"
 
 namespace lineshaft::st {

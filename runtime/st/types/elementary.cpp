@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 namespace lineshaft::st {
 
 namespace {
@@ -81,6 +83,17 @@ const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &clock_type = table[20], &moment_type = table[24], &any_integer_type = any_integer,
            &any_real_type = any_real, &any_bits_type = any_bits, &string_type = table[17],
            &open_string_type = open_string, &char_type = table[28];
+
+std::string describe(const Type& type) {
+    if (type.kind != Kind::array || !type.name.empty()) return type.name;
+    std::string bounds;
+    const Type* element = &type;
+    for (; element && element->kind == Kind::array && element->name.empty();
+         element = element->element)
+        bounds +=
+            fmt::format("{}{}..{}", bounds.empty() ? "" : ", ", element->lower, element->upper);
+    return fmt::format("ARRAY[{}] OF {}", bounds, element ? describe(*element) : "?");
+}
 
 const Type* find_prefix(std::string_view name) {
     static constexpr std::pair<std::string_view, std::string_view> shorter[] = {

@@ -22,6 +22,6 @@ struct Checked {
 ///   L0913  not a constant                  L0914  a statement in a wrong place
 ///   L0921  warning: never used             L0922  warning: never reached
 ///   L0923  warning: an argument not taken
-Checked check(Tree& tree, const Catalog& standard, Diagnostics& out);
+Checked check(Tree& tree, const Catalog& catalog, Diagnostics& out);
 
 }  // namespace lineshaft::st

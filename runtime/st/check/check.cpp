@@ -1,0 +1,22 @@
+#include "runtime/st/check/check.hpp"
+
+#include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/initial_values.hpp"
+#include "runtime/st/check/order.hpp"
+#include "runtime/st/check/statements.hpp"
+
+namespace lineshaft::st {
+
+Checked check(Tree& tree, const Catalog& catalog, Diagnostics& out) {
+    Checking c{tree, catalog, out};
+    collect_names(c);
+    declare_globals(c);
+    declare_routines(c);
+    check_initial_values(c);
+    for (Routine& routine : c.checked.routines) check_body(c, routine);
+    order_routines(c);
+    if (out.empty()) warn_of_unused(c);
+    return std::move(c.checked);
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,40 @@
+#include "runtime/st/check/checking.hpp"
+
+namespace lineshaft::st {
+
+std::nullptr_t Checking::fail(const char* code, Place place, std::string message,
+                              std::string help) {
+    out.add(code, place.mark(), std::move(message), std::move(help));
+    return nullptr;
+}
+
+void Checking::warn(const char* code, Place place, std::string message, std::string help) {
+    out.warn(code, place.mark(), std::move(message), std::move(help));
+}
+
+Routine* Checking::find_routine(const Token& name) {
+    Routine** const found = look_up(&Names::routines, name);
+    return found ? *found : nullptr;
+}
+
+bool Checking::is_lost(const Token& name) const {
+    const auto it = tree.lost.find(name.text);
+    return it != tree.lost.end() && it->second && !is_prelude(name);
+}
+
+Type& Checking::make_type(Type::Kind kind, std::string name) {
+    Type& type = checked.types.emplace_back();
+    type.kind = kind;
+    type.name = std::move(name);
+    type.slots = 0;
+    return type;
+}
+
+Routine& Checking::make_routine(Pou& pou, std::string name) {
+    Routine& made = checked.routines.emplace_back();
+    made.pou = &pou;
+    made.name = std::move(name);
+    return made;
+}
+
+}  // namespace lineshaft::st

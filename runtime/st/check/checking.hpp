@@ -1,0 +1,99 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <unordered_set>
+
+#include <fmt/format.h>
+
+#include "runtime/st/check/check.hpp"
+#include "runtime/st/prelude/standard_source.hpp"
+#include "runtime/st/types/elementary.hpp"
+
+namespace lineshaft::st {
+
+using Kind = Type::Kind;
+using E = Expression::Kind;
+using S = Statement::Kind;
+
+struct NamedType {
+    const TypeDeclaration* declaration = nullptr;
+    const Type* type = nullptr;  ///< null until it is asked for, or if it is wrong
+    bool visiting = false;       ///< being resolved: who asks now is part of it
+};
+
+/// A value of an enumeration.
+struct NamedValue {
+    const Type* type = nullptr;
+    std::size_t index = 0;
+    bool ambiguous = false;
+};
+
+/// What is declared beside the blocks.
+struct Names {
+    NameMap<NamedType> types;
+    NameMap<NamedValue> values;
+    NameMap<Routine*> routines;
+    NameMap<Place> places;  ///< of all of them
+};
+
+inline bool is_prelude(const Token& name) {
+    return name.place.file && is_standard_source(**name.place.file);
+}
+
+/// Siemens' structure of a date and a time.
+inline bool is_dtl(const Type& type) {
+    return type.kind == Kind::structure && type.name == "DTL" &&
+           std::ranges::any_of(type.members, is_prelude, &Variable::name);
+}
+
+/// What check() knows while it works. The work is done by functions that take it first, in a file
+/// for each subject (README.md); what is here they all share. Put logic there, not here.
+///
+/// Whatever is wrong is told once, by `fail`, and noted where it was found: an expression without a
+/// type, a variable or a named type without one. Who meets such a thing says nothing more.
+struct Checking {
+    Tree& tree;
+    const Catalog& catalog;
+    Diagnostics& out;
+    Checked checked = {};
+
+    Names users = {}, prelude = {};
+    NameMap<Variable*> globals = {};
+    NameMap<const Declaration*> constants = {};  ///< of VAR_GLOBAL, until all globals are declared
+    std::unordered_set<const Declaration*> begun_constants = {};  ///< declared, or being so
+    int hops = 0;  ///< from constant to constant that is declared later
+    NameMap<const Type*> catalog_types = {};
+    bool has_tests = false;
+    Type* mocks = nullptr;  ///< of the global that has what MOCK_FUNCTION says
+
+    Routine* routine = nullptr;                                   ///< that is being checked
+    int loops = 0;                                                ///< around the statement
+    std::unordered_map<const Routine*, NameSet> undeclared = {};  ///< names that were told
+
+    /// An error. Null, for who returns a type, a variable or a node.
+    std::nullptr_t fail(const char* code, Place place, std::string message, std::string help = {});
+    void warn(const char* code, Place place, std::string message, std::string help);
+
+    /// What a name is. The prelude sees nothing of the user's; what it declares he sees where he
+    /// has no such name.
+    template <class T>
+    T* look_up(NameMap<T> Names::*map, const Token& name) {
+        if (!is_prelude(name))
+            if (const auto it = (users.*map).find(name.text); it != (users.*map).end())
+                return &it->second;
+        const auto it = (prelude.*map).find(name.text);
+        return it == (prelude.*map).end() ? nullptr : &it->second;
+    }
+    Routine* find_routine(const Token& name);
+    Names& names_beside(const Token& name) { return is_prelude(name) ? prelude : users; }
+
+    /// A type, block or function of the user's that was not understood.
+    bool is_lost(const Token& name) const;
+    bool is_in_test() const { return routine && routine->is_test(); }
+
+    Type& make_type(Kind kind, std::string name);
+    Routine& make_routine(Pou& pou, std::string name);
+};
+
+}  // namespace lineshaft::st

@@ -1,0 +1,334 @@
+#include "runtime/st/check/conversions.hpp"
+
+#include <cmath>
+
+#include "runtime/st/check/nodes.hpp"
+#include "runtime/st/syntax/literals.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+/// A constant of another type loses nothing.
+bool fits_as_constant(const Expression& e, const Type& to) {
+    return is_constant(e) && e.type->is_integer() && to.is_integer() &&
+           e.constant.integer >= smallest(to) && e.constant.integer <= largest(to);
+}
+
+/// A bit string stands for an integer of its width or a wider one, and the other way.
+bool is_same_pattern(const Type& from, const Type& to) {
+    const bool mixes = (from.kind == Kind::bits && to.kind == Kind::integer) ||
+                       (from.kind == Kind::integer && to.kind == Kind::bits);
+    return mixes && from.bits <= to.bits && !to.is_subrange;
+}
+
+/// SCL makes a REAL of a DINT, which loses above 2^24.
+bool rounds(Checking& c, const Expression& e, const Type& to) {
+    const Type& from = e.type->plain();
+    if (!is_scl(e.place) || from.kind != Kind::integer || from.bits != 32 || !is_single(to))
+        return false;
+    c.warn("L0906", e.place, fmt::format("{} does not hold every {}", describe(to), from.name),
+           fmt::format("write {}_TO_{}(...) where it is meant", from.name, to.name));
+    return true;
+}
+
+/// Siemens gives a number where PLCopen has a name: `Direction := 1`.
+bool coerce_number(Checking& c, Expression*& e, const Type& to) {
+    if (!is_constant(*e)) {
+        convert(c, e, to);
+        return true;
+    }
+    const Wide number = e->constant.integer;
+    const bool exists = number >= 0 && number < static_cast<Wide>(to.of_number.size());
+    const std::int64_t value = exists ? to.of_number[static_cast<std::size_t>(number)] : -1;
+    if (value < 0) {
+        c.fail("L0908", e->place,
+               fmt::format("{} has nothing for the number {}", to.name, to_string(number)),
+               fmt::format("write one of its values, such as {}#{}", to.name, to.values.front()));
+        return false;
+    }
+    become(*e, to, {.integer = value});
+    return true;
+}
+
+bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
+    const Type& from = *e.type;
+    const bool of_literal = from.kind == Kind::any_real;
+    if (of_literal && !to.is_real() && to.is_number()) {
+        c.fail("L0906", e.place, fmt::format("expected {}, found a real number", describe(to)),
+               "write a whole number, or convert it: ROUND(...)");
+        return false;
+    }
+    if ((from.is_number() || from.is_bits()) && (to.is_number() || to.is_bits())) {
+        const bool counts =
+            from.kind == Kind::bits && to.is_real();  // DWORD_TO_REAL keeps the bits
+        const std::string source = from.is_any() ? "LINT"
+                                   : counts      ? integer_type(from.bits, false).name
+                                                 : from.plain().name;
+        c.fail("L0906", e.place, fmt::format("{} does not hold every {}", describe(to), from.name),
+               fmt::format("write {}_TO_{}(...) where it is meant", source, to.plain().name));
+        return false;
+    }
+    std::string help;
+    if (to.kind == Kind::time && from.is_number())
+        help = from.is_any() ? "write a time with its unit: T#500ms"
+                             : fmt::format("write {}_TO_TIME(...), of ms", from.plain().name);
+    if (to.kind == Kind::structure && describe(to) == describe(from))
+        help = "declare a TYPE, and both variables of that";
+    if (to.is_character && from.kind == Kind::text) help = "a CHAR is one character: 'A'";
+    if (to.kind == Kind::boolean && from.is_number()) help = "compare it, as in 'x <> 0'";
+    if (to.kind == Kind::enumeration && !to.values.empty())
+        help = fmt::format("write one of its values, such as {}#{}", to.name, to.values.front());
+    if (from.kind == Kind::time && to.is_number())
+        help = fmt::format("write TIME_TO_{}(...)", to.is_any() ? "LREAL" : to.plain().name);
+    if (from.kind == Kind::enumeration && to.kind == Kind::integer)
+        help = fmt::format("write TO_{}(...)", to.plain().name);
+    c.fail("L0905", e.place, fmt::format("expected {}, found {}", describe(to), describe(from)),
+           help);
+    return false;
+}
+
+bool coerce_constant(Checking& c, Expression& e, const Type& to) {
+    const Type& from = *e.type;
+    const Wide value = e.constant.integer;
+    const bool whole = from.kind == Kind::any_integer || from.kind == Kind::any_bits;
+    if (to.is_real() && (whole || from.kind == Kind::any_real)) {
+        double real = as_real(e);
+        if (to.kind == Kind::real && to.bits == 32) real = static_cast<float>(real);
+        if (!std::isfinite(real)) {
+            c.fail("L0908", e.place,
+                   fmt::format("'{}' is out of range for {}", e.place.text(), to.name));
+            return false;
+        }
+        become(e, to, {.real = real});
+        return true;
+    }
+    if (!whole) return refuse_conversion(c, e, to);
+    const bool bit = to.kind == Kind::boolean && (value == 0 || value == 1);
+    if (to.is_any() || bit) {
+        e.type = &to;
+        return true;
+    }
+    if (to.kind != Kind::integer && to.kind != Kind::bits) return refuse_conversion(c, e, to);
+    const Wide pattern = Wide{1} << to.bits;
+    const bool is_pattern = from.kind == Kind::any_bits && value < pattern && !to.is_subrange;
+    if (!is_pattern && (value < smallest(to) || value > largest(to))) {
+        c.fail(
+            "L0908", e.place,
+            fmt::format("{} is out of range for {}", to_string(value), describe(to)),
+            fmt::format("it goes from {} to {}", to_string(smallest(to)), to_string(largest(to))));
+        return false;
+    }
+    become(e, to, {.integer = is_pattern ? wrapped(to, value) : value});
+    return true;
+}
+
+bool fold_conversion(Expression& e, const Type& to) {
+    const Type& from = *e.type;
+    if (from.kind == Kind::text || to.kind == Kind::text) return false;
+    if (from.kind == Kind::enumeration) {
+        if (!to.is_integer() || to.is_subrange) return false;
+        const auto value = static_cast<std::size_t>(e.constant.integer);
+        become(e, to,
+               {.integer = wrapped(to, from.counted ? e.constant.integer : from.numbers[value])});
+        return true;
+    }
+    if (to.is_real() && from.is_bits()) return false;
+    if (from.is_date() || to.is_date()) return false;
+    if ((from.kind == Kind::time) != (to.kind == Kind::time)) return false;
+    if (to.is_real()) {
+        double value = as_real(e);
+        if (to.bits == 32)
+            value =
+                from.is_real() ? static_cast<float>(value) : static_cast<float>(e.constant.integer);
+        become(e, to, {.real = value});
+        return true;
+    }
+    if (from.is_real()) return false;
+    if (to.kind == Kind::enumeration) return false;
+    become(e, to,
+           {.integer = to.kind == Kind::boolean ? Wide{e.constant.integer != 0}
+                                                : wrapped(to.plain(), e.constant.integer)});
+    return true;
+}
+
+/// The signed type that holds a constant which `typed` does not, and all of that; null if there is
+/// none, or none is needed.
+const Type* wider_for(const Expression& constant, const Type& typed) {
+    if (constant.type->kind != Kind::any_integer || typed.kind != Kind::integer) return nullptr;
+    const Wide value = constant.constant.integer;
+    const auto holds = [&](const Type& type) {
+        return value >= smallest(type) && value <= largest(type);
+    };
+    if (holds(typed.plain())) return nullptr;
+    for (const Type* wider : {&dint_type, &lint_type})
+        if (holds(*wider) && widens(typed, *wider)) return wider;
+    return nullptr;
+}
+
+}  // namespace
+
+bool is_single(const Type& type) {
+    return type.kind == Kind::real && type.bits == 32;
+}
+
+bool coerce(Checking& c, Expression*& e, const Type& to) {
+    if (!e->type) return false;
+    const Type& from = *e->type;
+    if (from.kind == Kind::text && to.kind == Kind::text) {
+        if (is_constant(*e) && e->constant.text.size() > to.length)
+            c.warn("L0908", e->place,
+                   fmt::format("the text has {} bytes, and {} keeps {}", e->constant.text.size(),
+                               describe(to), to.length),
+                   "declare the STRING longer");
+        return true;
+    }
+    if (&from == &to || same_type(from, to)) return true;
+    if (!to.of_number.empty() && from.is_integer() && is_scl(e->place))
+        return coerce_number(c, e, to);
+    if (from.is_any()) return coerce_constant(c, *e, to);
+    if (from.is_object() && to.kind == Kind::handle && from.standard == to.standard) {
+        convert(c, e, to);
+        return true;
+    }
+    if (to.is_character && is_constant(*e) && e->constant.text.size() == 1) {
+        become(*e, to, {.integer = static_cast<unsigned char>(e->constant.text[0])});
+        return true;
+    }
+    if (from.is_character && to.kind == Kind::text) {
+        convert(c, e, to);
+        return true;
+    }
+    if (to.is_subrange && same_type(from.plain(), to.plain())) {
+        if (is_constant(*e) && (e->constant.integer < to.lower || e->constant.integer > to.upper)) {
+            c.fail("L0908", e->place,
+                   fmt::format("{} is out of range for {}", to_string(e->constant.integer),
+                               describe(to)));
+            return false;
+        }
+        convert(c, e, to);
+        return true;
+    }
+    if (from.kind == Kind::enumeration && to.kind == Kind::enumeration && from.name == to.name &&
+        from.values == to.values)
+        return true;
+    if (fits_as_constant(*e, to)) {
+        become(*e, to, {.integer = e->constant.integer});
+        return true;
+    }
+    const bool fits =
+        from.is_scalar() && (widens(from, to) || is_same_pattern(from, to) || rounds(c, *e, to));
+    if (!fits) return refuse_conversion(c, *e, to);
+    convert(c, e, to);
+    return true;
+}
+
+void convert(Checking& c, Expression*& e, const Type& to) {
+    if (is_constant(*e) && fold_conversion(*e, to)) return;
+    Expression* converted = make(c, E::converted, *e);
+    converted->operands[0] = e;
+    converted->type = &to;
+    e = converted;
+}
+
+void take_width(Checking& c, Expression*& e, const Type* expected) {
+    if (e->type->kind == Kind::any_bits && expected && expected->kind == Kind::bits)
+        coerce(c, e, *expected);
+}
+
+void become_number(Checking& c, Expression*& e) {
+    const Type& type = e->type->plain();
+    if (type.kind == Kind::bits) convert(c, e, integer_type(type.bits, false));
+}
+
+void reinterpret(Checking& c, Expression& e, Kind from, const Type* expected) {
+    for (Expression*& operand : e.operands) {
+        if (!operand) continue;
+        const Type& type = operand->type->plain();
+        if (type.kind != from) continue;
+        const bool wider =
+            expected && expected->kind == Kind::integer && expected->bits > type.bits;
+        convert(c, operand,
+                from == Kind::integer ? bits_type(type.bits)
+                : wider               ? expected->plain()
+                                      : integer_type(type.bits, false));
+    }
+}
+
+void unite_texts(Checking& c, Expression*& a, Expression*& b) {
+    Expression*& character = a->type->is_character ? a : b;
+    Expression*& text = a->type->is_character ? b : a;
+    if (!character->type->is_character || text->type->kind != Kind::text) return;
+    const bool single = is_constant(*text) && text->constant.text.size() == 1;
+    single ? coerce(c, text, char_type) : coerce(c, character, string_type);
+}
+
+bool make_concrete(Checking& c, Expression*& e, const Type& other) {
+    const Type& type = *e->type;
+    if (!type.is_any()) return true;
+    const Type& plain = other.plain();
+    const bool whole = e->kind == E::constant && !type.is_real();
+    const Wide value = e->constant.integer;
+    if (plain.is_real() && !plain.is_any()) return coerce(c, e, plain);
+    if (type.is_real()) return coerce(c, e, lreal_type);
+    const bool fits = (plain.kind == Kind::integer || plain.kind == Kind::bits) && whole &&
+                      value >= smallest(plain) && value <= largest(plain);
+    if (fits) return coerce(c, e, plain);
+    return coerce(c, e, whole && value > largest(lint_type) ? ulint_type : lint_type);
+}
+
+const Type* unite(Checking& c, Expression& e, const Type* expected) {
+    Expression *&left = e.operands[0], *&right = e.operands[1];
+    const Type &a = *left->type, &b = *right->type;
+    const Type* common = nullptr;
+    if (a.is_any() && b.is_any()) {
+        common = a.is_real() ? &a : b.is_real() ? &b : &any_integer_type;
+        if (a.kind == b.kind) common = &a;
+    } else if (a.is_any()) {
+        common = b.is_code ? &lint_type : &b.plain();
+    } else if (b.is_any()) {
+        common = a.is_code ? &lint_type : &a.plain();
+    } else {
+        common = common_type(a, b);
+    }
+    const auto real_of = [](const Type& any, const Type& typed) -> const Type* {
+        if (any.kind != Kind::any_real || typed.kind != Kind::integer) return nullptr;
+        return common_type(typed, real_type);
+    };
+    if (const Type* real = a.is_any() ? real_of(a, b) : real_of(b, a)) common = real;
+    if (const Type* wider = a.is_any() ? wider_for(*left, b) : wider_for(*right, a))
+        if (!expected || !expected->is_integer() || widens(*wider, *expected)) common = wider;
+    const auto reckons_in = [&](const Type& type, const Expression& constant) {
+        return common && expected && expected->is_integer() && !widens(*common, *expected) &&
+               widens(type, *expected) && fits_as_constant(constant, type);
+    };
+    if (reckons_in(a, *right)) common = &a.plain();
+    if (reckons_in(b, *left)) common = &b.plain();
+    const bool narrows =
+        expected && is_single(*expected) && common == &lreal_type && is_scl(e.place);
+    if (narrows && !same_type(a, lreal_type) && !same_type(b, lreal_type)) common = &real_type;
+    if (!common) {
+        const bool numbers = a.is_number() && b.is_number();
+        return c.fail(
+            numbers ? "L0906" : "L0905", e.token.place,
+            fmt::format("{} does not go with {} and {}", shown(e.op), describe(a), describe(b)),
+            numbers
+                ? fmt::format("convert one of them: {}_TO_{}(...)", a.plain().name, b.plain().name)
+            : a.kind == Kind::enumeration || b.kind == Kind::enumeration
+                ? "an enumeration's number is TO_INT(...)"
+                : "");
+    }
+    return coerce(c, left, *common) && coerce(c, right, *common) ? common : nullptr;
+}
+
+const Type* convert_result(Checking& c, Expression& call, const Type& from, const Type& to) {
+    if (&from == &to) return &to;
+    Expression* inner = make(c, call.kind, call);
+    *inner = call;
+    inner->type = &from;
+    convert(c, inner, to);
+    call = Expression(*inner);
+    return &to;
+}
+
+}  // namespace lineshaft::st

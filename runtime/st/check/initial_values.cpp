@@ -1,0 +1,168 @@
+#include "runtime/st/check/initial_values.hpp"
+
+#include <algorithm>
+
+#include "runtime/source/letters.hpp"
+#include "runtime/source/units.hpp"
+#include "runtime/st/check/constants.hpp"
+#include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/literals.hpp"
+#include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/types.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+bool is_constant_place(Checking& c, const Expression& place) {
+    for (const Argument& index : place.arguments)
+        if (index.value->kind != E::constant) return false;
+    return !place.operands[0] || is_constant_place(c, *place.operands[0]);
+}
+
+/// What stands behind BEGIN of a data block: assignments of constants to its parts.
+void check_data_block(Checking& c, const Global& global) {
+    if (!global.pou || !global.type) return;
+    Routine parts;
+    parts.pou = global.pou;
+    for (Variable* member : global.type->members) parts.names.emplace(member->text, member);
+    if (global.type->kind == Kind::block) parts.names = global.type->routine->names;
+    c.routine = &parts;
+    for (Statement* s : global.pou->body) {
+        if (s->kind != S::assign || s->op != Word::assign) {
+            c.fail("L0914", s->place, "a data block has no code",
+                   "assign constants, and write statements in a block");
+            continue;
+        }
+        const Type* type = check(c, *s->target);
+        if (!is_constant_place(c, *s->target))
+            c.fail("L0913", s->target->place, "the index is not a constant");
+        if (type) check_initial(c, s->value, *type);
+    }
+    c.routine = nullptr;
+}
+
+/// Of several dimensions either a list of lists, or all elements in one, the last index first.
+void check_elements(Checking& c, Expression& list, const Type& array) {
+    const bool nested = list.is_nested();
+    const Type& element = nested ? *array.element : array.innermost();
+    Wide room = Wide{array.upper} - array.lower + 1;
+    for (const Type* inner = &array; !nested && inner->has_inner; inner = inner->element)
+        room *= Wide{inner->element->upper} - inner->element->lower + 1;
+    Wide count = 0;
+    for (Argument& argument : list.arguments) {
+        Expression* value = argument.value;
+        if (value->kind != E::repeated) {
+            check_initial(c, argument.value, element);
+            ++count;
+            continue;
+        }
+        const auto times = check_whole(c, value->operands[0], lint_type);
+        for (Argument& repeated : value->arguments) check_initial(c, repeated.value, element);
+        const Wide one = static_cast<Wide>(std::max<std::size_t>(value->arguments.size(), 1));
+        if (times && *times >= 0 && *times <= most_elements) count += *times * one;
+    }
+    if (count > room)
+        c.fail("L0908", list.place,
+               fmt::format("{} values for {} elements", static_cast<std::int64_t>(count),
+                           static_cast<std::int64_t>(room)),
+               "leave some out, or make the array larger");
+}
+
+/// By name, or of a structure by position.
+void check_members(Checking& c, Expression& list, const Type& type) {
+    const bool by_place =
+        type.kind == Kind::structure && std::ranges::none_of(list.arguments, &Argument::is_named);
+    if (by_place && list.arguments.size() > type.members.size())
+        return (void)c.fail(
+            "L0908", list.place,
+            fmt::format("{} values for {} members", list.arguments.size(), type.members.size()),
+            "leave some out");
+    for (std::size_t i = 0; by_place && i < list.arguments.size(); ++i) {
+        Variable& member = *type.members[i];
+        list.arguments[i].variable = &member;
+        if (member.type) check_initial(c, list.arguments[i].value, *member.type);
+    }
+    for (Argument& argument : list.arguments) {
+        if (by_place) break;
+        if (argument.name.word == Word::end_of_file) {
+            c.fail("L0905", argument.value->place, "this value has no name",
+                   fmt::format("name the member of {}: (name := value)", describe(type)));
+            continue;
+        }
+        std::vector<std::string> names;
+        const auto& members = type.members;
+        for (const Variable* member : members) names.emplace_back(member->text);
+        Variable* found = nullptr;
+        if (type.kind == Kind::block) {
+            const auto it = type.routine->names.find(argument.name.text);
+            if (it != type.routine->names.end()) found = it->second;
+        }
+        for (Variable* member : members)
+            if (same_name(member->text, argument.name.text)) found = member;
+        argument.variable = found;
+        if (!found) {
+            c.fail("L0904", argument.name.place,
+                   fmt::format("{} has no '{}'", describe(type), argument.name.text),
+                   suggest(argument.name.text, names));
+        } else if (found->type) {
+            check_initial(c, argument.value, *found->type);
+        }
+    }
+}
+
+}  // namespace
+
+void check_initial_values(Checking& c) {
+    const auto check_one = [&](const Variable& variable) {
+        if (!variable.initial || !variable.type || variable.space == Space::constant) return;
+        auto* value = const_cast<Expression*>(variable.initial);
+        check_initial(c, value, *variable.type);
+        const_cast<Variable&>(variable).initial = value;
+    };
+    for (Variable& variable : c.checked.variables) check_one(variable);
+    for (const Global& global : c.checked.globals) check_data_block(c, global);
+    for (Routine& routine : c.checked.routines) {
+        c.routine = &routine;
+        for (const Variable& variable : routine.variables) {
+            if (variable.initial && variable.section == Section::in_out)
+                c.fail("L0914", variable.name.place, "a VAR_IN_OUT has no initial value",
+                       "leave ':= ...' out; the caller gives the variable");
+            check_one(variable);
+        }
+    }
+    c.routine = nullptr;
+}
+
+void check_initial(Checking& c, Expression*& value, const Type& type) {
+    if (is_dtl(type) && value->token.word == Word::duration)
+        if (!(value = list_of_dtl(c, *value, type))) return;
+    if (value->kind == E::list) {
+        value->type = &type;
+        const bool is_structure = value->is_structure();
+        if (type.kind == Kind::array && !is_structure) return check_elements(c, *value, type);
+        if ((type.kind == Kind::structure || type.is_instance()) && is_structure)
+            return check_members(c, *value, type);
+        c.fail("L0905", value->place, fmt::format("this is not a value of {}", describe(type)),
+               type.kind == Kind::array ? "write its elements in brackets: [1, 2, 3]"
+               : type.is_real()         ? "write a decimal point: 1.5"
+                                        : "");
+        return;
+    }
+    if (value->kind == E::repeated && type.kind == Kind::array) {
+        Expression* list = make(c, E::list, *value);
+        list->arguments.push_back({{}, false, value, nullptr});
+        value = list;
+        return check_initial(c, value, type);
+    }
+    if (value->type) return;  // of `a, b : INT := 5`, seen before
+    if (!check(c, *value, &type)) return;
+    evaluate(c, *value);
+    if (!coerce(c, value, type)) return;
+    if (!evaluate(c, *value) && value->type)
+        c.fail("L0913", value->place, "an initial value is a constant",
+               "assign it in the body, behind IF NOT started");
+}
+
+}  // namespace lineshaft::st

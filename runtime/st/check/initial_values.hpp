@@ -1,0 +1,12 @@
+#pragma once
+
+#include "runtime/st/check/checking.hpp"
+
+namespace lineshaft::st {
+
+void check_initial_values(Checking& c);
+/// A literal, a list or another constant for a variable of `type`. The pointer goes to what it is
+/// then.
+void check_initial(Checking& c, Expression*& value, const Type& type);
+
+}  // namespace lineshaft::st

@@ -1,0 +1,142 @@
+#include "runtime/st/check/literals.hpp"
+
+#include <chrono>
+
+#include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/names.hpp"
+#include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/types.hpp"
+#include "runtime/st/syntax/literals.hpp"
+#include "runtime/st/types/value_text.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+const Type* check_number(Checking& c, Expression& e) {
+    const std::string_view text = e.token.text;
+    if (e.token.word == Word::real) {
+        const auto value = read_real(text);
+        if (!value) return c.fail("L0908", e.place, fmt::format("'{}' is out of range", text));
+        e.constant.real = *value;
+        return &any_real_type;
+    }
+    const auto value = read_integer(text);
+    if (!value)
+        return c.fail("L0908", e.place,
+                      fmt::format("'{}' is not a number of at most 64 bits", text),
+                      "write 100, 1_000, 16#FF, 8#17 or 2#1010");
+    e.constant.integer = *value;
+    return text.find('#') == std::string_view::npos ? &any_integer_type : &any_bits_type;
+}
+
+std::optional<Wide> read_dtl(Checking& c, const Expression& e) {
+    const auto value = read_moment(e.token.text);
+    if (!value)
+        c.fail("L0908", e.place, fmt::format("'{}' is not a DTL", e.place.text()),
+               "write DTL#2020-02-29-12:30:15.25");
+    return value;
+}
+
+const Type* check_dtl(Checking& c, Expression& e) {
+    const auto value = read_dtl(c, e);
+    if (!value) return nullptr;
+    Expression* moment = make(c, E::constant, e);
+    become(*moment, moment_type, {.integer = *value});
+    e = *make_call(c, "LDT_TO_DTL", moment);
+    return check(c, e);
+}
+
+const Type* check_time(Checking& c, Expression& e) {
+    const std::string_view prefix = e.place.text().substr(0, e.place.text().find('#'));
+    if (const Type* type = find_prefix(prefix); type && type->is_date()) {
+        const auto value = read_time(e.token.text, type->kind);
+        if (!value)
+            return c.fail("L0908", e.place,
+                          fmt::format("'{}' is not a {}", e.place.text(), type->name),
+                          "write D#2020-02-29, TOD#12:30:15.25 or DT#2020-02-29-12:30:15");
+        e.constant.integer = *value;
+        return type;
+    }
+    if (same_name(prefix, "dtl")) return check_dtl(c, e);
+    const auto value = read_duration(e.token.text);
+    if (!value)
+        return c.fail("L0908", e.place, fmt::format("'{}' is not a time", e.place.text()),
+                      "write T#1h2m3.5s, with d, h, m, s, ms, us and ns in this order");
+    e.constant.integer = *value;
+    return &time_type;
+}
+
+const Type* check_text(Checking& c, Expression& e) {
+    const auto text = read_text(e.token.text);
+    if (!text)
+        return c.fail("L0908", e.place, "'$' is not followed by one of its characters",
+                      "write $$ for a '$', $' for a quote, $N for a new line, $0A for a byte");
+    if (static_cast<Wide>(text->size()) > longest_text)
+        return c.fail("L0908", e.place, fmt::format("the text has {} bytes", text->size()),
+                      "a text has at most 32767 bytes");
+    e.constant.text = *text;
+    return &string_type;
+}
+
+}  // namespace
+
+const Type* check_constant(Checking& c, Expression& e, const Type*) {
+    switch (e.token.word) {
+        case Word::integer:
+        case Word::real:
+            return check_number(c, e);
+        case Word::duration:
+            return check_time(c, e);
+        case Word::text:
+            return check_text(c, e);
+        default:
+            return nullptr;
+    }
+}
+
+const Type* check_typed(Checking& c, Expression& e) {
+    Expression& value = *e.operands[0];
+    Token name = e.token;
+    const Type* type = find_prefix(name.text);
+    if (const NamedType* named = c.look_up(&Names::types, name)) type = named->type;
+    if (!type) {
+        if (resolve_name(c, name))
+            c.fail("L0904", name.place, fmt::format("'{}' is not a type of values", name.text),
+                   "write a type, as in INT#5");
+        return nullptr;
+    }
+    if (type->kind == Kind::enumeration && value.kind == E::name)
+        return check_value(c, e, *type, value.token);
+    if (!check(c, value, type)) return nullptr;
+    Expression* literal = &value;
+    if (!coerce(c, literal, *type)) return nullptr;
+    if (!is_constant(*literal))
+        return c.fail("L0913", value.place, fmt::format("a number is due after '{}#'", name.text));
+    become(e, *type, literal->constant);
+    return type;
+}
+
+Expression* list_of_dtl(Checking& c, const Expression& literal, const Type& type) {
+    const auto value = read_dtl(c, literal);
+    if (!value) return nullptr;
+    using namespace std::chrono;
+    const sys_time<nanoseconds> moment(nanoseconds(static_cast<std::int64_t>(*value)));
+    const auto day = floor<days>(moment);
+    const year_month_day date(day);
+    const hh_mm_ss clock(moment - day);
+    const Wide parts[] = {int{date.year()},        unsigned{date.month()},
+                          unsigned{date.day()},    weekday(day).c_encoding() + 1,
+                          clock.hours().count(),   clock.minutes().count(),
+                          clock.seconds().count(), clock.subseconds().count()};
+    Expression* list = make(c, E::list, literal);
+    for (std::size_t i = 0; i < type.members.size(); ++i) {
+        Expression* part = make(c, E::constant, literal);
+        become(*part, *type.members[i]->type, {.integer = parts[i]});
+        list->arguments.push_back({.name = type.members[i]->name, .value = part});
+    }
+    return list;
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,153 @@
+#include "runtime/st/check/names.hpp"
+
+#include <algorithm>
+
+#include "runtime/source/letters.hpp"
+#include "runtime/source/units.hpp"
+#include "runtime/source/utf8.hpp"
+#include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/objects.hpp"
+#include "runtime/st/check/order.hpp"
+#include "runtime/st/check/rewrites.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+const Type* unknown_name(Checking& c, Expression& e) {
+    const std::string_view name = e.token.text;
+    if (const Routine* routine = c.find_routine(e.token)) {
+        if (routine->type)
+            return c.fail("L0914", e.place, fmt::format("'{}' is a block, and has no value", name),
+                          "declare an instance in VAR, and name that");
+        return routine == c.routine
+                   ? c.fail("L0914", e.place, fmt::format("the function '{}' has no value", name),
+                            fmt::format("declare of which type: FUNCTION {} : INT", name))
+                   : c.fail("L0914", e.place, fmt::format("'{}' is a function", name),
+                            fmt::format("call it: {}()", name));
+    }
+    return undeclared(c, e.token, e.place, visible_names(c));
+}
+
+}  // namespace
+
+Variable* find_variable(Checking& c, const Token& token) {
+    for (const Routine* r = c.routine; r && !token.quoted; r = r->owner)
+        if (const auto it = r->names.find(token.text); it != r->names.end()) return it->second;
+    if (token.local) return nullptr;
+    if (!is_prelude(token)) {
+        if (const auto it = c.globals.find(token.text); it != c.globals.end()) return it->second;
+        if (Variable* constant = declare_early(c, token.text)) return constant;
+    }
+    return token.quoted && c.routine && c.routine->names.contains(token.text)
+               ? c.routine->names.at(token.text)
+               : nullptr;
+}
+
+bool is_new_name(Checking& c, Token name, NameMap<Place>& names, bool is_test) {
+    const auto [it, added] = names.emplace(name.text, name.place);
+    if (added) return true;
+    const Mark first = it->second.mark();
+    const bool beside = first.file == *name.place.file;
+    const std::string help =
+        fmt::format("first in {}{}", beside ? "line " : first.file->path + ":", first.line);
+    if (is_test)
+        c.warn("L0909", name.place, "two TESTs have one name", help);
+    else
+        c.fail("L0909", name.place, fmt::format("'{}' is declared twice", name.text), help);
+    return false;
+}
+
+std::vector<std::string> visible_names(Checking& c) {
+    std::vector<std::string> names;
+    for (const Routine* r = c.routine; r; r = r->owner)
+        for (const Variable& variable : r->variables) names.emplace_back(variable.text);
+    for (const auto& [name, variable] : c.globals) names.emplace_back(name);
+    for (const auto& [name, value] : c.users.values) names.emplace_back(name);
+    for (const auto& [name, routine] : c.users.routines)
+        if (!routine->type) names.emplace_back(name);
+    std::ranges::sort(names);
+    return names;
+}
+
+const Type* undeclared(Checking& c, const Token& name, Place place,
+                       const std::vector<std::string>& names) {
+    if (c.tree.lost.contains(name.text) || !c.undeclared[c.routine].insert(name.text).second)
+        return nullptr;
+    const auto near = nearest(name.text, names);
+    const auto in_name = [](char x) { return is_letter(x) || is_digit(x) || !is_ascii(x); };
+    const bool is_text = name.quoted && (!std::ranges::all_of(name.text, in_name) ||
+                                         (near.empty() && !is_scl(place)));
+    return c.fail("L0904", place, fmt::format("'{}' is not declared", name.text),
+                  is_text ? "a text stands in '...', a name in \"...\"" : suggest(name.text, near));
+}
+
+const Type* use(Checking& c, Expression& e, Variable& variable) {
+    variable.used = true;
+    e.variable = &variable;
+    if (!variable.type) return nullptr;
+    if (variable.space == Space::constant) {
+        become(e, *variable.type, variable.value);
+        return variable.type;
+    }
+    if (variable.space == Space::global) depend(c, variable.type, e.place);
+    if (c.routine && variable.type->is_object()) c.routine->objects.push_back(variable.global);
+    return variable.type;
+}
+
+const Type* enumeration_of(Checking& c, const Expression& member) {
+    const Expression& of = *member.operands[0];
+    if (of.kind != E::name || of.token.local) return nullptr;
+    const Variable* variable = find_variable(c, of.token);
+    if (variable && !(variable->type && variable->type->is_scalar())) return nullptr;
+    const NamedType* named = c.look_up(&Names::types, of.token);
+    const Type* type = named ? named->type : nullptr;
+    return type && type->kind == Kind::enumeration ? type : nullptr;
+}
+
+const Type* check_value(Checking& c, Expression& e, const Type& enumeration, const Token& name) {
+    const auto found = std::ranges::find_if(
+        enumeration.values, [&](const std::string& known) { return same_name(known, name.text); });
+    if (found == enumeration.values.end())
+        return c.fail("L0904", name.place,
+                      fmt::format("{} has no value '{}'", enumeration.name, name.text),
+                      suggest(name.text, enumeration.values));
+    become(e, enumeration, {.integer = found - enumeration.values.begin()});
+    return &enumeration;
+}
+
+const Type* check_name(Checking& c, Expression& e, const Type* expected) {
+    const Token& token = e.token;
+    if (expected && expected->kind == Kind::enumeration && !token.local) {
+        const auto it = std::ranges::find_if(expected->values, [&](const std::string& known) {
+            return same_name(known, token.text);
+        });
+        if (it != expected->values.end() && !find_variable(c, token)) {
+            become(e, *expected, {.integer = it - expected->values.begin()});
+            return expected;
+        }
+    }
+    if (Variable* variable = find_variable(c, token))
+        return variable->edge ? use_edge(c, e, *variable) : use(c, e, *variable);
+    if (same_name(token.text, "true") || same_name(token.text, "false")) {
+        become_boolean(e, same_name(token.text, "true"));
+        return &bool_type;
+    }
+    if (const NamedValue* value = token.local ? nullptr : c.look_up(&Names::values, token)) {
+        if (value->ambiguous)
+            return c.fail("L0904", e.place,
+                          fmt::format("'{}' is a value of several enumerations", token.text),
+                          fmt::format("write {}#{}", value->type->name, token.text));
+        become(e, *value->type, {.integer = static_cast<Wide>(value->index)});
+        return value->type;
+    }
+    if (same_name(token.text, "eno") && c.routine && c.routine->pou->kind != PouKind::data_block)
+        return use(c, e, eno_of(c, *c.routine));
+    if (expected && expected->kind == Kind::handle && !token.local &&
+        (token.quoted || !c.is_in_test()))
+        return use_object(c, e, *object_type(c, *expected));
+    return unknown_name(c, e);
+}
+
+}  // namespace lineshaft::st

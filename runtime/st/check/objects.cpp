@@ -1,0 +1,74 @@
+#include "runtime/st/check/objects.hpp"
+
+#include <algorithm>
+
+#include "runtime/st/check/calls.hpp"
+#include "runtime/st/check/catalog_types.hpp"
+#include "runtime/st/check/names.hpp"
+#include "runtime/st/check/nodes.hpp"
+
+namespace lineshaft::st {
+
+const Type* object_type(Checking& c, const Type& handle) {
+    return standard_type(c, handle.standard->name);
+}
+
+Variable* declare_object(Checking& c, Variable& variable) {
+    if (variable.type->kind == Kind::handle) variable.type = object_type(c, *variable.type);
+    variable.section = Section::global;
+    variable.space = Space::global;
+    variable.global = static_cast<int>(c.checked.globals.size());
+    c.checked.globals.push_back({std::string(variable.text), variable.type, nullptr, &variable});
+    c.globals.emplace(variable.text, &variable);
+    return &variable;
+}
+
+void make_object(Checking& c, Variable& variable) {
+    if (!variable.type || !variable.type->is_object()) return;
+    Type& own = c.checked.types.emplace_back(*variable.type);
+    own.initial_value = variable.initial;
+    variable.type = &own;
+    variable.space = Space::global;
+    variable.global = static_cast<int>(c.checked.globals.size());
+    c.checked.globals.push_back({std::string(variable.text), &own});
+}
+
+const Type* use_object(Checking& c, Expression& e, const Type& type) {
+    Variable& variable = c.checked.variables.emplace_back();
+    variable.name = e.token;
+    variable.text = e.token.text;
+    variable.type = &type;
+    declare_object(c, variable);
+    return use(c, e, variable);
+}
+
+Routine* find_part(Checking& c, const Type& type, std::string_view name) {
+    if (type.kind != Kind::handle && !type.is_object()) return nullptr;
+    const auto it = c.prelude.routines.find(fmt::format("{}.{}", type.standard->handle, name));
+    return it == c.prelude.routines.end() ? nullptr : it->second;
+}
+
+bool is_object_of(Checking& c, const Expression& member) {
+    const Expression& of = *member.operands[0];
+    if (of.kind != E::name || of.type || !of.token.quoted) return false;
+    if (find_variable(c, of.token) || c.find_routine(of.token)) return false;
+    const Type* axis = standard_type(c, "axis_ref");
+    if (!axis || enumeration_of(c, member)) return false;
+    return find_part(c, *axis, member.token.text) ||
+           std::ranges::any_of(object_type(c, *axis)->members, [&](const Variable* field) {
+               return same_name(field->text, member.token.text);
+           });
+}
+
+const Type* check_part(Checking& c, Expression& member, Routine& part) {
+    Expression* callee = make(c, E::name, member);
+    callee->token = member.token;
+    Expression call = *make(c, E::call, member);
+    call.token = member.token;
+    call.operands[0] = callee;
+    call.arguments.push_back({.value = member.operands[0]});
+    member = call;
+    return check_routine_call(c, member, part, false);
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,184 @@
+#include "runtime/st/check/places.hpp"
+
+#include <algorithm>
+
+#include "runtime/source/letters.hpp"
+#include "runtime/source/units.hpp"
+#include "runtime/st/check/calls.hpp"
+#include "runtime/st/check/catalog_types.hpp"
+#include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/names.hpp"
+#include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/objects.hpp"
+#include "runtime/st/syntax/literals.hpp"
+
+namespace lineshaft::st {
+
+const Type* check_member(Checking& c, Expression& e) {
+    if (const Type* enumeration = enumeration_of(c, e))
+        return check_value(c, e, *enumeration, e.token);
+    if (is_object_of(c, e))
+        use_object(c, *e.operands[0], *object_type(c, *standard_type(c, "axis_ref")));
+    const Type* type = check(c, *e.operands[0]);
+    if (!type) return nullptr;
+    if (Routine* part = find_part(c, *type, e.token.text)) return check_part(c, e, *part);
+    if (type->kind == Kind::handle) {
+        type = object_type(c, *type);
+        convert(c, e.operands[0], *type);
+    }
+    const std::string_view name = standard_name(*type, e.token.text);
+    if (type->kind == Kind::block) {
+        Routine& routine = *type->routine;
+        for (Variable& variable : routine.variables) {
+            if (!same_name(variable.text, name)) continue;
+            if (variable.space == Space::constant && c.is_in_test()) {
+                become(e, *variable.type, variable.value);
+                return variable.type;
+            }
+            if (variable.section == Section::temp || variable.space == Space::constant)
+                return c.fail("L0904", e.token.place,
+                              fmt::format("'{}' of {} is not seen from outside", name, type->name),
+                              "make it a VAR_OUTPUT");
+            variable.used = true;
+            e.variable = &variable;
+            return variable.type;
+        }
+    }
+    for (Variable* member : type->members) {
+        if (!same_name(member->text, name)) continue;
+        e.variable = member;
+        return member->type;
+    }
+    if (type->kind == Kind::array && same_name(name, "this")) {  // "Recipes".THIS[1]
+        e = Expression(*e.operands[0]);
+        return type;
+    }
+    std::vector<std::string> names;
+    if (type->kind == Kind::block)
+        for (const Variable& variable : type->routine->variables) names.emplace_back(variable.text);
+    for (const Variable* member : type->members) names.emplace_back(member->text);
+    if (names.empty())
+        return c.fail("L0905", e.token.place, fmt::format("{} has no parts", describe(*type)),
+                      "'.' takes a part of a structure or of an instance");
+    if (type->is_object())
+        for (const auto& [routine, part] : c.prelude.routines)
+            if (routine.starts_with(std::string(type->standard->handle) + '.'))
+                names.emplace_back(routine.substr(type->standard->handle.size() + 1));
+    std::ranges::sort(names);
+    return c.fail("L0904", e.token.place, fmt::format("{} has no '{}'", describe(*type), name),
+                  suggest(name, names));
+}
+
+const Type* check_index(Checking& c, Expression& e) {
+    const Type* type = check(c, *e.operands[0]);
+    for (Argument& argument : e.arguments) check(c, *argument.value);
+    for (Argument& argument : e.arguments) {
+        if (!type) return nullptr;
+        const bool of_text = type->kind == Kind::text;
+        if (type->kind != Kind::array && !of_text)
+            return c.fail("L0905", argument.value->place,
+                          fmt::format("{} has no elements", describe(*type)),
+                          e.arguments.size() > 1 ? "there are more indices than dimensions" : "");
+        const Type* given = argument.value->type;
+        if (!given) return nullptr;
+        if (!given->is_integer() && !given->is_bits())
+            return c.fail("L0905", argument.value->place,
+                          fmt::format("an index is a whole number, not {}", describe(*given)));
+        const Wide value = argument.value->constant.integer;
+        if (is_constant(*argument.value)) {
+            const Wide lower = of_text ? 1 : type->lower,
+                       upper = of_text ? type->length : type->upper;
+            if (value < lower || value > upper)
+                return c.fail("L0908", argument.value->place,
+                              fmt::format("there is no element {}", to_string(value)),
+                              fmt::format("the index goes from {} to {}", to_string(lower),
+                                          to_string(upper)));
+            argument.value->type = &lint_type;
+        }
+        type = of_text ? &char_type : type->element;
+    }
+    return type;
+}
+
+const Type* check_bit(Checking& c, Expression& e) {
+    const Type* type = check(c, *e.operands[0]);
+    if (!type) return nullptr;
+    std::string_view text = e.token.text;
+    int bits = 1;
+    if (e.token.word == Word::direct) {
+        const char letter = text.size() > 1 ? text[1] : '\0';
+        const bool has_letter = letter < '0' || letter > '9';
+        bits = !has_letter || letter == 'X' || letter == 'x' ? 1
+               : letter == 'B' || letter == 'b'              ? 8
+               : letter == 'W' || letter == 'w'              ? 16
+               : letter == 'D' || letter == 'd'              ? 32
+                                                             : 0;
+        text.remove_prefix(std::min<std::size_t>(has_letter ? 2 : 1, text.size()));
+    }
+    const auto number = read_integer(text);
+    if (!number || bits == 0)
+        return c.fail("L0902", e.token.place, fmt::format("'{}' is not a bit", e.token.text),
+                      "write .%X0 for a bit, .%B0 for a byte, .%W0 for a word");
+    const bool whole = type->kind == Kind::bits || type->kind == Kind::integer;
+    if (!whole)
+        return c.fail("L0905", e.token.place, fmt::format("{} has no bits", describe(*type)),
+                      "bits are those of BYTE to LWORD and of integers");
+    if ((*number + 1) * bits > type->bits)
+        return c.fail("L0908", e.token.place,
+                      fmt::format("{} has no part '{}'", describe(*type), e.token.text),
+                      fmt::format("its {} are 0 to {}",
+                                  bits == 1    ? "bits"
+                                  : bits == 8  ? "bytes"
+                                  : bits == 16 ? "words"
+                                               : "double words",
+                                  type->bits / bits - 1));
+    const Expression& part = *e.operands[0];
+    const bool of_part = part.kind == E::bit;
+    const Wide first = *number * bits + (of_part ? part.bits.first : 0);
+    e.bits = {static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(bits)};
+    if (of_part) e.operands[0] = part.operands[0];
+    return bits == 1 ? &bool_type : &bits_type(bits);
+}
+
+bool check_target(Checking& c, Expression& target, std::string_view how) {
+    const auto refuse = [&](std::string what, std::string help) {
+        c.fail("L0910", target.place, fmt::format("{} cannot be {}", what, how), std::move(help));
+        return false;
+    };
+    if (target.kind == E::constant && target.variable)
+        return refuse(fmt::format("the constant '{}'", target.variable->text),
+                      "declare it in VAR, without CONSTANT");
+    if (target.kind == E::bit && target.operands[0]->is_character())
+        return refuse("a bit of a character", "assign the character");
+    if (target.kind == E::index || target.kind == E::bit) {
+        return !target.operands[0]->type || check_target(c, *target.operands[0], how);
+    }
+    if (target.kind != E::name && target.kind != E::member)
+        return refuse("a value", "a variable, an element or a member stands left of ':='");
+    const Variable* variable = target.variable;
+    if (!variable) return false;
+    const bool own = target.kind == E::name;
+    const bool of_instance = target.kind == E::member && target.operands[0]->type &&
+                             target.operands[0]->type->is_instance();
+    if (variable->constant && !(c.is_in_test() && of_instance))
+        return refuse(fmt::format("the constant '{}'", variable->text), "remove CONSTANT");
+    const bool is_copy = variable->of && (variable->of->kind == PouKind::function ||
+                                          variable->of->kind == PouKind::method);
+    if (own && variable->section == Section::input && !is_copy)
+        return refuse(fmt::format("the input '{}'", variable->text),
+                      "copy it to a variable of VAR, or make it a VAR_IN_OUT");
+    if (own) return true;
+    const Type* of = target.operands[0]->type;
+    const bool is_named = target.operands[0]->variable || target.operands[0]->kind == E::converted;
+    const bool is_siemens_own =
+        of && of->kind == Kind::block && is_scl(target.place) &&
+        (variable->section == Section::local || variable->section == Section::output);
+    if (of && of->is_instance() && variable->section != Section::input && !c.is_in_test() &&
+        is_named && !is_siemens_own)
+        return refuse(fmt::format("'{}' of {}", variable->text, of->name),
+                      "only inputs of an instance are set from outside");
+    return of && of->is_instance() ? true : check_target(c, *target.operands[0], how);
+}
+
+}  // namespace lineshaft::st

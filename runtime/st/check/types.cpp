@@ -1,0 +1,194 @@
+#include "runtime/st/check/types.hpp"
+
+#include <algorithm>
+
+#include "runtime/source/letters.hpp"
+#include "runtime/source/units.hpp"
+#include "runtime/st/check/catalog_types.hpp"
+#include "runtime/st/check/constants.hpp"
+#include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/initial_values.hpp"
+#include "runtime/st/check/names.hpp"
+#include "runtime/st/vendors/instead.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+const Type* resolve_array(Checking& c, const TypeText& text) {
+    const Type* element = resolve(c, *text.element);
+    Wide total = 1;
+    for (auto it = text.ranges.rbegin(); it != text.ranges.rend(); ++it) {
+        Expression *from = it->first, *to = it->second;
+        const auto lower = check_whole(c, from, lint_type), upper = check_whole(c, to, lint_type);
+        if (!lower || !upper) return nullptr;
+        const Wide count = *upper - *lower + 1;
+        if (count < 1)
+            return c.fail("L0908", from->place.to(to->place), "the array has no element",
+                          "the first bound is the smaller one");
+        total *= count;
+        if (total > most_elements)
+            return c.fail("L0912", from->place.to(to->place), "the array is too large",
+                          "an array has at most 16777216 elements");
+        Type& array = c.make_type(Kind::array, {});
+        array.lower = static_cast<std::int64_t>(*lower);
+        array.upper = static_cast<std::int64_t>(*upper);
+        array.element = element;
+        array.has_inner = it != text.ranges.rbegin();
+        if (element) element = &array;
+    }
+    return element;
+}
+
+const Type* resolve_structure(Checking& c, const TypeText& text) {
+    Type& type = c.make_type(Kind::structure, "STRUCT");
+    type.is_unnamed = true;
+    NameMap<Place> names;
+    for (const Declaration* declared : text.members) {
+        const Type* member = resolve(c, *declared->type);
+        if (is_new_name(c, declared->name, names))
+            type.members.push_back(add(c, c.checked.variables, *declared, member));
+    }
+    return &type;
+}
+
+const Type* resolve_enumeration(Checking& c, const TypeText& text) {
+    Type& type = c.make_type(Kind::enumeration, "enumeration");
+    type.slots = 1;
+    type.base = &int_type;
+    if (text.name.word != Word::end_of_file) type.base = resolve_name(c, text.name);
+    if (type.base && type.base->kind != Kind::integer && type.base->kind != Kind::bits)
+        return c.fail("L0903", text.place, "arguments behind a type are not supported",
+                      "write values behind ':=': (name := value)");
+    NameMap<Place> names;
+    std::int64_t number = 0;
+    for (const Argument& value : text.values) {
+        if (Expression* given = value.value)
+            if (const auto whole = check_whole(c, given, type.base ? *type.base : int_type))
+                number = static_cast<std::int64_t>(*whole);
+        if (!is_new_name(c, value.name, names)) continue;
+        type.counted &= number == static_cast<std::int64_t>(type.values.size());
+        type.values.emplace_back(value.name.text);
+        type.numbers.push_back(number++);
+    }
+    return &type;
+}
+
+const Type* resolve_subrange(Checking& c, const TypeText& text) {
+    const Type* base = resolve_name(c, text.name);
+    if (!base) return nullptr;
+    if (base->kind != Kind::integer)
+        return c.fail("L0905", text.place, fmt::format("{} has no subranges", describe(*base)),
+                      "a subrange is one of an integer type");
+    Expression *from = text.ranges.front().first, *to = text.ranges.front().second;
+    const auto lower = check_whole(c, from, *base), upper = check_whole(c, to, *base);
+    if (!lower || !upper) return nullptr;
+    if (*lower > *upper)
+        return c.fail("L0908", text.place, "the subrange has no value",
+                      "the first bound is the smaller one");
+    Type& type = c.checked.types.emplace_back(*base);
+    type.name = fmt::format("{}({}..{})", base->name, static_cast<std::int64_t>(*lower),
+                            static_cast<std::int64_t>(*upper));
+    type.is_subrange = true;
+    type.base = base;
+    type.lower = static_cast<std::int64_t>(*lower);
+    type.upper = static_cast<std::int64_t>(*upper);
+    type.initial.integer = *lower;  // 6.4.4.4
+    return &type;
+}
+
+const Type* resolve_text(Checking& c, const TypeText& text) {
+    Expression* length = text.length;
+    const auto whole = check_whole(c, length, lint_type);
+    if (!whole) return nullptr;
+    if (*whole < 1 || *whole > longest_text)
+        return c.fail("L0908", length->place, "a STRING has between 1 and 32767 characters");
+    Type& type = c.make_type(Kind::text, fmt::format("STRING[{}]", static_cast<int>(*whole)));
+    type.length = static_cast<std::uint32_t>(*whole);
+    return &type;
+}
+
+}  // namespace
+
+const Type* resolve(Checking& c, const TypeText& text) {
+    switch (text.kind) {
+        case TypeText::Kind::name:
+            return resolve_name(c, text.name);
+        case TypeText::Kind::array:
+            return resolve_array(c, text);
+        case TypeText::Kind::structure:
+            return resolve_structure(c, text);
+        case TypeText::Kind::enumeration:
+            return resolve_enumeration(c, text);
+        case TypeText::Kind::subrange:
+            return resolve_subrange(c, text);
+        case TypeText::Kind::text:
+            return resolve_text(c, text);
+    }
+    return nullptr;
+}
+
+const Type* resolve_name(Checking& c, const Token& name) {
+    if (c.is_lost(name)) return nullptr;
+    if (const Type* type = find_elementary(name.text); type && !name.quoted) return type;
+    if (NamedType* type = c.look_up(&Names::types, name)) return resolve_declared(c, *type);
+    if (const Routine* routine = c.find_routine(name)) {
+        if (routine->type) return routine->type;
+        return c.fail("L0905", name.place, fmt::format("'{}' is a function, not a type", name.text),
+                      "call it; only function blocks have instances");
+    }
+    if (const Type* type = standard_type(c, name.text)) return type;
+    if (c.tree.lost.contains(name.text)) return nullptr;
+    if (const std::string_view instead = instead_of_type(name.text); !instead.empty())
+        return c.fail("L0903", name.place, fmt::format("the type {} is not supported", name.text),
+                      std::string(instead));
+    std::vector<std::string> names = {"BOOL", "INT",  "DINT",  "LINT", "UINT",  "UDINT",
+                                      "WORD", "REAL", "LREAL", "TIME", "STRING"};
+    for (const auto& [known, type] : c.users.types) names.emplace_back(known);
+    for (const auto& [known, routine] : c.users.routines)
+        if (routine->type) names.emplace_back(known);
+    for (const BlockType& kind : c.catalog.types()) names.emplace_back(kind.name);
+    std::ranges::sort(names);
+    const auto near = nearest(name.text, names);
+    return c.fail(
+        "L0904", name.place, fmt::format("'{}' is not a type", name.text),
+        near.empty() ? "declare it with TYPE, or as a FUNCTION_BLOCK" : suggest(name.text, near));
+}
+
+const Type* resolve_declared(Checking& c, NamedType& named) {
+    if (named.type) return named.type;
+    const TypeDeclaration& declared = *named.declaration;
+    if (named.visiting)
+        return c.fail("L0911", declared.name.place,
+                      fmt::format("the type '{}' contains itself", declared.name.text),
+                      "a value of it would have no end");
+    named.visiting = true;
+    const Type* type = resolve(c, *declared.type);
+    named.visiting = false;
+    if (!type) return nullptr;
+    const bool is_own = declared.type->kind != TypeText::Kind::name;
+    if (is_own) {
+        auto& own = const_cast<Type&>(*type);
+        own.name = std::string(declared.name.text);
+        own.is_unnamed = false;
+    }
+    if (declared.initial) {
+        Type& copy = c.checked.types.emplace_back(*type);
+        copy.initial_value = declared.initial;
+        type = &copy;
+        auto* value = const_cast<Expression*>(declared.initial);
+        check_initial(c, value, copy);
+        copy.initial_value = value;
+    }
+    auto& values = c.names_beside(declared.name).values;
+    for (std::size_t i = 0; i < type->values.size() && is_own; ++i) {
+        const auto [it, is_new] = values.emplace(type->values[i], NamedValue{type, i});
+        if (!is_new) it->second.ambiguous = true;
+    }
+    if (declared.initial)
+        for (auto& [name, value] : values)
+            if (value.type && value.type->name == type->name) value.type = type;
+    return named.type = type;
+}
+
+}  // namespace lineshaft::st
