@@ -38,7 +38,7 @@ enum class Rule : std::uint8_t {
     encode,     ///< ENCO(bits): the number of the lowest bit
     capacity,   ///< MAX_LEN(text)
     bound,      ///< LOWER_BOUND(array, dimension), UPPER_BOUND, CountOfElements: a constant
-    statement,  ///< no value: see Checker::check_special
+    statement,  ///< no value: a statement of its own, check/rewrites.cpp
 };
 
 /// A function of IEC 61131-3:2013, tables 25 to 38, or of Siemens' SCL.

@@ -180,12 +180,6 @@ class Parser {
         return true;
     }
 
-    bool accept_any(Word word) {
-        const bool there = is(word);
-        if (there) take();
-        return there;
-    }
-
     bool expect(Word word, std::string_view where = {}) {
         if (accept(word)) return true;
         if (respell({&word, 1})) return take(), true;
