@@ -14,6 +14,7 @@
 #include "runtime/restart/retain.hpp"
 #include "runtime/run/single_run.hpp"
 #include "runtime/source/text_hash.hpp"
+#include "tests/source_folder.hpp"
 
 namespace lineshaft::test {
 
@@ -21,7 +22,7 @@ namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t goes_on = 20 * ms;
-const std::string source_folder = std::string(LINESHAFT_SOURCE_DIR) + "/";
+const std::string source_folder = in_source("");
 
 std::string read(const std::string& path) {
     std::ifstream file(path, std::ios::binary);

@@ -7,6 +7,7 @@
 
 #include "blocks/catalog.hpp"
 #include "tests/runtime/st/instance.hpp"
+#include "tests/source_folder.hpp"
 
 namespace lineshaft::test {
 
@@ -14,7 +15,7 @@ namespace lineshaft::test {
 inline st::Library compiled(const std::vector<std::string>& files) {
     std::vector<std::shared_ptr<const SourceFile>> sources;
     for (const std::string& file : files)
-        sources.push_back(st::read(LINESHAFT_SOURCE_DIR "/programs/paper/" + file));
+        sources.push_back(st::read(test::in_source("programs/paper/" + file)));
     Diagnostics out;
     auto made = st::compile(sources, standard_blocks(), out);
     INFO(out.render());

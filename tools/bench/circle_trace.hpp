@@ -7,13 +7,14 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/run/single_run.hpp"
+#include "tests/source_folder.hpp"
 
 namespace lineshaft {
 
 /// programs/paper/wei2025_circle.yaml with its defaults.
 inline Loaded load_circle() {
     Diagnostics problems;
-    auto loaded = load_program(LINESHAFT_SOURCE_DIR "/programs/paper/wei2025_circle.yaml", {},
+    auto loaded = load_program(test::in_source("programs/paper/wei2025_circle.yaml"), {},
                                standard_blocks(), problems);
     if (!loaded) throw std::runtime_error(problems.render());
     return std::move(*loaded);

@@ -15,6 +15,7 @@
 #include "runtime/run/link.hpp"
 #include "runtime/run/single_run.hpp"
 #include "runtime/scan/executive.hpp"
+#include "tests/source_folder.hpp"
 #include "tools/bench/hand_small_blocks.hpp"
 #include "tools/bench/quickest.hpp"
 
@@ -162,7 +163,7 @@ void filters(benchmark::State& state, bool own, const char* with_jitter) {
 /// The course's machine, whose logic is serial; or its tasks alone, with nothing to call: the fixed
 /// cost of a scan.
 void machine_logic(benchmark::State& state, bool empty) {
-    Loaded program = loaded(LINESHAFT_SOURCE_DIR "/programs/06_machine_logic.yaml");
+    Loaded program = loaded(test::in_source("programs/06_machine_logic.yaml"));
     Machine& machine = program.linked.machine;
     if (empty)
         for (Task& task : machine.tasks) task.calls.clear();

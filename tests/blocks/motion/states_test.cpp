@@ -8,13 +8,14 @@
 #include <catch2/catch.hpp>
 
 #include "blocks/axis/axis_states.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace lineshaft;
 
 namespace {
 
 std::vector<std::vector<std::string>> golden() {
-    std::ifstream in(LINESHAFT_SOURCE_DIR "/tests/blocks/motion/states.txt");
+    std::ifstream in(test::in_source("tests/blocks/motion/states.txt"));
     std::vector<std::vector<std::string>> rows;
     for (std::string line; std::getline(in, line);) {
         std::istringstream cells(line);

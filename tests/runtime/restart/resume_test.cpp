@@ -7,6 +7,7 @@
 #include "runtime/restart/checkpoint.hpp"
 #include "runtime/run/single_run.hpp"
 #include "tests/folder.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::test;
@@ -15,8 +16,7 @@ namespace {
 
 Loaded load(const std::string& program) {
     Diagnostics out;
-    auto loaded =
-        load_program(LINESHAFT_SOURCE_DIR "/programs/" + program, {}, standard_blocks(), out);
+    auto loaded = load_program(test::in_source("programs/" + program), {}, standard_blocks(), out);
     INFO(out.render());
     REQUIRE(loaded);
     return std::move(*loaded);

@@ -8,6 +8,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/serve/modbus_session.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace lineshaft;
 
@@ -124,7 +125,7 @@ constexpr ModbusPeer near_peer{"127.0.0.1", true};
 
 TEST_CASE("Modbus: each clause of the specification is answered as it says") {
     Served machine(clause_program());
-    std::ifstream file(LINESHAFT_SOURCE_DIR "/tests/runtime/serve/modbus_clauses.txt");
+    std::ifstream file(test::in_source("tests/runtime/serve/modbus_clauses.txt"));
     int clauses = 0;
     for (std::string line; std::getline(file, line);) {
         const std::size_t arrow = line.find('>'), bar = line.find('|');

@@ -10,6 +10,7 @@
 #include "runtime/st/library/test_suite.hpp"
 #include "runtime/st/syntax/lexer.hpp"
 #include "tests/runtime/st/instance.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace lineshaft;
 
@@ -64,7 +65,7 @@ void try_tests(const std::string& text) {
 
 /// Each with the blocks that it tests before it.
 std::vector<std::string> tests() {
-    const std::string root = LINESHAFT_SOURCE_DIR "/tests/st_tests/";
+    const std::string root = test::in_source("tests/st_tests/");
     std::vector<std::string> texts;
     for (const auto& [tested, test] : {std::pair{"pass/counter.st", "pass/test_counter.st"},
                                        std::pair{"pass/mocks.st", "pass/test_mocks.st"},
@@ -77,7 +78,7 @@ std::vector<std::string> tests() {
 std::vector<std::string> sources() {
     std::vector<std::string> texts;
     std::vector<std::filesystem::path> paths;
-    for (const auto& entry : std::filesystem::directory_iterator(LINESHAFT_SOURCE_DIR "/tests/st"))
+    for (const auto& entry : std::filesystem::directory_iterator(test::in_source("tests/st")))
         if (entry.is_regular_file() && entry.path().extension() != ".md") paths.push_back(entry);
     std::ranges::sort(paths);
     for (const auto& path : paths) texts.push_back(st::read(path.string())->text);

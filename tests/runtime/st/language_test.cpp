@@ -8,6 +8,7 @@
 
 #include "blocks/catalog.hpp"
 #include "tests/runtime/st/instance.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace lineshaft;
 
@@ -97,7 +98,7 @@ int judge(const std::filesystem::path& path) {
 TEST_CASE("Structured Text: every line of tests/st does what stands beside it", "[st]") {
     int cases = 0;
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(LINESHAFT_SOURCE_DIR "/tests/st"))
+    for (const auto& entry : std::filesystem::directory_iterator(test::in_source("tests/st")))
         if (entry.path().extension() == ".st" || entry.path().extension() == ".scl")
             files.push_back(entry.path());
     std::ranges::sort(files);

@@ -11,6 +11,7 @@
 #include "runtime/st/types/elementary.hpp"
 #include "tests/allocations.hpp"
 #include "tests/runtime/st/instance.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace lineshaft;
 
@@ -164,7 +165,7 @@ TEST_CASE("Structured Text: executed instructions are counted by class", "[st]")
 
 TEST_CASE("Structured Text: a scan allocates nothing", "[st]") {
     const std::string name = GENERATE("texts.st", "texts_of_times.st");
-    const st::Library library = compiled(st::read(LINESHAFT_SOURCE_DIR "/tests/st/" + name)->text);
+    const st::Library library = compiled(st::read(test::in_source("tests/st/" + name))->text);
     st::Instances instances(library);
     std::vector<std::byte*> places{instances.memory(0)};
     const BlockType& kind = library.kinds()[0];

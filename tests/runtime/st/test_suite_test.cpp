@@ -11,6 +11,7 @@
 #include "runtime/st/library/test_sources.hpp"
 #include "runtime/st/types/value_text.hpp"
 #include "tests/runtime/st/instance.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace lineshaft;
 
@@ -33,7 +34,7 @@ std::string result_of(const st::TestSuite& suite, std::size_t test) {
 st::TestSuite suite_of_file(const std::string& folder, const std::string& name) {
     st::SourcePool pool;
     std::vector<std::string> files;
-    const std::string root = LINESHAFT_SOURCE_DIR "/tests/st_tests/" + folder;
+    const std::string root = test::in_source("tests/st_tests/" + folder);
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root))
         if (entry.path().extension() == ".st") files.push_back(entry.path().string());
     std::ranges::sort(files);

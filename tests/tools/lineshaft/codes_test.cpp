@@ -9,6 +9,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/source_folder.hpp"
+
 using namespace lineshaft;
 
 namespace {
@@ -50,7 +52,7 @@ TEST_CASE("codes: the table is ascending and every entry says something") {
 }
 
 TEST_CASE("codes: every code of the sources is in the table, and none besides") {
-    const std::filesystem::path root = LINESHAFT_SOURCE_DIR;
+    const std::filesystem::path root = test::in_source("");
     std::set<std::string> used = codes_below(root / "runtime");
     used.merge(codes_below(root / "tools"));
     std::set<std::string> known;
