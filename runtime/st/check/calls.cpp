@@ -143,9 +143,10 @@ void check_arguments(Checking& c, Expression& call, Routine& routine) {
         check_argument(c, call, argument, *parameter);
     }
     for (const Variable& variable : routine.variables) {
-        const bool due = variable.section == Section::in_out ||
-                         (variable.section == Section::input && !routine.has_instances() &&
-                          (!by_name || is_scl(call.place)) && !variable.initial);
+        const bool due =
+            variable.section == Section::in_out ||
+            (variable.section == Section::input && !routine.has_instances() &&
+             (!by_name || !call.place.dialect().named_inputs_may_be_left_out) && !variable.initial);
         if (!due || std::ranges::find(given, &variable) != given.end()) continue;
         if (c.is_in_test() && routine.has_instances())
             leave_out(c, call, const_cast<Variable&>(variable));

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "runtime/st/check/check.hpp"
-#include "runtime/st/prelude/standard_source.hpp"
 #include "runtime/st/types/elementary.hpp"
 
 namespace lineshaft::st {
@@ -38,7 +37,7 @@ struct Names {
 };
 
 inline bool is_prelude(const Token& name) {
-    return name.place.file && is_standard_source(**name.place.file);
+    return name.place.source && name.place.source->is_prelude();
 }
 
 /// Siemens' structure of a date and a time.

@@ -112,7 +112,8 @@ std::optional<const Type*> check_conversion(Checking& c, Expression& call, std::
     Expression* operand = value;
     convert(c, operand, *target);
     if (operand->kind == E::converted && truncates) operand->conversion.truncates = true;
-    const bool has_sign = target->kind == Kind::text && from.is_integer() && is_scl(call.place);
+    const bool has_sign = target->kind == Kind::text && from.is_integer() &&
+                          call.place.dialect().texts_of_integers_have_signs;
     if (has_sign) operand->conversion.has_sign = true;
     const Place place = call.place;
     call = Expression(*operand);

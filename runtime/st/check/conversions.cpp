@@ -22,10 +22,11 @@ bool is_same_pattern(const Type& from, const Type& to) {
     return mixes && from.bits <= to.bits && !to.is_subrange;
 }
 
-/// SCL makes a REAL of a DINT, which loses above 2^24.
+/// A REAL loses of a DINT what is above 2^24.
 bool rounds(Checking& c, const Expression& e, const Type& to) {
     const Type& from = e.type->plain();
-    if (!is_scl(e.place) || from.kind != Kind::integer || from.bits != 32 || !is_single(to))
+    if (!e.place.dialect().dint_becomes_real || from.kind != Kind::integer || from.bits != 32 ||
+        !is_single(to))
         return false;
     c.warn("L0906", e.place, fmt::format("{} does not hold every {}", describe(to), from.name),
            fmt::format("write {}_TO_{}(...) where it is meant", from.name, to.name));
@@ -184,7 +185,7 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
         return true;
     }
     if (&from == &to || same_type(from, to)) return true;
-    if (!to.of_number.empty() && from.is_integer() && is_scl(e->place))
+    if (!to.of_number.empty() && from.is_integer() && e->place.dialect().numbers_stand_for_names)
         return coerce_number(c, e, to);
     if (from.is_any()) return coerce_constant(c, *e, to);
     if (from.is_object() && to.kind == Kind::handle && from.standard == to.standard) {
@@ -304,8 +305,8 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
     };
     if (reckons_in(a, *right)) common = &a.plain();
     if (reckons_in(b, *left)) common = &b.plain();
-    const bool narrows =
-        expected && is_single(*expected) && common == &lreal_type && is_scl(e.place);
+    const bool narrows = expected && is_single(*expected) && common == &lreal_type &&
+                         e.place.dialect().real_results_reckon_as_real;
     if (narrows && !same_type(a, lreal_type) && !same_type(b, lreal_type)) common = &real_type;
     if (!common) {
         const bool numbers = a.is_number() && b.is_number();

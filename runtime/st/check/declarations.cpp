@@ -37,7 +37,7 @@ void make_constant(Checking& c, Variable& variable) {
     variable.space = Space::constant;
     if (!variable.initial) {
         variable.value = variable.type->initial;
-        if (is_scl(variable.name.place)) return;
+        if (!variable.name.place.dialect().constants_have_values) return;
         c.fail("L0913", variable.name.place,
                fmt::format("the constant '{}' has no value", variable.text),
                "write ':= value' behind its type");

@@ -49,7 +49,7 @@ bool is_new_name(Checking& c, Token name, NameMap<Place>& names, bool is_test) {
     const auto [it, added] = names.emplace(name.text, name.place);
     if (added) return true;
     const Mark first = it->second.mark();
-    const bool beside = first.file == *name.place.file;
+    const bool beside = first.file == name.place.source->file;
     const std::string help =
         fmt::format("first in {}{}", beside ? "line " : first.file->path + ":", first.line);
     if (is_test)
@@ -77,8 +77,9 @@ const Type* undeclared(Checking& c, const Token& name, Place place,
         return nullptr;
     const auto near = nearest(name.text, names);
     const auto in_name = [](char x) { return is_letter(x) || is_digit(x) || !is_ascii(x); };
-    const bool is_text = name.quoted && (!std::ranges::all_of(name.text, in_name) ||
-                                         (near.empty() && !is_scl(place)));
+    const bool is_text =
+        name.quoted && (!std::ranges::all_of(name.text, in_name) ||
+                        (near.empty() && place.dialect().quotes_may_enclose_texts));
     return c.fail("L0904", place, fmt::format("'{}' is not declared", name.text),
                   is_text ? "a text stands in '...', a name in \"...\"" : suggest(name.text, near));
 }

@@ -172,7 +172,7 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     const Type* of = target.operands[0]->type;
     const bool is_named = target.operands[0]->variable || target.operands[0]->kind == E::converted;
     const bool is_siemens_own =
-        of && of->kind == Kind::block && is_scl(target.place) &&
+        of && of->kind == Kind::block && target.place.dialect().sets_variables_of_instances &&
         (variable->section == Section::local || variable->section == Section::output);
     if (of && of->is_instance() && variable->section != Section::input && !c.is_in_test() &&
         is_named && !is_siemens_own)

@@ -24,7 +24,7 @@ Argument* find_argument(Expression& call, std::string_view name) {
 
 bool is_timer(const Type& type) {
     if (type.kind == Kind::block)
-        return type.name == "TONR" && is_standard_source(**type.routine->pou->place.file);
+        return type.name == "TONR" && type.routine->pou->place.source->is_prelude();
     return type.kind == Kind::standard &&
            std::ranges::any_of(type.members, [](const Variable* m) { return m->text == "pt"; });
 }

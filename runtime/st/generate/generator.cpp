@@ -103,7 +103,6 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
     for (const Routine& routine : w.checked.routines) {
         if (!routine.is_test()) continue;
         w.has_tests = true;
-        w.test_file = routine.pou->place.file->get();
         routine.owner->depth = std::max(routine.owner->depth, routine.depth);
     }
     w.fuses = !w.options.counted && !w.options.covered && !w.has_tests;

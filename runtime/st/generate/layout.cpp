@@ -16,7 +16,7 @@ constexpr std::uint64_t most_slots = 1U << 26;
 
 void check_size(Writing& w, std::uint64_t slots, Place place, std::string_view name) {
     if (slots <= most_slots) return;
-    if (!place.file) return;
+    if (!place.source) return;
     w.out.add("L0912", place.mark(), fmt::format("'{}' takes more than 512 MB", name),
               "make its arrays smaller");
 }

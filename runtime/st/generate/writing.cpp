@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "runtime/st/prelude/standard_source.hpp"
-
 namespace lineshaft::st {
 
 /// The families of integers stand in the order SINT, INT, DINT, LINT, USINT, UINT, UDINT, ULINT.
@@ -93,8 +91,7 @@ std::uint32_t Writing::standard_number(const BlockType& kind) {
 }
 
 void Writing::cover(CoverPoint::Kind kind, Place at, std::size_t branch) {
-    const SourceFile* file = at.file->get();
-    if (!options.covered || file == test_file || is_standard_source(*file)) return;
+    if (!options.covered || at.source->kind != SourceKind::program) return;
     const bool is_function = kind == CoverPoint::Kind::function;
     put(Op::cover, static_cast<Slot>(code.points.size()));
     code.points.push_back({kind, at, static_cast<std::uint32_t>(branch),

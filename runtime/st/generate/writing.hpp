@@ -70,7 +70,6 @@ struct Writing {
     Code code = {};
     std::vector<Assertion> assertions = {};
     bool has_tests = false;
-    const SourceFile* test_file = nullptr;
     std::unordered_map<const Type*, Image> images = {};
     std::unordered_map<const Routine*, Image> function_images = {};
     std::unordered_map<const Routine*, std::uint32_t> numbers = {};

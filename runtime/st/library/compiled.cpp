@@ -22,17 +22,20 @@ bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOption
     bool uses_standard = false;
     std::set<const BlockType*> used;
     for (const auto& source : to.sources) {
-        Tokens tokens = read_tokens(source, out);
+        const bool is_tests = source.get() == tests;
+        Tokens tokens =
+            read_tokens(source, out, is_tests ? SourceKind::tests : SourceKind::program);
         uses_standard = uses_standard || uses_standard_source(tokens);
         for (const BlockType& type : standard.types())
             if (uses_source_of(type, tokens)) used.insert(&type);
-        parse(std::move(tokens), to.tree, out, source.get() == tests);
+        parse(std::move(tokens), to.tree, out);
     }
     to.tree.leave_lost_out();
-    if (uses_standard) parse(read_tokens(standard_source(), out), to.tree, out);
+    if (uses_standard)
+        parse(read_tokens(standard_source(), out, SourceKind::prelude), to.tree, out);
     for (const BlockType& type : standard.types())
         if (used.contains(&type))
-            parse(read_tokens(to.of_standard.emplace_back(source_of(type)), out), to.tree, out);
+            parse(read_tokens(source_of(type), out, SourceKind::prelude), to.tree, out);
     to.checked = check(to.tree, standard, out);
     if (!out.empty()) return false;
     options.covered = is_covered();

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <deque>
-
 #include "runtime/st/generate/generator.hpp"
 #include "runtime/st/library/library.hpp"
 
@@ -10,7 +8,6 @@ namespace lineshaft::st {
 /// What sources are compiled to, with all that it refers to: so it is not moved.
 struct Compiled {
     std::vector<std::shared_ptr<const SourceFile>> sources;
-    std::deque<std::shared_ptr<const SourceFile>> of_standard;  ///< what kinds of the catalogue say
     Tree tree;
     Checked checked;
     Generated generated;

@@ -83,9 +83,8 @@ void record(const Code& code) {
     const std::lock_guard lock(collected().mutex);
     for (std::size_t i = 0; i < code.points.size(); ++i) {
         const CoverPoint& point = code.points[i];
-        Counted& counted =
-            collected()
-                .files[(*point.place.file)->path][point.kind][{point.place.begin, point.branch}];
+        Counted& counted = collected().files[point.place.source->file->path][point.kind]
+                                            [{point.place.begin, point.branch}];
         counted.name = point.name;
         counted.line = static_cast<int>(point.place.mark().line);
         counted.hits += code.hits[i].load();

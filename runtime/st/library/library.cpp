@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <deque>
 #include <limits>
 #include <set>
 
@@ -10,7 +11,6 @@
 
 #include "runtime/model/kept_state.hpp"
 #include "runtime/st/library/compiled.hpp"
-#include "runtime/st/prelude/standard_source.hpp"
 #include "runtime/st/types/elementary.hpp"
 
 namespace lineshaft::st {
@@ -506,7 +506,7 @@ void add_routine(Library::Made& made, const Routine& routine, const CodeRoutine&
     kind.routine = &code;
     kind.doc = fmt::format("{} of {}",
                            routine.pou->kind == PouKind::program ? "PROGRAM" : "FUNCTION_BLOCK",
-                           (*routine.pou->name.place.file)->path);
+                           routine.pou->name.place.source->file->path);
     if (!routine.pou->doc.empty()) kind.doc += ": " + text_of_comments(routine.pou->doc);
     FieldWriter fields(made, kind);
     std::set<const Routine*> seen;
@@ -573,8 +573,7 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     const CodeRoutine* code = made->generated.code.routines.data();
     for (const Routine* routine : made->checked.order) codes.emplace(routine, code++);
     for (const Routine& routine : made->checked.routines)
-        if (routine.has_instances() && !routine.owner &&
-            !is_standard_source(**routine.pou->place.file))
+        if (routine.has_instances() && !routine.owner && !routine.pou->place.source->is_prelude())
             add_routine(*made, routine, *codes.at(&routine), options);
     for (const Global& global : made->checked.globals)
         if (!global.object) add_global(*made, global, options);

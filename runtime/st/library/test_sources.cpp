@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/parser.hpp"
 
 namespace lineshaft::st {
 
 namespace {
-
-std::string small(std::string_view text) {
-    std::string out(text);
-    for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return out;
-}
 
 bool has_test(const Tokens& tokens) {
     return std::ranges::adjacent_find(tokens.tokens, [](const Token& a, const Token& b) {
@@ -24,7 +19,7 @@ bool has_test(const Tokens& tokens) {
 
 /// `x` of `test_x.st`, `x_test.st`, `x.test.st`.
 std::string tested_by(const std::string& path) {
-    std::string stem = small(std::filesystem::path(path).stem().string());
+    std::string stem = lower(std::filesystem::path(path).stem().string());
     for (const std::string_view before : {"test_", "tests_"})
         if (stem.starts_with(before)) return stem.substr(before.size());
     for (const std::string_view behind : {"_test", "_tests", ".test"})
@@ -52,20 +47,20 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
     entry.file = file;
     Diagnostics unread;
     Tree tree;
-    const Tokens tokens = read_tokens(entry.file, unread);
-    parse(tokens, tree, unread, true);
-    for (const Pou* unit : tree.units) entry.types.insert(small(unit->name.text));
-    for (const TypeDeclaration& type : tree.types) entry.types.insert(small(type.name.text));
+    const Tokens tokens = read_tokens(entry.file, unread, SourceKind::tests);
+    parse(tokens, tree, unread);
+    for (const Pou* unit : tree.units) entry.types.insert(lower(unit->name.text));
+    for (const TypeDeclaration& type : tree.types) entry.types.insert(lower(type.name.text));
     for (const TypeText& type : tree.type_texts)
         if (type.kind == TypeText::Kind::enumeration)
-            for (const Argument& value : type.values) entry.values.insert(small(value.name.text));
+            for (const Argument& value : type.values) entry.values.insert(lower(value.name.text));
     for (const TypeText& type : tree.type_texts)
-        if (!type.name.text.empty()) entry.used.insert(small(type.name.text));
+        if (!type.name.text.empty()) entry.used.insert(lower(type.name.text));
     for (const Declaration& variable : tree.declarations)
-        entry.own.insert(small(variable.name.text));
+        entry.own.insert(lower(variable.name.text));
     for (const DeclarationBlock& block : tree.globals)
         for (const Declaration* variable : block.declarations)
-            entry.values.insert(small(variable->name.text));
+            entry.values.insert(lower(variable->name.text));
     Word before = Word::end_of_file;
     for (std::size_t i = 0; i < tokens.tokens.size(); ++i) {
         const Token& token = tokens.tokens[i];
@@ -73,9 +68,9 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
         const bool is_used = token.word == Word::name || token.word == Word::prefix;
         const bool is_argument = (before == Word::open || before == Word::comma) &&
                                  (behind == Word::assign || behind == Word::output);
-        const bool is_own = entry.own.contains(small(token.text));
+        const bool is_own = entry.own.contains(lower(token.text));
         if (is_used && before != Word::dot && !token.local && !is_argument && !is_own)
-            entry.used.insert(small(token.text));
+            entry.used.insert(lower(token.text));
         before = token.word;
     }
     return entry;
@@ -108,7 +103,7 @@ std::vector<std::shared_ptr<const SourceFile>> SourcePool::needed_by(
     for (const Entry& entry : entries_) {
         const std::filesystem::path path(entry.file->path);
         const bool beside = !subject.empty() && path.parent_path() == folder;
-        if (beside && small(path.stem().string()) == subject) chosen.push_back(&entry);
+        if (beside && lower(path.stem().string()) == subject) chosen.push_back(&entry);
     }
     const auto is_declared = [&](const std::string& name) {
         return std::ranges::any_of(chosen, [&](const Entry* e) {

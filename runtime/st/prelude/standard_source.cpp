@@ -61,8 +61,4 @@ bool uses_source_of(const BlockType& type, const Tokens& tokens) {
     });
 }
 
-bool is_standard_source(const SourceFile& source) {
-    return source.path.starts_with('(') && source.path.ends_with(')');
-}
-
 }  // namespace lineshaft::st

@@ -20,7 +20,4 @@ std::shared_ptr<const SourceFile> source_of(const BlockType& type);
 /// A source has a name of a part or of a block that `type` says.
 bool uses_source_of(const BlockType& type, const Tokens& tokens);
 
-/// The source is none of a user's, whose name ends as `.st` does.
-bool is_standard_source(const SourceFile& source);
-
 }  // namespace lineshaft::st

@@ -83,8 +83,10 @@ constexpr std::string_view date_prefixes[] = {
 /// One class, as each kind of token is a function that moves the same place in the text.
 class Lexer {
   public:
-    Lexer(const std::shared_ptr<const SourceFile>& file, Diagnostics& out)
-        : file_(file), text_(file->text), out_(out) {}
+    Lexer(const std::shared_ptr<const Source>& source, Diagnostics& out)
+        : text_(source->text()), out_(out) {
+        tokens_.source = source;
+    }
 
     Tokens read() {
         if (text_.starts_with(utf8_byte_order_mark)) at_ = utf8_byte_order_mark.size();
@@ -105,7 +107,8 @@ class Lexer {
         return peek() == text[0] && text_.substr(at_).starts_with(text);
     }
     Place place(std::size_t begin, std::size_t end) const {
-        return {&file_, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+        return {tokens_.source.get(), static_cast<std::uint32_t>(begin),
+                static_cast<std::uint32_t>(end)};
     }
     template <class Condition>
     void skip_while(Condition condition) {
@@ -436,10 +439,9 @@ class Lexer {
         out_.add("L0901", where.mark(), std::move(message), std::move(help));
     }
 
-    const std::shared_ptr<const SourceFile>& file_;
-    std::string_view text_;
-    Diagnostics& out_;
     Tokens tokens_;
+    const std::string_view text_;
+    Diagnostics& out_;
     std::size_t at_ = 0, start_ = 0;
     std::size_t last_foreign_ = std::string_view::npos;  ///< end of the last character of no token
     bool new_line_ = true;
@@ -448,7 +450,7 @@ class Lexer {
 }  // namespace
 
 Mark Place::mark() const {
-    std::string_view before = std::string_view((*file)->text).substr(0, begin);
+    std::string_view before = source->text().substr(0, begin);
     if (before.starts_with(utf8_byte_order_mark)) before.remove_prefix(utf8_byte_order_mark.size());
     int line = 1;
     std::size_t line_begin = 0;
@@ -457,7 +459,7 @@ Mark Place::mark() const {
         line_begin = i + 1;
     }
     const std::string_view marked = text().substr(0, text().find('\n'));
-    return {*file, line, static_cast<int>(count_characters(before.substr(line_begin))) + 1,
+    return {source->file, line, static_cast<int>(count_characters(before.substr(line_begin))) + 1,
             std::max(1, static_cast<int>(count_characters(marked)))};
 }
 
@@ -483,8 +485,10 @@ std::string_view shown(Word word) {
     return sign != std::end(signs) ? sign->text : other_names[i - capitals.size()];
 }
 
-Tokens read_tokens(const std::shared_ptr<const SourceFile>& file, Diagnostics& out) {
-    return Lexer(file, out).read();
+Tokens read_tokens(const std::shared_ptr<const SourceFile>& file, Diagnostics& out,
+                   SourceKind kind) {
+    const Dialect& dialect = kind == SourceKind::prelude ? scl : dialect_of(file->path);
+    return Lexer(std::make_shared<const Source>(Source{file, dialect, kind}), out).read();
 }
 
 }  // namespace lineshaft::st

@@ -141,8 +141,8 @@ const PouWords* find_pou(Word word) {
 /// tokens and whether a mistake is still being recovered from.
 class Parser {
   public:
-    Parser(Tokens tokens, Tree& tree, Diagnostics& out, bool is_tests)
-        : is_tests_(is_tests),
+    Parser(Tokens tokens, Tree& tree, Diagnostics& out)
+        : is_tests_(tokens.source->kind == SourceKind::tests),
           tokens_(std::move(tokens.tokens)),
           pragmas_(std::move(tokens.pragmas)),
           comments_(std::move(tokens.comments)),
@@ -236,8 +236,7 @@ class Parser {
 
     /// The lexer left something out just before.
     bool follows_mistake() const {
-        const std::string_view before =
-            std::string_view((*here().place.file)->text).substr(0, last().place.begin);
+        const std::string_view before = here().place.source->text().substr(0, last().place.begin);
         const std::size_t line = before.rfind('\n') + 1;
         return std::ranges::any_of(
             mistakes_, [&](std::uint32_t at) { return at >= line && at <= here().place.begin; });
@@ -404,7 +403,7 @@ class Parser {
             tree_.globals[i].is_lost = true;
         if (fixture_) fixture_->blocks.resize(blocks), fixture_->methods.resize(methods);
         for (std::size_t i = first; i < at_; ++i) tree_.lost.try_emplace(tokens_[i].text);
-        lose(std::string_view((*here().place.file)->text).substr(begin, end - begin));
+        lose(here().place.source->text().substr(begin, end - begin));
     }
 
     void lose(std::string_view text) {
@@ -1089,13 +1088,13 @@ class Parser {
         return divides ? Word::divided : here().word;
     }
 
-    /// A sign comes before a power, in Siemens' SCL behind it: -2 ** 2 is 4, and -4.
     Expression* read_unary() {
         if (!is(Word::minus) && !is(Word::plus) && !is(Word::not_)) return read_postfix();
         const Level level(*this);
         Expression* made = make(Expression::Kind::unary, take());
         made->op = made->token.word;
-        const bool is_below_power = made->op != Word::not_ && is_scl(made->place);
+        const bool is_below_power =
+            made->op != Word::not_ && !made->place.dialect().sign_precedes_power;
         Expression* operand = is_below_power ? read_expression(power_binding) : read_unary();
         made->operands[0] = operand;
         made->place = made->place.to(operand->place);
@@ -1583,8 +1582,9 @@ class Parser {
 
 }  // namespace
 
-void parse(Tokens tokens, Tree& tree, Diagnostics& out, bool is_tests) {
-    Parser(std::move(tokens), tree, out, is_tests).read();
+void parse(Tokens tokens, Tree& tree, Diagnostics& out) {
+    tree.sources.push_back(tokens.source);
+    Parser(std::move(tokens), tree, out).read();
 }
 
 }  // namespace lineshaft::st

@@ -10,7 +10,7 @@ namespace lineshaft::st {
 ///   L0902  what is expected, and stands there instead; a block that does not end
 ///   L0903  a part of the language that is not supported
 ///   L0912  nested too deep
-/// In a file of tests TEST, SETUP and TEARDOWN stand beside blocks; elsewhere they are refused.
-void parse(Tokens tokens, Tree& tree, Diagnostics& out, bool is_tests = false);
+/// Where a source is no file of tests, TEST, SETUP and TEARDOWN are refused.
+void parse(Tokens tokens, Tree& tree, Diagnostics& out);
 
 }  // namespace lineshaft::st

@@ -6,26 +6,36 @@
 #include <unordered_set>
 
 #include "runtime/source/diagnostic.hpp"
+#include "runtime/st/syntax/dialect.hpp"
 
 namespace lineshaft::st {
 
-/// Part of a source: bytes [begin, end) of its text.
-struct Place {
-    const std::shared_ptr<const SourceFile>* file = nullptr;
-    std::uint32_t begin = 0, end = 0;
-
-    std::string_view text() const {
-        return std::string_view((*file)->text).substr(begin, end - begin);
-    }
-    Place to(Place last) const { return {file, begin, last.end}; }
-    Mark mark() const;
+enum class SourceKind : std::uint8_t {
+    program,  ///< a user's
+    tests,    ///< a user's, with TEST, SETUP and TEARDOWN beside blocks
+    prelude,  ///< comes with lineshaft
 };
 
-/// By the name of its file: all but the standard's ST.
-inline bool is_scl(const Place& place) {
-    const std::string_view path = (*place.file)->path;
-    return !path.ends_with(".st") && !path.ends_with(".ST");
-}
+/// A text that is compiled, and what was decided about it once, when it was read.
+struct Source {
+    std::shared_ptr<const SourceFile> file;
+    const Dialect& dialect;
+    SourceKind kind = SourceKind::program;
+
+    std::string_view text() const { return file->text; }
+    bool is_prelude() const { return kind == SourceKind::prelude; }
+};
+
+/// Part of a source: bytes [begin, end) of its text.
+struct Place {
+    const Source* source = nullptr;
+    std::uint32_t begin = 0, end = 0;
+
+    std::string_view text() const { return source->text().substr(begin, end - begin); }
+    const Dialect& dialect() const { return source->dialect; }
+    Place to(Place last) const { return {source, begin, last.end}; }
+    Mark mark() const;
+};
 
 /// Names are found without regard to case (ASCII).
 struct SameName {

@@ -193,7 +193,8 @@ struct TypeDeclaration {
 
 /// Owns all nodes, so that they need no owners among themselves.
 struct Tree {
-    std::pmr::monotonic_buffer_resource memory;  ///< of the nodes: a deque asks for each
+    std::vector<std::shared_ptr<const Source>> sources;  ///< that all places refer to
+    std::pmr::monotonic_buffer_resource memory;          ///< of the nodes: a deque asks for each
     std::pmr::deque<Expression> expressions{&memory};
     std::pmr::deque<Statement> statements{&memory};
     std::pmr::deque<TypeText> type_texts{&memory};

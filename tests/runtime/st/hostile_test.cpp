@@ -90,7 +90,8 @@ void exchange_words(const std::string& text, int times, std::mt19937& random,
                     void (*attempt)(const std::string&)) {
     Diagnostics out;
     const auto source = st::source(text);
-    const auto tokens = st::read_tokens(source, out).tokens;
+    const st::Tokens read = st::read_tokens(source, out);
+    const auto& tokens = read.tokens;
     for (int i = 0; i < times; ++i) {
         const auto& a = tokens[random() % tokens.size()];
         const auto& b = tokens[random() % tokens.size()];

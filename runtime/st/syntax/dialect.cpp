@@ -1,0 +1,31 @@
+#include "runtime/st/syntax/dialect.hpp"
+
+#include "runtime/source/letters.hpp"
+
+namespace lineshaft::st {
+
+const Dialect iec = {.sign_precedes_power = true,
+                     .constants_have_values = true,
+                     .quotes_may_enclose_texts = true,
+                     .named_inputs_may_be_left_out = true,
+                     .sets_variables_of_instances = false,
+                     .real_results_reckon_as_real = false,
+                     .dint_becomes_real = false,
+                     .numbers_stand_for_names = false,
+                     .texts_of_integers_have_signs = false};
+
+const Dialect scl = {.sign_precedes_power = false,
+                     .constants_have_values = false,
+                     .quotes_may_enclose_texts = false,
+                     .named_inputs_may_be_left_out = false,
+                     .sets_variables_of_instances = true,
+                     .real_results_reckon_as_real = true,
+                     .dint_becomes_real = true,
+                     .numbers_stand_for_names = true,
+                     .texts_of_integers_have_signs = true};
+
+const Dialect& dialect_of(std::string_view path) {
+    return lower(path).ends_with(".st") ? iec : scl;
+}
+
+}  // namespace lineshaft::st

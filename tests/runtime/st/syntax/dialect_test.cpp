@@ -1,0 +1,29 @@
+#include "runtime/st/syntax/dialect.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "runtime/st/syntax/lexer.hpp"
+
+using namespace lineshaft;
+
+TEST_CASE("Structured Text: the ending of a file's name is its dialect", "[st]") {
+    CHECK(&st::dialect_of("axis.st") == &st::iec);
+    for (const char* path : {"old.scl/AXIS.ST", "axis.St", "axis.sT"})
+        CHECK(&st::dialect_of(path) == &st::iec);
+    for (const char* path : {"axis.scl", "axis.s7dcl", "axis.udt", "axis.db", "st", "(axis.st)"})
+        CHECK(&st::dialect_of(path) == &st::scl);
+}
+
+TEST_CASE("Structured Text: a source is of the prelude by who reads it, not by its name", "[st]") {
+    const auto file = [](std::string path) {
+        return std::make_shared<const SourceFile>(SourceFile{std::move(path), "END"});
+    };
+    Diagnostics out;
+    const st::Tokens user = st::read_tokens(file("(old)/axis.st"), out);
+    CHECK_FALSE(user.source->is_prelude());
+    CHECK(&user.tokens[0].place.dialect() == &st::iec);
+    const st::Tokens prelude = st::read_tokens(file("axis.st"), out, st::SourceKind::prelude);
+    CHECK(prelude.source->is_prelude());
+    CHECK(&prelude.tokens[0].place.dialect() == &st::scl);
+    CHECK(prelude.tokens[0].place.source == prelude.source.get());
+}
