@@ -99,7 +99,7 @@ struct Axis {
         double lowest = 0, highest = -1;     ///< positions between which,
         double speed = 0, acceleration = 0;  ///< with at most these, it can brake
 
-        bool contains(const MotionState& state) const;
+        bool contains(const MotionState& at) const;
     };
 
     JobList inbox, queue;

@@ -109,9 +109,9 @@ bool Axis::turns_inside(const MotionState& from) const {
                              std::max(from.position, from.position + way)});
 }
 
-bool Axis::Safe::contains(const MotionState& state) const {
-    return lowest <= state.position && state.position <= highest &&
-           std::abs(state.velocity) <= speed && std::abs(state.acceleration) <= acceleration;
+bool Axis::Safe::contains(const MotionState& at) const {
+    return lowest <= at.position && at.position <= highest && std::abs(at.velocity) <= speed &&
+           std::abs(at.acceleration) <= acceleration;
 }
 
 /// Around a state from which the axis can brake wherever it goes: those that come next need no look
