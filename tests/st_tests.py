@@ -92,6 +92,14 @@ with tempfile.TemporaryDirectory() as folder:
     said = subprocess.run([lineshaft, "check", "twice_test.st"], cwd=folder, capture_output=True, timeout=60).stderr
     expect("two TESTs of one name", said.splitlines()[:1], [b"twice_test.st:2:6: warning[L0909]: two TESTs have one name"])
     pathlib.Path(folder, "twice_test.st").write_text("TEST 'a' ASSERT_TRUE(TRUE); END_TEST\n", encoding="utf-8")
+    latin = "FUNCTION_BLOCK p\nVAR x : INT; END_VAR\nx := 1;\nEND_FUNCTION_BLOCK\nTEST 'grüß'\n ASSERT_TRUE(FALSE, 'ü');\nEND_TEST\n"
+    pathlib.Path(folder, "latin_test.st").write_bytes(latin.encode("iso-8859-1"))
+    code, said, errors = run(pathlib.Path(folder), "latin_test.st", "--junit", str(junit))
+    told = "latin_test.st:6: ASSERT_TRUE(FALSE, 'ü'): expected TRUE, found FALSE; ü"
+    expect("a test in Latin-1", (code, said.splitlines()[:2], errors), (1, ["FAILED  latin_test.st: grüß", "        " + told], ""))
+    case = xml.parse(junit).getroot().find("testcase")
+    expect("its case", (case.get("name"), case.find("failure").text), ("grüß", told))
+    pathlib.Path(folder, "latin_test.st").unlink()
     pathlib.Path(folder, "large_test.st").write_text("// so many words\n" * (1 << 16), encoding="utf-8")
     code, said, _ = run(pathlib.Path(folder), ".")
     expect("a file of a folder that is too large is told", (code, "large_test.st' has more than" in said), (1, True))

@@ -158,6 +158,9 @@ commands = re.findall(r"^  ([a-z]+) ", run("--help", code=0).split("Subcommands:
 assert len(commands) > 15
 for command in commands:
     assert "value in" not in run(command, "--help", code=0) and "OR {" not in run(command, "--help", code=0), command
+determinism = pathlib.Path(__file__).parents[1] / "tools" / "determinism"
+said = subprocess.run([determinism, "--help"], cwd=folder, capture_output=True, text=True, timeout=60)
+assert said.returncode == 0 and "--full" in said.stdout and said.stderr == "", said
 found = [line.split()[0] for line in run("blocks", "Gear", code=0).splitlines()]
 assert {"MC_GearIn", "MC_GearOut", "MC_GearInPos"} <= set(found) and len(found) < 10, found
 assert [line.split()[0] for line in run("blocks", "gear", "leaves", code=0).splitlines()] == ["MC_GearOut"]

@@ -77,6 +77,7 @@ double within_period(double position, double period) {
 void Axis::scan(const Scan& now, const Context& context) {
     if (started == 0) start(now);
     watch_limits();
+    if (withdrawn != 0 || inbox.first != nowhere) safe = {};
     if (withdrawn != 0) blend_anew(context, {scan_time});
     task = context.task;
     scan_index = now.index;
@@ -155,6 +156,7 @@ std::pair<MotionState, Moment> Axis::end_of_motion(const Context& context) const
 
 /// What comes next begins at that very moment; from standstill with the scan that it belongs to.
 void Axis::end_motion(const Context& context) {
+    safe.as_planned = 0;
     auto [end_state, at] = end_of_motion(context);
     const bool is_cut = doing == Doing::moving_to_point && point_motion.is_cut();
     if (leg.exists != 0 && !is_cut) return end_leg(at);

@@ -92,6 +92,16 @@ struct Axis {
         double relocated = 0;   ///< of the axis then
     };
 
+    /// What is known to keep the axis inside its software limits, until a motion or a parameter
+    /// changes: where the motions under way lead, and states from which it can brake anyway.
+    struct Safe {
+        std::int64_t as_planned = 0;
+        double lowest = 0, highest = -1;     ///< positions between which,
+        double speed = 0, acceleration = 0;  ///< with at most these, it can brake
+
+        bool contains(const MotionState& at) const;
+    };
+
     JobList inbox, queue;
     Running active;      ///< on the axis' motion
     Running added;       ///< MC_MoveSuperimposed, on top of it
@@ -122,6 +132,7 @@ struct Axis {
     std::int64_t renamed = 0;                     ///< times that the place got another position
     std::int64_t trigger_aborts = 0;
     Shown shown;
+    Safe safe;
     std::int64_t withdrawn = 0;  ///< a job has left the queue that `active` may count on
     std::int64_t started = 0;
     std::int64_t task = 0, scan_index = 0;  ///< of the scan under way, to stamp what is told
@@ -205,7 +216,8 @@ struct Axis {
     void watch_limits();
     void keep_limits(const Context& context);
     void show();
-    bool is_safe(const MotionState& next) const;
+    bool is_safe(const MotionState& next);
+    bool finds_room(const MotionState& next);
     bool can_brake(const MotionState& from) const;
     bool leads_inside(const Way& way, double further) const;
     template <class Motion>

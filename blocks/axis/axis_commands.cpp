@@ -192,6 +192,7 @@ void Axis::brake(const Moment& at) {
     offset = lasting = 0;
     clear_added();
     leg.exists = paused = 0;
+    safe.as_planned = 0;
     base = from;
     if (from.velocity == 0 && from.acceleration == 0) return hold(from, at);
     velocity_motion.begin(from, 0, defaults(), at);

@@ -109,12 +109,39 @@ bool Axis::turns_inside(const MotionState& from) const {
                              std::max(from.position, from.position + way)});
 }
 
+bool Axis::Safe::contains(const MotionState& at) const {
+    return lowest <= at.position && at.position <= highest && std::abs(at.velocity) <= speed &&
+           std::abs(at.acceleration) <= acceleration;
+}
+
+/// Around a state from which the axis can brake wherever it goes: those that come next need no look
+/// of their own then. False where the state itself lies elsewhere.
+bool Axis::finds_room(const MotionState& next) {
+    const Dynamics d = defaults();
+    MotionState worst;
+    worst.velocity = std::max(std::abs(next.velocity), d.velocity);
+    worst.acceleration = std::max({std::abs(next.acceleration), d.acceleration, d.deceleration});
+    const double far = longest_stop(worst, d);
+    safe.lowest = lowest_position + far;
+    safe.highest = highest_position - far;
+    safe.speed = worst.velocity;
+    safe.acceleration = worst.acceleration;
+    return safe.contains(next);
+}
+
 /// What is shown is at each time a state from which the axis can stop inside its limits: with its
-/// defaults, or by going on as planned.
-bool Axis::is_safe(const MotionState& next) const {
+/// defaults, or by going on as planned. One that is inside and goes on to an end stays so.
+bool Axis::is_safe(const MotionState& next) {
+    if (safe.as_planned != 0 || safe.contains(next) || finds_room(next)) return true;
+    const Bounds kept = bounds();
+    const bool goes_on = goes_on_inside();
+    const bool is_inside = kept.lowest == lowest_position && kept.highest == highest_position;
+    const bool has_end = doing != Doing::holding || next.velocity == 0;
+    safe.as_planned = goes_on && is_inside && has_end ? 1 : 0;
+    if (goes_on) return true;
     const double far = longest_stop(next, defaults());
-    if (bounds().contain({next.position - far, next.position + far})) return true;
-    return can_brake(next) || goes_on_inside() || turns_inside(next);
+    return kept.contain({next.position - far, next.position + far}) || can_brake(next) ||
+           turns_inside(next);
 }
 
 /// From when on limits count: they may be written at any time.
@@ -136,10 +163,10 @@ void Axis::keep_limits(const Context& context) {
 }
 
 void Axis::show() {
-    const Bounds kept = bounds();
-    const bool is_first = shown.exists == 0;
-    shown = {1, total(), scan_time, relocated};
-    if (!is_first) kept.admit(shown.state.position);
+    MotionState next = total();
+    const bool is_inside = lowest_position <= next.position && next.position <= highest_position;
+    if (!is_inside && shown.exists != 0) bounds().admit(next.position);
+    shown = {1, next, scan_time, relocated};
 }
 
 void Axis::stop_inside(const Context& context, MotionError why) {

@@ -80,6 +80,7 @@ void Axis::take_in(double way) {
 }
 
 void Axis::end_added(const Context& context) {
+    safe.as_planned = 0;
     extra = {.position = added_goal};
     end(context, added, Progress::done);
     settle();

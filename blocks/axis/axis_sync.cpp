@@ -237,6 +237,7 @@ MotionError Axis::approach(const Context& context, const MotionState& from, cons
     const Forecast ahead = foresee(context).after(at.until(scan_time), sync.led);
     const CurveFault fault = sync.approach(from, ahead, table, modulo ? period : 0, steady, at);
     if (fault != CurveFault::none) shortage = sync.shortage(from, ahead, steady);
+    if (sync.way == SyncMotion::Way::rest) velocity_motion.begin(from, 0, sync.dynamics, at);
     return sync_error(fault);
 }
 

@@ -157,7 +157,7 @@ CurveFault SyncMotion::choose(const MotionState& slave, const Forecast& master, 
     const SyncCurve fresh =
         begins ? SyncCurve::between(leader.position, sync_x - leader.position, begin, joins)
                : curve;
-    const bool waits = from.steady && from.on_its_way && !std::isfinite(goal.time);
+    const bool waits = from.steady && !std::isfinite(goal.time);
     CurveFault fault = CurveFault::standing_master;
     for (const bool may_turn : {false, true}) {
         const bool curves = may_turn || !from.steady || !master.goes_against(direction, goal.time);

@@ -143,7 +143,7 @@ struct SyncMotion {
     /// What there is to choose from.
     struct Choice {
         bool steady = true;       ///< what a master does is foreseen: a curve, a timed motion
-        bool on_its_way = false;  ///< it may wait in rest
+        bool on_its_way = false;  ///< it has left before
         bool kept_curve = false;  ///< the one that it is on
     };
     /// The first way of these that keeps the limits, those first that do not turn round.

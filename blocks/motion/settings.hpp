@@ -9,7 +9,9 @@ struct SetPosition : CommandBlock {
     bool relative = false;
 
     static constexpr std::string_view type = "MC_SetPosition";
-    static constexpr std::string_view doc = "gives the place of an axis another position";
+    static constexpr std::string_view doc =
+        "gives the place of an axis another position; it moves nothing, and a motion under way "
+        "keeps its way";
     static std::span<const Field> fields();
     constexpr SetPosition() { pins.command = Command::set_position; }
     void scan(const Scan& now, const Context& context);

@@ -88,7 +88,8 @@ std::string filter_chain(bool own, const std::string& jitter) {
 /// Axes that move through the whole run, each by a command of its own, which is given once by one
 /// of the blocks that have a thousand axes each, at most. 8,000 is what the loader's 100,000 values
 /// admit.
-void write_moving_axes(const std::filesystem::path& folder, std::size_t axes) {
+void write_moving_axes(const std::filesystem::path& folder, std::size_t axes,
+                       std::string_view limits) {
     const std::size_t together = std::min<std::size_t>(axes, 1000);
     std::ofstream(folder / "start.st") << fmt::format(
         "FUNCTION_BLOCK Start\n"
@@ -104,7 +105,7 @@ void write_moving_axes(const std::filesystem::path& folder, std::size_t axes) {
         "run: {{for: {} ms}}\nblocks:\n",
         scans - 1);
     for (std::size_t i = 0; i < axes; ++i)
-        text += fmt::format("  s{}: {{type: axis, task: m}}\n", i);
+        text += fmt::format("  s{}: {{type: axis, task: m{}}}\n", i, limits);
     for (std::size_t i = 0; i < axes; ++i) {
         if (i % together == 0)
             text += fmt::format("  start{}:\n    type: Start\n    task: once\n", i);
@@ -170,10 +171,10 @@ void machine_logic(benchmark::State& state, bool empty) {
     run(state, machine);
 }
 
-void axes(benchmark::State& state) {
+void axes(benchmark::State& state, std::string_view limits) {
     const auto folder = std::filesystem::temp_directory_path() / "lineshaft_framework_bench";
     std::filesystem::create_directories(folder);
-    write_moving_axes(folder, static_cast<std::size_t>(state.range(0)));
+    write_moving_axes(folder, static_cast<std::size_t>(state.range(0)), limits);
     Loaded program = loaded(folder / "axes.yaml");
     run(state, program.linked.machine);
     std::filesystem::remove_all(folder);
@@ -277,7 +278,10 @@ BENCHMARK(small_by_hand<CalledSmallBlocks<SmallWiring::serial, CatalogueBlocks>>
     ->Arg(4)
     ->Arg(100)
     ->Arg(1000);
-BENCHMARK(axes)->Arg(10)->Arg(100)->Arg(1000)->Arg(8'000);
+BENCHMARK_CAPTURE(axes, without_limits, "")->Arg(10)->Arg(100)->Arg(1000)->Arg(8'000);
+BENCHMARK_CAPTURE(axes, within_limits,
+                  ", software_limits: true, lowest_position: 0 mm, highest_position: 3 m")
+    ->Arg(10);
 BENCHMARK(load)->Arg(1000)->Arg(2000)->Arg(4000);
 
 int main(int count, char** arguments) {
