@@ -4,18 +4,12 @@
 #include <filesystem>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/cursor.hpp"
 #include "runtime/st/syntax/parser.hpp"
 
 namespace lineshaft::st {
 
 namespace {
-
-bool has_test(const Tokens& tokens) {
-    return std::ranges::adjacent_find(tokens.tokens, [](const Token& a, const Token& b) {
-               return a.word == Word::test_ && a.first_in_line &&
-                      (b.word == Word::text || b.quoted);
-           }) != tokens.tokens.end();
-}
 
 /// `x` of `test_x.st`, `x_test.st`, `x.test.st`.
 std::string tested_by(const std::string& path) {
@@ -39,7 +33,10 @@ std::size_t nearness(const std::string& a, const std::string& b) {
 
 bool is_test_file(const std::shared_ptr<const SourceFile>& file) {
     Diagnostics unread;
-    return has_test(read_tokens(file, unread));
+    Cursor cursor{read_tokens(file, unread, SourceKind::tests)};
+    while (!cursor.is(Word::end_of_file) && !(cursor.is(Word::test_) && cursor.at_test()))
+        cursor.take();
+    return !cursor.is(Word::end_of_file);
 }
 
 SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& file) {
@@ -47,8 +44,7 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
     entry.file = file;
     Diagnostics unread;
     Tree tree;
-    const Tokens tokens = read_tokens(entry.file, unread, SourceKind::tests);
-    parse(tokens, tree, unread);
+    parse(read_tokens(entry.file, unread, SourceKind::tests), tree, unread);
     for (const Pou* unit : tree.units) entry.types.insert(lower(unit->name.text));
     for (const TypeDeclaration& type : tree.types) entry.types.insert(lower(type.name.text));
     for (const TypeText& type : tree.type_texts)
@@ -61,17 +57,10 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
     for (const DeclarationBlock& block : tree.globals)
         for (const Declaration* variable : block.declarations)
             entry.values.insert(lower(variable->name.text));
-    Word before = Word::end_of_file;
-    for (std::size_t i = 0; i < tokens.tokens.size(); ++i) {
-        const Token& token = tokens.tokens[i];
-        const Word behind = i + 1 < tokens.tokens.size() ? tokens.tokens[i + 1].word : before;
-        const bool is_used = token.word == Word::name || token.word == Word::prefix;
-        const bool is_argument = (before == Word::open || before == Word::comma) &&
-                                 (behind == Word::assign || behind == Word::output);
-        const bool is_own = entry.own.contains(lower(token.text));
-        if (is_used && before != Word::dot && !token.local && !is_argument && !is_own)
-            entry.used.insert(lower(token.text));
-        before = token.word;
+    for (const Expression& e : tree.expressions) {
+        const bool is_name = e.kind == Expression::Kind::name || e.kind == Expression::Kind::typed;
+        const std::string name = lower(e.token.text);
+        if (is_name && !e.token.local && !entry.own.contains(name)) entry.used.insert(name);
     }
     return entry;
 }

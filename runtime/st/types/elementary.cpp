@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/st/syntax/words.hpp"
+
 namespace lineshaft::st {
 
 namespace {
@@ -69,6 +71,7 @@ const Type table[] = {elementary(Kind::boolean, "BOOL", 1),
                       elementary(Kind::moment, "LDT", 64, true),
                       elementary(Kind::moment, "LDATE_AND_TIME", 64, true),
                       character()};
+static_assert(std::size(table) == std::size(elementary_names));
 
 const Type open_string = text_type(true);
 const Type any_integer = elementary(Kind::any_integer, "a whole number", 64, true);

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "runtime/st/syntax/parsing.hpp"
+
+/// The rules of the grammar that others use, each read by a function that its rule stands above, in
+/// parse_*.cpp. A rule is written as in IEC 61131-3:2013, Annex A, and has its name there where it
+/// has one: 'IF' is a word or a sign, `?` at most once, `*` any number of times, `+` once or more,
+/// `|` one of both; `X of Y` is the rule X with Y for what it says so. Name, Unsigned_Int, Real,
+/// Text, Direct, Duration and Type_Prefix are tokens. What a function reads beside its rule is a
+/// mistake that it tells (recovery.hpp, mistakes.hpp); it gives a node back all the same.
+namespace lineshaft::st {
+
+// parse_program_units.cpp
+void parse_declaration(Parsing& p);
+Pou* parse_pou(Parsing& p);
+void parse_attributes(Parsing& p);
+bool accept_access(Parsing& p);
+
+// parse_tests.cpp
+void parse_test(Parsing& p);
+void parse_test_statement(Parsing& p, Block& to);
+
+// parse_declarations.cpp
+void parse_sections(Parsing& p, Pou& pou, Word end);
+DeclarationBlock parse_section(Parsing& p, Section section);
+void parse_variables(Parsing& p, std::vector<Declaration*>& to);
+
+// parse_types.cpp
+void parse_type_declarations(Parsing& p);
+TypeText* parse_type(Parsing& p);
+
+// parse_statements.cpp
+/// Up to `end`, or what ends a block around it; in a CASE also up to its next values.
+void parse_statements(Parsing& p, Block& to, Word end, bool in_case = false);
+
+// parse_expressions.cpp
+Expression* parse_expression(Parsing& p);
+Expression* parse_access(Parsing& p);
+
+// parse_initial_values.cpp
+Expression* parse_initial(Parsing& p);
+Expression* parse_initials(Parsing& p);
+/// Up to and with `end`; values are initial ones, or expressions.
+void parse_arguments(Parsing& p, Expression& to, Word end, Expression* (*parse_value)(Parsing&));
+
+}  // namespace lineshaft::st

@@ -1,0 +1,264 @@
+#include "runtime/st/syntax/mistakes.hpp"
+
+#include <fmt/format.h>
+
+#include "runtime/st/syntax/grammar.hpp"
+#include "runtime/st/syntax/literals.hpp"
+#include "runtime/st/syntax/recovery.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+struct Unsupported {
+    Word word;
+    std::string_view what, instead;
+};
+
+constexpr Unsupported unsupported[] = {
+    {Word::abstract_, "abstract blocks are", "leave it out, and write the whole block"},
+    {Word::class_, "classes are", "write a FUNCTION_BLOCK with METHODs"},
+    {Word::interface_, "interfaces are", "write a FUNCTION_BLOCK with METHODs"},
+    {Word::namespace_, "namespaces are", "put the namespace before its blocks' names: Lib_Block"},
+    {Word::using_, "namespaces are", "leave it out, all sources see each other"},
+    {Word::extends_, "inheritance is", "declare an instance of the other block and call it"},
+    {Word::implements_, "interfaces are", "leave it out, and call the block by its own type"},
+    {Word::property_, "properties are", "write a METHOD, or a VAR_OUTPUT"},
+    {Word::action_, "actions are", "write a METHOD"},
+    {Word::super_, "inheritance is", "declare an instance of the other block and call it"},
+    {Word::goto_, "GOTO is", "write IF, CASE, EXIT or RETURN"},
+    {Word::ref_to_, "references are", "pass the variable as VAR_IN_OUT"},
+    {Word::pointer_, "pointers are", "pass the variable as VAR_IN_OUT, or use an index"},
+    {Word::reference_assign, "references are", "pass the variable as VAR_IN_OUT"},
+    {Word::caret, "pointers are", "pass the variable as VAR_IN_OUT, and leave '^' out"},
+    {Word::var_access_, "access paths are", "declare the variable in VAR_GLOBAL"},
+    {Word::direct, "direct addresses are", "declare a VAR_INPUT or VAR_OUTPUT and wire it"},
+    {Word::override_, "inheritance is", "leave it out"},
+    {Word::final_, "inheritance is", "leave it out"},
+    {Word::test_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
+    {Word::setup_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
+    {Word::teardown_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
+};
+
+std::string another_name(const Cursor& p) {
+    return fmt::format("take another name, or write it in quotes: \"{}\"", p.here().text);
+}
+
+/// Signs and words that touch each other, or have a value before them.
+std::string habit_of_signs(const Cursor& p) {
+    const bool touches = p.last().place.end == p.here().place.begin;
+    const bool touches_next = p.here().place.end == p.next().place.begin;
+    const auto is_pair = [&](Word word) { return p.is(word) && p.last().word == word && touches; };
+    if (is_pair(Word::equal)) return "write '=' to compare";
+    if (is_pair(Word::ampersand)) return "write AND";
+    if (is_pair(Word::less)) return "write SHL(value, bits)";
+    if (is_pair(Word::greater)) return "write SHR(value, bits)";
+    const bool before_pair = p.next().word == p.here().word && touches_next;
+    if (before_pair && p.is(Word::plus)) return "write 'name += 1;'";
+    if (before_pair && p.is(Word::minus)) return "write 'name -= 1;'";
+    const bool before_number = p.next().word == Word::integer && touches_next;
+    if (p.is(Word::comma) && p.last().word == Word::integer && before_number)
+        return "write a decimal point: 1.5";
+    if (p.says("step")) return "write BY";
+    const bool is_joined = p.last().word == Word::and_ || p.last().word == Word::or_;
+    if (is_joined && p.here().word >= Word::less && p.here().word <= Word::unequal)
+        return "repeat what is compared: a > 1 AND a < 5";
+    if (p.is(Word::dot) && before_number) return fmt::format("write 0.{}", p.next().text);
+    if (!p.is(Word::name) || p.last().word != Word::integer || !touches) return {};
+    const std::string_view number = p.last().text, behind = p.here().text;
+    if (number == "0" && (behind.starts_with('x') || behind.starts_with('X')))
+        return fmt::format("write 16#{}", behind.substr(1));
+    if (read_duration(fmt::format("{}{}", number, behind)))
+        return fmt::format("write T#{}{}", number, behind);
+    return {};
+}
+
+/// Of a block, where the end of the part before was left out.
+bool at_next_part(const Cursor& p) {
+    const bool begins = p.is(Word::method_) || p.is(Word::property_) || p.is(Word::action_);
+    return ends_pou(p.here().word) ||
+           (p.here().first_in_line && (p.at_pou() || (begins && p.is_name(1))));
+}
+
+bool is_elementary(std::string_view name) {
+    return std::ranges::any_of(elementary_names,
+                               [&](std::string_view known) { return same_name(known, name); });
+}
+
+}  // namespace
+
+std::string habit(const Parsing& p) {
+    if (std::string of_signs = habit_of_signs(p); !of_signs.empty()) return of_signs;
+    if (p.is_in_body && p.is_name() && is_elementary(p.last().text))
+        return "variables are declared in VAR ... END_VAR";
+    if (p.is(Word::assign) && !p.is_in_body)
+        return "statements stand in a PROGRAM, FUNCTION_BLOCK or FUNCTION";
+    const bool is_reserved = !p.is_name() && p.here().word < Word::end_of_file;
+    return is_reserved && (p.is_declared() || p.next().word == Word::assign) ? another_name(p) : "";
+}
+
+bool refuse_unsupported(Parsing& p) {
+    const auto* it = std::ranges::find(unsupported, p.here().word, &Unsupported::word);
+    if (it == std::end(unsupported)) return false;
+    if (p.is(Word::caret) && (p.next().word == Word::integer || p.next().word == Word::real))
+        fail(p, "L0902", p.here().place, "'^' is not a power", "write '**'");
+    else
+        fail(p, "L0903", p.here().place, fmt::format("{} not supported", it->what),
+             std::string(it->instead));
+    return true;
+}
+
+bool refuse_whole(Parsing& p) {
+    static constexpr Word words[] = {Word::class_,    Word::interface_, Word::namespace_,
+                                     Word::property_, Word::action_,    Word::using_};
+    if (std::ranges::find(words, p.here().word) == std::end(words)) return false;
+    const std::string end = fmt::format("end_{}", p.here().text);
+    const bool is_using = p.is(Word::using_);
+    const bool is_part = p.is(Word::property_) || p.is(Word::action_);
+    refuse_unsupported(p);
+    p.panic = false;
+    const std::size_t first = p.at;
+    const auto at_last = [&] {
+        return p.is(Word::end_of_file) || (is_using && p.is(Word::semicolon)) || p.says(end);
+    };
+    while (!at_last() && !(is_part && p.at != first && at_next_part(p))) p.take();
+    if (at_last()) p.take();
+    p.accept(Word::semicolon);
+    return true;
+}
+
+bool refuse_modifier(Parsing& p) {
+    if (!p.is_name(1) || p.next().first_in_line ||
+        !(p.is(Word::override_) || p.is(Word::final_) || p.is(Word::abstract_)))
+        return false;
+    if (!p.is(Word::abstract_) || !p.is_wrong) refuse_unsupported(p);  // told of its block
+    p.panic = false;
+    p.take();
+    return true;
+}
+
+void refuse_bases(Parsing& p) {
+    if (p.is(Word::extends_) || p.is(Word::implements_)) refuse_unsupported(p);
+    if (p.panic) skip_line(p);
+}
+
+void refuse_chart(Parsing& p) {
+    tell(p, "L0903", p.here().place, "sequential function charts are not supported",
+         "write a CASE over the steps");
+    while (!p.is(Word::end_of_file) && !ends_pou(p.here().word)) p.take();
+}
+
+bool refuse_section(Parsing& p) {
+    if (p.is(Word::var_access_)) {
+        refuse_unsupported(p);
+        skip_past(p, Word::end_var_);
+        p.accept(Word::semicolon);
+        return true;
+    }
+    const bool is_const = p.says("const");
+    if (!p.is(Word::name) || !p.here().first_in_line || !p.is_name(1) ||
+        !(is_const || p.says("label")))
+        return false;
+    const std::string end = fmt::format("end_{}", p.here().text);
+    tell(p, "L0903", p.here().place, fmt::format("{} is not supported", p.here().place.text()),
+         is_const ? "write VAR CONSTANT n : INT := 5; END_VAR, with the type of each"
+                  : "write IF, CASE, EXIT or RETURN");
+    while (!p.is(Word::end_of_file) && !is_end(p.here().word) && !p.says(end)) p.take();
+    if (p.is(Word::name)) p.take();
+    p.accept(Word::semicolon);
+    return true;
+}
+
+void refuse_static(Parsing& p, PouKind kind) {
+    fail(p, "L0903", p.here().place, fmt::format("{} is not supported here", p.here().place.text()),
+         kind == PouKind::function ? "what is to stay makes a FUNCTION_BLOCK"
+                                   : "declare it in the VAR of the block");
+}
+
+void refuse_place(Parsing& p) {
+    if (p.is_name())
+        return fail(p, "L0903", p.here().place, "overlays (AT) are not supported",
+                    fmt::format("leave AT out, and write {0}.%X3 or {0}.%B1, or SCATTER and GATHER",
+                                p.here().text));
+    fail(p, "L0903", p.here().place, "direct addresses are not supported",
+         "leave AT out, and wire the variable in the program");
+}
+
+void refuse_statement(Parsing& p) {
+    fail(p, "L0902", p.here().place, fmt::format("expected END_VAR before {}", found(p)),
+         "declarations look like 'name : INT := 1;', and statements follow END_VAR");
+    p.unclosed_at = p.at;
+    p.section_left = true;
+}
+
+void refuse_reserved_name(Parsing& p) {
+    tell(p, "L0902", p.here().place,
+         fmt::format("'{}' is a word of the language, not a name", p.here().text), another_name(p));
+    p.is_spoiled = p.section_left = true;
+    p.unclosed_at = p.at;
+}
+
+void refuse_base(Parsing& p) {
+    fail(p, "L0903", p.here().place, "inheritance is not supported",
+         "declare a member of the other type");
+    p.panic = false;
+    while (!p.is(Word::end_of_file) && !p.is(Word::colon) && !p.is(Word::struct_)) p.take();
+}
+
+void refuse_namespace(Parsing& p, Token& name) {
+    const Place first = name.place;
+    while (p.is(Word::dot) && p.is_name(1)) p.take(), name = p.take();
+    tell(p, "L0903", first.to(name.place), "namespaces are not supported",
+         fmt::format("write {}", name.text));
+}
+
+void refuse_comparison(Parsing& p) {
+    tell(p, "L0902", p.here().place, "'=' compares and does not assign", "write ':='");
+    p.take();
+    parse_expression(p);
+    end_statement(p);
+}
+
+void refuse_assignment(Parsing& p) {
+    tell(p, "L0902", p.here().place, "':=' assigns and does not compare", "write '='");
+    p.take();
+    parse_expression(p);
+}
+
+bool refuse_rung(Parsing& p) {
+    if (!p.says("rung") || !(p.is_name(1) || p.next().word == Word::prefix)) return false;
+    fail(p, "L0903", p.here().place, "networks in LAD and FBD are not supported",
+         "convert the network to SCL");
+    while (!p.is(Word::end_network_) && !is_end(p.here().word) && !p.is(Word::end_of_file))
+        p.take();
+    p.panic = false;
+    return true;
+}
+
+void refuse_value(Parsing& p, const Expression& value) {
+    if (p.is(Word::colon) && value.token.word == Word::name)
+        fail(p, "L0903", value.place, "labels are not supported", "write IF, CASE, EXIT or RETURN");
+    else if (p.is(Word::name) && same_name(value.token.text, "jmp"))
+        fail(p, "L0903", value.place, "JMP is not supported", "write IF, CASE, EXIT or RETURN");
+    else if (p.is(Word::semicolon) || p.here().first_in_line)
+        fail(p, "L0902", value.place, "this does nothing",
+             p.cases > 0 ? "a value of CASE has a ':' behind it, a call '()'"
+                         : "write 'name := value;', or a call 'name();'");
+    else
+        expected(p, ":=", "or '('");
+}
+
+bool refuse_semicolon(Parsing& p) {
+    const Word behind = p.next(2).word;
+    const bool is_wrong = p.is(Word::semicolon) && p.is_name(1) && !p.next().first_in_line &&
+                          (behind == Word::assign || behind == Word::output);
+    if (!is_wrong) return false;
+    for (std::size_t i = 3; p.next(i).word != Word::close; ++i)  // else the call was not closed
+        if (p.next(i).word == Word::end_of_file || p.next(i).first_in_line) return false;
+    tell(p, "L0902", p.here().place, "expected ')' or ',', found ';'",
+         "arguments are joined by ','");
+    p.take();
+    return true;
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "runtime/st/syntax/parsing.hpp"
+
+/// What is written in other languages and dialects, and not in this one. What is refused is told,
+/// and skipped or read all the same, whichever finds more of the other mistakes.
+namespace lineshaft::st {
+
+/// What is written here in other languages: what to write instead. Empty if nothing is known.
+std::string habit(const Parsing& p);
+
+/// A word of what is not supported. It is not skipped.
+bool refuse_unsupported(Parsing& p);
+
+// Beside blocks and within them. False: it is none.
+
+/// CLASS, INTERFACE, NAMESPACE, PROPERTY, ACTION, USING: up to its END_... or the ';' behind it.
+bool refuse_whole(Parsing& p);
+/// `FUNCTION_BLOCK ABSTRACT x`
+bool refuse_modifier(Parsing& p);
+/// EXTENDS and IMPLEMENTS of a block, up to the end of the line.
+void refuse_bases(Parsing& p);
+/// A chart, up to the end of the block.
+void refuse_chart(Parsing& p);
+
+// In declarations.
+
+/// VAR_ACCESS; `CONST n := 5; END_CONST` and LABEL of Siemens' older SCL. False: it is none.
+bool refuse_section(Parsing& p);
+/// VAR_INST, and VAR_STAT where nothing stays.
+void refuse_static(Parsing& p, PouKind kind);
+/// Behind AT: `%IX0.0`, or another variable.
+void refuse_place(Parsing& p);
+/// A statement stands where a declaration is due.
+void refuse_statement(Parsing& p);
+/// A word of the language stands where a name is due: whatever uses it would be wrong too.
+void refuse_reserved_name(Parsing& p);
+/// `TYPE t EXTENDS base : STRUCT`
+void refuse_base(Parsing& p);
+/// `lib.T`: the name becomes what is behind the points.
+void refuse_namespace(Parsing& p, Token& name);
+
+// In statements and expressions.
+
+/// `x = 1;` is meant as an assignment.
+void refuse_comparison(Parsing& p);
+/// In a condition `x := 1` is meant as a comparison.
+void refuse_assignment(Parsing& p);
+/// `RUNG ... END_RUNG` of a network in LAD or FBD. False: it is none.
+bool refuse_rung(Parsing& p);
+/// A value that is no call, a label, JMP.
+void refuse_value(Parsing& p, const Expression& value);
+/// `t(IN := x; PT := y)`: takes the ';'. False: it is none.
+bool refuse_semicolon(Parsing& p);
+
+}  // namespace lineshaft::st

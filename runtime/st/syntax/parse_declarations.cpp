@@ -1,0 +1,88 @@
+#include "runtime/st/syntax/grammar.hpp"
+#include "runtime/st/syntax/mistakes.hpp"
+#include "runtime/st/syntax/recovery.hpp"
+#include "runtime/st/syntax/remarks.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+/// Its variables keep their values.
+bool stays(PouKind kind) {
+    return kind == PouKind::program || kind == PouKind::function_block;
+}
+
+/// Var_Modifier : 'CONSTANT' | 'RETAIN' | 'NON_RETAIN' | 'PERSISTENT' | 'DB_SPECIFIC' | Access_Spec
+bool accept_modifier(Parsing& p, DeclarationBlock& block) {
+    if (p.is_declared()) return false;
+    if (p.accept(Word::constant_)) return block.constant = true;
+    if (p.accept(Word::retain_)) return block.retain = true;
+    if (p.is(Word::name) && p.says("db_specific")) return p.take(), true;
+    if (p.is(Word::name) && p.says("persistent")) return p.take(), block.retain = true;
+    return p.accept(Word::non_retain_) || accept_access(p);
+}
+
+}  // namespace
+
+/// Var_Sections : Var_Section *
+void parse_sections(Parsing& p, Pou& pou, Word end) {
+    while (!p.is(end) && !p.is(Word::end_of_file)) {
+        const bool is_inst = p.is(Word::name) && p.here().first_in_line && p.says("var_inst");
+        if (refuse_section(p)) continue;
+        const bool is_list = p.next(2).word == Word::colon || p.next(2).word == Word::comma;
+        if (!is_inst && p.is_name(1) && is_list) respell(p, variable_words);
+        const SectionWord* word = find_section(p.here().word);
+        if (!word && !is_inst) return;
+        if (is_inst || (p.is(Word::var_stat_) && !stays(pou.kind))) refuse_static(p, pou.kind);
+        DeclarationBlock block = parse_section(p, is_inst ? Section::local : word->section);
+        if (block.section != Section::external) pou.blocks.push_back(std::move(block));
+    }
+}
+
+/// Var_Section : ( 'VAR' | 'VAR_STAT' | 'VAR_INPUT' | 'VAR_OUTPUT' | 'VAR_IN_OUT' | 'VAR_TEMP'
+///               | 'VAR_GLOBAL' | 'VAR_EXTERNAL' ) Var_Modifier * Var_Decl * 'END_VAR' ';' ?
+DeclarationBlock parse_section(Parsing& p, Section section) {
+    const Token opener = p.take();
+    DeclarationBlock block;
+    block.section = section;
+    while (accept_modifier(p, block)) continue;
+    p.section_left = false;
+    while (!p.section_left && !is_end(p.here().word) && !p.is(Word::end_of_file) && !p.at_pou() &&
+           !find_section(p.here().word))
+        parse_variables(p, block.declarations);
+    if (p.section_left) p.panic = false;
+    if (!p.section_left) close(p, Word::end_var_, opener);
+    p.accept(Word::semicolon);
+    return block;
+}
+
+/// Var_Decl : Variable_List ':' Data_Type ( 'R_EDGE' | 'F_EDGE' ) ? ( ':=' Var_Init ) ? ';'
+/// Variable_List : Name ( ',' Name ) *
+void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
+    const std::size_t first = p.at;
+    const Word behind = p.next().word;
+    if (!p.is_declared() && at_doomed_name(p) && respell(p, end_words)) return;
+    if ((p.is(Word::begin_) && !p.is_declared()) ||
+        (p.is_name() && (behind == Word::assign || behind == Word::open || behind == Word::dot)))
+        return refuse_statement(p);
+    if (!p.is_name() && p.here().word < Word::end_of_file && behind == Word::colon)
+        return refuse_reserved_name(p);
+    std::vector<Token> names;
+    do names.push_back(expect_name(p, "the name of a variable"));
+    while (p.accept(Word::comma));
+    if (p.accept(Word::at_)) refuse_place(p);
+    expect(p, Word::colon, "after the name");
+    TypeText* type = parse_type(p);
+    const bool is_edge = p.says("r_edge") || p.says("f_edge");
+    const Token edge = is_edge ? p.take() : Token{};
+    Expression* initial = p.accept(Word::assign) ? parse_initials(p) : nullptr;
+    if (!p.panic) end_statement(p);
+    if (p.panic) return skip_declaration(p);
+    const auto [unit, place] = unit_between(p, first, p.at);
+    const std::string_view doc = comment_before(p, p.at, false);
+    for (const Token& name : names)
+        to.push_back(&p.tree.declarations.emplace_back(
+            Declaration{name, type, initial, edge, unit, place, doc}));
+}
+
+}  // namespace lineshaft::st

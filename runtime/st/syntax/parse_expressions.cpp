@@ -1,0 +1,213 @@
+#include <array>
+
+#include "runtime/st/syntax/grammar.hpp"
+#include "runtime/st/syntax/mistakes.hpp"
+#include "runtime/st/syntax/recovery.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+struct Binary {
+    Word word;
+    int binding;
+};
+
+// IEC 61131-3:2013, table 71.
+constexpr int power_binding = 8;
+constexpr Binary binaries[] = {{Word::power, power_binding},
+                               {Word::times, 7},
+                               {Word::divided, 7},
+                               {Word::mod_, 7},
+                               {Word::plus, 6},
+                               {Word::minus, 6},
+                               {Word::less, 5},
+                               {Word::less_or_equal, 5},
+                               {Word::greater, 5},
+                               {Word::greater_or_equal, 5},
+                               {Word::equal, 4},
+                               {Word::unequal, 4},
+                               {Word::and_, 3},
+                               {Word::ampersand, 3},
+                               {Word::and_then_, 3},
+                               {Word::xor_, 2},
+                               {Word::or_, 1},
+                               {Word::or_else_, 1}};
+
+/// How strong a word binds as an operator; 0: it is none.
+constexpr auto bindings = [] {
+    std::array<int, 256> made{};
+    for (const Binary& binary : binaries)
+        made[static_cast<std::size_t>(binary.word)] = binary.binding;
+    return made;
+}();
+
+/// SCL's DIV is no word of the standard, where it is a function.
+Word operator_here(const Cursor& p) {
+    const bool divides = p.is(Word::name) && same_name(p.here().place.text(), "div");
+    return divides ? Word::divided : p.here().word;
+}
+
+/// `AND(a, b)`: of the functions that share their names with operators.
+bool at_operator_call(const Cursor& p) {
+    return (p.is(Word::and_) || p.is(Word::or_) || p.is(Word::xor_) || p.is(Word::mod_)) &&
+           p.next().word == Word::open;
+}
+
+/// `THIS.x` is a variable or a method of the own block, also as CODESYS writes it, `THIS^.x`.
+void skip_this(Parsing& p) {
+    const std::size_t dot = p.next().word == Word::caret ? 2 : 1;
+    const bool has_dot = p.next(dot).word == Word::dot && p.is_name(dot + 1);
+    if (p.is(Word::name) && p.says("this") && has_dot) p.at += dot + 1;
+}
+
+Expression* parse_primary(Parsing& p);
+
+/// Signed_Primary : ( '-' | '+' ) ? Primary_Expr
+Expression* parse_signed_primary(Parsing& p) {
+    if (!p.is(Word::minus) && !p.is(Word::plus)) return parse_primary(p);
+    Expression* made = p.make(Expression::Kind::unary, p.take());
+    made->op = made->token.word;
+    made->operands[0] = parse_primary(p);
+    made->place = made->place.to(made->operands[0]->place);
+    return made;
+}
+
+/// Typed_Literal : Type_Prefix '#' ( Duration | Signed_Primary )
+Expression* parse_typed_literal(Parsing& p) {
+    const Token prefix = p.take();
+    if (p.is(Word::duration)) {
+        Expression* time = p.make(Expression::Kind::constant, p.take());
+        time->place = prefix.place.to(time->place);
+        return time;
+    }
+    Expression* typed = p.make(Expression::Kind::typed, prefix);
+    Expression* value = parse_signed_primary(p);
+    typed->operands[0] = value;
+    typed->place = typed->place.to(value->place);
+    return typed;
+}
+
+/// In_Parentheses : '(' Expression ')'
+Expression* parse_in_parentheses(Parsing& p) {
+    p.take();
+    Expression* inner = parse_expression(p);
+    if (p.is(Word::assign)) refuse_assignment(p);
+    expect(p, Word::close);
+    return inner;
+}
+
+/// Primary_Expr : Unsigned_Int | Real | Text | Typed_Literal | In_Parentheses | Variable_Name
+///              | Array_Init
+/// Variable_Name : ( 'THIS' '^' ? '.' ) ? Name
+///               | 'AND' | 'OR' | 'XOR' | 'MOD'   where a '(' follows
+/// The checker refuses an Array_Init here.
+Expression* parse_primary(Parsing& p) {
+    const Level level(p);
+    if (!p.panic) {
+        switch (p.here().word) {
+            case Word::integer:
+            case Word::real:
+            case Word::text:
+                return p.make(Expression::Kind::constant, p.take());
+            case Word::prefix:
+                return parse_typed_literal(p);
+            case Word::open_bracket:
+                return parse_initial(p);
+            case Word::open:
+                return parse_in_parentheses(p);
+            default:
+                skip_this(p);
+                if (p.is(Word::super_) && p.next().word == Word::caret) break;
+                if (p.is_name() || at_operator_call(p))
+                    return p.make(Expression::Kind::name, p.take());
+        }
+    }
+    expected(p, "a value");
+    return p.make(Expression::Kind::constant, p.here());
+}
+
+/// Member : Name | Direct | Unsigned_Int
+Expression* parse_member(Parsing& p, Expression* of) {
+    const bool is_bit = p.is(Word::direct) || p.is(Word::integer);
+    if (!is_bit && !p.is(Word::name)) expected(p, "a name", "after '.'");
+    Expression* member =
+        p.make(is_bit ? Expression::Kind::bit : Expression::Kind::member, p.take());
+    p.add_operand(*member, 0, of);
+    return member;
+}
+
+Expression* parse_binary(Parsing& p, int binding);
+
+/// Unary_Expr : ( '-' | '+' | 'NOT' ) Unary_Expr | Variable_Access
+/// Where a sign does not precede a power:
+/// Unary_Expr : ( '-' | '+' ) Power_Expr | 'NOT' Unary_Expr | Variable_Access
+Expression* parse_unary(Parsing& p) {
+    if (!p.is(Word::minus) && !p.is(Word::plus) && !p.is(Word::not_)) return parse_access(p);
+    const Level level(p);
+    Expression* made = p.make(Expression::Kind::unary, p.take());
+    made->op = made->token.word;
+    const bool precedes = made->op == Word::not_ || p.source->dialect.sign_precedes_power;
+    Expression* operand = precedes ? parse_unary(p) : parse_binary(p, power_binding);
+    made->operands[0] = operand;
+    made->place = made->place.to(operand->place);
+    p.grow(*made, *operand);
+    return made;
+}
+
+/// Xor_Expr : And_Expr ( 'XOR' And_Expr ) *
+/// And_Expr : Compare_Expr ( ( 'AND' | '&' | 'AND_THEN' ) Compare_Expr ) *
+/// Compare_Expr : Equ_Expr ( ( '=' | '<>' ) Equ_Expr ) *
+/// Equ_Expr : Add_Expr ( ( '<' | '>' | '<=' | '>=' ) Add_Expr ) *
+/// Add_Expr : Term ( ( '+' | '-' ) Term ) *
+/// Term : Power_Expr ( ( '*' | '/' | 'DIV' | 'MOD' ) Power_Expr ) *
+/// Power_Expr : Unary_Expr ( '**' Unary_Expr ) *
+/// With operators that bind as strong as `binding` or stronger.
+Expression* parse_binary(Parsing& p, int binding) {
+    Expression* left = parse_unary(p);
+    for (;;) {
+        const Word op = operator_here(p);
+        const int binds = bindings[static_cast<std::size_t>(op)];
+        if (p.panic || binds < binding) return left;
+        Expression* made = p.make(Expression::Kind::binary, p.take());
+        made->op = op == Word::ampersand ? Word::and_ : op;
+        p.add_operand(*made, 0, left);
+        p.add_operand(*made, 1, parse_binary(p, binds + 1));
+        left = made;
+    }
+}
+
+}  // namespace
+
+/// Expression : Xor_Expr ( ( 'OR' | 'OR_ELSE' ) Xor_Expr ) *
+Expression* parse_expression(Parsing& p) {
+    return parse_binary(p, 1);
+}
+
+/// Variable_Access : Primary_Expr ( '(' Params of Expression ')' | '[' Params of Expression ']'
+///                                | '.' Member ) *
+/// An index has at least one.
+Expression* parse_access(Parsing& p) {
+    Expression* left = parse_primary(p);
+    while (!p.panic) {
+        if (p.is(Word::open)) {
+            Expression* call = p.make(Expression::Kind::call, p.take());
+            parse_arguments(p, *call, Word::close, parse_expression);
+            p.add_operand(*call, 0, left);
+            left = call;
+        } else if (p.is(Word::open_bracket)) {
+            Expression* index = p.make(Expression::Kind::index, p.take());
+            if (p.is(Word::close_bracket)) expected(p, "an index", "after '['");
+            parse_arguments(p, *index, Word::close_bracket, parse_expression);
+            p.add_operand(*index, 0, left);
+            left = index;
+        } else if (p.accept(Word::dot)) {
+            left = parse_member(p, left);
+        } else {
+            break;
+        }
+    }
+    return left;
+}
+
+}  // namespace lineshaft::st

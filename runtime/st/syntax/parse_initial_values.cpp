@@ -1,0 +1,82 @@
+#include "runtime/st/syntax/grammar.hpp"
+#include "runtime/st/syntax/mistakes.hpp"
+#include "runtime/st/syntax/recovery.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+/// Array_Elem_Init : Unsigned_Int '(' Params of Init ')' | Expression
+Expression* parse_element(Parsing& p) {
+    if (!p.is(Word::integer) || p.next().word != Word::open) return parse_expression(p);
+    const Level level(p);
+    Expression* count = p.make(Expression::Kind::constant, p.take());
+    Expression* repeated = p.make(Expression::Kind::repeated, p.take());
+    parse_arguments(p, *repeated, Word::close, parse_initial);
+    p.add_operand(*repeated, 0, count);
+    return repeated;
+}
+
+/// Param_Assign : Name '=>' Value ? | ( Name ':=' ) ? Value
+/// False: nothing more can be read.
+bool parse_argument(Parsing& p, Expression& to, Word end, Expression* (*parse_value)(Parsing&)) {
+    if (p.is(Word::not_) && p.is_name(1) && p.next(2).word == Word::output) {
+        fail(p, "L0903", p.here().place, "NOT before an output is not supported",
+             "take the output, and write NOT where it is used");
+        return false;
+    }
+    Argument argument;
+    if (p.at_argument_name()) {
+        argument.name = p.take();
+        argument.is_output = p.take().word == Word::output;
+        if (argument.is_output && (p.is(Word::comma) || p.is(end))) return true;
+    }
+    argument.value = parse_value(p);
+    if (p.panic) return false;
+    p.grow(to, *argument.value);
+    to.arguments.push_back(argument);
+    return true;
+}
+
+}  // namespace
+
+/// Init : Array_Init | Struct_Init | Array_Elem_Init
+/// Array_Init : '[' Params of Init ']'
+/// Struct_Init : '(' Params of Init ')'
+Expression* parse_initial(Parsing& p) {
+    const bool is_structure = p.at_structure();
+    if (!is_structure && !p.is(Word::open_bracket)) return parse_element(p);
+    const Level level(p);
+    Expression* list = p.make(Expression::Kind::list, p.take());
+    parse_arguments(p, *list, is_structure ? Word::close : Word::close_bracket, parse_initial);
+    return list;
+}
+
+/// Var_Init : Init ( ',' Init ) *
+/// SCL leaves the brackets of an array's values out: `1, 2, 4(0)`.
+Expression* parse_initials(Parsing& p) {
+    Expression* first = parse_initial(p);
+    if (!p.is(Word::comma)) return first;
+    Expression* list = p.make(Expression::Kind::list, p.last());
+    list->arguments.push_back({{}, false, first, nullptr});
+    while (p.accept(Word::comma)) {
+        list->arguments.push_back({{}, false, parse_initial(p), nullptr});
+        p.grow(*list, *list->arguments.back().value);
+    }
+    list->place = first->place.to(p.last().place);
+    return list;
+}
+
+/// Params of Value : ( Param_Assign ( ',' Param_Assign ) * ) ?
+void parse_arguments(Parsing& p, Expression& to, Word end, Expression* (*parse_value)(Parsing&)) {
+    const Level level(p);
+    if (!p.panic && !p.is(end)) {
+        do
+            if (!parse_argument(p, to, end, parse_value)) return;
+        while (p.accept(Word::comma) || refuse_semicolon(p));
+    }
+    to.place = to.place.to(p.here().place);
+    if (!expect(p, end)) to.place.end = p.last().place.end;
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+
+#include "runtime/st/syntax/grammar.hpp"
+#include "runtime/st/syntax/mistakes.hpp"
+#include "runtime/st/syntax/recovery.hpp"
+#include "runtime/st/syntax/remarks.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+/// Config_Decl : 'CONFIGURATION' ( Var_Section of 'VAR_GLOBAL' | any token ) *
+///               'END_CONFIGURATION' ';' ?
+void parse_configuration(Parsing& p) {
+    const Token opener = p.take();
+    p.out.warn("L0903", opener.place.mark(), "the tasks of a CONFIGURATION are not taken",
+               "write tasks into the program's YAML file");
+    while (!p.is(Word::end_of_file) && !p.says("end_configuration"))
+        if (p.is(Word::var_global_))
+            p.tree.globals.push_back(parse_section(p, Section::global));
+        else
+            p.take();
+    if (p.is(Word::end_of_file))
+        tell(p, "L0902", opener.place, "the CONFIGURATION does not end",
+             "it ends with END_CONFIGURATION");
+    p.take();
+    p.accept(Word::semicolon);
+}
+
+bool at_attribute(const Cursor& p) {
+    static constexpr std::string_view words[] = {
+        "title", "author", "family", "name", "know_how_protect", "read_only", "unlinked"};
+    if (p.is(Word::version_)) return true;
+    return p.is(Word::name) && !p.here().quoted && p.here().first_in_line &&
+           std::ranges::any_of(words, [&](std::string_view word) { return p.says(word); });
+}
+
+/// POU_Header : Attribute * ( 'NON_RETAIN' | 'RETAIN' ) ? ( Data_Type ';' ? ) ?
+/// Only a data block has a type here.
+void parse_header(Parsing& p, Pou& pou) {
+    refuse_bases(p);
+    parse_attributes(p);
+    p.accept(Word::non_retain_) || p.accept(Word::retain_);
+    if (pou.kind != PouKind::data_block) return;
+    pou.base = std::exchange(pou.result, nullptr);
+    const bool has_type =
+        p.is(Word::struct_) || p.is(Word::array_) || (p.is_name() && !p.is(Word::begin_));
+    if (!has_type) return;
+    pou.base = parse_type(p);
+    p.accept(Word::semicolon);
+}
+
+/// POU_Body : Stmt_List ( POU of 'METHOD' Stmt_List ) *
+/// Only a function block and a program have methods.
+void parse_body(Parsing& p, Pou& pou, Word end) {
+    for (;;) {
+        parse_statements(p, pou.body, end);
+        if (!p.is(Word::method_)) return;
+        if (pou.kind != PouKind::function_block && pou.kind != PouKind::program) return;
+        pou.methods.push_back(parse_pou(p));
+    }
+}
+
+}  // namespace
+
+/// Declaration : POU of any word but 'METHOD' | Data_Type_Decl | Var_Section of 'VAR_GLOBAL'
+///             | Config_Decl | Test
+void parse_declaration(Parsing& p) {
+    if (p.is(Word::end_of_file)) return;
+    if (find_pou(p.here().word) && !p.is(Word::method_))
+        return p.tree.units.push_back(parse_pou(p));
+    if (p.is(Word::type_)) return parse_type_declarations(p);
+    if (p.is(Word::var_global_)) return p.tree.globals.push_back(parse_section(p, Section::global));
+    if (p.is(Word::configuration_)) return parse_configuration(p);
+    if (refuse_whole(p)) return;
+    if (p.is_name(1) && respell(p, declaration_words)) return parse_declaration(p);
+    const bool is_tests = p.source->kind == SourceKind::tests;
+    if (p.at_test() || (is_tests && p.is(Word::test_))) return parse_test(p);
+    if (is_end(p.here().word) && p.unclosed_at < p.at) {
+        p.take();
+        p.accept(Word::semicolon);
+        return;
+    }
+    expected(p, "a FUNCTION_BLOCK, FUNCTION, PROGRAM, DATA_BLOCK or TYPE");
+    p.take();
+}
+
+/// POU : ( 'PROGRAM' | 'ORGANIZATION_BLOCK' | 'FUNCTION_BLOCK' | 'FUNCTION' | 'DATA_BLOCK'
+///       | 'METHOD' ) Access_Spec * Name ( ':' Data_Type ) ? POU_Header Var_Section * 'BEGIN' ?
+///       POU_Body ( 'END_PROGRAM' | ... of the same word ) ';' ?
+Pou* parse_pou(Parsing& p) {
+    const PouWords& words = *find_pou(p.here().word);
+    const std::string_view doc = comment_before(p, p.at, true);
+    const Token opener = p.take();
+    Pou& pou = p.tree.pous.emplace_back();
+    pou.kind = words.kind;
+    pou.doc = doc;
+    pou.is_private = p.is(Word::private_);
+    while (accept_access(p) || refuse_modifier(p)) continue;
+    pou.name = expect_name(p, fmt::format("the name of the {}", shown(opener.word)));
+    pou.place = opener.place.to(pou.name.place);
+    if (p.accept(Word::colon)) pou.result = parse_type(p);
+    if (p.panic) skip_line(p);
+    parse_header(p, pou);
+    if (pou.doc.empty()) pou.doc = comment_before(p, p.at, true);
+    parse_sections(p, pou, words.end);
+    if (std::exchange(p.is_spoiled, false)) return skip_past(p, words.end), &pou;
+    p.accept(Word::begin_);
+    p.is_in_body = true;
+    parse_body(p, pou, words.end);
+    for (const Token& region : std::exchange(p.regions, {}))
+        tell(p, "L0902", region.place, "the REGION does not end", "it ends with END_REGION");
+    close(p, words.end, opener);
+    p.is_in_body = false;
+    p.accept(Word::semicolon);
+    if (p.panic) skip_past(p, words.end);
+    return &pou;
+}
+
+/// Access_Spec : 'PRIVATE' | 'PUBLIC' | 'PROTECTED' | 'INTERNAL'
+bool accept_access(Parsing& p) {
+    return !p.is_declared() && (p.accept(Word::private_) || p.accept(Word::public_) ||
+                                p.accept(Word::protected_) || p.accept(Word::internal_));
+}
+
+/// Attribute : 'VERSION' ':' Real
+///           | ( 'VERSION' | 'TITLE' | 'AUTHOR' | 'FAMILY' | 'NAME' | 'KNOW_HOW_PROTECT'
+///             | 'READ_ONLY' | 'UNLINKED' ) any token up to the end of the line
+/// All but VERSION are names elsewhere, and begin their line here.
+void parse_attributes(Parsing& p) {
+    while (at_attribute(p)) {
+        const bool is_number = p.next().word == Word::colon && p.next(2).word == Word::real;
+        if (p.is(Word::version_) && is_number && p.next(3).word != Word::dot)
+            p.at += 3;
+        else
+            skip_line(p);
+    }
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,268 @@
+#include "runtime/st/syntax/grammar.hpp"
+#include "runtime/st/syntax/mistakes.hpp"
+#include "runtime/st/syntax/recovery.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+bool is_assignment(Word op) {
+    return op >= Word::assign && op <= Word::divided_assign;
+}
+
+/// Assign_Stmt : Variable_Access ( Assign_Op Init ) + ';'
+/// Assign_Op : ':=' | '+=' | '-=' | '*=' | '/='
+/// `a := b := 0;` is `b := 0; a := b;`, whose two `b` are read each.
+void parse_assignment(Parsing& p, Expression* target, Block& to) {
+    const Level level(p);
+    Statement* statement = p.make(Statement::Kind::assign, p.here());
+    statement->op = p.take().word;
+    statement->target = target;
+    const std::size_t before = p.at;
+    statement->value = parse_initial(p);
+    statement->place = target->place.to(p.last().place);
+    if (p.panic || !is_assignment(p.here().word)) {
+        end_statement(p);
+    } else {
+        Expression* inner = statement->value;
+        p.at = before;
+        statement->value = parse_initial(p);
+        parse_assignment(p, inner, to);
+    }
+    to.push_back(statement);
+}
+
+/// Latch_Stmt : Variable_Access ( 'S=' | 'R=' ) Expression ';'
+/// `lamp S= start;` is `IF start THEN lamp := TRUE; END_IF`.
+void parse_latch(Parsing& p, Expression* target, Block& to) {
+    const Token op = p.take();
+    Statement* latched = p.make(Statement::Kind::assign, op);
+    latched->target = target;
+    latched->value = p.make(Expression::Kind::name, op);
+    latched->value->token.text = op.word == Word::set_assign ? "true" : "false";
+    Statement* statement = p.make(Statement::Kind::if_, op);
+    Branch& branch = statement->branches.emplace_back();
+    branch.condition = parse_expression(p);
+    branch.body = {latched};
+    latched->place = statement->place = target->place.to(p.last().place);
+    to.push_back(statement);
+    end_statement(p);
+}
+
+/// Simple_Stmt : Assign_Stmt | Latch_Stmt | Invocation
+/// Invocation : Variable_Access ';'   that ends with the ')' of a call
+void parse_simple(Parsing& p, Block& to) {
+    if (refuse_rung(p)) return;
+    if (!p.is_name()) return expected(p, "a statement");
+    if (p.is_in_test && p.at_test_statement()) return parse_test_statement(p, to);
+    Expression* target = parse_access(p);
+    if (p.panic) return;
+    const Word op = p.here().word;
+    if (is_assignment(op)) return parse_assignment(p, target, to);
+    if (op == Word::set_assign || op == Word::reset_assign) return parse_latch(p, target, to);
+    if (op == Word::equal) return refuse_comparison(p);
+    if (target->kind != Expression::Kind::call) return refuse_value(p, *target);
+    Statement* statement = p.make(Statement::Kind::call, target->token);
+    statement->place = target->place;
+    statement->value = target;
+    to.push_back(statement);
+    end_statement(p);
+}
+
+/// A condition or selector, and the word behind it.
+Expression* parse_condition(Parsing& p, Word end, std::string_view where) {
+    Expression* condition = parse_expression(p);
+    if (!p.panic && p.is(Word::assign)) refuse_assignment(p);
+    if (p.panic || expect(p, end, where)) return condition;
+    p.panic = false;
+    if (p.is(Word::then_) || p.is(Word::do_) || p.is(Word::of_)) p.take();
+    return condition;
+}
+
+/// IF_Stmt : 'IF' Expression 'THEN' Stmt_List ( 'ELSIF' Expression 'THEN' Stmt_List ) *
+///           ( 'ELSE' Stmt_List ) ? 'END_IF'
+void parse_if(Parsing& p, Block& to) {
+    const Token opener = p.take();
+    Statement* statement = p.make(Statement::Kind::if_, opener);
+    const std::size_t else_ifs = p.else_ifs.size();
+    do {
+        Branch branch;
+        branch.condition = parse_condition(p, Word::then_, "after the condition");
+        if (p.panic) skip_to_statement(p);
+        parse_statements(p, branch.body, Word::end_if_);
+        statement->branches.push_back(std::move(branch));
+    } while (p.accept(Word::elsif_));
+    if (p.is(Word::else_)) {
+        const Token word = p.take();
+        if (p.is(Word::if_) && !p.here().first_in_line)
+            p.else_ifs.push_back(word.place.to(p.here().place));
+        parse_statements(p, statement->body, Word::end_if_);
+    }
+    close(p, Word::end_if_, opener);
+    p.else_ifs.resize(else_ifs);
+    to.push_back(statement);
+}
+
+/// Case_Selection : Case_List ':' Stmt_List
+/// Case_List : Case_List_Elem ( ',' Case_List_Elem ) *
+/// Case_List_Elem : Expression ( '..' Expression ) ?
+Branch parse_selection(Parsing& p) {
+    Branch branch;
+    do {
+        Expression* from = parse_expression(p);
+        Expression* to = p.accept(Word::range) ? parse_expression(p) : nullptr;
+        branch.labels.emplace_back(from, to);
+    } while (p.accept(Word::comma));
+    expect(p, Word::colon, "after the values");
+    if (p.panic) skip_to_statement(p);
+    parse_statements(p, branch.body, Word::end_case_, true);
+    return branch;
+}
+
+/// Case_Stmt : 'CASE' Expression 'OF' Case_Selection * ( 'ELSE' ':' ? Stmt_List ) ? 'END_CASE'
+void parse_case(Parsing& p, Block& to) {
+    const Token opener = p.take();
+    Statement* statement = p.make(Statement::Kind::case_, opener);
+    statement->value = parse_condition(p, Word::of_, "after the selector");
+    if (p.panic) skip_to_statement(p);
+    ++p.cases;
+    const auto at_first = [&] { return statement->branches.empty() && p.is(Word::name); };
+    while (!p.panic && (p.at_label() || at_first()))
+        statement->branches.push_back(parse_selection(p));
+    --p.cases;
+    if (p.accept(Word::else_)) {
+        p.accept(Word::colon);
+        parse_statements(p, statement->body, Word::end_case_);
+    }
+    close(p, Word::end_case_, opener);
+    to.push_back(statement);
+}
+
+/// For_Stmt : 'FOR' Variable_Access ':=' For_List 'DO' Stmt_List 'END_FOR'
+/// For_List : Expression 'TO' Expression ( 'BY' Expression ) ?
+void parse_for(Parsing& p, Block& to) {
+    const Token opener = p.take();
+    Statement* statement = p.make(Statement::Kind::for_, opener);
+    statement->target = parse_access(p);
+    expect(p, Word::assign, "after the loop's variable");
+    statement->value = parse_expression(p);
+    expect(p, Word::to_, "after the first value");
+    statement->limit = parse_expression(p);
+    if (p.accept(Word::by_)) statement->step = parse_expression(p);
+    expect(p, Word::do_, "after the last value");
+    if (p.panic) skip_to_statement(p);
+    parse_statements(p, statement->body, Word::end_for_);
+    close(p, Word::end_for_, opener);
+    to.push_back(statement);
+}
+
+/// While_Stmt : 'WHILE' Expression 'DO' Stmt_List 'END_WHILE'
+void parse_while(Parsing& p, Block& to) {
+    const Token opener = p.take();
+    Statement* statement = p.make(Statement::Kind::while_, opener);
+    statement->value = parse_condition(p, Word::do_, "after the condition");
+    if (p.panic) skip_to_statement(p);
+    parse_statements(p, statement->body, Word::end_while_);
+    close(p, Word::end_while_, opener);
+    to.push_back(statement);
+}
+
+/// Repeat_Stmt : 'REPEAT' Stmt_List 'UNTIL' Expression ';' ? 'END_REPEAT'
+void parse_repeat(Parsing& p, Block& to) {
+    const Token opener = p.take();
+    Statement* statement = p.make(Statement::Kind::repeat, opener);
+    parse_statements(p, statement->body, Word::until_);
+    if (close(p, Word::until_, opener)) {
+        statement->value = parse_expression(p);
+        if (!p.panic && p.is(Word::assign)) refuse_assignment(p);
+        p.accept(Word::semicolon);
+    }
+    if (p.panic) skip_to_statement(p);
+    close(p, Word::end_repeat_, opener);
+    if (statement->value) to.push_back(statement);
+}
+
+/// Jump_Stmt : ( 'EXIT' | 'CONTINUE' | 'RETURN' ) ';'
+void parse_jump(Parsing& p, Statement::Kind kind, Block& to) {
+    to.push_back(p.make(kind, p.take()));
+    end_statement(p);
+}
+
+/// Region : ( 'REGION' | 'END_REGION' | 'NETWORK' | 'END_NETWORK' ) ';' ?
+/// The lexer leaves a region's title out.
+void parse_region(Parsing& p) {
+    const Token word = p.take();
+    if (word.word == Word::region_) p.regions.push_back(word);
+    if (word.word == Word::end_region_ && !p.regions.empty()) p.regions.pop_back();
+    p.accept(Word::semicolon);
+}
+
+/// Stmt : ';' | Region | ( IF_Stmt | Case_Stmt | For_Stmt | While_Stmt | Repeat_Stmt ) ';' ?
+///      | Jump_Stmt | Simple_Stmt | Test_Stmt
+void parse_statement(Parsing& p, Block& to) {
+    const Level level(p);
+    if (p.panic) return;
+    using Kind = Statement::Kind;
+    switch (p.here().word) {
+        case Word::semicolon:
+            p.take();
+            return;
+        case Word::action_:
+        case Word::property_:
+            if (!p.is_name(1)) return parse_simple(p, to);
+            refuse_whole(p);
+            return;
+        case Word::network_:
+            if (p.next().word == Word::assign) return parse_simple(p, to);
+            return parse_region(p);
+        case Word::region_:
+        case Word::end_region_:
+        case Word::end_network_:
+            return parse_region(p);
+        case Word::exit_:
+            return parse_jump(p, Kind::exit, to);
+        case Word::continue_:
+            return parse_jump(p, Kind::continue_, to);
+        case Word::return_:
+            return parse_jump(p, Kind::return_, to);
+        case Word::if_:
+            parse_if(p, to);
+            break;
+        case Word::case_:
+            parse_case(p, to);
+            break;
+        case Word::for_:
+            parse_for(p, to);
+            break;
+        case Word::while_:
+            parse_while(p, to);
+            break;
+        case Word::repeat_:
+            parse_repeat(p, to);
+            break;
+        default:
+            return parse_simple(p, to);
+    }
+    p.accept(Word::semicolon);
+}
+
+}  // namespace
+
+/// Stmt_List : Stmt *
+/// One with a mistake is left out.
+void parse_statements(Parsing& p, Block& to, Word end, bool in_case) {
+    while (!p.panic && !p.is(end) && !at_end_of_statements(p) &&
+           !(in_case ? p.at_label() : at_label_of_case(p))) {
+        if (p.at_chart()) return refuse_chart(p);
+        if (at_doomed_name(p) && !p.at_test_statement() && respell(p, statement_words)) continue;
+        const std::size_t before = p.at, statements = to.size();
+        parse_statement(p, to);
+        if (p.panic) {
+            to.resize(statements);
+            skip_to_statement(p);
+        }
+        if (p.at == before) p.take();
+    }
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,144 @@
+#include <fmt/format.h>
+
+#include "runtime/st/syntax/grammar.hpp"
+#include "runtime/st/syntax/mistakes.hpp"
+#include "runtime/st/syntax/recovery.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+/// Subrange : Expression '..' Expression
+void parse_bounds(Parsing& p, TypeText& type) {
+    Expression* from = parse_expression(p);
+    if (!p.accept(Word::range)) expected(p, "..", "between the bounds");
+    type.ranges.emplace_back(from, parse_expression(p));
+}
+
+/// Array_Spec : 'ARRAY' '[' Subrange ( ',' Subrange ) * ']' 'OF' Data_Type
+void parse_array(Parsing& p, TypeText& type) {
+    type.kind = TypeText::Kind::array;
+    expect(p, Word::open_bracket, "after ARRAY");
+    do {
+        if (p.is(Word::times))
+            return fail(p, "L0903", p.here().place, "arrays of any length are not supported",
+                        "write its bounds: ARRAY[0..9] OF ...");
+        parse_bounds(p, type);
+    } while (p.accept(Word::comma));
+    expect(p, Word::close_bracket, "after the bounds");
+    expect(p, Word::of_, "before the type of the elements");
+    type.element = parse_type(p);
+}
+
+/// Struct_Decl : 'STRUCT' Var_Decl * 'END_STRUCT'
+void parse_structure(Parsing& p, TypeText& type, const Token& opener, Word end) {
+    type.kind = TypeText::Kind::structure;
+    while (!p.panic && !p.is_spoiled && !is_end(p.here().word) && !p.is(Word::end_of_file) &&
+           !p.at_pou())
+        parse_variables(p, type.members);
+    close(p, end, opener);
+}
+
+/// A UNION is told, and read as a structure.
+void refuse_union(Parsing& p, TypeText& type) {
+    const Token opener = p.take();
+    tell(p, "L0903", opener.place, "unions are not supported",
+         "declare a STRUCT, and convert: DWORD_TO_REAL and its like keep the bits");
+    parse_structure(p, type, opener, Word::end_union_);
+}
+
+/// Enum_Spec : '(' Enum_Value ( ',' Enum_Value ) * ')' Name ?
+/// Enum_Value : Name ( ':=' Expression ) ?
+/// The name is that of the numbers' type, where none stands before.
+void parse_enumeration(Parsing& p, TypeText& type) {
+    type.kind = TypeText::Kind::enumeration;
+    expect(p, Word::open);
+    do {
+        Argument& value = type.values.emplace_back();
+        value.name = expect_name(p, "the name of a value");
+        if (p.accept(Word::assign)) value.value = parse_expression(p);
+    } while (p.accept(Word::comma));
+    expect(p, Word::close, "after the values");
+    if (p.is(Word::name) && type.name.word == Word::end_of_file) type.name = p.take();
+}
+
+/// Text_Length : '[' Expression ']' | '(' Expression ')'
+Expression* parse_length(Parsing& p) {
+    const Word end = p.take().word == Word::open_bracket ? Word::close_bracket : Word::close;
+    Expression* length = parse_expression(p);
+    expect(p, end, "after the length");
+    return length;
+}
+
+/// Type_Access : ( '_' '.' ) ? Name
+///             | 'STRING' Text_Length | 'WSTRING' Text_Length
+///             | Name Enum_Spec | Name '(' Subrange ')'
+void parse_named_type(Parsing& p, TypeText& type) {
+    if (p.is(Word::pointer_) && p.next().word == Word::to_) refuse_unsupported(p);
+    type.name = expect_name(p, "a type");
+    if (type.name.text == "_" && p.accept(Word::dot)) type.name = expect_name(p, "a type");
+    if (p.panic) return;
+    if (p.is(Word::dot) && p.is_name(1)) refuse_namespace(p, type.name);
+    const bool has_length = p.is(Word::open_bracket) || p.is(Word::open);
+    if (same_name(type.name.text, "string") && has_length) {
+        type.kind = TypeText::Kind::text;
+        type.length = parse_length(p);
+    } else if (same_name(type.name.text, "wstring") && has_length) {
+        parse_length(p);
+    } else if (same_name(type.name.text, "reference") && p.is(Word::to_)) {
+        fail(p, "L0903", type.name.place, "references are not supported",
+             "pass the variable as VAR_IN_OUT");
+    } else if (p.is(Word::open)) {
+        const Word behind = p.next(2).word;
+        if (p.is_name(1) &&
+            (behind == Word::comma || behind == Word::assign || behind == Word::close))
+            return parse_enumeration(p, type);
+        p.take();
+        type.kind = TypeText::Kind::subrange;
+        parse_bounds(p, type);
+        expect(p, Word::close, "after the bounds");
+    }
+}
+
+}  // namespace
+
+/// Data_Type_Decl : 'TYPE' ( Type_Decl ( ';' Type_Decl ) * ';' ? ) ? 'END_TYPE' ';' ?
+/// Type_Decl : Name Attribute * ( ':' Data_Type | Struct_Decl ) ( ':=' Init ) ?
+void parse_type_declarations(Parsing& p) {
+    const Token opener = p.take();
+    while (!is_end(p.here().word) && !p.is(Word::end_of_file) && !p.at_pou()) {
+        TypeDeclaration declared;
+        declared.name = expect_name(p, "the name of a type");
+        if (p.is(Word::extends_)) refuse_base(p);
+        parse_attributes(p);
+        if (!p.is(Word::struct_)) expect(p, Word::colon, "after the name");
+        declared.type = parse_type(p);
+        if (p.accept(Word::assign)) declared.initial = parse_initial(p);
+        if (!p.accept(Word::semicolon) && !p.is(Word::end_type_)) end_statement(p);
+        if (p.panic) skip_declaration(p);
+        p.tree.types.push_back(declared);
+    }
+    close(p, Word::end_type_, opener);
+    p.accept(Word::semicolon);
+}
+
+/// Data_Type : Array_Spec | Struct_Decl | Enum_Spec | Type_Access
+TypeText* parse_type(Parsing& p) {
+    const Level level(p);
+    TypeText& type = p.tree.type_texts.emplace_back();
+    const Token first = p.here();
+    if (p.accept(Word::array_))
+        parse_array(p, type);
+    else if (p.accept(Word::struct_))
+        parse_structure(p, type, first, Word::end_struct_);
+    else if (p.is(Word::union_) && p.is_name(1))
+        refuse_union(p, type);
+    else if (p.is(Word::open))
+        parse_enumeration(p, type);
+    else
+        parse_named_type(p, type);
+    type.place = first.place.to(p.last().place);
+    return &type;
+}
+
+}  // namespace lineshaft::st

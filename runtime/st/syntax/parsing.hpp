@@ -1,0 +1,45 @@
+#pragma once
+
+#include "runtime/st/syntax/cursor.hpp"
+
+namespace lineshaft::st {
+
+/// What parse() knows while it reads a source. The reading is done by functions that take it first:
+/// grammar.hpp, recovery.hpp, mistakes.hpp.
+struct Parsing : Cursor {
+    Tree& tree;
+    Diagnostics& out;
+    Pou* fixture = nullptr;            ///< that the tests are methods of
+    std::vector<Token> regions = {};   ///< that are open
+    int cases = 0;                     ///< that are open, before their ELSE
+    int levels = 0;                    ///< that are open
+    bool is_in_body = false;           ///< of a POU
+    bool is_in_test = false;           ///< in its body
+    bool is_wrong = false;             ///< what is being declared
+    bool is_spoiled = false;           ///< the POU, by a variable that cannot be
+    bool section_left = false;         ///< a VAR ended without END_VAR
+    std::vector<Place> else_ifs = {};  ///< `ELSE IF` within the IFs that are open
+    std::size_t unclosed_at = static_cast<std::size_t>(-1);  ///< where an end was missed last
+
+    Expression* make(Expression::Kind kind, const Token& token);
+    Statement* make(Statement::Kind kind, const Token& token);
+
+    /// Takes up `operand`, and makes the place as large.
+    void add_operand(Expression& to, int index, Expression* operand);
+    /// Makes `to` deeper than a part of it. A chain that is too long is told.
+    void grow(Expression& to, const Expression& part);
+    /// Tells it, and reads no further.
+    void refuse_depth(Place place);
+};
+
+/// Counts levels while it lives.
+class Level {
+  public:
+    explicit Level(Parsing& p);
+    ~Level() { --p_.levels; }
+
+  private:
+    Parsing& p_;
+};
+
+}  // namespace lineshaft::st
