@@ -165,6 +165,11 @@ found = [line.split()[0] for line in run("blocks", "Gear", code=0).splitlines()]
 assert {"MC_GearIn", "MC_GearOut", "MC_GearInPos"} <= set(found) and len(found) < 10, found
 assert [line.split()[0] for line in run("blocks", "gear", "leaves", code=0).splitlines()] == ["MC_GearOut"]
 
+# A comment in Latin-1 is text as another.
+(folder / "latin.st").write_bytes("FUNCTION_BLOCK p\nVAR_INPUT x : INT; (* õä *) END_VAR\nEND_FUNCTION_BLOCK\n".encode("iso-8859-1"))
+described = json.loads(run("blocks", "latin.st", "--json", code=0))
+assert [field["doc"] for field in described[0]["fields"] if field["name"] == "x"] == ["õä"], described
+
 # Which axis a command refers to.
 write("axis.yaml", "lineshaft: 1\ntasks: {t: {every: 1 ms}}\nblocks:\n  x: {type: axis, task: t}\n"
       "  stop: {type: MC_Stop, task: t, Axis: x, Execute: true}\nrun: {for: 1 ms}\n")

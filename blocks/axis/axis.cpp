@@ -226,15 +226,13 @@ void Axis::settle() {
 }
 
 void Axis::publish() {
-    const MotionState now = total();
+    const MotionState now = software_limits ? shown.state : total();
     if (!all_finite(now.position, now.velocity, now.acceleration, now.jerk)) {
         error = true;
         error_id = MotionError::not_finite;
         return;
     }
-    position = modulo            ? within_period(now.position, period)
-               : software_limits ? shown.state.position
-                                 : now.position;
+    position = modulo ? within_period(now.position, period) : now.position;
     velocity = now.velocity;
     acceleration = now.acceleration;
     jerk = now.jerk;

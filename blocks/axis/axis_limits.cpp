@@ -132,16 +132,15 @@ bool Axis::finds_room(const MotionState& next) {
 /// What is shown is at each time a state from which the axis can stop inside its limits: with its
 /// defaults, or by going on as planned. One that is inside and goes on to an end stays so.
 bool Axis::is_safe(const MotionState& next) {
-    if (safe.as_planned != 0 || safe.contains(next) || finds_room(next)) return true;
+    if (safe.contains(next)) return true;
     const Bounds kept = bounds();
-    const bool goes_on = goes_on_inside();
     const bool is_inside = kept.lowest == lowest_position && kept.highest == highest_position;
     const bool has_end = doing != Doing::holding || next.velocity == 0;
-    safe.as_planned = goes_on && is_inside && has_end ? 1 : 0;
-    if (goes_on) return true;
+    if (is_inside && has_end && goes_on_inside()) safe.as_planned = 1;
+    if (safe.as_planned != 0 || finds_room(next)) return true;
     const double far = longest_stop(next, defaults());
     return kept.contain({next.position - far, next.position + far}) || can_brake(next) ||
-           turns_inside(next);
+           goes_on_inside() || turns_inside(next);
 }
 
 /// From when on limits count: they may be written at any time.
@@ -155,6 +154,7 @@ void Axis::watch_limits() {
 /// Where the set-point of a scan would not be safe it is dropped, and the axis stops from the one
 /// of before, which was.
 void Axis::keep_limits(const Context& context) {
+    if (safe.as_planned != 0) return show();
     if (const MotionState next = total(); !is_safe(next)) {
         const bool finite = all_finite(next.position, next.velocity, next.acceleration, next.jerk);
         stop_inside(context, finite ? MotionError::software_limit : MotionError::not_finite);
