@@ -68,11 +68,14 @@ Catalog make_catalog() {
     blocks.add<SetOverride>();
     blocks.add<ReadStatus>();
     blocks.add<ReadMotionState>();
+    blocks.add<ReadAxisInfo>();
     blocks.add<ReadAxisError>();
     blocks.add<ReadActualPosition>();
     blocks.add<ReadActualVelocity>();
     blocks.add<ReadParameter>();
+    blocks.add<ReadBoolParameter>();
     blocks.add<WriteParameter>();
+    blocks.add<WriteBoolParameter>();
     blocks.add<TouchProbe>();
     blocks.add<AbortTrigger>();
     blocks.add<DigitalCamSwitch>();

@@ -25,7 +25,7 @@ bool is_administrative(Command command) {
     using enum Command;
     return command == power_on || command == power_off || command == reset ||
            command == set_position || command == set_override || command == write_parameter ||
-           command == abort_trigger;
+           command == write_bool_parameter || command == abort_trigger;
 }
 
 Dynamics Axis::defaults() const {
@@ -77,7 +77,7 @@ MotionError Axis::administer(const Context& context, const Moment& at, const Req
     switch (request.command) {
         case Command::power_on:
         case Command::power_off:
-            switch_power(context, at, request.command == Command::power_on);
+            switch_power(context, at, request);
             return MotionError::none;
         case Command::reset:
             if (state == AxisState::error_stop) leave_error();
@@ -89,13 +89,19 @@ MotionError Axis::administer(const Context& context, const Moment& at, const Req
         case Command::abort_trigger:
             ++trigger_aborts;
             return MotionError::none;
+        case Command::write_bool_parameter:
+            if (!is_bool_parameter(request.option)) return MotionError::no_such_parameter;
+            return write_parameter(context, request.option, request.position);
         default:
             return write_parameter(context, request.option, request.position);
     }
 }
 
-void Axis::switch_power(const Context& context, const Moment& at, bool on) {
+void Axis::switch_power(const Context& context, const Moment& at, const Request& request) {
+    const bool on = request.command == Command::power_on;
     powered = on ? 1 : 0;
+    enables_positive = (request.option & power_positive) != 0 ? 1 : 0;
+    enables_negative = (request.option & power_negative) != 0 ? 1 : 0;
     if (state == AxisState::error_stop) return;
     if (!on) {
         brake(at);
@@ -104,6 +110,23 @@ void Axis::switch_power(const Context& context, const Moment& at, bool on) {
     } else if (doing == Doing::holding) {
         come_to_rest(context);
     }
+}
+
+/// Whether MC_Power enables the direction of a way, or of a velocity.
+bool Axis::may_go(double way) const {
+    return way == 0 || (way > 0 ? enables_positive : enables_negative) != 0;
+}
+
+/// What goes in a direction that is not enabled brakes, and that is an error: but for what brakes
+/// already.
+void Axis::keep_directions(const Context& context) {
+    constexpr double rounding = 1e-9;
+    const double v = total().velocity;
+    const bool brakes = doing == Doing::following_velocity && !added.exists() &&
+                        velocity_motion.ramp.end.velocity == 0;
+    if (may_go(v) || brakes || state == AxisState::disabled) return;
+    if (std::abs(v) > rounding * default_velocity)
+        fail(context, {scan_time}, MotionError::direction_not_enabled);
 }
 
 /// Without power, or with an error: once it stands it may be wanted again.
@@ -149,7 +172,9 @@ MotionError Axis::set_position(const Context& context, const Moment& at, const R
     const bool relative = request.option != 0;
     if (modulo && !relative && (request.position < 0 || request.position >= period))
         return MotionError::out_of_range;
-    const double by = relative ? request.position : request.position - position;
+    const double here = total().position;
+    const double shown_here = modulo ? within_period(here, period) : here;
+    const double by = relative ? request.position : request.position - shown_here;
     ++renamed;
     offset += by;
     relocated += by;
@@ -312,6 +337,7 @@ MotionError Axis::plan_velocity(const Request& request, const Moment& at, const 
         if (request.direction == MoveDirection::negative) wanted = -wanted;
         if (request.direction == MoveDirection::current)
             wanted = std::copysign(wanted, sign_of(now.velocity != 0 ? now.velocity : lasting));
+        if (!may_go(wanted)) return MotionError::direction_not_enabled;
     }
     return go_on(wanted, dynamics_of(request), at, from, request.command == Command::stop);
 }
@@ -338,6 +364,8 @@ MotionError Axis::plan_point(const Request& request, double to, const Moment& at
     const double direction = sign_of(to - from.state.position);
     const double end_velocity =
         is_continuous(request.command) ? direction * request.end_velocity : 0;
+    if (!may_go(to - from.state.position) || !may_go(end_velocity))
+        return MotionError::direction_not_enabled;
     return go_to(to, end_velocity, dynamics_of(request), at, from);
 }
 

@@ -34,6 +34,7 @@ constexpr StateRow rows[] = {
     {C::set_position,             "MC_SetPosition",                {Dis, Std, no,  Stp, Dsc, Con, Syn, Err}},
     {C::set_override,             "MC_SetOverride",                {Dis, Std, Hom, Stp, Dsc, Con, Syn, Err}},
     {C::write_parameter,          "MC_WriteParameter",             {Dis, Std, Hom, Stp, Dsc, Con, Syn, Err}},
+    {C::write_bool_parameter,     "MC_WriteBoolParameter",         {Dis, Std, Hom, Stp, Dsc, Con, Syn, Err}},
     {C::abort_trigger,            "MC_AbortTrigger",               {Dis, Std, Hom, Stp, Dsc, Con, Syn, Err}},
     {C::gear_in,                  "MC_GearIn",                     {no,  Syn, no,  no,  Syn, Syn, Syn, no }},
     {C::gear_out,                 "MC_GearOut",                    {no,  no,  no,  no,  no,  no,  Con, no }},
@@ -61,6 +62,7 @@ std::span<const StateRow> state_table() {
 
 bool can_be_buffered(Command command) {
     switch (command) {
+        case C::home:
         case C::halt:
         case C::move_absolute:
         case C::move_relative:

@@ -47,6 +47,7 @@ enum class Command : std::int64_t {
     set_position,
     set_override,
     write_parameter,
+    write_bool_parameter,
     abort_trigger,
     gear_in,
     gear_out,

@@ -58,6 +58,10 @@ bool is_valid(const CamTableSelect& select, const KeptState&) {
     return are_booleans(select.last_execute);
 }
 
+bool is_valid(const ReadMotionState& read, const KeptState& machine) {
+    return are_booleans(read.has_looked) && machine.is_moment(read.last_time);
+}
+
 bool is_valid(const TouchProbe& probe, const KeptState&) {
     return are_booleans(probe.last_execute, probe.last_trigger, probe.told) &&
            is_one_of(probe.phase, TouchProbe::Phase::refused);

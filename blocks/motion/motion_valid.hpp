@@ -3,6 +3,7 @@
 #include "blocks/motion/cam_table_select.hpp"
 #include "blocks/motion/moves.hpp"
 #include "blocks/motion/probes.hpp"
+#include "blocks/motion/reads.hpp"
 #include "blocks/motion/settings.hpp"
 #include "blocks/motion/state_commands.hpp"
 #include "blocks/motion/synchronous.hpp"
@@ -16,6 +17,7 @@ bool is_valid(const CommandBlock& command, const KeptState& machine);
 void mend(CommandBlock& command, const KeptState& machine);
 bool is_valid(const Home& home, const KeptState& machine);
 bool is_valid(const CamTableSelect& select, const KeptState& machine);
+bool is_valid(const ReadMotionState& read, const KeptState& machine);
 bool is_valid(const TouchProbe& probe, const KeptState& machine);
 bool is_valid(const DigitalCamSwitch& cam_switch, const KeptState& machine);
 

@@ -85,7 +85,9 @@ std::vector<Field> phasing_table() {
          of_master(pin::velocity()), of_master(pin::acceleration()), of_master(pin::deceleration()),
          of_master(pin::jerk()), pin::buffer_mode()},
         pin::done("the shift is reached"),
-        {output("AbsolutePhaseShift", &Phasing::shift, "{Master}", "shift of the master now")});
+        {output("AbsolutePhaseShift", &Phasing::shift, "{Master}", "shift of the master now"),
+         output("CoveredPhaseShift", &Phasing::covered_shift, "{Master}",
+                "that the command has added so far")});
 }
 
 }  // namespace
@@ -169,6 +171,7 @@ std::span<const Field> PhasingRelative::fields() {
 void Phasing::scan(const Scan& now, const Context& context) {
     run(now, context);
     if (axis != nowhere) shift = context.seen_instance<Axis>(axis).sync.shift.position;
+    covered_shift = covered(context, &Axis::phased);
 }
 
 namespace {

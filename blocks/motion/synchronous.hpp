@@ -4,8 +4,8 @@
 
 namespace lineshaft {
 
-/// Commands by which a slave follows others, or a profile (PLCopen Part 1 v2.0, 3.26 to 3.36).
-/// `axis` of the base is the slave. Quantities of the master are in its own unit.
+/// Commands by which a slave follows others, or a profile (PLCopen Part 1 v2.0, 4.3 to 4.10, 3.14
+/// to 3.16). `axis` of the base is the slave. Quantities of the master are in its own unit.
 
 /// MC_GearIn: on the way of ratio x master in the least time, within the slave's limits relative to
 /// the master's motion. A change of the ratio is a new start. Beyond the standard: Transition says
@@ -49,7 +49,7 @@ struct CamIn : CommandBlock {
 /// MC_PhasingAbsolute, MC_PhasingRelative: shift the master as the slave sees it; a shift above 0
 /// lets the slave lead.
 struct Phasing : CommandBlock {
-    double shift = 0;
+    double shift = 0, covered_shift = 0;
 
     void scan(const Scan& now, const Context& context);
 };
