@@ -20,7 +20,10 @@
 #include "blocks/logic/select.hpp"
 #include "blocks/logic/signal.hpp"
 #include "blocks/logic/timer.hpp"
+#include "blocks/motion/cam_switches.hpp"
 #include "blocks/motion/cam_table_select.hpp"
+#include "blocks/motion/digital_cam_switch.hpp"
+#include "blocks/motion/digital_signals.hpp"
 #include "blocks/motion/motion_valid.hpp"
 #include "blocks/motion/moves.hpp"
 #include "blocks/motion/probes.hpp"
@@ -63,6 +66,7 @@ Catalog make_catalog() {
     blocks.add<CombineAxes>();
     blocks.add<PositionProfile>();
     blocks.add<VelocityProfile>();
+    blocks.add<AccelerationProfile>();
     blocks.add<Home>();
     blocks.add<SetPosition>();
     blocks.add<SetOverride>();
@@ -78,7 +82,13 @@ Catalog make_catalog() {
     blocks.add<WriteBoolParameter>();
     blocks.add<TouchProbe>();
     blocks.add<AbortTrigger>();
+    blocks.add<CamSwitches>();
     blocks.add<DigitalCamSwitch>();
+    blocks.add<DigitalInputs>();
+    blocks.add<DigitalOutputs>();
+    blocks.add<ReadDigitalInput>();
+    blocks.add<ReadDigitalOutput>();
+    blocks.add<WriteDigitalOutput>();
     blocks.add<CircleFit>();
     blocks.add<PathCircle>();
     blocks.add<PathMove>();

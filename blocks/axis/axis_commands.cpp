@@ -260,8 +260,19 @@ MotionError Axis::plan_any(const Context& context, const Request& request, const
 }
 
 bool is_profile(Command command) {
-    return command == Command::position_profile || command == Command::velocity_profile;
+    return command == Command::position_profile || command == Command::velocity_profile ||
+           command == Command::acceleration_profile;
 }
+
+namespace {
+
+ProfileOf profile_of(Command command) {
+    return command == Command::position_profile   ? ProfileOf::position
+           : command == Command::velocity_profile ? ProfileOf::velocity
+                                                  : ProfileOf::acceleration;
+}
+
+}  // namespace
 
 Cam Axis::profile_table(const Context& context) const {
     return context.instance<CamTable>(profile_motion.table).cam(false);
@@ -271,17 +282,18 @@ Cam Axis::profile_table(const Context& context) const {
 MotionError Axis::plan_profile(const Context& context, const Request& request, const Moment& at,
                                const Start& from) {
     const Coupling& c = request.coupling;
-    const bool of_velocity = request.command == Command::velocity_profile;
+    const ProfileOf of = profile_of(request.command);
+    const bool of_position = of == ProfileOf::position;
     const CamTableId id = CamTableId::of(c.cam);
     if (id.table < 0) return MotionError::no_cam;
     const CamTable& table = context.instance<CamTable>(id.table);
-    if (table.cam(false).points.empty() || !table.is_over_time(unit, of_velocity))
+    if (table.cam(false).points.empty() || !table.is_over_time(unit, of))
         return MotionError::no_cam;
     if (!(c.master_scaling > 0)) return MotionError::out_of_range;
     const Cam cam = table.cam(false);
-    ProfileMotion next{
-        at, id.table, of_velocity ? 1 : 0, c.master_scaling, c.slave_scaling, c.slave_offset};
+    ProfileMotion next{at, id.table, of, c.master_scaling, c.slave_scaling, c.slave_offset};
     next.start_position = from.state.position;
+    next.start_velocity = from.state.velocity;
     next.duration = cam.length() * c.master_scaling;
     const MotionState begin = next.at(0, cam), end = next.at(next.duration, cam);
     constexpr double nanosecond = 1e-9;
@@ -291,7 +303,7 @@ MotionError Axis::plan_profile(const Context& context, const Request& request, c
     if (apart(begin.position, from.state.position, 1e-9 * (1 + std::abs(begin.position))) ||
         apart(begin.velocity, from.state.velocity, v) ||
         apart(begin.acceleration, from.state.acceleration, a) || apart(end.acceleration, 0, a) ||
-        (!of_velocity && apart(end.velocity, 0, v)))
+        (of_position && apart(end.velocity, 0, v)))
         return MotionError::out_of_range;
     if (!next.keeps(d, cam)) return MotionError::sync_limits;
     if (!may_follow(next, cam, from)) return MotionError::software_limit;
@@ -299,7 +311,7 @@ MotionError Axis::plan_profile(const Context& context, const Request& request, c
     doing = Doing::following_profile;
     leg.exists = paused = 0;
     lasting = 0;
-    origin = goal = of_velocity ? from.origin : next.end(cam).position;
+    origin = goal = of_position ? next.end(cam).position : from.origin;
     offset = 0;
     base = from.state;
     return MotionError::none;

@@ -44,6 +44,7 @@ enum class Command : std::int64_t {
     move_continuous_relative,
     position_profile,
     velocity_profile,
+    acceleration_profile,
     set_position,
     set_override,
     write_parameter,

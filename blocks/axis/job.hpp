@@ -57,13 +57,16 @@ enum class MotionError : std::int64_t {
     no_cam,
     no_such_parameter,
     direction_not_enabled,
+    no_reference,
+    other_unit,
 };
 
 inline constexpr std::string_view motion_error_names[] = {
-    "none",           "no_axis",       "not_finite",        "limit_not_positive",   "out_of_range",
-    "axis_disabled",  "axis_stopping", "axis_homing",       "axis_in_error",        "wrong_state",
-    "software_limit", "no_master",     "master_loop",       "master_stands",        "sync_passed",
-    "sync_limits",    "no_cam",        "no_such_parameter", "direction_not_enabled"};
+    "none",           "no_axis",       "not_finite",        "limit_not_positive",    "out_of_range",
+    "axis_disabled",  "axis_stopping", "axis_homing",       "axis_in_error",         "wrong_state",
+    "software_limit", "no_master",     "master_loop",       "master_stands",         "sync_passed",
+    "sync_limits",    "no_cam",        "no_such_parameter", "direction_not_enabled", "no_reference",
+    "other_unit"};
 
 inline constexpr std::string_view motion_error_texts[] = {
     "",
@@ -85,7 +88,9 @@ inline constexpr std::string_view motion_error_texts[] = {
     "says nothing the axis' default_velocity and so on",
     "CamTableID is not that of a cam table",
     "the axis has no parameter of that number",
-    "MC_Power does not enable the direction of the way, with EnablePositive or EnableNegative"};
+    "MC_Power does not enable the direction of the way, with EnablePositive or EnableNegative",
+    "a reference of the block names nothing",
+    "what the block refers to is in another unit than its axis"};
 static_assert(std::size(motion_error_texts) == std::size(motion_error_names));
 
 constexpr std::string_view text_of(MotionError error) {

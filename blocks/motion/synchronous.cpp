@@ -201,6 +201,13 @@ std::span<const Field> VelocityProfile::fields() {
     return fields;
 }
 
+std::span<const Field> AccelerationProfile::fields() {
+    static const auto fields =
+        profile_table("TimeAcceleration", "AccelerationScale", "{Axis}/s^2",
+                      pin::reached("ProfileCompleted", "the velocity at its end is kept"));
+    return fields;
+}
+
 /// A profile has its own beginning: blending is waiting.
 void Profile::scan(const Scan& now, const Context& context) {
     pins.coupling.cam = table == nowhere ? 0 : CamTableId{table}.number();

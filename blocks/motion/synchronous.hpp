@@ -68,8 +68,9 @@ struct PhasingRelative : Phasing {
     constexpr PhasingRelative() { pins.command = Command::phasing_relative; }
 };
 
-/// MC_PositionProfile, MC_VelocityProfile (3.13, 3.14): the motion that a cam_table gives over time
-/// (master_unit: s), within the limits of the axis. It begins where the axis is, with its velocity.
+/// MC_PositionProfile, -Velocity-, -AccelerationProfile (3.14 to 3.16): the motion that a cam_table
+/// gives over time (master_unit: s), within the limits of the axis. It begins where the axis is,
+/// with its velocity.
 struct Profile : CommandBlock {
     std::int64_t table = nowhere;
 
@@ -90,6 +91,14 @@ struct VelocityProfile : Profile {
     static constexpr std::string_view doc = "moves an axis by velocities over time";
     static std::span<const Field> fields();
     constexpr VelocityProfile() { pins.command = Command::velocity_profile; }
+};
+
+/// Accelerations; they end with 0, and the velocity that they have led to is kept.
+struct AccelerationProfile : Profile {
+    static constexpr std::string_view type = "MC_AccelerationProfile";
+    static constexpr std::string_view doc = "moves an axis by accelerations over time";
+    static std::span<const Field> fields();
+    constexpr AccelerationProfile() { pins.command = Command::acceleration_profile; }
 };
 
 namespace command_kinds {

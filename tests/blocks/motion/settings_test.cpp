@@ -30,9 +30,6 @@ blocks:
   switch: {type: MC_WriteBoolParameter, task: main, Axis: x, ParameterNumber: 4}
   reset: {type: MC_Reset, task: main, Axis: x}
   status: {type: MC_ReadStatus, task: main, Axis: x, Enable: true}
-  probe: {type: MC_TouchProbe, task: main, Axis: x}
-  abort: {type: MC_AbortTrigger, task: main, Axis: x}
-  cam: {type: MC_DigitalCamSwitch, task: main, Axis: x, Enable: true, FirstOnPosition: 10 mm, LastOnPosition: 20 mm}
 )";
 
 /// How far a modulo axis turns from 350 deg to the position.
@@ -289,28 +286,6 @@ TEST_CASE("MC_WriteBoolParameter switches software limits, and takes no other nu
     run_until(bench, "switch.Error");
     CHECK(bench.text("switch.ErrorID") == "no_such_parameter");
     CHECK(bench.number("x.default_velocity") == 100);
-}
-
-TEST_CASE("MC_TouchProbe records in its window, and MC_AbortTrigger ends it") {
-    MotionBench bench(straight);
-    bench.set("probe.Execute", true);
-    bench.set("velocity.Execute", true);
-    bench.step(300);
-    CHECK(bench.is("cam.Output") ==
-          (bench.number("x.position") >= 10 && bench.number("x.position") <= 20));
-    bench.set("probe.TriggerInput", true);
-    bench.step();
-    CHECK(bench.is("probe.Done"));
-    CHECK(bench.number("probe.RecordedPosition") == bench.number("x.position"));
-    bench.set("probe.Execute", false);
-    bench.step(2);
-    bench.set("probe.Execute", true);
-    bench.step(2);
-    CHECK(bench.is("probe.Busy"));
-    bench.set("abort.Execute", true);
-    bench.step(3);
-    CHECK(bench.is("probe.CommandAborted"));
-    CHECK(bench.is("abort.Done"));
 }
 
 TEST_CASE("a checkpoint in mid-command goes on to the same bytes") {
