@@ -20,7 +20,10 @@
 #include "blocks/logic/select.hpp"
 #include "blocks/logic/signal.hpp"
 #include "blocks/logic/timer.hpp"
+#include "blocks/motion/cam_switches.hpp"
 #include "blocks/motion/cam_table_select.hpp"
+#include "blocks/motion/digital_cam_switch.hpp"
+#include "blocks/motion/digital_signals.hpp"
 #include "blocks/motion/motion_valid.hpp"
 #include "blocks/motion/moves.hpp"
 #include "blocks/motion/probes.hpp"
@@ -63,19 +66,29 @@ Catalog make_catalog() {
     blocks.add<CombineAxes>();
     blocks.add<PositionProfile>();
     blocks.add<VelocityProfile>();
+    blocks.add<AccelerationProfile>();
     blocks.add<Home>();
     blocks.add<SetPosition>();
     blocks.add<SetOverride>();
     blocks.add<ReadStatus>();
     blocks.add<ReadMotionState>();
+    blocks.add<ReadAxisInfo>();
     blocks.add<ReadAxisError>();
     blocks.add<ReadActualPosition>();
     blocks.add<ReadActualVelocity>();
     blocks.add<ReadParameter>();
+    blocks.add<ReadBoolParameter>();
     blocks.add<WriteParameter>();
+    blocks.add<WriteBoolParameter>();
     blocks.add<TouchProbe>();
     blocks.add<AbortTrigger>();
+    blocks.add<CamSwitches>();
     blocks.add<DigitalCamSwitch>();
+    blocks.add<DigitalInputs>();
+    blocks.add<DigitalOutputs>();
+    blocks.add<ReadDigitalInput>();
+    blocks.add<ReadDigitalOutput>();
+    blocks.add<WriteDigitalOutput>();
     blocks.add<CircleFit>();
     blocks.add<PathCircle>();
     blocks.add<PathMove>();

@@ -90,6 +90,7 @@ void Axis::scan(const Scan& now, const Context& context) {
         advance(context, now.time);
     }
     if (software_limits) keep_limits(context);
+    if (enables_positive == 0 || enables_negative == 0) keep_directions(context);
     publish();
 }
 
@@ -143,7 +144,7 @@ void Axis::look(const Context& context, std::int64_t now) {
         base = profile_motion.at(profile_motion.start.until(now), profile_table(context));
     else
         base = doing == Doing::moving_to_point ? point_motion.at(now) : velocity_motion.at(now);
-    if (added.exists()) extra = added_motion.at(now);
+    if (added.exists()) look_at_added(now);
 }
 
 std::pair<MotionState, Moment> Axis::end_of_motion(const Context& context) const {
@@ -167,7 +168,7 @@ void Axis::end_motion(const Context& context) {
     hold(end_state, at);
     base = end_state;
     if (of_profile) lasting = end_state.velocity;
-    if (added.exists()) extra = added_motion.at(at.time);
+    if (added.exists()) look_at_added(at.time);
     paused = pauses ? 1 : 0;
     if (pauses) return;
     if (state == AxisState::error_stop || state == AxisState::disabled)

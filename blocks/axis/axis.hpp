@@ -51,6 +51,8 @@ struct Axis {
         std::int64_t ticket = 0;
         Request request;
         std::int64_t told_end = 0;  ///< its end has been told; it still holds the axis (MC_Stop)
+        double from = 0;            ///< of `added` and `phased`: `extra` or shift when it began,
+        double covered = 0;         ///< and how far that has come since
 
         bool exists() const { return place != nowhere; }
     };
@@ -127,9 +129,10 @@ struct Axis {
     Factors factors;           ///< of MC_SetOverride
     std::int64_t paused = 0;   ///< on the way to `goal`, by an override of 0
     std::int64_t powered = 1;  ///< what MC_Power wants
-    Shortage shortage;         ///< of the last sync_limits
-    double actual_velocity = 0, last_actual = 0;  ///< of the drive
-    std::int64_t renamed = 0;                     ///< times that the place got another position
+    std::int64_t enables_positive = 1, enables_negative = 1;  ///< directions, likewise
+    Shortage shortage;                                        ///< of the last sync_limits
+    double actual_velocity = 0, last_actual = 0;              ///< of the drive
+    std::int64_t renamed = 0;  ///< times that the place got another position
     std::int64_t trigger_aborts = 0;
     Shown shown;
     Safe safe;
@@ -278,6 +281,7 @@ struct Axis {
     void take_up(const Context& context, const Scan& now);
     JobList due_jobs(const Context& context);
     void take(const Context& context, const Moment& at, Job& job);
+    void carry_out(const Context& context, const Moment& at, Job& job);
     void change(const Context& context, const Moment& at, Running& running, const Job& job);
     Progress begun() const;
     void wait(const Context& context, const Moment& at, Job& job);
@@ -304,6 +308,7 @@ struct Axis {
                            double covered, double to);
     void make_up_for(double missing);
     void take_in(double way);
+    void look_at_added(std::int64_t now);
     void end_added(const Context& context);
     void clear_added();
 
@@ -313,7 +318,9 @@ struct Axis {
     MotionError set_override(const Context& context, const Moment& at, const Request& request);
     MotionError write_parameter(const Context& context, std::int64_t number, double value);
     double* limit_of(std::int64_t number);
-    void switch_power(const Context& context, const Moment& at, bool on);
+    void switch_power(const Context& context, const Moment& at, const Request& request);
+    bool may_go(double way) const;
+    void keep_directions(const Context& context);
     void come_to_rest(const Context& context);
     void stop_again(const Context& context, const Moment& at, Job& job);
     void leave_error();
@@ -359,6 +366,9 @@ struct Axis {
     bool plan_to_junction(const Junction& junction, double end_velocity, PointMotion& motion,
                           Leg& rest, const Moment& at) const;
 };
+
+/// Whether PLCopen's parameter of that number is a BOOL: software limits on or off.
+bool is_bool_parameter(std::int64_t number);
 
 /// Whether the axis does it at once, whatever it is doing.
 bool is_administrative(Command command);

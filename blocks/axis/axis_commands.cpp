@@ -25,7 +25,7 @@ bool is_administrative(Command command) {
     using enum Command;
     return command == power_on || command == power_off || command == reset ||
            command == set_position || command == set_override || command == write_parameter ||
-           command == abort_trigger;
+           command == write_bool_parameter || command == abort_trigger;
 }
 
 Dynamics Axis::defaults() const {
@@ -77,7 +77,7 @@ MotionError Axis::administer(const Context& context, const Moment& at, const Req
     switch (request.command) {
         case Command::power_on:
         case Command::power_off:
-            switch_power(context, at, request.command == Command::power_on);
+            switch_power(context, at, request);
             return MotionError::none;
         case Command::reset:
             if (state == AxisState::error_stop) leave_error();
@@ -89,13 +89,19 @@ MotionError Axis::administer(const Context& context, const Moment& at, const Req
         case Command::abort_trigger:
             ++trigger_aborts;
             return MotionError::none;
+        case Command::write_bool_parameter:
+            if (!is_bool_parameter(request.option)) return MotionError::no_such_parameter;
+            return write_parameter(context, request.option, request.position);
         default:
             return write_parameter(context, request.option, request.position);
     }
 }
 
-void Axis::switch_power(const Context& context, const Moment& at, bool on) {
+void Axis::switch_power(const Context& context, const Moment& at, const Request& request) {
+    const bool on = request.command == Command::power_on;
     powered = on ? 1 : 0;
+    enables_positive = (request.option & power_positive) != 0 ? 1 : 0;
+    enables_negative = (request.option & power_negative) != 0 ? 1 : 0;
     if (state == AxisState::error_stop) return;
     if (!on) {
         brake(at);
@@ -104,6 +110,23 @@ void Axis::switch_power(const Context& context, const Moment& at, bool on) {
     } else if (doing == Doing::holding) {
         come_to_rest(context);
     }
+}
+
+/// Whether MC_Power enables the direction of a way, or of a velocity.
+bool Axis::may_go(double way) const {
+    return way == 0 || (way > 0 ? enables_positive : enables_negative) != 0;
+}
+
+/// What goes in a direction that is not enabled brakes, and that is an error: but for what brakes
+/// already.
+void Axis::keep_directions(const Context& context) {
+    constexpr double rounding = 1e-9;
+    const double v = total().velocity;
+    const bool brakes = doing == Doing::following_velocity && !added.exists() &&
+                        velocity_motion.ramp.end.velocity == 0;
+    if (may_go(v) || brakes || state == AxisState::disabled) return;
+    if (std::abs(v) > rounding * default_velocity)
+        fail(context, {scan_time}, MotionError::direction_not_enabled);
 }
 
 /// Without power, or with an error: once it stands it may be wanted again.
@@ -149,7 +172,9 @@ MotionError Axis::set_position(const Context& context, const Moment& at, const R
     const bool relative = request.option != 0;
     if (modulo && !relative && (request.position < 0 || request.position >= period))
         return MotionError::out_of_range;
-    const double by = relative ? request.position : request.position - position;
+    const double here = total().position;
+    const double shown_here = modulo ? within_period(here, period) : here;
+    const double by = relative ? request.position : request.position - shown_here;
     ++renamed;
     offset += by;
     relocated += by;
@@ -235,8 +260,19 @@ MotionError Axis::plan_any(const Context& context, const Request& request, const
 }
 
 bool is_profile(Command command) {
-    return command == Command::position_profile || command == Command::velocity_profile;
+    return command == Command::position_profile || command == Command::velocity_profile ||
+           command == Command::acceleration_profile;
 }
+
+namespace {
+
+ProfileOf profile_of(Command command) {
+    return command == Command::position_profile   ? ProfileOf::position
+           : command == Command::velocity_profile ? ProfileOf::velocity
+                                                  : ProfileOf::acceleration;
+}
+
+}  // namespace
 
 Cam Axis::profile_table(const Context& context) const {
     return context.instance<CamTable>(profile_motion.table).cam(false);
@@ -246,17 +282,18 @@ Cam Axis::profile_table(const Context& context) const {
 MotionError Axis::plan_profile(const Context& context, const Request& request, const Moment& at,
                                const Start& from) {
     const Coupling& c = request.coupling;
-    const bool of_velocity = request.command == Command::velocity_profile;
+    const ProfileOf of = profile_of(request.command);
+    const bool of_position = of == ProfileOf::position;
     const CamTableId id = CamTableId::of(c.cam);
     if (id.table < 0) return MotionError::no_cam;
     const CamTable& table = context.instance<CamTable>(id.table);
-    if (table.cam(false).points.empty() || !table.is_over_time(unit, of_velocity))
+    if (table.cam(false).points.empty() || !table.is_over_time(unit, of))
         return MotionError::no_cam;
     if (!(c.master_scaling > 0)) return MotionError::out_of_range;
     const Cam cam = table.cam(false);
-    ProfileMotion next{
-        at, id.table, of_velocity ? 1 : 0, c.master_scaling, c.slave_scaling, c.slave_offset};
+    ProfileMotion next{at, id.table, of, c.master_scaling, c.slave_scaling, c.slave_offset};
     next.start_position = from.state.position;
+    next.start_velocity = from.state.velocity;
     next.duration = cam.length() * c.master_scaling;
     const MotionState begin = next.at(0, cam), end = next.at(next.duration, cam);
     constexpr double nanosecond = 1e-9;
@@ -266,7 +303,7 @@ MotionError Axis::plan_profile(const Context& context, const Request& request, c
     if (apart(begin.position, from.state.position, 1e-9 * (1 + std::abs(begin.position))) ||
         apart(begin.velocity, from.state.velocity, v) ||
         apart(begin.acceleration, from.state.acceleration, a) || apart(end.acceleration, 0, a) ||
-        (!of_velocity && apart(end.velocity, 0, v)))
+        (of_position && apart(end.velocity, 0, v)))
         return MotionError::out_of_range;
     if (!next.keeps(d, cam)) return MotionError::sync_limits;
     if (!may_follow(next, cam, from)) return MotionError::software_limit;
@@ -274,7 +311,7 @@ MotionError Axis::plan_profile(const Context& context, const Request& request, c
     doing = Doing::following_profile;
     leg.exists = paused = 0;
     lasting = 0;
-    origin = goal = of_velocity ? from.origin : next.end(cam).position;
+    origin = goal = of_position ? next.end(cam).position : from.origin;
     offset = 0;
     base = from.state;
     return MotionError::none;
@@ -312,6 +349,7 @@ MotionError Axis::plan_velocity(const Request& request, const Moment& at, const 
         if (request.direction == MoveDirection::negative) wanted = -wanted;
         if (request.direction == MoveDirection::current)
             wanted = std::copysign(wanted, sign_of(now.velocity != 0 ? now.velocity : lasting));
+        if (!may_go(wanted)) return MotionError::direction_not_enabled;
     }
     return go_on(wanted, dynamics_of(request), at, from, request.command == Command::stop);
 }
@@ -338,6 +376,8 @@ MotionError Axis::plan_point(const Request& request, double to, const Moment& at
     const double direction = sign_of(to - from.state.position);
     const double end_velocity =
         is_continuous(request.command) ? direction * request.end_velocity : 0;
+    if (!may_go(to - from.state.position) || !may_go(end_velocity))
+        return MotionError::direction_not_enabled;
     return go_to(to, end_velocity, dynamics_of(request), at, from);
 }
 

@@ -80,14 +80,7 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
     if (request.command == Command::reset && state == AxisState::error_stop &&
         doing != Doing::holding)
         return wait(context, at, job);
-    if (is_administrative(request.command)) {
-        const MotionError why = administer(context, at, request);
-        if (request.command == Command::set_override && why == MotionError::none) {
-            end(context, overriding, Progress::aborted);
-            overriding = {place, job.ticket, request, 0};
-        }
-        return tell(job, why == MotionError::none ? Progress::done : Progress::failed, why);
-    }
+    if (is_administrative(request.command) && !waits) return carry_out(context, at, job);
     if (is_superimposed(request.command)) return begin_added(context, at, job);
     if (is_phasing(request.command)) {
         if (request.mode == BufferMode::aborting || !phased.exists())
@@ -97,6 +90,16 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
     }
     if (waits) return wait(context, at, job);
     begin(context, at, job);
+}
+
+/// An administrative command, whatever the axis is doing.
+void Axis::carry_out(const Context& context, const Moment& at, Job& job) {
+    const MotionError why = administer(context, at, job.request);
+    if (job.request.command == Command::set_override && why == MotionError::none) {
+        end(context, overriding, Progress::aborted);
+        overriding = {context.place_of(job), job.ticket, job.request, 0};
+    }
+    tell(job, why == MotionError::none ? Progress::done : Progress::failed, why);
 }
 
 /// Continuous update, or the end of MC_Stop's Execute.
@@ -148,12 +151,14 @@ void Axis::wait(const Context& context, const Moment& at, Job& job) {
 /// From the state in which the axis is at that moment.
 void Axis::begin(const Context& context, const Moment& at, Job& job, const Stretch* along) {
     const Request request = job.request;
+    if (is_administrative(request.command)) return carry_out(context, at, job);
     const bool aborts = request.mode == BufferMode::aborting;
+    const bool drops_added = aborts || request.command == Command::home;
     const bool stands = base.velocity == 0 && base.acceleration == 0;
     const auto next =
         next_state(request.command, stands && !aborts ? AxisState::standstill : state);
     if (!next) return tell(job, Progress::failed, refusal());
-    const Start from = start_of(request, !aborts);
+    const Start from = start_of(request, !drops_added);
     if (along) {
         go_along(*along, job, from);
     } else if (const MotionError why = plan_any(context, request, at, from);
@@ -161,10 +166,11 @@ void Axis::begin(const Context& context, const Moment& at, Job& job, const Stret
         return tell(job, Progress::failed, why);
     }
     take_in(from.taken);
-    if (aborts) {
+    if (drops_added) {
         clear_added();
-        abort_all(context);
+        end(context, added, Progress::aborted);
     }
+    if (aborts) abort_all(context);
     end(context, active, Progress::aborted);
     active = {context.place_of(job), job.ticket, request, 0};
     const bool was_overridden = is_overridden();
@@ -219,7 +225,9 @@ void Axis::tell(const Context& context, const Running& running, Progress how,
                 MotionError why) const {
     if (!running.exists()) return;
     Job& job = context.at<Job>(running.place);
-    if (job.ticket == running.ticket) tell(job, how, why);
+    if (job.ticket != running.ticket) return;
+    if (&running == &added || &running == &phased) job.told_value = running.covered;
+    tell(job, how, why);
 }
 
 void Axis::tell(Job& job, Progress how, MotionError why) const {

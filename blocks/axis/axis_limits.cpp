@@ -173,6 +173,7 @@ void Axis::stop_inside(const Context& context, MotionError why) {
     const Moment at{shown.time};
     MotionState from = shown.state;
     from.position += relocated - shown.relocated;
+    if (added.exists()) look_at_added(shown.time);
     const auto restart = [&] {
         base = from;
         offset = 0;

@@ -4,6 +4,10 @@
 
 namespace lineshaft {
 
+bool is_bool_parameter(std::int64_t number) {
+    return number == 4 || number == 5;
+}
+
 /// Of those that may be written; null: of no such.
 double* Axis::limit_of(std::int64_t number) {
     switch (number) {
@@ -26,7 +30,7 @@ double* Axis::limit_of(std::int64_t number) {
 
 std::optional<double> Axis::read_parameter(std::int64_t number) const {
     if (number == 1) return position;
-    if (number == 4 || number == 5) return software_limits ? 1 : 0;
+    if (is_bool_parameter(number)) return software_limits ? 1 : 0;
     if (number == 10) return actual().velocity;
     if (number == 11) return velocity;
     const double* limit = const_cast<Axis*>(this)->limit_of(number);
@@ -36,7 +40,7 @@ std::optional<double> Axis::read_parameter(std::int64_t number) const {
 
 /// What an axis needs to be able to stop stays above 0, and limits that count stay in order.
 MotionError Axis::write_parameter(const Context& context, std::int64_t number, double value) {
-    if (number == 4 || number == 5) {
+    if (is_bool_parameter(number)) {
         const bool wanted = value != 0;
         if (wanted && (modulo || !(lowest_position < highest_position)))
             return MotionError::out_of_range;

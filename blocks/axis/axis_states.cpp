@@ -31,9 +31,11 @@ constexpr StateRow rows[] = {
     {C::move_continuous_relative, "MC_MoveContinuousRelative",     {no,  Con, no,  no,  Con, Con, Con, no }},
     {C::position_profile,         "MC_PositionProfile",            {no,  Dsc, no,  no,  Dsc, Dsc, Dsc, no }},
     {C::velocity_profile,         "MC_VelocityProfile",            {no,  Con, no,  no,  Con, Con, Con, no }},
+    {C::acceleration_profile,     "MC_AccelerationProfile",        {no,  Con, no,  no,  Con, Con, Con, no }},
     {C::set_position,             "MC_SetPosition",                {Dis, Std, no,  Stp, Dsc, Con, Syn, Err}},
     {C::set_override,             "MC_SetOverride",                {Dis, Std, Hom, Stp, Dsc, Con, Syn, Err}},
     {C::write_parameter,          "MC_WriteParameter",             {Dis, Std, Hom, Stp, Dsc, Con, Syn, Err}},
+    {C::write_bool_parameter,     "MC_WriteBoolParameter",         {Dis, Std, Hom, Stp, Dsc, Con, Syn, Err}},
     {C::abort_trigger,            "MC_AbortTrigger",               {Dis, Std, Hom, Stp, Dsc, Con, Syn, Err}},
     {C::gear_in,                  "MC_GearIn",                     {no,  Syn, no,  no,  Syn, Syn, Syn, no }},
     {C::gear_out,                 "MC_GearOut",                    {no,  no,  no,  no,  no,  no,  Con, no }},
@@ -61,6 +63,7 @@ std::span<const StateRow> state_table() {
 
 bool can_be_buffered(Command command) {
     switch (command) {
+        case C::home:
         case C::halt:
         case C::move_absolute:
         case C::move_relative:
@@ -70,6 +73,7 @@ bool can_be_buffered(Command command) {
         case C::move_continuous_relative:
         case C::position_profile:
         case C::velocity_profile:
+        case C::acceleration_profile:
         case C::gear_in:
         case C::gear_in_pos:
         case C::cam_in:

@@ -10,12 +10,14 @@ bool is_superimposed(Command command) {
 void Axis::begin_added(const Context& context, const Moment& at, Job& job) {
     const bool halts = job.request.command == Command::halt_superimposed;
     if (halts && !added.exists()) return tell(job, Progress::done);
+    if (!halts && !active.exists() && !may_go(job.request.position))
+        return tell(job, Progress::failed, MotionError::direction_not_enabled);
     const double covered = extra.position;
     const MotionError why =
         plan_added(context, at, job.request, covered, covered + job.request.position);
     if (why != MotionError::none) return tell(job, Progress::failed, why);
     end(context, added, Progress::aborted);
-    added = {context.place_of(job), job.ticket, job.request, 0};
+    added = {context.place_of(job), job.ticket, job.request, 0, extra.position};
     if (!halts) added_counted = 0;
     if (!active.exists()) goal = base.position + offset;
     state = *next_state(job.request.command, state);
@@ -75,13 +77,20 @@ void Axis::make_up_for(double missing) {
 /// This much of what is on top belongs to the motion beneath.
 void Axis::take_in(double way) {
     extra.position -= way;
+    added.from -= way;
     added_motion.move(-way);
     added_goal -= way;
+}
+
+void Axis::look_at_added(std::int64_t now) {
+    extra = added_motion.at(now);
+    added.covered = extra.position - added.from;
 }
 
 void Axis::end_added(const Context& context) {
     safe.as_planned = 0;
     extra = {.position = added_goal};
+    added.covered = extra.position - added.from;
     end(context, added, Progress::done);
     settle();
 }

@@ -286,9 +286,11 @@ void Axis::begin_phasing(const Context& context, Job& job) {
                                          : PlanResult::limit_not_positive;
     if (planned != PlanResult::ok) return tell(job, Progress::failed, sync_error(planned));
     const std::int64_t place = context.place_of(job);
-    if (phased.place != place || phased.ticket != job.ticket)
+    if (phased.place != place || phased.ticket != job.ticket) {
         end(context, phased, Progress::aborted);
-    phased = {place, job.ticket, request, 0};
+        phased = {place, job.ticket, request, 0, sync.shift.position};
+    }
+    phased.request = request;
     tell(job, Progress::active);
 }
 
@@ -296,10 +298,10 @@ void Axis::begin_phasing(const Context& context, Job& job) {
 
 void Axis::look_at_shift(const Context& context) {
     if (!phased.exists()) return;
-    sync.shift = sync.shifting.at(scan_time);
-    if (!sync.shifting.has_ended(scan_time)) return;
-    sync.shift = sync.shifting.plan.end;
-    end(context, phased, Progress::done);
+    const bool has_ended = sync.shifting.has_ended(scan_time);
+    sync.shift = has_ended ? sync.shifting.plan.end : sync.shifting.at(scan_time);
+    phased.covered = sync.shift.position - phased.from;
+    if (has_ended) end(context, phased, Progress::done);
 }
 
 /// Axes of different tasks that are coupled to each other in the same moment do not see it then.

@@ -45,7 +45,9 @@ bool is_cam(std::int64_t table, const KeptState& machine) {
 }
 
 bool is_valid(const ProfileMotion& motion, bool is_followed, const KeptState& machine) {
-    if (!is_valid(motion.start, machine) || !is_duration(motion.duration)) return false;
+    if (!is_valid(motion.start, machine) || !is_duration(motion.duration) ||
+        !is_one_of(motion.of, ProfileOf::acceleration))
+        return false;
     return !is_followed || (is_cam(motion.table, machine) && motion.time_scale > 0);
 }
 

@@ -25,7 +25,7 @@ std::optional<Misfit> CamTable::doubt(const InstanceAt&) const {
 std::span<const Field> CamTable::fields() {
     static const Field fields[] = {
         parameter("unit", &CamTable::unit, "",
-                  "of the slave; of a profile over time: of the axis, or its velocity")
+                  "of the slave; of a profile over time: of the axis, its velocity or acceleration")
             .one_of(cam_unit_names),
         parameter("master_unit", &CamTable::master_unit, "",
                   "of the master; s: a profile over time")

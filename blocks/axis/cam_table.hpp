@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "blocks/axis/axis_unit.hpp"
+#include "blocks/axis/profile_motion.hpp"
 #include "blocks/profile/cam.hpp"
 #include "runtime/model/catalog.hpp"
 #include "runtime/model/field.hpp"
@@ -15,11 +16,29 @@
 
 namespace lineshaft {
 
-/// Of a cam: those of axes, their velocities, and time.
-enum class CamUnit : std::int64_t { mm, rad, deg, m, rev, mm_s, rad_s, deg_s, m_s, rev_s, s };
+/// Of a cam: those of axes, their velocities and accelerations, and time. Each as AxisUnit is.
+enum class CamUnit : std::int64_t {
+    mm,
+    rad,
+    deg,
+    m,
+    rev,
+    mm_s,
+    rad_s,
+    deg_s,
+    m_s,
+    rev_s,
+    mm_s2,
+    rad_s2,
+    deg_s2,
+    m_s2,
+    rev_s2,
+    s,
+};
 
 inline constexpr std::string_view cam_unit_names[] = {
-    "mm", "rad", "deg", "m", "rev", "mm/s", "rad/s", "deg/s", "m/s", "rev/s", "s"};
+    "mm",  "rad",   "deg",    "m",       "rev",     "mm/s",  "rad/s",   "deg/s",
+    "m/s", "rev/s", "mm/s^2", "rad/s^2", "deg/s^2", "m/s^2", "rev/s^2", "s"};
 
 /// The points of a cam: data that MC_CamTableSelect names. Given in the program or in a CSV file,
 /// and checked and completed when it is loaded: a scan does nothing.
@@ -40,12 +59,12 @@ struct CamTable {
     static std::span<const TableField> tables();
     void scan(const Scan&) {}
 
-    /// For MC_PositionProfile or MC_VelocityProfile of an axis.
-    bool is_over_time(AxisUnit of_axis, bool of_velocity) const {
-        constexpr auto rates = static_cast<std::int64_t>(CamUnit::mm_s);
+    /// For MC_PositionProfile and so on of an axis.
+    bool is_over_time(AxisUnit of_axis, ProfileOf of) const {
+        constexpr auto row = static_cast<std::int64_t>(CamUnit::mm_s);
         return master_unit == CamUnit::s &&
                static_cast<std::int64_t>(unit) ==
-                   static_cast<std::int64_t>(of_axis) + (of_velocity ? rates : 0);
+                   static_cast<std::int64_t>(of_axis) + row * static_cast<std::int64_t>(of);
     }
 
     /// A periodic cam whose velocity jumps from its end to its beginning.

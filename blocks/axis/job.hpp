@@ -27,6 +27,9 @@ inline constexpr std::string_view buffer_mode_names[] = {"mcAborting",     "mcBu
                                                          "mcBlendingLow",  "mcBlendingPrevious",
                                                          "mcBlendingNext", "mcBlendingHigh"};
 
+/// When a command takes effect that sets something: at once, or as a buffered one.
+inline constexpr std::string_view execution_mode_names[] = {"mcImmediately", "mcQueued"};
+
 /// The way to a position of a modulo axis.
 enum class MoveDirection : std::int64_t { shortest_way, positive, negative, current };
 
@@ -53,13 +56,17 @@ enum class MotionError : std::int64_t {
     sync_limits,
     no_cam,
     no_such_parameter,
+    direction_not_enabled,
+    no_reference,
+    other_unit,
 };
 
 inline constexpr std::string_view motion_error_names[] = {
-    "none",           "no_axis",       "not_finite",       "limit_not_positive", "out_of_range",
-    "axis_disabled",  "axis_stopping", "axis_homing",      "axis_in_error",      "wrong_state",
-    "software_limit", "no_master",     "master_loop",      "master_stands",      "sync_passed",
-    "sync_limits",    "no_cam",        "no_such_parameter"};
+    "none",           "no_axis",       "not_finite",        "limit_not_positive",    "out_of_range",
+    "axis_disabled",  "axis_stopping", "axis_homing",       "axis_in_error",         "wrong_state",
+    "software_limit", "no_master",     "master_loop",       "master_stands",         "sync_passed",
+    "sync_limits",    "no_cam",        "no_such_parameter", "direction_not_enabled", "no_reference",
+    "other_unit"};
 
 inline constexpr std::string_view motion_error_texts[] = {
     "",
@@ -80,7 +87,10 @@ inline constexpr std::string_view motion_error_texts[] = {
     "the coupling takes more velocity, acceleration or jerk than the command allows, or where it "
     "says nothing the axis' default_velocity and so on",
     "CamTableID is not that of a cam table",
-    "the axis has no parameter of that number"};
+    "the axis has no parameter of that number",
+    "MC_Power does not enable the direction of the way, with EnablePositive or EnableNegative",
+    "a reference of the block names nothing",
+    "what the block refers to is in another unit than its axis"};
 static_assert(std::size(motion_error_texts) == std::size(motion_error_names));
 
 constexpr std::string_view text_of(MotionError error) {
@@ -89,6 +99,9 @@ constexpr std::string_view text_of(MotionError error) {
 
 /// The same, of sync_limits with the limit and by how much it is short, in the unit of the axis.
 std::string text_of(MotionError error, const Shortage& shortage, std::string_view unit);
+
+/// `option` of MC_Power: the directions that it enables, a bit each.
+inline constexpr std::int64_t power_positive = 1, power_negative = 2;
 
 /// `option` of MC_Home.
 inline constexpr std::int64_t homing_direct = 0, homing_to_position = 1, homing_on_signal = 2,

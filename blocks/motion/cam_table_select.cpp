@@ -37,6 +37,9 @@ std::span<const Field> CamTableSelect::fields() {
               "the cam is of the master's position, else of its way from MC_CamIn on"),
         input("SlaveAbsolute", &S::slave_absolute, "",
               "the cam gives the slave's position, else its way"),
+        input("ExecutionMode", &S::mode, "",
+              "makes no difference: to select a cam changes nothing that is at work")
+            .one_of(execution_mode_names),
         output("Done", &S::done, "", "CamTableID can be used"),
         output("Busy", &S::busy, "", "never: a cam is selected at once"),
         output("Error", &S::error, "", "there is nothing to select"),

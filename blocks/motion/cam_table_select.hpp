@@ -5,10 +5,11 @@
 
 namespace lineshaft {
 
-/// MC_CamTableSelect (3.25): a cam table with the way it is to be read, in one number for MC_CamIn.
+/// MC_CamTableSelect (4.2): a cam table with the way it is to be read, in one number for MC_CamIn.
 struct CamTableSelect {
     std::int64_t master = nowhere, slave = nowhere, cam_table = nowhere;
     bool execute = false, periodic = false, master_absolute = true, slave_absolute = true;
+    BufferMode mode = BufferMode::aborting;
     bool done = false, busy = false, error = false;
     MotionError error_id = MotionError::none;
     std::int64_t id = 0;

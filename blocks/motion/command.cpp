@@ -96,6 +96,14 @@ MotionError CommandBlock::check() const {
                : MotionError::not_finite;
 }
 
+double CommandBlock::covered(const Context& context, const Axis::Running Axis::*running) const {
+    if (refusal != MotionError::none || axis == nowhere) return 0;
+    if (is_end(progress(context))) return job.told_value;
+    const Axis::Running& at_work = context.seen_instance<Axis>(axis).*running;
+    const bool is_own = at_work.place == context.place_of(job) && at_work.ticket == job.ticket;
+    return is_own ? at_work.covered : 0;
+}
+
 namespace pin {
 
 Field axis() {
@@ -156,6 +164,12 @@ Field buffer_mode() {
     return input("BufferMode", &CommandBlock::pins, &Request::mode, "",
                  "what becomes of the command at work")
         .one_of(buffer_mode_names);
+}
+
+Field execution_mode() {
+    return input("ExecutionMode", &CommandBlock::pins, &Request::mode, "",
+                 "at once, or when what is at work and waits has ended")
+        .one_of(execution_mode_names);
 }
 
 Field done(std::string_view doc) {

@@ -58,6 +58,10 @@ struct CommandBlock {
     /// As far as the axis' task has published it.
     Progress progress(const Context& context) const;
     MotionError check() const;
+
+    /// Of what the axis does on top of its motion, or of its master: how far the command has come,
+    /// and what it has covered since it ended.
+    double covered(const Context& context, const Axis::Running Axis::*running) const;
 };
 
 /// A block with a table of pins and nothing else of its own.
@@ -92,6 +96,7 @@ Field deceleration();
 Field jerk();
 Field direction();
 Field buffer_mode();
+Field execution_mode();
 Field done(std::string_view doc = "the command has been carried out");
 Field reached(std::string_view name, std::string_view doc);
 

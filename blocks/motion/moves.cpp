@@ -48,16 +48,6 @@ std::span<const Field> halt_fields() {
     return fields;
 }
 
-std::span<const Field> superimposed_fields() {
-    static const auto fields =
-        table({continuous_update(), distance(),
-               input("VelocityDiff", &CommandBlock::pins, &Request::velocity, "{Axis}/s",
-                     "greatest in addition; below 0: the axis' own"),
-               acceleration(), deceleration(), jerk()},
-              done("the distance has been added"));
-    return fields;
-}
-
 std::span<const Field> halt_superimposed_fields() {
     static const auto fields =
         table({deceleration(), jerk()}, done("nothing is superimposed any more"));
@@ -65,3 +55,26 @@ std::span<const Field> halt_superimposed_fields() {
 }
 
 }  // namespace lineshaft::command_kinds
+
+namespace lineshaft {
+
+std::span<const Field> MoveSuperimposed::fields() {
+    static const auto fields = [] {
+        auto table = pin::table({pin::continuous_update(), pin::distance(),
+                                 input("VelocityDiff", &CommandBlock::pins, &Request::velocity,
+                                       "{Axis}/s", "greatest in addition; below 0: the axis' own"),
+                                 pin::acceleration(), pin::deceleration(), pin::jerk()},
+                                pin::done("the distance has been added"));
+        table.push_back(output("CoveredDistance", &MoveSuperimposed::covered_distance, "{Axis}",
+                               "that it has added so far"));
+        return table;
+    }();
+    return fields;
+}
+
+void MoveSuperimposed::scan(const Scan& now, const Context& context) {
+    run(now, context);
+    covered_distance = covered(context, &Axis::added);
+}
+
+}  // namespace lineshaft

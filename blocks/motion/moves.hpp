@@ -4,7 +4,7 @@
 
 namespace lineshaft {
 
-/// Commands of one motion (PLCopen Part 1 v2.0, 3.3 to 3.11). The pins say all.
+/// Commands of one motion (PLCopen Part 1 v2.0, 3.4 to 3.12). The pins say all.
 namespace command_kinds {
 
 std::span<const Field> absolute_fields();
@@ -13,7 +13,6 @@ std::span<const Field> velocity_fields();
 std::span<const Field> continuous_absolute_fields();
 std::span<const Field> continuous_relative_fields();
 std::span<const Field> halt_fields();
-std::span<const Field> superimposed_fields();
 std::span<const Field> halt_superimposed_fields();
 
 inline constexpr CommandKind move_absolute{Command::move_absolute, "MC_MoveAbsolute",
@@ -35,9 +34,6 @@ inline constexpr CommandKind move_continuous_relative{
 inline constexpr CommandKind halt{Command::halt, "MC_Halt",
                                   "brings an axis to standstill; other commands may take over",
                                   halt_fields};
-inline constexpr CommandKind move_superimposed{Command::move_superimposed, "MC_MoveSuperimposed",
-                                               "adds a distance to the motion of an axis",
-                                               superimposed_fields};
 inline constexpr CommandKind halt_superimposed{Command::halt_superimposed, "MC_HaltSuperimposed",
                                                "brings what is superimposed to standstill",
                                                halt_superimposed_fields};
@@ -51,7 +47,18 @@ using MoveVelocity = PlainCommand<command_kinds::move_velocity>;
 using MoveContinuousAbsolute = PlainCommand<command_kinds::move_continuous_absolute>;
 using MoveContinuousRelative = PlainCommand<command_kinds::move_continuous_relative>;
 using Halt = PlainCommand<command_kinds::halt>;
-using MoveSuperimposed = PlainCommand<command_kinds::move_superimposed>;
 using HaltSuperimposed = PlainCommand<command_kinds::halt_superimposed>;
+
+/// MC_MoveSuperimposed (3.8): on top of the motion that is at work. CoveredDistance is what it has
+/// added so far; where another command ends it, what it has added until then.
+struct MoveSuperimposed : CommandBlock {
+    double covered_distance = 0;
+
+    static constexpr std::string_view type = "MC_MoveSuperimposed";
+    static constexpr std::string_view doc = "adds a distance to the motion of an axis";
+    static std::span<const Field> fields();
+    constexpr MoveSuperimposed() { pins.command = Command::move_superimposed; }
+    void scan(const Scan& now, const Context& context);
+};
 
 }  // namespace lineshaft

@@ -50,9 +50,17 @@ void ReadStatus::scan(const Scan&, const Context& context) {
         states[i] = seen && static_cast<std::size_t>(seen->state) == i;
 }
 
+namespace {
+
+constexpr std::string_view source_names[] = {"mcCommandedValue", "mcSetValue", "mcActualValue"};
+
+}  // namespace
+
 std::span<const Field> ReadMotionState::fields() {
     using B = ReadMotionState;
     static const auto table = read_table({
+        input("Source", &B::source, "", "the set-point, or what the drive measures")
+            .one_of(source_names),
         output("ConstantVelocity", &B::constant_velocity, "", "0 too"),
         output("Accelerating", &B::accelerating, "", "the speed grows"),
         output("Decelerating", &B::decelerating, "", "the speed falls"),
@@ -64,13 +72,59 @@ std::span<const Field> ReadMotionState::fields() {
 
 void ReadMotionState::scan(const Scan&, const Context& context) {
     const Axis* seen = look(context);
-    const double v = seen ? seen->velocity : 0, a = seen ? seen->acceleration : 0;
+    const bool is_measured = seen && seen->has_drive && source == Source::actual_value;
+    if (is_measured) measure(*seen);
+    has_looked = is_measured;
+    const double v = is_measured ? last_velocity : seen ? seen->velocity : 0;
+    const double a = is_measured ? change : seen ? seen->acceleration : 0;
     const bool starts = v == 0 && a != 0;
     constant_velocity = seen && a == 0;
     accelerating = v * a > 0 || starts;
     decelerating = v * a < 0;
     direction_positive = v > 0;
     direction_negative = v < 0;
+}
+
+void ReadMotionState::measure(const Axis& seen) {
+    if (has_looked && seen.scan_time == last_time) return;
+    const double v = seen.actual().velocity;
+    change = has_looked ? v - last_velocity : 0;
+    last_velocity = v;
+    last_time = seen.scan_time;
+}
+
+std::span<const Field> ReadAxisInfo::fields() {
+    using B = ReadAxisInfo;
+    static const auto table = read_table({
+        output("HomeAbsSwitch", &B::home_abs_switch, "", "never: the switch is Signal of MC_Home"),
+        output("LimitSwitchPos", &B::limit_switch_positive, "",
+               "with software_limits: the axis is at the highest position, or beyond"),
+        output("LimitSwitchNeg", &B::limit_switch_negative, "",
+               "with software_limits: the axis is at the lowest position, or beyond"),
+        output("Simulation", &B::simulation, "", "the axis has no drive"),
+        output("CommunicationReady", &B::communication_ready, "", "always, while Valid"),
+        output("ReadyForPowerOn", &B::ready_for_power_on, "", "the axis has no error"),
+        output("PowerOn", &B::power_on, "", "as MC_Power wants it"),
+        output("IsHomed", &B::is_homed, "", "by MC_Home"),
+        output("AxisWarning", &B::axis_warning, "",
+               "the axis is outside of its software limits: it may only come in"),
+    });
+    return table;
+}
+
+void ReadAxisInfo::scan(const Scan&, const Context& context) {
+    const Axis* seen = look(context);
+    const bool limited = seen && seen->software_limits;
+    const double position = seen ? seen->actual().position : 0;
+    limit_switch_positive = limited && position >= seen->highest_position;
+    limit_switch_negative = limited && position <= seen->lowest_position;
+    axis_warning =
+        limited && (position > seen->highest_position || position < seen->lowest_position);
+    simulation = seen && !seen->has_drive;
+    communication_ready = valid;
+    ready_for_power_on = seen && seen->state != AxisState::error_stop;
+    power_on = seen && seen->powered != 0;
+    is_homed = seen && seen->homed;
 }
 
 std::span<const Field> ReadAxisError::fields() {
@@ -120,6 +174,24 @@ void ReadParameter::scan(const Scan&, const Context& context) {
     value = found.value_or(0);
     valid = found.has_value();
     error = !found;
+    error_id = error ? MotionError::no_such_parameter : MotionError::none;
+}
+
+std::span<const Field> ReadBoolParameter::fields() {
+    using B = ReadBoolParameter;
+    static const auto table = read_table({
+        input("ParameterNumber", &B::number, "", "4 or 5: software limits"),
+        output("Value", &B::value, "", "it is on"),
+    });
+    return table;
+}
+
+void ReadBoolParameter::scan(const Scan&, const Context& context) {
+    const Axis* seen = look(context);
+    if (!seen) return;
+    valid = is_bool_parameter(number);
+    value = valid && seen->read_parameter(number) != 0.0;
+    error = !valid;
     error_id = error ? MotionError::no_such_parameter : MotionError::none;
 }
 

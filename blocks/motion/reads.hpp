@@ -18,7 +18,7 @@ struct ReadBlock {
 /// Axis, Enable, the outputs of all, and a block's own fields.
 std::vector<Field> read_table(std::initializer_list<Field> own);
 
-/// MC_ReadStatus (3.19): the state of an axis, one output each.
+/// MC_ReadStatus (3.27): the state of an axis, one output each.
 struct ReadStatus : ReadBlock {
     bool states[axis_state_count] = {};
 
@@ -28,18 +28,43 @@ struct ReadStatus : ReadBlock {
     void scan(const Scan& now, const Context& context);
 };
 
-/// MC_ReadMotionState (3.20).
+/// MC_ReadMotionState (3.28). What is commanded and the set-point are one here: what the axis gives
+/// out. Of a drive, which measures no acceleration, the speed is compared with the one that was
+/// seen in the axis' scan before.
 struct ReadMotionState : ReadBlock {
+    enum class Source : std::int64_t { commanded_value, set_value, actual_value };
+    Source source = Source::commanded_value;
+    double last_velocity = 0, change = 0;  ///< as measured; from scan to scan
+    std::int64_t last_time = 0;            ///< of the axis' scan [ns]
+    bool has_looked = false;               ///< at a drive
+
     bool constant_velocity = false, accelerating = false, decelerating = false;
     bool direction_positive = false, direction_negative = false;
 
     static constexpr std::string_view type = "MC_ReadMotionState";
-    static constexpr std::string_view doc = "tells how the set-point of an axis moves";
+    static constexpr std::string_view doc = "tells how an axis moves";
+    static std::span<const Field> fields();
+    void scan(const Scan& now, const Context& context);
+    void shift(std::int64_t by) { last_time += by; }
+
+  private:
+    void measure(const Axis& seen);
+};
+
+/// MC_ReadAxisInfo (3.29). An axis has no network and no switches here: its software limits stand
+/// for the limit switches.
+struct ReadAxisInfo : ReadBlock {
+    bool home_abs_switch = false, limit_switch_positive = false, limit_switch_negative = false;
+    bool simulation = false, communication_ready = false, ready_for_power_on = false;
+    bool power_on = false, is_homed = false, axis_warning = false;
+
+    static constexpr std::string_view type = "MC_ReadAxisInfo";
+    static constexpr std::string_view doc = "tells what an axis has and whether it is ready";
     static std::span<const Field> fields();
     void scan(const Scan& now, const Context& context);
 };
 
-/// MC_ReadAxisError (3.22).
+/// MC_ReadAxisError (3.30).
 struct ReadAxisError : ReadBlock {
     MotionError axis_error = MotionError::none;
 
@@ -49,7 +74,7 @@ struct ReadAxisError : ReadBlock {
     void scan(const Scan& now, const Context& context);
 };
 
-/// MC_ReadActualPosition, MC_ReadActualVelocity (3.16, 3.17): of the drive where the axis has one.
+/// MC_ReadActualPosition, MC_ReadActualVelocity (3.24, 3.25): of the drive where the axis has one.
 struct ReadActualPosition : ReadBlock {
     double position = 0;
 
@@ -68,13 +93,25 @@ struct ReadActualVelocity : ReadBlock {
     void scan(const Scan& now, const Context& context);
 };
 
-/// MC_ReadParameter (3.14).
+/// MC_ReadParameter (3.19.1).
 struct ReadParameter : ReadBlock {
     std::int64_t number = 1;
     double value = 0;
 
     static constexpr std::string_view type = "MC_ReadParameter";
     static constexpr std::string_view doc = "tells a parameter of an axis, by PLCopen's number";
+    static std::span<const Field> fields();
+    void scan(const Scan& now, const Context& context);
+};
+
+/// MC_ReadBoolParameter (3.19.2).
+struct ReadBoolParameter : ReadBlock {
+    std::int64_t number = 4;
+    bool value = false;
+
+    static constexpr std::string_view type = "MC_ReadBoolParameter";
+    static constexpr std::string_view doc =
+        "tells whether a parameter of an axis is on, by PLCopen's number";
     static std::span<const Field> fields();
     void scan(const Scan& now, const Context& context);
 };

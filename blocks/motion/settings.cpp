@@ -1,5 +1,7 @@
 #include "blocks/motion/settings.hpp"
 
+#include <algorithm>
+
 namespace lineshaft {
 
 namespace {
@@ -9,10 +11,10 @@ constexpr std::string_view home_mode_names[] = {"mcDirect", "mcToPosition", "mcO
 }  // namespace
 
 std::span<const Field> SetPosition::fields() {
-    static const auto table =
-        pin::table({pin::position("of the place where the axis is"),
-                    input("Relative", &SetPosition::relative, "", "Position is added")},
-                   pin::done("the position is set"));
+    static const auto table = pin::table(
+        {pin::position("of the place where the axis is"),
+         input("Relative", &SetPosition::relative, "", "Position is added"), pin::execution_mode()},
+        pin::done("the position is set"));
     return table;
 }
 
@@ -26,9 +28,25 @@ std::span<const Field> WriteParameter::fields() {
     static const auto table = pin::table(
         {input("ParameterNumber", &B::pins, &Request::option, "",
                "1..17, see blocks/motion/README.md"),
-         input("Value", &B::pins, &Request::position, "", "in the unit of the axis, and seconds")},
+         input("Value", &B::pins, &Request::position, "", "in the unit of the axis, and seconds"),
+         pin::execution_mode()},
         pin::done("the parameter is set"));
     return table;
+}
+
+std::span<const Field> WriteBoolParameter::fields() {
+    using B = WriteBoolParameter;
+    static const auto table =
+        pin::table({input("ParameterNumber", &B::pins, &Request::option, "",
+                          "4 or 5: software limits, both at once"),
+                    input("Value", &B::value, "", "on"), pin::execution_mode()},
+                   pin::done("the parameter is set"));
+    return table;
+}
+
+void WriteBoolParameter::scan(const Scan& now, const Context& context) {
+    pins.position = value ? 1 : 0;
+    run(now, context);
 }
 
 std::span<const Field> SetOverride::fields() {
@@ -65,12 +83,21 @@ std::span<const Field> Home::fields() {
         {pin::position("that is known then"),
          input("HomingMode", &Home::mode, "", "how").one_of(home_mode_names),
          input("Signal", &Home::signal, "", "of a switch, for mcOnSignal: its rising edge"),
-         pin::velocity(), pin::direction(), pin::acceleration(), pin::deceleration(), pin::jerk()},
+         pin::velocity(), pin::direction(), pin::acceleration(), pin::deceleration(), pin::jerk(),
+         pin::buffer_mode()},
         pin::done("the position is known"));
     return table;
 }
 
+/// It begins standing: blending is waiting.
 void Home::scan(const Scan& now, const Context& context) {
+    const BufferMode wanted = pins.mode;
+    pins.mode = std::min(wanted, BufferMode::buffered);
+    look(now, context);
+    pins.mode = wanted;
+}
+
+void Home::look(const Scan& now, const Context& context) {
     pins.option = static_cast<std::int64_t>(mode);
     if (execute && !last_execute) signalled = false;
     run(now, context);

@@ -4,7 +4,8 @@
 
 namespace lineshaft {
 
-/// MC_SetPosition (3.13): the axis does not move, its position gets another name.
+/// MC_SetPosition (3.17): the axis does not move, its position gets another name. `mcQueued` waits
+/// as a buffered command does.
 struct SetPosition : CommandBlock {
     bool relative = false;
 
@@ -17,13 +18,24 @@ struct SetPosition : CommandBlock {
     void scan(const Scan& now, const Context& context);
 };
 
-/// MC_WriteParameter (3.15).
+/// MC_WriteParameter (3.20.1).
 struct WriteParameter : CommandBlock {
     static constexpr std::string_view type = "MC_WriteParameter";
     static constexpr std::string_view doc = "sets a parameter of an axis, by PLCopen's number";
     static std::span<const Field> fields();
     constexpr WriteParameter() { pins.command = Command::write_parameter; }
     void scan(const Scan& now, const Context& context) { run(now, context); }
+};
+
+/// MC_WriteBoolParameter (3.20.2): those that are BOOL alone.
+struct WriteBoolParameter : CommandBlock {
+    bool value = false;
+
+    static constexpr std::string_view type = "MC_WriteBoolParameter";
+    static constexpr std::string_view doc = "switches a parameter of an axis, by PLCopen's number";
+    static std::span<const Field> fields();
+    constexpr WriteBoolParameter() { pins.command = Command::write_bool_parameter; }
+    void scan(const Scan& now, const Context& context);
 };
 
 /// MC_SetOverride (3.18): sent when Enable comes, and at each change of a factor while it is true.
@@ -39,7 +51,8 @@ struct SetOverride : CommandBlock {
 
 /// MC_Home (3.2). `mcDirect`: the position is Position at once. `mcToPosition`: the axis moves to
 /// Position. `mcOnSignal`: it moves in Direction until Signal rises; there Position is, and it
-/// stops. A Signal that is true from the beginning must fall first.
+/// stops. A Signal that is true from the beginning must fall first. A buffered one waits for what
+/// is at work, as far as that leaves the axis standing, and ends what is superimposed.
 struct Home : CommandBlock {
     enum class Mode : std::int64_t { direct, to_position, on_signal };
     Mode mode = Mode::direct;
@@ -50,6 +63,9 @@ struct Home : CommandBlock {
     static std::span<const Field> fields();
     constexpr Home() { pins.command = Command::home; }
     void scan(const Scan& now, const Context& context);
+
+  private:
+    void look(const Scan& now, const Context& context);
 };
 
 }  // namespace lineshaft

@@ -6,6 +6,8 @@ std::span<const Field> Power::fields() {
     static const Field table[] = {
         pin::axis(),
         input("Enable", &Power::execute, "", "the power is on"),
+        input("EnablePositive", &Power::enable_positive, "", "the axis may move forward"),
+        input("EnableNegative", &Power::enable_negative, "", "the axis may move backward"),
         output("Status", &Power::status, "", "the power is on, as the axis has it"),
         output("Valid", &Power::active, "", "Status can be relied on"),
         output("Error", &Power::error, "", "there is no axis"),
@@ -15,7 +17,10 @@ std::span<const Field> Power::fields() {
 }
 
 void Power::scan(const Scan& now, const Context& context) {
-    const bool changed = !started || execute != last_execute;
+    const std::int64_t directions =
+        (enable_positive ? power_positive : 0) + (enable_negative ? power_negative : 0);
+    const bool changed = !started || execute != last_execute || directions != pins.option;
+    pins.option = directions;
     last_execute = execute;
     pins.command = execute ? Command::power_on : Command::power_off;
     if (changed) start(now, context);

@@ -4,9 +4,12 @@
 
 namespace lineshaft {
 
-/// MC_Power (3.1): sends the level of Enable in its first scan, and each change of it. Without
-/// power an axis ramps down with its own dynamics.
+/// MC_Power (3.1): sends the levels of its inputs in its first scan, and each change of them.
+/// Without power an axis ramps down with its own dynamics. A command whose way goes in a direction
+/// that is not enabled is refused; a motion that goes that way all the same, or while its direction
+/// is taken away, brakes with the axis' own dynamics: ErrorStop. The standard leaves that open.
 struct Power : CommandBlock {
+    bool enable_positive = true, enable_negative = true;
     bool status = false;
 
     static constexpr std::string_view type = "MC_Power";

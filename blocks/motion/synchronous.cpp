@@ -85,7 +85,9 @@ std::vector<Field> phasing_table() {
          of_master(pin::velocity()), of_master(pin::acceleration()), of_master(pin::deceleration()),
          of_master(pin::jerk()), pin::buffer_mode()},
         pin::done("the shift is reached"),
-        {output("AbsolutePhaseShift", &Phasing::shift, "{Master}", "shift of the master now")});
+        {output("AbsolutePhaseShift", &Phasing::shift, "{Master}", "shift of the master now"),
+         output("CoveredPhaseShift", &Phasing::covered_shift, "{Master}",
+                "that the command has added so far")});
 }
 
 }  // namespace
@@ -169,6 +171,7 @@ std::span<const Field> PhasingRelative::fields() {
 void Phasing::scan(const Scan& now, const Context& context) {
     run(now, context);
     if (axis != nowhere) shift = context.seen_instance<Axis>(axis).sync.shift.position;
+    covered_shift = covered(context, &Axis::phased);
 }
 
 namespace {
@@ -195,6 +198,13 @@ std::span<const Field> VelocityProfile::fields() {
     static const auto fields =
         profile_table("TimeVelocity", "VelocityScale", "{Axis}/s",
                       pin::reached("ProfileCompleted", "the last velocity is kept"));
+    return fields;
+}
+
+std::span<const Field> AccelerationProfile::fields() {
+    static const auto fields =
+        profile_table("TimeAcceleration", "AccelerationScale", "{Axis}/s^2",
+                      pin::reached("ProfileCompleted", "the velocity at its end is kept"));
     return fields;
 }
 

@@ -4,8 +4,8 @@
 
 namespace lineshaft {
 
-/// Commands by which a slave follows others, or a profile (PLCopen Part 1 v2.0, 3.26 to 3.36).
-/// `axis` of the base is the slave. Quantities of the master are in its own unit.
+/// Commands by which a slave follows others, or a profile (PLCopen Part 1 v2.0, 4.3 to 4.10, 3.14
+/// to 3.16). `axis` of the base is the slave. Quantities of the master are in its own unit.
 
 /// MC_GearIn: on the way of ratio x master in the least time, within the slave's limits relative to
 /// the master's motion. A change of the ratio is a new start. Beyond the standard: Transition says
@@ -49,7 +49,7 @@ struct CamIn : CommandBlock {
 /// MC_PhasingAbsolute, MC_PhasingRelative: shift the master as the slave sees it; a shift above 0
 /// lets the slave lead.
 struct Phasing : CommandBlock {
-    double shift = 0;
+    double shift = 0, covered_shift = 0;
 
     void scan(const Scan& now, const Context& context);
 };
@@ -68,8 +68,9 @@ struct PhasingRelative : Phasing {
     constexpr PhasingRelative() { pins.command = Command::phasing_relative; }
 };
 
-/// MC_PositionProfile, MC_VelocityProfile (3.13, 3.14): the motion that a cam_table gives over time
-/// (master_unit: s), within the limits of the axis. It begins where the axis is, with its velocity.
+/// MC_PositionProfile, -Velocity-, -AccelerationProfile (3.14 to 3.16): the motion that a cam_table
+/// gives over time (master_unit: s), within the limits of the axis. It begins where the axis is,
+/// with its velocity.
 struct Profile : CommandBlock {
     std::int64_t table = nowhere;
 
@@ -90,6 +91,14 @@ struct VelocityProfile : Profile {
     static constexpr std::string_view doc = "moves an axis by velocities over time";
     static std::span<const Field> fields();
     constexpr VelocityProfile() { pins.command = Command::velocity_profile; }
+};
+
+/// Accelerations; they end with 0, and the velocity that they have led to is kept.
+struct AccelerationProfile : Profile {
+    static constexpr std::string_view type = "MC_AccelerationProfile";
+    static constexpr std::string_view doc = "moves an axis by accelerations over time";
+    static std::span<const Field> fields();
+    constexpr AccelerationProfile() { pins.command = Command::acceleration_profile; }
 };
 
 namespace command_kinds {

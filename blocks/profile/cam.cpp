@@ -156,6 +156,46 @@ double Cam::area(double x) const {
     return sum;
 }
 
+namespace {
+
+/// Twice integrated, from a value and a slope on.
+Polynomial<7> twice_integrated(const Polynomial<5>& y, double value, double slope) {
+    Polynomial<7> twice{{value, slope}};
+    for (std::size_t n = 0; n < y.c.size(); ++n)
+        twice.c[n + 2] = y.c[n] / static_cast<double>((n + 1) * (n + 2));
+    return twice;
+}
+
+}  // namespace
+
+double Cam::area_of_areas(double x) const {
+    double sum = 0, slope = 0;
+    for (std::size_t i = 0; i + 1 < points.size() && points[i].x < x; ++i) {
+        const auto twice = twice_integrated(curve(points[i], points[i + 1]), sum, slope);
+        const double h = std::min(x, points[i + 1].x) - points[i].x;
+        sum = twice.at(h);
+        slope = twice.slope().at(h);
+    }
+    return sum;
+}
+
+Range Cam::areas_of_areas(double scale, double offset, double slope) const {
+    Range all;
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        auto y = curve(points[i], points[i + 1]);
+        for (double& c : y.c) c *= scale;
+        y.c[0] += offset;
+        const auto twice = twice_integrated(y, sum, slope);
+        const double h = points[i + 1].x - points[i].x;
+        const Range r = range(twice, 0, h);
+        all = {std::min(all.least, r.least), std::max(all.greatest, r.greatest)};
+        sum = twice.at(h);
+        slope = twice.slope().at(h);
+    }
+    return all;
+}
+
 Range Cam::values() const {
     Range all{points.front().y, points.front().y};
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {

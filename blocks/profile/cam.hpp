@@ -71,11 +71,15 @@ struct Cam {
     CurvePoint last() const;
     /// The integral of y from the first point to x, within the cam.
     double area(double x) const;
+    /// The integral of that.
+    double area_of_areas(double x) const;
     CamExtremes extremes() const;
     /// Between what y stays.
     Range values() const;
     /// Between what the integral of scale * y + offset stays, from the first point on.
     Range areas(double scale, double offset) const;
+    /// The same of the integral of that, which begins with a slope.
+    Range areas_of_areas(double scale, double offset, double slope) const;
 };
 
 }  // namespace lineshaft

@@ -165,12 +165,10 @@ struct VendorsOwn {
 };
 
 const VendorsOwn* vendors_own(const Type& type, std::string_view argument) {
-    static constexpr VendorsOwn known[] = {{"StartMode"},       {"StopMode"},
-                                           {"Restart"},         {"PositionControlled"},
-                                           {"bRegulatorOn"},    {"bDriveStart"},
-                                           {"Enable_Positive"}, {"Enable_Negative"},
-                                           {"Current", 0},      {"AbortAcceleration", 0},
-                                           {"Override", 100}};
+    static constexpr VendorsOwn known[] = {
+        {"StartMode"},    {"StopMode"},    {"Restart"},    {"PositionControlled"},
+        {"bRegulatorOn"}, {"bDriveStart"}, {"Current", 0}, {"AbortAcceleration", 0},
+        {"Override", 100}};
     const auto refers = [](const Variable* member) { return member->type->is_handle(); };
     const auto* it = std::ranges::find_if(
         known, [&](const VendorsOwn& input) { return same_name(input.name, argument); });
@@ -268,8 +266,17 @@ const Type* check_routine_call(Checking& c, Expression& call, Routine& routine, 
 
 std::string_view standard_name(const Type& type, std::string_view name) {
     constexpr std::pair<std::string_view, std::string_view> others[] = {
-        {"reset", "r"},    {"load", "ld"},         {"set1", "s1"}, {"set", "s"}, {"reset1", "r1"},
-        {"busy", "valid"}, {"mode", "homingmode"}, {"qu", "q"},    {"qd", "q"}};
+        {"reset", "r"},
+        {"load", "ld"},
+        {"set1", "s1"},
+        {"set", "s"},
+        {"reset1", "r1"},
+        {"busy", "valid"},
+        {"mode", "homingmode"},
+        {"qu", "q"},
+        {"qd", "q"},
+        {"enable_positive", "enablepositive"},
+        {"enable_negative", "enablenegative"}};
     if (type.kind != Kind::standard) return name;
     const auto has = [&](std::string_view known) {
         return std::ranges::any_of(type.members,

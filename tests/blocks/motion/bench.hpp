@@ -53,9 +53,11 @@ class MotionBench {
     /// A dot leaves an input as it is, and an output unseen. Rows may leave milliseconds out.
     void check(std::string_view table);
 
+    /// As a table of check() has it.
+    std::string text(std::string_view signal) const;
+
   private:
     Port port(std::string_view signal) const;
-    std::string text(std::string_view signal) const;
 
     Linked linked_;
     std::unique_ptr<Executive> executive_;

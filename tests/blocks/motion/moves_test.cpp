@@ -104,3 +104,36 @@ TEST_CASE("without power an axis ramps down, and refuses") {
     80    1            .                0           | 0            1                       0             0         none          disabled          0
     81    .            0                .           | 1            0                       0             0         none          standstill        0 )");
 }
+
+TEST_CASE("CoveredDistance is what a superimposed move has added, whatever ends it") {
+    MotionBench bench(one_axis);
+    bench.set("one.Execute", true);
+    bench.step(100);
+    bench.set("added.Execute", true);
+    bench.step(2);
+    double last = -1;
+    for (int ms = 0; ms < 5000 && !bench.is("added.Done"); ++ms) {
+        REQUIRE(bench.number("added.CoveredDistance") ==
+                Approx(bench.axis("x").extra.position).margin(1e-12));
+        REQUIRE(bench.number("added.CoveredDistance") > last - 1e-12);
+        last = bench.number("added.CoveredDistance");
+        bench.step();
+    }
+    CHECK(bench.number("added.CoveredDistance") == 10);
+    bench.step(1000);
+    CHECK(bench.number("x.position") == Approx(60));
+    bench.set("added.Execute", false);
+    bench.set("velocity.Execute", true);
+    bench.step(100);
+    bench.set("added.Execute", true);
+    bench.step(100);
+    const double rest = bench.number("x.velocity") - 20;
+    CHECK(rest > 1);
+    const double before = bench.number("added.CoveredDistance");
+    CHECK(before > 1);
+    bench.set("two.Execute", true);
+    bench.step(3);
+    CHECK(bench.is("added.CommandAborted"));
+    CHECK(bench.number("added.CoveredDistance") > before);
+    CHECK(bench.number("added.CoveredDistance") < before + 0.003 * 50);
+}

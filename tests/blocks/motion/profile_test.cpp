@@ -14,7 +14,7 @@ namespace {
 
 /// An axis at 10 mm, a profile of positions that begins there, and one of velocities.
 std::string program(const std::string& position = ", Offset: 10 mm",
-                    const std::string& velocity = {}) {
+                    const std::string& velocity = {}, const std::string& acceleration = {}) {
     return fmt::format(R"(
 tasks: {{main: {{every: 1 ms}}}}
 blocks:
@@ -23,9 +23,11 @@ blocks:
   speed: {{type: cam_table, task: main, unit: mm/s, master_unit: s, points: [[0 s, 0 mm/s, 0 mm/s^2], [0.4 s, 40 mm/s], [1 s, 20 mm/s, 0 mm/s^2]]}}
   position: {{type: MC_PositionProfile, task: main, Axis: x, TimePosition: way{}}}
   velocity: {{type: MC_VelocityProfile, task: main, Axis: x, TimeVelocity: speed{}}}
+  push: {{type: cam_table, task: main, unit: mm/s^2, master_unit: s, points: [[0 s, 0 mm/s^2], [0.2 s, 300 mm/s^2], [0.5 s, -100 mm/s^2], [0.6 s, 0 mm/s^2]]}}
+  acceleration: {{type: MC_AccelerationProfile, task: main, Axis: x, TimeAcceleration: push{}}}
   halt: {{type: MC_Halt, task: main, Axis: x}}
 )",
-                       position, velocity);
+                       position, velocity, acceleration);
 }
 
 MotionError answer(const std::string& text, const char* block) {
@@ -97,6 +99,59 @@ TEST_CASE("MC_VelocityProfile moves by the integral of the table, and on with it
     CHECK(bench.is("halt.Done"));
 }
 
+TEST_CASE("MC_AccelerationProfile moves by the integrals of the table, and on with its velocity") {
+    MotionBench bench(program(", Offset: 10 mm", "", ", AccelerationScale: 0.5, TimeScale: 2"));
+    const Cam cam = bench.block<CamTable>("push").cam(false);
+    bench.set("acceleration.Execute", true);
+    bench.step(2);
+    constexpr int parts = 100;  // of a millisecond, for Simpson's rule
+    double position = 10, v = 0;
+    for (int ms = 1; ms < 1200; ++ms) {
+        bench.step();
+        for (int i = 0; i < parts; ++i) {
+            const double h = 1e-3 / parts, t = (ms - 1) * 1e-3 + i * h;
+            const auto a = [&](double at) { return 0.5 * cam.at(0.5 * at).y; };
+            const double half = v + 0.5 * h * (a(t) + 4 * a(t + h / 4) + a(t + h / 2)) / 6;
+            const double next = v + h * (a(t) + 4 * a(t + h / 2) + a(t + h)) / 6;
+            position += h * (v + 4 * half + next) / 6;
+            v = next;
+        }
+        REQUIRE(bench.number("x.acceleration") == Approx(0.5 * cam.at(ms * 5e-4).y).margin(1e-9));
+        REQUIRE(bench.number("x.velocity") == Approx(v).margin(1e-9));
+        REQUIRE(bench.number("x.position") == Approx(position).epsilon(1e-10));
+        REQUIRE_FALSE(bench.is("acceleration.ProfileCompleted"));
+    }
+    bench.step(3);
+    CHECK(bench.is("acceleration.ProfileCompleted"));
+    CHECK(bench.axis("x").state == AxisState::continuous_motion);
+    CHECK(bench.number("x.velocity") == Approx(v));
+    CHECK(bench.number("x.acceleration") == 0);
+    const double at = bench.number("x.position");
+    bench.step(100);
+    CHECK(bench.number("x.position") - at == Approx(0.1 * v));
+}
+
+TEST_CASE(
+    "a profile of accelerations that leads beyond a limit or does not end with 0 is refused") {
+    CHECK(answer(program(), "acceleration") == MotionError::none);
+    CHECK(answer(program("", "", ", Offset: 10 mm/s^2"), "acceleration") ==
+          MotionError::out_of_range);
+    CHECK(answer(program("", "", ", AccelerationScale: 5"), "acceleration") ==
+          MotionError::sync_limits);
+    CHECK(answer(program("", "", ", TimeScale: 20"), "acceleration") == MotionError::sync_limits);
+    std::string limited = program();
+    limited.insert(limited.find("start_position"),
+                   "software_limits: true, lowest_position: 0 mm, highest_position: 30 mm, ");
+    CHECK(answer(limited, "acceleration") == MotionError::software_limit);
+    std::string other = program();
+    other.replace(other.find("TimeAcceleration: push"), 22, "TimeAcceleration: speed");
+    CHECK(answer(other, "acceleration") == MotionError::no_cam);
+    MotionBench backwards(program("", "", ", AccelerationScale: -0.2"));
+    backwards.set("acceleration.Execute", true);
+    backwards.step(500);
+    CHECK(backwards.number("x.position") < 10);
+}
+
 TEST_CASE("a profile that the axis cannot follow is refused, and nothing moves") {
     CHECK(answer(program(), "position") == MotionError::none);
     CHECK(answer(program(", Offset: 11 mm"), "position") == MotionError::out_of_range);
@@ -133,7 +188,7 @@ TEST_CASE("a buffered profile begins at the end of the move before, to the nanos
 }
 
 TEST_CASE("a checkpoint in mid-profile goes on to the same bytes") {
-    for (const char* name : {"position.Execute", "velocity.Execute"}) {
+    for (const char* name : {"position.Execute", "velocity.Execute", "acceleration.Execute"}) {
         MotionBench whole(program()), resumed(program());
         whole.set(name, true);
         whole.step(333);

@@ -28,11 +28,11 @@ constexpr CommandDraw kinds[] = {
     {"MC_Stop", "Execute Deceleration Jerk"},
     {"MC_MoveSuperimposed", "Execute Distance VelocityDiff ContinuousUpdate"},
     {"MC_HaltSuperimposed", "Execute Deceleration"},
-    {"MC_Home", "Execute Position HomingMode Signal"},
-    {"MC_SetPosition", "Execute Position Relative"},
+    {"MC_Home", "Execute Position HomingMode Signal BufferMode"},
+    {"MC_SetPosition", "Execute Position Relative ExecutionMode"},
     {"MC_SetOverride", "Enable VelFactor AccFactor JerkFactor"},
     {"MC_Reset", "Execute"},
-    {"MC_Power", "Enable"},
+    {"MC_Power", "Enable EnablePositive EnableNegative"},
 };
 
 constexpr const char* three_tasks[] = {"servo", "interrupt", "main"};

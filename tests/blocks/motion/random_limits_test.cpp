@@ -138,16 +138,18 @@ class LimitedAxes {
         if (pin == "Transition") return {0, 1, 2};
         if (pin == "PhaseShift") return {0, 20, -50};
         if (pin == "SlaveScaling") return {1, -1, 3};
+        if (pin == "AccelerationScale") return {1, -1, 0.3};
         if (pin == "actual_position") return {0, 10, 50, 55, -60, 400};
         return {0, 1};
     }
 
     static Type type_of(std::string_view pin) {
         if (pin == "ParameterNumber") return Type::integer;
-        for (const char* name : {"Direction", "BufferMode", "HomingMode", "Transition"})
-            if (pin == name) return Type::enumeration;
         for (const char* name :
-             {"Execute", "Enable", "Relative", "ContinuousUpdate", "Signal", "CatchUp"})
+             {"Direction", "BufferMode", "HomingMode", "Transition", "ExecutionMode"})
+            if (pin == name) return Type::enumeration;
+        for (const char* name : {"Execute", "Enable", "EnablePositive", "EnableNegative",
+                                 "Relative", "ContinuousUpdate", "Signal", "CatchUp"})
             if (pin == name) return Type::boolean;
         return Type::real;
     }
@@ -171,13 +173,14 @@ class LimitedAxes {
             {"MC_Stop", "Execute Deceleration Jerk"},
             {"MC_MoveSuperimposed", "Execute Distance VelocityDiff ContinuousUpdate"},
             {"MC_HaltSuperimposed", "Execute Deceleration"},
-            {"MC_Home", "Execute Position HomingMode Signal"},
-            {"MC_SetPosition", "Execute Position Relative"},
+            {"MC_Home", "Execute Position HomingMode Signal BufferMode"},
+            {"MC_SetPosition", "Execute Position Relative ExecutionMode"},
             {"MC_SetOverride", "Enable VelFactor AccFactor JerkFactor"},
             {"MC_WriteParameter", "Execute ParameterNumber Value"},
-            {"MC_WriteParameter", "Execute ParameterNumber Value"},
+            {"MC_WriteParameter", "Execute ParameterNumber Value ExecutionMode"},
+            {"MC_AccelerationProfile", "Execute AccelerationScale BufferMode"},
             {"MC_Reset", "Execute"},
-            {"MC_Power", "Enable"}};
+            {"MC_Power", "Enable EnablePositive EnableNegative"}};
         return table;
     }
 
@@ -193,10 +196,10 @@ class LimitedAxes {
             {"MC_MoveAbsolute", "Execute Position Deceleration BufferMode"},
             {"MC_Stop", "Execute Deceleration Jerk"},
             {"MC_MoveSuperimposed", "Execute Distance VelocityDiff"},
-            {"MC_SetPosition", "Execute Position Relative"},
+            {"MC_SetPosition", "Execute Position Relative ExecutionMode"},
             {"MC_WriteParameter", "Execute ParameterNumber Value"},
             {"MC_Reset", "Execute"},
-            {"MC_Power", "Enable"}};
+            {"MC_Power", "Enable EnablePositive EnableNegative"}};
         return table;
     }
 
@@ -214,6 +217,7 @@ blocks:
   move: {{type: MC_MoveAbsolute, task: main, Axis: m}}
   rename: {{type: MC_SetPosition, task: main, Axis: m, Position: 7 mm}}
   wave: {{type: cam_table, task: main, points: [[0 mm, -20 mm], [50 mm, 60 mm], [100 mm, -20 mm]]}}
+  push: {{type: cam_table, task: main, unit: mm/s^2, master_unit: s, points: [[0 s, 0 mm/s^2], [0.1 s, 500 mm/s^2], [0.3 s, -300 mm/s^2], [0.4 s, 0 mm/s^2]]}}
   select: {{type: MC_CamTableSelect, task: main, Master: m, Slave: s, CamTable: wave, Periodic: true, Execute: true}}
 )",
                                        lowest, highest);
@@ -230,7 +234,10 @@ blocks:
             const std::string_view type = kind.type;
             add_pins(name, kind.pins, type == "MC_Power" || type == "MC_Stop");
         };
-        for (const Kind& kind : commands()) add(kind, "Axis: x");
+        for (const Kind& kind : commands())
+            add(kind, std::string_view(kind.type) == "MC_AccelerationProfile"
+                          ? "Axis: x, TimeAcceleration: push"
+                          : "Axis: x");
         for (const Kind& kind : couplings()) {
             const std::string_view type = kind.type;
             const bool leads = type.starts_with("MC_GearIn") || type.starts_with("MC_Phasing");
@@ -273,8 +280,8 @@ blocks:
     /// No command any more, power, no override.
     void let_go() {
         set_all("", ".Execute", 0);
-        set_all("", ".Enable", 1);
-        set_all("", "Factor", 1);
+        for (const char* level : {".Enable", ".EnablePositive", ".EnableNegative", "Factor"})
+            set_all("", level, 1);
     }
 
     /// At the end all axes with limits stand, lose their errors, and go to where they are inside.

@@ -27,11 +27,13 @@ std::vector<double> values_of(std::string_view pin) {
     if (pin == "HomingMode") return {0, 1, 2};
     if (pin == "VelFactor") return {1, 0.5, 0};
     if (pin == "AccFactor" || pin == "JerkFactor") return {1, 0.5};
+    if (pin == "ExecutionMode") return {0, 0, 1};
     return {0, 1};
 }
 
 Type type_of(std::string_view pin) {
-    if (pin == "Direction" || pin == "BufferMode" || pin == "HomingMode") return Type::enumeration;
+    if (pin == "Direction" || pin == "BufferMode" || pin == "HomingMode" || pin == "ExecutionMode")
+        return Type::enumeration;
     return values_of(pin).size() == 2 && values_of(pin)[1] == 1 && !pin.ends_with("Factor")
                ? Type::boolean
                : Type::real;
@@ -71,7 +73,8 @@ std::string Sequences::run(const Events& events) {
     for (std::int64_t at = 0; at < setup_.length + setup_.patience; ++at) {
         if (at == setup_.length) {
             set_all(".Execute", "", 0);
-            set_all(".Enable", "", 1);
+            for (const char* level : {".Enable", ".EnablePositive", ".EnableNegative"})
+                set_all(level, "", 1);
             set_all("Factor", "", 1);
         }
         for (; next != events.end() && next->at <= at; ++next) set(next->pin, next->value);

@@ -1,6 +1,7 @@
 #include "blocks/motion/settings.hpp"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include "runtime/model/random.hpp"
 #include "tests/blocks/motion/bench.hpp"
@@ -26,11 +27,9 @@ blocks:
   home: {type: MC_Home, task: main, Axis: x, Velocity: 20 mm/s}
   override: {type: MC_SetOverride, task: main, Axis: x}
   position: {type: MC_SetPosition, task: main, Axis: x, Position: 7 mm}
+  switch: {type: MC_WriteBoolParameter, task: main, Axis: x, ParameterNumber: 4}
   reset: {type: MC_Reset, task: main, Axis: x}
   status: {type: MC_ReadStatus, task: main, Axis: x, Enable: true}
-  probe: {type: MC_TouchProbe, task: main, Axis: x}
-  abort: {type: MC_AbortTrigger, task: main, Axis: x}
-  cam: {type: MC_DigitalCamSwitch, task: main, Axis: x, Enable: true, FirstOnPosition: 10 mm, LastOnPosition: 20 mm}
 )";
 
 /// How far a modulo axis turns from 350 deg to the position.
@@ -154,26 +153,139 @@ TEST_CASE("MC_SetPosition gives the place another name, and moves nothing") {
     CHECK(bench.number("x.position") == Approx(end));
 }
 
-TEST_CASE("MC_TouchProbe records in its window, and MC_AbortTrigger ends it") {
+TEST_CASE("MC_SetPosition, absolute, names the place where the axis is in that scan") {
     MotionBench bench(straight);
-    bench.set("probe.Execute", true);
     bench.set("velocity.Execute", true);
-    bench.step(300);
-    CHECK(bench.is("cam.Output") ==
-          (bench.number("x.position") >= 10 && bench.number("x.position") <= 20));
-    bench.set("probe.TriggerInput", true);
-    bench.step();
-    CHECK(bench.is("probe.Done"));
-    CHECK(bench.number("probe.RecordedPosition") == bench.number("x.position"));
-    bench.set("probe.Execute", false);
+    bench.step(400);
+    bench.set("position.Execute", true);
     bench.step(2);
-    bench.set("probe.Execute", true);
-    bench.step(2);
-    CHECK(bench.is("probe.Busy"));
-    bench.set("abort.Execute", true);
+    CHECK(bench.is("position.Done"));
+    CHECK(bench.number("x.position") == Approx(7).margin(1e-12));
+}
+
+namespace {
+
+constexpr const char* queued = R"(
+tasks: {main: {every: 1 ms}}
+blocks:
+  x: {type: axis, task: main, default_velocity: 100 mm/s}
+  one: {type: MC_MoveAbsolute, task: main, Axis: x, Position: 50 mm}
+  velocity: {type: MC_MoveVelocity, task: main, Axis: x, Velocity: 100 mm/s}
+  position: {type: MC_SetPosition, task: main, Axis: x, Position: 7 mm, ExecutionMode: mcQueued}
+  limit: {type: MC_WriteParameter, task: main, Axis: x, ParameterNumber: 9, Value: 20, ExecutionMode: mcQueued}
+  switch: {type: MC_WriteBoolParameter, task: main, Axis: x, ParameterNumber: 4, Value: true, ExecutionMode: mcQueued}
+  two: {type: MC_MoveAbsolute, task: main, Axis: x, Position: 17 mm, BufferMode: mcBlendingHigh}
+  home: {type: MC_Home, task: main, Axis: x, Position: -3 mm, BufferMode: mcBlendingNext}
+  stop: {type: MC_Stop, task: main, Axis: x}
+  added: {type: MC_MoveSuperimposed, task: main, Axis: x, Distance: 40 mm, VelocityDiff: 10 mm/s}
+)";
+
+}  // namespace
+
+TEST_CASE("mcQueued: what sets something waits as a buffered command does") {
+    MotionBench bench(queued);
+    bench.set("one.Execute", true);
     bench.step(3);
-    CHECK(bench.is("probe.CommandAborted"));
-    CHECK(bench.is("abort.Done"));
+    for (const char* next : {"position", "limit", "two"})
+        bench.set(fmt::format("{}.Execute", next), true);
+    bench.step(100);
+    CHECK(bench.is("position.Busy"));
+    CHECK_FALSE(bench.is("position.Active"));
+    CHECK(bench.number("x.default_velocity") == 100);
+    run_until(bench, "one.Done");
+    CHECK(bench.is("position.Done"));
+    CHECK(bench.is("limit.Done"));
+    CHECK(bench.number("x.position") == Approx(7).margin(1e-9));
+    CHECK(bench.number("x.velocity") == 0);
+    CHECK(bench.number("x.default_velocity") == 20);
+    bench.step(200);
+    CHECK(bench.number("x.velocity") == Approx(20));
+    run_until(bench, "two.Done");
+    CHECK(bench.number("x.position") == 17);
+}
+
+TEST_CASE("mcQueued behind a velocity counts when that is reached, and ends nothing") {
+    MotionBench bench(queued);
+    bench.set("velocity.Execute", true);
+    bench.step(20);
+    bench.set("position.Execute", true);
+    bench.set("limit.Execute", true);
+    bench.step(10);
+    CHECK(bench.is("position.Busy"));
+    run_until(bench, "position.Done");
+    CHECK(bench.is("velocity.InVelocity"));
+    CHECK(bench.is("limit.Done"));
+    const double at = bench.number("x.position");
+    CHECK(std::abs(at - 7) < 0.1);
+    bench.step(100);
+    CHECK(bench.is("velocity.InVelocity"));
+    CHECK(bench.number("x.position") == Approx(at + 10));
+}
+
+TEST_CASE("what is queued is aborted and fails as a buffered command, and counts at once at rest") {
+    MotionBench bench(queued);
+    bench.set("switch.Execute", true);
+    bench.step(3);
+    CHECK(bench.is("switch.Error"));
+    CHECK(bench.text("switch.ErrorID") == "out_of_range");
+    bench.set("one.Execute", true);
+    bench.step(50);
+    bench.set("position.Execute", true);
+    bench.step(5);
+    bench.set("stop.Execute", true);
+    bench.step(3);
+    CHECK(bench.is("position.CommandAborted"));
+    bench.step(300);
+    bench.set("position.Execute", false);
+    bench.step(2);
+    bench.set("position.Execute", true);
+    bench.step(5);
+    CHECK(bench.is("position.Busy"));
+    bench.set("stop.Execute", false);
+    run_until(bench, "position.Done");
+    CHECK(bench.number("x.position") == 7);
+}
+
+TEST_CASE("MC_Home that is buffered begins where the axis stands, whatever was on top") {
+    MotionBench bench(queued);
+    bench.set("one.Execute", true);
+    bench.step(100);
+    bench.set("added.Execute", true);
+    bench.set("home.Execute", true);
+    bench.step(5);
+    CHECK(bench.is("home.Busy"));
+    CHECK_FALSE(bench.is("home.Active"));
+    run_until(bench, "one.Done");
+    CHECK(bench.is("added.CommandAborted"));
+    run_until(bench, "home.Done");
+    CHECK(bench.number("x.velocity") == 0);
+    CHECK(bench.is("x.homed"));
+    CHECK(bench.number("added.CoveredDistance") > 1);
+    CHECK(std::abs(bench.number("x.position") + 3) < 0.2);
+    bench.set("velocity.Execute", true);
+    bench.step(50);
+    bench.set("home.Execute", false);
+    bench.step(2);
+    bench.set("home.Execute", true);
+    run_until(bench, "home.Error");
+    CHECK(bench.text("home.ErrorID") == "wrong_state");
+    CHECK_FALSE(bench.is("x.error"));
+}
+
+TEST_CASE("MC_WriteBoolParameter switches software limits, and takes no other number") {
+    MotionBench bench(straight);
+    bench.step(2);
+    CHECK(bench.is("x.software_limits"));
+    bench.set("switch.Execute", true);
+    run_until(bench, "switch.Done");
+    CHECK_FALSE(bench.is("x.software_limits"));
+    bench.set("switch.Execute", false);
+    bench.set("switch.ParameterNumber", std::int64_t{9});
+    bench.step(2);
+    bench.set("switch.Execute", true);
+    run_until(bench, "switch.Error");
+    CHECK(bench.text("switch.ErrorID") == "no_such_parameter");
+    CHECK(bench.number("x.default_velocity") == 100);
 }
 
 TEST_CASE("a checkpoint in mid-command goes on to the same bytes") {

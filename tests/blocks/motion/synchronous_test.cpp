@@ -273,6 +273,37 @@ TEST_CASE("MC_PhasingAbsolute and MC_PhasingRelative shift the master that the s
     CHECK(bench.is("gear.InGear"));
 }
 
+TEST_CASE("CoveredPhaseShift is what the command has added, also where it is aborted") {
+    MotionBench bench(line_shaft);
+    bench.set("run.Execute", true);
+    bench.set("gear.Execute", true);
+    bench.step(400);
+    bench.set("phase.Execute", true);
+    bench.step(101);
+    const double covered = bench.number("phase.CoveredPhaseShift");
+    CHECK(covered == Approx(bench.number("phase.AbsolutePhaseShift")).margin(1e-12));
+    CHECK(covered > 1);
+    CHECK(covered < 9);
+    bench.set("more.Execute", true);
+    bench.step(3);
+    CHECK(bench.is("phase.CommandAborted"));
+    const double begun = bench.number("phase.CoveredPhaseShift");
+    bench.step(500);
+    CHECK(bench.is("more.Done"));
+    CHECK(bench.number("more.CoveredPhaseShift") == Approx(10).margin(1e-9));
+    CHECK(bench.number("phase.CoveredPhaseShift") == begun);
+    CHECK(bench.number("more.AbsolutePhaseShift") == Approx(begun + 10).margin(1e-9));
+    bench.set("phase.Execute", false);
+    bench.step(2);
+    bench.set("phase.Execute", true);
+    bench.step(30);
+    bench.set("gear2.Execute", true);
+    bench.step(3);
+    CHECK(bench.is("phase.CommandAborted"));
+    CHECK(bench.number("phase.AbsolutePhaseShift") == 0);
+    CHECK(bench.number("phase.CoveredPhaseShift") < 0);
+}
+
 TEST_CASE("a master in a loop is refused") {
     MotionBench bench(line_shaft);
     for (const char* gear : {"gear.Execute", "third.Execute"}) bench.set(gear, true);
