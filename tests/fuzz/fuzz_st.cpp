@@ -6,6 +6,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/st/check/check.hpp"
+#include "runtime/st/library/evaluate.hpp"
 #include "runtime/st/library/library.hpp"
 #include "runtime/st/syntax/parser.hpp"
 
@@ -86,7 +87,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     st::Tree tree;
     st::parse(st::read_tokens(file, out), tree, out);
     if (out.empty()) {
-        const st::Checked checked = st::check(tree, catalog, out);
+        const st::Checked checked = st::check(tree, catalog, st::evaluate, out);
         if (out.empty() && !is_small(checked)) return 0;
     }
     look(out);

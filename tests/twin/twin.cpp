@@ -21,6 +21,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/model/random.hpp"
 #include "runtime/st/generate/generator.hpp"
+#include "runtime/st/library/evaluate.hpp"
 #include "runtime/st/syntax/parser.hpp"
 #include "runtime/st/types/elementary.hpp"
 #include "tests/fuzz/random_source.hpp"
@@ -85,7 +86,7 @@ std::unique_ptr<Program> prepare(std::string text, std::uint64_t seed) {
     if (!p.library) return program;
     p.refused.clear();
     parse(read_tokens(p.source, out), p.tree, out);
-    p.checked = check(p.tree, catalog(), out);
+    p.checked = check(p.tree, catalog(), evaluate, out);
     for (const Routine& routine : p.checked.routines)
         if (routine.pou->kind == PouKind::program) p.main = &routine;
     if (!p.main) return program;

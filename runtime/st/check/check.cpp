@@ -7,8 +7,8 @@
 
 namespace lineshaft::st {
 
-Checked check(Tree& tree, const Catalog& catalog, Diagnostics& out) {
-    Checking c{tree, catalog, out};
+Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out) {
+    Checking c{tree, catalog, evaluate, out};
     collect_names(c);
     declare_globals(c);
     declare_routines(c);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "runtime/st/code/machine.hpp"
 #include "runtime/st/types/types.hpp"
 
 namespace lineshaft::st {
@@ -14,6 +15,16 @@ struct Checked {
     std::deque<std::string> names;   ///< of variables that no source declares
 };
 
+/// What an expression comes to, or the fault that it ends with.
+struct Evaluated {
+    Fault fault = Fault::none;
+    Constant value = {};
+};
+
+/// Of an expression with its type, made of constants, operators, conversions and functions of the
+/// standard alone: the bits are to be those of a scan, so the machine does it.
+using Evaluate = Evaluated (*)(Expression&);
+
 /// Checks `tree` and notes in it what it found. With a mistake in `out` the result is of no use.
 ///   L0904  a name that is not declared     L0905  a type that does not fit
 ///   L0906  a conversion that may lose      L0907  wrong arguments
@@ -22,6 +33,6 @@ struct Checked {
 ///   L0913  not a constant                  L0914  a statement in a wrong place
 ///   L0921  warning: never used             L0922  warning: never reached
 ///   L0923  warning: an argument not taken
-Checked check(Tree& tree, const Catalog& catalog, Diagnostics& out);
+Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out);
 
 }  // namespace lineshaft::st

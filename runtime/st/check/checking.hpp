@@ -54,6 +54,7 @@ inline bool is_dtl(const Type& type) {
 struct Checking {
     Tree& tree;
     const Catalog& catalog;
+    Evaluate evaluate;
     Diagnostics& out;
     Checked checked = {};
 

@@ -6,9 +6,7 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/code/machine.hpp"
 #include "runtime/st/functions/standard.hpp"
-#include "runtime/st/generate/generator.hpp"
 
 namespace lineshaft::st {
 
@@ -97,13 +95,6 @@ bool is_fixed(const Expression& e) {
                    : is_constant(e);
 }
 
-Constant constant_of(const Type& type, const std::uint64_t* slots) {
-    if (type.kind == Kind::text)
-        return {.text = {reinterpret_cast<const char*>(slots + 1), std::size_t{*slots}}};
-    if (type.is_real()) return {.real = std::bit_cast<double>(*slots)};
-    return {.integer = type.is_unsigned_64() ? Wide{*slots} : static_cast<std::int64_t>(*slots)};
-}
-
 }  // namespace
 
 void fold_unary(Expression& e, const Constant& value) {
@@ -125,35 +116,14 @@ void fold(Checking& c, Expression& e) {
 
 bool evaluate(Checking& c, Expression& e) {
     if (is_constant(e) || !e.type || !is_fixed(e)) return is_constant(e);
-    Pou pou{.place = e.place};
-    Checked alone;
-    Type block{.kind = Kind::block};
-    Routine& routine = alone.routines.emplace_back();
-    routine.pou = &pou;
-    routine.type = &block;
-    block.routine = &routine;
-    Variable& result = routine.variables.emplace_back();
-    result.name.place = e.place;
-    result.type = e.type;
-    Expression target{.kind = E::name, .place = e.place};
-    target.type = e.type;
-    target.variable = &result;
-    Statement assigned{.place = e.place, .target = &target, .value = &e};
-    pou.body = {&assigned};
-    alone.order = {&routine};
-    Diagnostics wrong;
-    Generated made = generate(alone, wrong, {});
-    std::vector<std::uint64_t>& image = made.images.at(&block);
-    Scan scan;
-    const Fault fault = execute(made.code, made.code.routines.front(),
-                                reinterpret_cast<std::byte*>(image.data()), scan, {}, 1, nullptr);
-    if (fault == Fault::none) {
-        become(e, *e.type, constant_of(*e.type, &image[result.slot]));
+    const Evaluated found = c.evaluate(e);
+    if (found.fault == Fault::none) {
+        become(e, *e.type, found.value);
         return true;
     }
-    e.type =
-        c.fail("L0908", e.place,
-               fmt::format("this is the fault {}", fault_names[static_cast<std::size_t>(fault)]));
+    e.type = c.fail(
+        "L0908", e.place,
+        fmt::format("this is the fault {}", fault_names[static_cast<std::size_t>(found.fault)]));
     return false;
 }
 

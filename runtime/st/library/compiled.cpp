@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "runtime/st/library/coverage.hpp"
+#include "runtime/st/library/evaluate.hpp"
 #include "runtime/st/prelude/standard_source.hpp"
 #include "runtime/st/syntax/parser.hpp"
 
@@ -36,7 +37,7 @@ bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOption
     for (const BlockType& type : standard.types())
         if (used.contains(&type))
             parse(read_tokens(source_of(type), out, SourceKind::prelude), to.tree, out);
-    to.checked = check(to.tree, standard, out);
+    to.checked = check(to.tree, standard, evaluate, out);
     if (!out.empty()) return false;
     options.covered = is_covered();
     to.generated = generate(to.checked, out, options);

@@ -1,0 +1,49 @@
+#include "runtime/st/library/evaluate.hpp"
+
+#include <bit>
+
+#include "runtime/st/code/machine.hpp"
+#include "runtime/st/generate/generator.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+Constant constant_of(const Type& type, const std::uint64_t* slots) {
+    if (type.kind == Type::Kind::text)
+        return {.text = {reinterpret_cast<const char*>(slots + 1), std::size_t{*slots}}};
+    if (type.is_real()) return {.real = std::bit_cast<double>(*slots)};
+    return {.integer = type.is_unsigned_64() ? Wide{*slots} : static_cast<std::int64_t>(*slots)};
+}
+
+}  // namespace
+
+Evaluated evaluate(Expression& expression) {
+    const Place place = expression.place;
+    Pou pou{.place = place};
+    Checked alone;
+    Type block{.kind = Type::Kind::block};
+    Routine& routine = alone.routines.emplace_back();
+    routine.pou = &pou;
+    routine.type = &block;
+    block.routine = &routine;
+    Variable& result = routine.variables.emplace_back();
+    result.name.place = place;
+    result.type = expression.type;
+    Expression target{.kind = Expression::Kind::name, .place = place};
+    target.type = expression.type;
+    target.variable = &result;
+    Statement assigned{.place = place, .target = &target, .value = &expression};
+    pou.body = {&assigned};
+    alone.order = {&routine};
+    Diagnostics wrong;
+    Generated made = generate(alone, wrong, {});
+    std::vector<std::uint64_t>& image = made.images.at(&block);
+    Scan scan;
+    const Fault fault = execute(made.code, made.code.routines.front(),
+                                reinterpret_cast<std::byte*>(image.data()), scan, {}, 1, nullptr);
+    if (fault != Fault::none) return {fault};
+    return {fault, constant_of(*expression.type, &image[result.slot])};
+}
+
+}  // namespace lineshaft::st
