@@ -284,6 +284,7 @@ class CWriter {
             if (!is_block) put("{} {};", c_type(*v.type), name_of(v));
             begin(v, (is_block ? "self->" : "") + name_of(v));
         }
+        write(routine.edge_calls);
         write(routine.pou->body);
         put("leave:;");
         for (const Variable& v : routine.variables)

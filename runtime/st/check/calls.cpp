@@ -65,7 +65,7 @@ Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std:
                       : suggest(argument.name.text, names));
 }
 
-void check_argument(Checking& c, Expression&, Argument& argument, Variable& parameter) {
+void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     Expression*& value = argument.value;
     const Type* type = parameter.type;
     const bool is_set = c.is_in_test() && !argument.is_output && argument.is_named() &&
@@ -73,7 +73,7 @@ void check_argument(Checking& c, Expression&, Argument& argument, Variable& para
     const bool is_eno = argument.is_output && parameter.section == Section::temp;
     if (!is_set && !is_eno && argument.is_output != (parameter.section == Section::output) &&
         argument.is_named()) {
-        check(c, *value);
+        check(c, value);
         c.fail("L0907", argument.name.place,
                fmt::format("'{}' is {} of the call", parameter.text,
                            parameter.section == Section::output ? "an output" : "an input"),
@@ -82,10 +82,10 @@ void check_argument(Checking& c, Expression&, Argument& argument, Variable& para
         return;
     }
     if (parameter.section == Section::input || is_set) {
-        if (check(c, *value, type) && type) coerce(c, value, *type);
+        if (check(c, value, type) && type) coerce(c, value, *type);
         return;
     }
-    const Type* given = check(c, *value, type && type->kind == Kind::handle ? type : nullptr);
+    const Type* given = check(c, value, type && type->kind == Kind::handle ? type : nullptr);
     if (!given || !type) return;
     if (type->kind == Kind::handle && given->is_object()) {
         if (coerce(c, value, *type)) return;
@@ -112,19 +112,19 @@ void check_argument(Checking& c, Expression&, Argument& argument, Variable& para
 }
 
 /// A VAR_IN_OUT that a test does not give stays what it was; at first it is a variable of its own.
-void leave_out(Checking& c, Expression& call, Variable& parameter) {
-    if (!parameter.type) return;
+Argument leave_out(Checking& c, const Expression& call, Variable& parameter) {
     Variable& own = c.routine->variables.emplace_back();
     own.type = parameter.type->is_open ? &string_type : parameter.type;
     own.of = c.routine->pou;
+    depend(c, own.type, call.place);
     Expression* value = make(c, E::name, call);
     value->variable = &own;
     value->type = own.type;
-    call.arguments.push_back({parameter.name, false, value, &parameter, true});
-    depend(c, own.type, call.place);
+    return {parameter.name, false, value, &parameter, true};
 }
 
-void check_arguments(Checking& c, Expression& call, Routine& routine) {
+void check_arguments(Checking& c, Expression*& e, Routine& routine) {
+    Expression& call = *e;
     std::size_t position = 0;
     std::vector<const Variable*> given;
     bool by_name = call.arguments.empty();  // 6.6.1.4.2
@@ -133,28 +133,32 @@ void check_arguments(Checking& c, Expression& call, Routine& routine) {
         Variable* parameter = find_parameter(c, argument, routine, position++);
         argument.variable = parameter;
         if (!parameter) {
-            check(c, *argument.value);
+            check(c, argument.value);
             continue;
         }
         if (std::ranges::find(given, parameter) != given.end())
             c.fail("L0907", argument.value->place,
                    fmt::format("'{}' is given twice", parameter->text));
         given.push_back(parameter);
-        check_argument(c, call, argument, *parameter);
+        check_argument(c, argument, *parameter);
     }
-    for (const Variable& variable : routine.variables) {
+    std::vector<Argument> left_out;
+    for (Variable& variable : routine.variables) {
         const bool due =
             variable.section == Section::in_out ||
             (variable.section == Section::input && !routine.has_instances() &&
              (!by_name || !call.place.dialect().named_inputs_may_be_left_out) && !variable.initial);
         if (!due || std::ranges::find(given, &variable) != given.end()) continue;
-        if (c.is_in_test() && routine.has_instances())
-            leave_out(c, call, const_cast<Variable&>(variable));
-        else
+        const bool may_miss = c.is_in_test() && routine.has_instances();
+        if (may_miss && variable.type) left_out.push_back(leave_out(c, call, variable));
+        if (!may_miss)
             c.fail("L0907", call.operands[0]->place,
                    fmt::format("'{}' is called without '{}'", routine.name, variable.text),
                    fmt::format("write {} := ...", variable.text));
     }
+    if (left_out.empty()) return;
+    left_out.insert(left_out.begin(), call.arguments.begin(), call.arguments.end());
+    e = make_with(c, call, std::move(left_out));
 }
 
 /// Of a block that commands an axis, inputs that vendors add to PLCopen's: an axis without a real
@@ -176,7 +180,7 @@ const VendorsOwn* vendors_own(const Type& type, std::string_view argument) {
 }
 
 void ignore(Checking& c, const Type& type, Argument& argument, std::optional<double> only) {
-    if (!check(c, *argument.value)) return;
+    if (!check(c, argument.value)) return;
     const Expression& value = *argument.value;
     if (!only || (is_constant(value) && as_real(value) == *only))
         return c.warn("L0923", argument.name.place,
@@ -187,7 +191,8 @@ void ignore(Checking& c, const Type& type, Argument& argument, std::optional<dou
            fmt::format("leave it out: it is as if it were {}", *only == 0 ? "FALSE" : "100"));
 }
 
-void check_standard_arguments(Checking& c, Expression& call, const Type& type) {
+void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
+    Expression& call = *e;
     std::vector<std::string> names;
     for (const Variable* member : type.members) names.emplace_back(member->text);
     std::size_t position = 0;
@@ -221,12 +226,14 @@ void check_standard_arguments(Checking& c, Expression& call, const Type& type) {
                        : suggest(argument.name.text, names));
             continue;
         }
-        check_argument(c, call, argument, *found);
+        check_argument(c, argument, *found);
     }
-    std::erase_if(call.arguments, [](const Argument& argument) { return !argument.variable; });
+    std::vector<Argument> taken;
+    std::ranges::copy_if(call.arguments, std::back_inserter(taken), &Argument::variable);
+    if (taken.size() < call.arguments.size()) e = make_with(c, call, std::move(taken));
     for (const Variable* member : type.members) {
         if (member->section != Section::in_out ||
-            std::ranges::find(call.arguments, member, &Argument::variable) != call.arguments.end())
+            std::ranges::find(e->arguments, member, &Argument::variable) != e->arguments.end())
             continue;
         c.fail("L0907", call.operands[0]->place,
                fmt::format("'{}' is called without '{}'", type.name, member->text),
@@ -234,32 +241,31 @@ void check_standard_arguments(Checking& c, Expression& call, const Type& type) {
     }
 }
 
-const Type* check_instance_call(Checking& c, Expression& call, const Type& type,
-                                bool as_statement) {
+const Type* check_instance_call(Checking& c, Expression*& e, const Type& type, bool as_statement) {
     if (!as_statement)
-        return c.fail("L0905", call.place, "the call of an instance has no value",
+        return c.fail("L0905", e->place, "the call of an instance has no value",
                       "call it as a statement of its own, then take an output: name.Q");
     if (type.kind == Kind::block) {
-        call.routine = type.routine;
-        check_arguments(c, call, *type.routine);
+        e->routine = type.routine;
+        check_arguments(c, e, *type.routine);
     } else {
-        check_standard_arguments(c, call, type);
+        check_standard_arguments(c, e, type);
     }
     return nullptr;
 }
 
 }  // namespace
 
-const Type* check_routine_call(Checking& c, Expression& call, Routine& routine, bool as_statement) {
-    call.routine = &routine;
+const Type* check_routine_call(Checking& c, Expression*& e, Routine& routine, bool as_statement) {
+    e->routine = &routine;
     if (c.routine) {
         c.routine->calls.push_back(&routine);
-        c.routine->call_places.push_back(call.place);
+        c.routine->call_places.push_back(e->place);
     }
-    check_arguments(c, call, routine);
+    check_arguments(c, e, routine);
     if (routine.result) return routine.result->type;
     if (!as_statement)
-        return c.fail("L0905", call.place, fmt::format("'{}' has no result", routine.name),
+        return c.fail("L0905", e->place, fmt::format("'{}' has no result", routine.name),
                       "call it as a statement of its own, and take an output with '=>'");
     return nullptr;
 }
@@ -287,14 +293,14 @@ std::string_view standard_name(const Type& type, std::string_view name) {
     return !has(name) && it != std::end(others) && has(it->second) ? it->second : name;
 }
 
-const Type* check_call(Checking& c, Expression& call, bool as_statement, const Type* expected) {
-    Expression& callee = *call.operands[0];
+const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Type* expected) {
+    const Expression& callee = *e->operands[0];
     if (callee.kind == E::member) {
-        const Type* of = check(c, *callee.operands[0]);
+        const Type* of = check(c, e->operands[0]->operands[0]);
         if (!of) return nullptr;
         if (of->kind == Kind::standard && same_name(of->standard->name, callee.token.text)) {
-            call.operands[0] = callee.operands[0];  // `#delay.TON(...)`, as Siemens has it
-            return check_instance_call(c, call, *of, as_statement);
+            e = make_call(c, *e, callee.operands[0], e->arguments);  // `#delay.TON(...)`
+            return check_instance_call(c, e, *of, as_statement);
         }
         if (of->kind == Kind::block) {
             const auto it = of->routine->methods.find(callee.token.text);
@@ -306,7 +312,7 @@ const Type* check_call(Checking& c, Expression& call, bool as_statement, const T
                     return c.fail("L0907", callee.token.place,
                                   fmt::format("'{}' is PRIVATE to {}", callee.token.text, of->name),
                                   "only its own block calls it");
-                return check_routine_call(c, call, method, as_statement);
+                return check_routine_call(c, e, method, as_statement);
             }
         }
     }
@@ -314,18 +320,18 @@ const Type* check_call(Checking& c, Expression& call, bool as_statement, const T
         const std::string_view name = callee.token.text;
         for (const Routine* r = c.routine; r; r = r->owner)
             if (const auto it = r->methods.find(name); it != r->methods.end())
-                return check_routine_call(c, call, *it->second, as_statement);
+                return check_routine_call(c, e, *it->second, as_statement);
         Routine* routine = c.find_routine(callee.token);
-        if (routine && !routine->type) return check_routine_call(c, call, *routine, as_statement);
+        if (routine && !routine->type) return check_routine_call(c, e, *routine, as_statement);
         const bool is_function = (routine || !callee.token.quoted) && !callee.token.local &&
                                  (find_standard_function(name) || !find_variable(c, callee.token));
         if (is_function && find_test_statement(name) != TestCall::none)
-            return check_test_statement(c, call, as_statement);
-        if (is_function) return check_standard_function(c, call, expected);
+            return check_test_statement(c, *e, as_statement);
+        if (is_function) return check_standard_function(c, *e, expected);
     }
-    const Type* type = check(c, callee);
+    const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
-    if (type->is_instance()) return check_instance_call(c, call, *type, as_statement);
+    if (type->is_instance()) return check_instance_call(c, e, *type, as_statement);
     return c.fail("L0907", callee.place, fmt::format("{} cannot be called", describe(*type)),
                   "functions, methods and instances of function blocks are called");
 }

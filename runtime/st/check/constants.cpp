@@ -12,74 +12,50 @@ namespace lineshaft::st {
 
 namespace {
 
-void fold_binary(Checking& c, Expression& e, const Constant& a, const Constant& b) {
-    const Type& operand = *e.operands[0]->type;
-    const bool real = operand.is_real() || e.operands[1]->type->is_real();
-    const double x = as_real(*e.operands[0]), y = as_real(*e.operands[1]);
-    const bool less = real ? x < y : a.integer < b.integer;
-    const bool same = real ? x == y : a.integer == b.integer;
-    const bool more = real ? x > y : a.integer > b.integer;
-    const bool divides = e.op == Word::divided || e.op == Word::mod_;
-    if (divides && !real && b.integer == 0) {
-        c.fail("L0908", e.operands[1]->place, "this divides by zero");
-        e.type = nullptr;
-        return;
-    }
-    Constant result;
-    switch (e.op) {
+/// Of two values that are ordered or not; empty if `op` compares nothing.
+template <class T>
+std::optional<bool> compare(Word op, const T& a, const T& b) {
+    switch (op) {
         case Word::less:
-            return become_boolean(e, less);
+            return a < b;
         case Word::less_or_equal:
-            return become_boolean(e, less || same);
+            return a <= b;
         case Word::greater:
-            return become_boolean(e, more);
+            return a > b;
         case Word::greater_or_equal:
-            return become_boolean(e, more || same);
+            return a >= b;
         case Word::equal:
-            return become_boolean(e, same);
+            return a == b;
         case Word::unequal:
-            return become_boolean(e, !same);
+            return a != b;
+        default:
+            return {};
+    }
+}
+
+Constant operate(Word op, const Constant& a, const Constant& b) {
+    switch (op) {
         case Word::and_:
         case Word::and_then_:
-            result.integer = a.integer & b.integer;
-            break;
+            return {.integer = a.integer & b.integer};
         case Word::or_:
         case Word::or_else_:
-            result.integer = a.integer | b.integer;
-            break;
+            return {.integer = a.integer | b.integer};
         case Word::xor_:
-            result.integer = a.integer ^ b.integer;
-            break;
+            return {.integer = a.integer ^ b.integer};
         case Word::plus:
-            result = {a.integer + b.integer, x + y};
-            break;
+            return {a.integer + b.integer, a.real + b.real};
         case Word::minus:
-            result = {a.integer - b.integer, x - y};
-            break;
+            return {a.integer - b.integer, a.real - b.real};
         case Word::times:
-            result = {product(a.integer, b.integer), x * y};
-            break;
+            return {product(a.integer, b.integer), a.real * b.real};
         case Word::divided:
-            result = {real ? 0 : a.integer / b.integer, x / y};
-            break;
+            return {b.integer == 0 ? 0 : a.integer / b.integer, a.real / b.real};
         case Word::mod_:
-            result.integer = a.integer % b.integer;
-            break;
+            return {.integer = a.integer % b.integer};
         default:
-            return;
+            return {};
     }
-    const Type& type = *e.type;
-    if (type.kind == Kind::time && real)
-        result.integer = static_cast<Wide>(std::nearbyint(result.real));
-    if (type.kind == Kind::real && type.bits == 32) result.real = static_cast<float>(result.real);
-    if (!type.is_any() && !type.is_real()) result.integer = wrapped(type, result.integer);
-    const Wide most = Wide{1} << 64;
-    if (type.is_any() && (result.integer >= most || result.integer <= -most)) {
-        c.fail("L0908", e.place, "the result is out of range");
-        e.type = nullptr;
-        return;
-    }
-    become(e, type, result);
 }
 
 /// Made of constants, operators, conversions and standard functions alone.
@@ -97,39 +73,58 @@ bool is_fixed(const Expression& e) {
 
 }  // namespace
 
-void fold_unary(Expression& e, const Constant& value) {
-    const Type& type = *e.type;
-    Constant result = value;
-    if (e.op == Word::minus) {
-        result.real = -value.real;
-        result.integer = type.is_any() ? -value.integer : wrapped(type, -value.integer);
-    } else if (e.op == Word::not_) {
-        result.integer = wrapped(type, ~value.integer);
+void fold_unary(Checking& c, Expression*& e) {
+    const Type& type = *e->type;
+    Constant value = e->operands[0]->constant;
+    if (e->op == Word::minus) {
+        value.real = -value.real;
+        value.integer = type.is_any() ? -value.integer : wrapped(type, -value.integer);
+    } else if (e->op == Word::not_) {
+        value.integer = wrapped(type, ~value.integer);
     }
-    become(e, type, result);
+    e = make_constant(c, *e, type, std::move(value));
 }
 
-void fold(Checking& c, Expression& e) {
-    if (!is_constant(*e.operands[0]) || !is_constant(*e.operands[1])) return;
-    fold_binary(c, e, e.operands[0]->constant, e.operands[1]->constant);
+void fold(Checking& c, Expression*& e) {
+    const Expression &left = *e->operands[0], &right = *e->operands[1];
+    if (!is_constant(left) || !is_constant(right) || e->op == Word::power) return;
+    const Type& type = *e->type;
+    const bool real = left.type->is_real() || right.type->is_real();
+    const Constant a{left.constant.integer, as_real(left)},
+        b{right.constant.integer, as_real(right)};
+    const auto compared =
+        real ? compare(e->op, a.real, b.real) : compare(e->op, a.integer, b.integer);
+    if (compared) return (void)(e = make_boolean(c, *e, *compared));
+    const bool divides = e->op == Word::divided || e->op == Word::mod_;
+    if (divides && !real && b.integer == 0)
+        return (void)(e->type = c.fail("L0908", right.place, "this divides by zero"));
+    Constant result = operate(e->op, a, b);
+    if (type.kind == Kind::time && real)
+        result.integer = static_cast<Wide>(std::nearbyint(result.real));
+    if (is_single(type)) result.real = static_cast<float>(result.real);
+    if (!type.is_any() && !type.is_real()) result.integer = wrapped(type, result.integer);
+    constexpr Wide most = Wide{1} << 64;
+    if (type.is_any() && (result.integer >= most || result.integer <= -most))
+        return (void)(e->type = c.fail("L0908", e->place, "the result is out of range"));
+    e = make_constant(c, *e, type, std::move(result));
 }
 
-bool evaluate(Checking& c, Expression& e) {
-    if (is_constant(e) || !e.type || !is_fixed(e)) return is_constant(e);
-    const Evaluated found = c.evaluate(e);
+bool evaluate(Checking& c, Expression*& e) {
+    if (is_constant(*e) || !e->type || !is_fixed(*e)) return is_constant(*e);
+    const Evaluated found = c.evaluate(*e);
     if (found.fault == Fault::none) {
-        become(e, *e.type, found.value);
+        e = make_constant(c, *e, *e->type, found.value);
         return true;
     }
-    e.type = c.fail(
-        "L0908", e.place,
+    e->type = c.fail(
+        "L0908", e->place,
         fmt::format("this is the fault {}", fault_names[static_cast<std::size_t>(found.fault)]));
     return false;
 }
 
 std::optional<Wide> check_whole(Checking& c, Expression*& e, const Type& type) {
-    if (!check(c, *e, &type)) return {};
-    if (!evaluate(c, *e)) {
+    if (!check(c, e, &type)) return {};
+    if (!evaluate(c, e)) {
         if (e->type)
             c.fail("L0913", e->place, "a constant is due here", "declare it in VAR CONSTANT");
         return {};

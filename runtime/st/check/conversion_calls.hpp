@@ -4,8 +4,11 @@
 
 namespace lineshaft::st {
 
-/// `INT_TO_REAL(x)`, `TO_REAL(x)`, `REAL_TRUNC_INT(x)`: the call becomes a conversion. Empty if the
-/// name is none of one.
+/// `INT_TO_REAL(x)`, `TO_REAL(x)`, `REAL_TRUNC_INT(x)`: a conversion stands for the call then.
+/// Empty if the name is none of one.
+std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::string_view name);
+
+// In place, for standard_calls.cpp.
 std::optional<const Type*> check_conversion(Checking& c, Expression& call, std::string_view name);
 
 }  // namespace lineshaft::st

@@ -48,7 +48,7 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to) {
                fmt::format("write one of its values, such as {}#{}", to.name, to.values.front()));
         return false;
     }
-    become(*e, to, {.integer = value});
+    e = make_constant(c, *e, to, {.integer = value});
     return true;
 }
 
@@ -89,67 +89,69 @@ bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
     return false;
 }
 
-bool coerce_constant(Checking& c, Expression& e, const Type& to) {
-    const Type& from = *e.type;
-    const Wide value = e.constant.integer;
+bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
+    const Type& from = *e->type;
+    const Wide value = e->constant.integer;
     const bool whole = from.kind == Kind::any_integer || from.kind == Kind::any_bits;
     if (to.is_real() && (whole || from.kind == Kind::any_real)) {
-        double real = as_real(e);
+        double real = as_real(*e);
         if (to.kind == Kind::real && to.bits == 32) real = static_cast<float>(real);
         if (!std::isfinite(real)) {
-            c.fail("L0908", e.place,
-                   fmt::format("'{}' is out of range for {}", e.place.text(), to.name));
+            c.fail("L0908", e->place,
+                   fmt::format("'{}' is out of range for {}", e->place.text(), to.name));
             return false;
         }
-        become(e, to, {.real = real});
+        take_type(c, e, to, {.real = real});
         return true;
     }
-    if (!whole) return refuse_conversion(c, e, to);
+    if (!whole) return refuse_conversion(c, *e, to);
     const bool bit = to.kind == Kind::boolean && (value == 0 || value == 1);
     if (to.is_any() || bit) {
-        e.type = &to;
+        take_type(c, e, to, e->constant);
         return true;
     }
-    if (to.kind != Kind::integer && to.kind != Kind::bits) return refuse_conversion(c, e, to);
+    if (to.kind != Kind::integer && to.kind != Kind::bits) return refuse_conversion(c, *e, to);
     const Wide pattern = Wide{1} << to.bits;
     const bool is_pattern = from.kind == Kind::any_bits && value < pattern && !to.is_subrange;
     if (!is_pattern && (value < smallest(to) || value > largest(to))) {
         c.fail(
-            "L0908", e.place,
+            "L0908", e->place,
             fmt::format("{} is out of range for {}", to_string(value), describe(to)),
             fmt::format("it goes from {} to {}", to_string(smallest(to)), to_string(largest(to))));
         return false;
     }
-    become(e, to, {.integer = is_pattern ? wrapped(to, value) : value});
+    take_type(c, e, to, {.integer = is_pattern ? wrapped(to, value) : value});
     return true;
 }
 
-bool fold_conversion(Expression& e, const Type& to) {
-    const Type& from = *e.type;
+bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
+    const Type& from = *e->type;
     if (from.kind == Kind::text || to.kind == Kind::text) return false;
     if (from.kind == Kind::enumeration) {
         if (!to.is_integer() || to.is_subrange) return false;
-        const auto value = static_cast<std::size_t>(e.constant.integer);
-        become(e, to,
-               {.integer = wrapped(to, from.counted ? e.constant.integer : from.numbers[value])});
+        const auto value = static_cast<std::size_t>(e->constant.integer);
+        e = make_constant(
+            c, *e, to,
+            {.integer = wrapped(to, from.counted ? e->constant.integer : from.numbers[value])});
         return true;
     }
     if (to.is_real() && from.is_bits()) return false;
     if (from.is_date() || to.is_date()) return false;
     if ((from.kind == Kind::time) != (to.kind == Kind::time)) return false;
     if (to.is_real()) {
-        double value = as_real(e);
+        double value = as_real(*e);
         if (to.bits == 32)
-            value =
-                from.is_real() ? static_cast<float>(value) : static_cast<float>(e.constant.integer);
-        become(e, to, {.real = value});
+            value = from.is_real() ? static_cast<float>(value)
+                                   : static_cast<float>(e->constant.integer);
+        e = make_constant(c, *e, to, {.real = value});
         return true;
     }
     if (from.is_real()) return false;
     if (to.kind == Kind::enumeration) return false;
-    become(e, to,
-           {.integer = to.kind == Kind::boolean ? Wide{e.constant.integer != 0}
-                                                : wrapped(to.plain(), e.constant.integer)});
+    e = make_constant(
+        c, *e, to,
+        {.integer = to.kind == Kind::boolean ? Wide{e->constant.integer != 0}
+                                             : wrapped(to.plain(), e->constant.integer)});
     return true;
 }
 
@@ -187,13 +189,13 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (&from == &to || same_type(from, to)) return true;
     if (!to.of_number.empty() && from.is_integer() && e->place.dialect().numbers_stand_for_names)
         return coerce_number(c, e, to);
-    if (from.is_any()) return coerce_constant(c, *e, to);
+    if (from.is_any()) return coerce_constant(c, e, to);
     if (from.is_object() && to.kind == Kind::handle && from.standard == to.standard) {
         convert(c, e, to);
         return true;
     }
     if (to.is_character && is_constant(*e) && e->constant.text.size() == 1) {
-        become(*e, to, {.integer = static_cast<unsigned char>(e->constant.text[0])});
+        e = make_constant(c, *e, to, {.integer = static_cast<unsigned char>(e->constant.text[0])});
         return true;
     }
     if (from.is_character && to.kind == Kind::text) {
@@ -214,7 +216,7 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
         from.values == to.values)
         return true;
     if (fits_as_constant(*e, to)) {
-        become(*e, to, {.integer = e->constant.integer});
+        e = make_constant(c, *e, to, {.integer = e->constant.integer});
         return true;
     }
     const bool fits =
@@ -225,11 +227,8 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
 }
 
 void convert(Checking& c, Expression*& e, const Type& to) {
-    if (is_constant(*e) && fold_conversion(*e, to)) return;
-    Expression* converted = make(c, E::converted, *e);
-    converted->operands[0] = e;
-    converted->type = &to;
-    e = converted;
+    if (is_constant(*e) && fold_conversion(c, e, to)) return;
+    e = make_converted(c, e, to);
 }
 
 void take_width(Checking& c, Expression*& e, const Type* expected) {

@@ -30,7 +30,7 @@ bool make_concrete(Checking& c, Expression*& e, const Type& other);
 /// Brings both operands to one type, if there is one.
 const Type* unite(Checking& c, Expression& e, const Type* expected = nullptr);
 
-/// The call, of type `from`, becomes its conversion.
+// In place, for standard_calls.cpp.
 const Type* convert_result(Checking& c, Expression& call, const Type& from, const Type& to);
 
 }  // namespace lineshaft::st

@@ -43,9 +43,8 @@ void make_constant(Checking& c, Variable& variable) {
                "write ':= value' behind its type");
         return;
     }
-    auto* value = const_cast<Expression*>(variable.initial);
-    check_initial(c, value, *variable.type);
-    if (value->kind == E::constant) variable.value = value->constant;
+    check_initial(c, variable);
+    if (variable.initial->kind == E::constant) variable.value = variable.initial->constant;
 }
 
 Variable* declare_global(Checking& c, const Declaration& declared, bool constant, bool retain) {

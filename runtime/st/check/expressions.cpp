@@ -3,17 +3,18 @@
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/literals.hpp"
 #include "runtime/st/check/names.hpp"
+#include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/operators.hpp"
 #include "runtime/st/check/places.hpp"
 
 namespace lineshaft::st {
 
-const Type* check(Checking& c, Expression& e, const Type* expected) {
-    if (e.type) return e.type;
+const Type* check(Checking& c, Expression*& e, const Type* expected) {
+    if (e->type) return e->type;
     const Type* type = nullptr;
-    switch (e.kind) {
+    switch (e->kind) {
         case E::constant:
-            type = check_constant(c, e, expected);
+            type = check_literal(c, e);
             break;
         case E::name:
             type = check_name(c, e, expected);
@@ -22,7 +23,7 @@ const Type* check(Checking& c, Expression& e, const Type* expected) {
             type = check_member(c, e);
             break;
         case E::index:
-            type = check_index(c, e);
+            type = check_index(c, *e);
             break;
         case E::bit:
             type = check_bit(c, e);
@@ -42,12 +43,20 @@ const Type* check(Checking& c, Expression& e, const Type* expected) {
         case E::list:
         case E::repeated:
             return c.fail(
-                "L0905", e.place, "a list of values stands in a declaration only",
+                "L0905", e->place, "a list of values stands in a declaration only",
                 "declare a variable that begins with it, or assign the elements one by one");
         case E::converted:
-            type = e.type;
+            type = e->type;
     }
-    return e.type = type;
+    return e->type = type;
+}
+
+const Type* check(Checking& c, Expression& e, const Type* expected) {
+    if (e.type) return e.type;
+    Expression* checked = make_copy(c, e);
+    const Type* type = check(c, checked, expected);
+    e = Expression(*checked);
+    return type;
 }
 
 }  // namespace lineshaft::st

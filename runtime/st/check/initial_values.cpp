@@ -35,7 +35,7 @@ void check_data_block(Checking& c, const Global& global) {
                    "assign constants, and write statements in a block");
             continue;
         }
-        const Type* type = check(c, *s->target);
+        const Type* type = check(c, s->target);
         if (!is_constant_place(c, *s->target))
             c.fail("L0913", s->target->place, "the index is not a constant");
         if (type) check_initial(c, s->value, *type);
@@ -115,17 +115,15 @@ void check_members(Checking& c, Expression& list, const Type& type) {
 }  // namespace
 
 void check_initial_values(Checking& c) {
-    const auto check_one = [&](const Variable& variable) {
+    const auto check_one = [&](Variable& variable) {
         if (!variable.initial || !variable.type || variable.space == Space::constant) return;
-        auto* value = const_cast<Expression*>(variable.initial);
-        check_initial(c, value, *variable.type);
-        const_cast<Variable&>(variable).initial = value;
+        check_initial(c, variable);
     };
     for (Variable& variable : c.checked.variables) check_one(variable);
     for (const Global& global : c.checked.globals) check_data_block(c, global);
     for (Routine& routine : c.checked.routines) {
         c.routine = &routine;
-        for (const Variable& variable : routine.variables) {
+        for (Variable& variable : routine.variables) {
             if (variable.initial && variable.section == Section::in_out)
                 c.fail("L0914", variable.name.place, "a VAR_IN_OUT has no initial value",
                        "leave ':= ...' out; the caller gives the variable");
@@ -133,6 +131,13 @@ void check_initial_values(Checking& c) {
         }
     }
     c.routine = nullptr;
+}
+
+void check_initial(Checking& c, Variable& variable) {
+    const auto [found, is_new] = c.initial_values.emplace(variable.initial, variable.initial);
+    Expression*& value = found->second;
+    if (is_new) check_initial(c, value, *variable.type);
+    variable.initial = value;
 }
 
 void check_initial(Checking& c, Expression*& value, const Type& type) {
@@ -156,11 +161,10 @@ void check_initial(Checking& c, Expression*& value, const Type& type) {
         value = list;
         return check_initial(c, value, type);
     }
-    if (value->type) return;  // of `a, b : INT := 5`, seen before
-    if (!check(c, *value, &type)) return;
-    evaluate(c, *value);
+    if (!check(c, value, &type)) return;
+    evaluate(c, value);
     if (!coerce(c, value, type)) return;
-    if (!evaluate(c, *value) && value->type)
+    if (!evaluate(c, value) && value->type)
         c.fail("L0913", value->place, "an initial value is a constant",
                "assign it in the body, behind IF NOT started");
 }

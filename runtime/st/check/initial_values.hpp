@@ -5,6 +5,8 @@
 namespace lineshaft::st {
 
 void check_initial_values(Checking& c);
+/// What the variable begins with; of `a, b : INT := 2 + 3` it is checked once for all.
+void check_initial(Checking& c, Variable& variable);
 /// A literal, a list or another constant for a variable of `type`. The pointer goes to what it is
 /// then.
 void check_initial(Checking& c, Expression*& value, const Type& type);

@@ -39,16 +39,15 @@ std::optional<Wide> read_dtl(Checking& c, const Expression& e) {
     return value;
 }
 
-const Type* check_dtl(Checking& c, Expression& e) {
-    const auto value = read_dtl(c, e);
+const Type* check_dtl(Checking& c, Expression*& e) {
+    const auto value = read_dtl(c, *e);
     if (!value) return nullptr;
-    Expression* moment = make(c, E::constant, e);
-    become(*moment, moment_type, {.integer = *value});
-    e = *make_call(c, "LDT_TO_DTL", moment);
+    e = make_call(c, "LDT_TO_DTL", make_constant(c, *e, moment_type, {.integer = *value}));
     return check(c, e);
 }
 
-const Type* check_time(Checking& c, Expression& e) {
+const Type* check_time(Checking& c, Expression*& slot) {
+    Expression& e = *slot;
     const std::string_view prefix = e.place.text().substr(0, e.place.text().find('#'));
     if (const Type* type = find_prefix(prefix); type && type->is_date()) {
         const auto value = read_time(e.token.text, type->kind);
@@ -59,7 +58,7 @@ const Type* check_time(Checking& c, Expression& e) {
         e.constant.integer = *value;
         return type;
     }
-    if (same_name(prefix, "dtl")) return check_dtl(c, e);
+    if (same_name(prefix, "dtl")) return check_dtl(c, slot);
     const auto value = read_duration(e.token.text);
     if (!value)
         return c.fail("L0908", e.place, fmt::format("'{}' is not a time", e.place.text()),
@@ -82,23 +81,23 @@ const Type* check_text(Checking& c, Expression& e) {
 
 }  // namespace
 
-const Type* check_constant(Checking& c, Expression& e, const Type*) {
-    switch (e.token.word) {
+const Type* check_literal(Checking& c, Expression*& e) {
+    switch (e->token.word) {
         case Word::integer:
         case Word::real:
-            return check_number(c, e);
+            return check_number(c, *e);
         case Word::duration:
             return check_time(c, e);
         case Word::text:
-            return check_text(c, e);
+            return check_text(c, *e);
         default:
             return nullptr;
     }
 }
 
-const Type* check_typed(Checking& c, Expression& e) {
-    Expression& value = *e.operands[0];
-    Token name = e.token;
+const Type* check_typed(Checking& c, Expression*& e) {
+    Expression*& value = e->operands[0];
+    const Token& name = e->token;
     const Type* type = find_prefix(name.text);
     if (const NamedType* named = c.look_up(&Names::types, name)) type = named->type;
     if (!type) {
@@ -107,14 +106,12 @@ const Type* check_typed(Checking& c, Expression& e) {
                    "write a type, as in INT#5");
         return nullptr;
     }
-    if (type->kind == Kind::enumeration && value.kind == E::name)
-        return check_value(c, e, *type, value.token);
-    if (!check(c, value, type)) return nullptr;
-    Expression* literal = &value;
-    if (!coerce(c, literal, *type)) return nullptr;
-    if (!is_constant(*literal))
-        return c.fail("L0913", value.place, fmt::format("a number is due after '{}#'", name.text));
-    become(e, *type, literal->constant);
+    if (type->kind == Kind::enumeration && value->kind == E::name)
+        return check_value(c, e, *type, value->token);
+    if (!check(c, value, type) || !coerce(c, value, *type)) return nullptr;
+    if (!is_constant(*value))
+        return c.fail("L0913", value->place, fmt::format("a number is due after '{}#'", name.text));
+    e = make_constant(c, *e, *type, value->constant);
     return type;
 }
 
@@ -132,8 +129,7 @@ Expression* list_of_dtl(Checking& c, const Expression& literal, const Type& type
                           clock.seconds().count(), clock.subseconds().count()};
     Expression* list = make(c, E::list, literal);
     for (std::size_t i = 0; i < type.members.size(); ++i) {
-        Expression* part = make(c, E::constant, literal);
-        become(*part, *type.members[i]->type, {.integer = parts[i]});
+        Expression* part = make_constant(c, literal, *type.members[i]->type, {.integer = parts[i]});
         list->arguments.push_back({.name = type.members[i]->name, .value = part});
     }
     return list;

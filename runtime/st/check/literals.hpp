@@ -5,9 +5,9 @@
 namespace lineshaft::st {
 
 /// A literal as it is written.
-const Type* check_constant(Checking& c, Expression& e, const Type*);
+const Type* check_literal(Checking& c, Expression*& e);
 /// `INT#5`, `Colour#red`.
-const Type* check_typed(Checking& c, Expression& e);
+const Type* check_typed(Checking& c, Expression*& e);
 /// `DTL#2020-02-29-12:30:15` as its parts.
 Expression* list_of_dtl(Checking& c, const Expression& literal, const Type& type);
 

@@ -15,7 +15,7 @@ namespace lineshaft::st {
 
 namespace {
 
-const Type* unknown_name(Checking& c, Expression& e) {
+const Type* unknown_name(Checking& c, const Expression& e) {
     const std::string_view name = e.token.text;
     if (const Routine* routine = c.find_routine(e.token)) {
         if (routine->type)
@@ -84,15 +84,16 @@ const Type* undeclared(Checking& c, const Token& name, Place place,
                   is_text ? "a text stands in '...', a name in \"...\"" : suggest(name.text, near));
 }
 
-const Type* use(Checking& c, Expression& e, Variable& variable) {
+const Type* use(Checking& c, Expression*& e, Variable& variable) {
     variable.used = true;
-    e.variable = &variable;
+    e->variable = &variable;
     if (!variable.type) return nullptr;
     if (variable.space == Space::constant) {
-        become(e, *variable.type, variable.value);
+        e = make_constant(c, *e, *variable.type, variable.value);
+        e->variable = &variable;
         return variable.type;
     }
-    if (variable.space == Space::global) depend(c, variable.type, e.place);
+    if (variable.space == Space::global) depend(c, variable.type, e->place);
     if (c.routine && variable.type->is_object()) c.routine->objects.push_back(variable.global);
     return variable.type;
 }
@@ -107,40 +108,40 @@ const Type* enumeration_of(Checking& c, const Expression& member) {
     return type && type->kind == Kind::enumeration ? type : nullptr;
 }
 
-const Type* check_value(Checking& c, Expression& e, const Type& enumeration, const Token& name) {
+const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, const Token& name) {
     const auto found = std::ranges::find_if(
         enumeration.values, [&](const std::string& known) { return same_name(known, name.text); });
     if (found == enumeration.values.end())
         return c.fail("L0904", name.place,
                       fmt::format("{} has no value '{}'", enumeration.name, name.text),
                       suggest(name.text, enumeration.values));
-    become(e, enumeration, {.integer = found - enumeration.values.begin()});
+    e = make_constant(c, *e, enumeration, {.integer = found - enumeration.values.begin()});
     return &enumeration;
 }
 
-const Type* check_name(Checking& c, Expression& e, const Type* expected) {
-    const Token& token = e.token;
+const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
+    const Token& token = e->token;
     if (expected && expected->kind == Kind::enumeration && !token.local) {
         const auto it = std::ranges::find_if(expected->values, [&](const std::string& known) {
             return same_name(known, token.text);
         });
         if (it != expected->values.end() && !find_variable(c, token)) {
-            become(e, *expected, {.integer = it - expected->values.begin()});
+            e = make_constant(c, *e, *expected, {.integer = it - expected->values.begin()});
             return expected;
         }
     }
     if (Variable* variable = find_variable(c, token))
         return variable->edge ? use_edge(c, e, *variable) : use(c, e, *variable);
     if (same_name(token.text, "true") || same_name(token.text, "false")) {
-        become_boolean(e, same_name(token.text, "true"));
+        e = make_boolean(c, *e, same_name(token.text, "true"));
         return &bool_type;
     }
     if (const NamedValue* value = token.local ? nullptr : c.look_up(&Names::values, token)) {
         if (value->ambiguous)
-            return c.fail("L0904", e.place,
+            return c.fail("L0904", e->place,
                           fmt::format("'{}' is a value of several enumerations", token.text),
                           fmt::format("write {}#{}", value->type->name, token.text));
-        become(e, *value->type, {.integer = static_cast<Wide>(value->index)});
+        e = make_constant(c, *e, *value->type, {.integer = static_cast<Wide>(value->index)});
         return value->type;
     }
     if (same_name(token.text, "eno") && c.routine && c.routine->pou->kind != PouKind::data_block)
@@ -148,7 +149,7 @@ const Type* check_name(Checking& c, Expression& e, const Type* expected) {
     if (expected && expected->kind == Kind::handle && !token.local &&
         (token.quoted || !c.is_in_test()))
         return use_object(c, e, *object_type(c, *expected));
-    return unknown_name(c, e);
+    return unknown_name(c, *e);
 }
 
 }  // namespace lineshaft::st

@@ -16,13 +16,13 @@ const Type* undeclared(Checking& c, const Token& name, Place place,
                        const std::vector<std::string>& names);
 
 /// `e` means the variable; one that is constant is its value.
-const Type* use(Checking& c, Expression& e, Variable& variable);
+const Type* use(Checking& c, Expression*& e, Variable& variable);
 /// The enumeration of `Colour.red`; null if this is none.
 const Type* enumeration_of(Checking& c, const Expression& member);
 
 /// The value of that name.
-const Type* check_value(Checking& c, Expression& e, const Type& enumeration, const Token& name);
+const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, const Token& name);
 
-const Type* check_name(Checking& c, Expression& e, const Type* expected);
+const Type* check_name(Checking& c, Expression*& e, const Type* expected);
 
 }  // namespace lineshaft::st

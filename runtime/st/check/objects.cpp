@@ -33,10 +33,10 @@ void make_object(Checking& c, Variable& variable) {
     c.checked.globals.push_back({std::string(variable.text), &own});
 }
 
-const Type* use_object(Checking& c, Expression& e, const Type& type) {
+const Type* use_object(Checking& c, Expression*& e, const Type& type) {
     Variable& variable = c.checked.variables.emplace_back();
-    variable.name = e.token;
-    variable.text = e.token.text;
+    variable.name = e->token;
+    variable.text = e->token.text;
     variable.type = &type;
     declare_object(c, variable);
     return use(c, e, variable);
@@ -60,14 +60,9 @@ bool is_object_of(Checking& c, const Expression& member) {
            });
 }
 
-const Type* check_part(Checking& c, Expression& member, Routine& part) {
-    Expression* callee = make(c, E::name, member);
-    callee->token = member.token;
-    Expression call = *make(c, E::call, member);
-    call.token = member.token;
-    call.operands[0] = callee;
-    call.arguments.push_back({.value = member.operands[0]});
-    member = call;
+const Type* check_part(Checking& c, Expression*& member, Routine& part) {
+    Expression* callee = make(c, E::name, *member);
+    member = make_call(c, *member, callee, {{.value = member->operands[0]}});
     return check_routine_call(c, member, part, false);
 }
 

@@ -13,7 +13,7 @@ Variable* declare_object(Checking& c, Variable& variable);
 void make_object(Checking& c, Variable& variable);
 
 /// `e` means the block of the program that has its name.
-const Type* use_object(Checking& c, Expression& e, const Type& type);
+const Type* use_object(Checking& c, Expression*& e, const Type& type);
 /// What its kind says in Structured Text.
 Routine* find_part(Checking& c, const Type& type, std::string_view name);
 
@@ -21,6 +21,6 @@ Routine* find_part(Checking& c, const Type& type, std::string_view name);
 bool is_object_of(Checking& c, const Expression& member);
 
 /// The function is called with what stands before the point.
-const Type* check_part(Checking& c, Expression& member, Routine& part);
+const Type* check_part(Checking& c, Expression*& member, Routine& part);
 
 }  // namespace lineshaft::st

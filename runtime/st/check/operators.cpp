@@ -29,71 +29,71 @@ void check_masks(Checking& c, Expression& e, const Type* expected) {
     };
     for (const int i : {0, 1}) {
         if (!is_mask(*e.operands[i]) || is_mask(*e.operands[1 - i])) continue;
-        const Type* other = check(c, *e.operands[1 - i]);
-        check(c, *e.operands[i], other && other->kind == Kind::bits ? other : expected);
+        const Type* other = check(c, e.operands[1 - i]);
+        check(c, e.operands[i], other && other->kind == Kind::bits ? other : expected);
     }
 }
 
-const Type* check_logic(Checking& c, Expression& e) {
+const Type* check_logic(Checking& c, Expression*& e) {
     const auto is_truth = [](const Expression* o) { return o->type->kind == Kind::boolean; };
-    const bool of_truths = std::ranges::any_of(e.operands, is_truth);
-    if (!of_truths) reinterpret(c, e, Kind::integer);
-    const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
-    for (const Expression* operand : e.operands) {
+    const bool of_truths = std::ranges::any_of(e->operands, is_truth);
+    if (!of_truths) reinterpret(c, *e, Kind::integer);
+    const Type &a = *e->operands[0]->type, &b = *e->operands[1]->type;
+    for (const Expression* operand : e->operands) {
         const Type& type = *operand->type;
         if (type.kind == Kind::boolean || type.is_bits() || type.kind == Kind::any_integer)
             continue;
         return c.fail("L0905", operand->place,
-                      fmt::format("{} does not go with {}", shown(e.op), describe(type)),
+                      fmt::format("{} does not go with {}", shown(e->op), describe(type)),
                       type.is_number() ? "compare it first, as in 'x <> 0', or convert it to a WORD"
                                        : "it takes BOOL and bit strings");
     }
-    const bool lazy = e.op == Word::and_then_ || e.op == Word::or_else_;
+    const bool lazy = e->op == Word::and_then_ || e->op == Word::or_else_;
     if (lazy && (a.kind != Kind::boolean || b.kind != Kind::boolean))
-        return c.fail("L0905", e.token.place, fmt::format("{} takes two BOOL", shown(e.op)));
-    e.type = unite(c, e);
-    if (e.type) fold(c, e);
-    return e.type;
+        return c.fail("L0905", e->token.place, fmt::format("{} takes two BOOL", shown(e->op)));
+    e->type = unite(c, *e);
+    if (e->type) fold(c, e);
+    return e->type;
 }
 
-const Type* check_comparison(Checking& c, Expression& e) {
-    unite_texts(c, e.operands[0], e.operands[1]);
+const Type* check_comparison(Checking& c, Expression*& e) {
+    unite_texts(c, e->operands[0], e->operands[1]);
     const auto is_kind = [&](Kind kind) {
-        return std::ranges::any_of(e.operands,
+        return std::ranges::any_of(e->operands,
                                    [&](const Expression* o) { return o->type->kind == kind; });
     };
-    if (is_kind(Kind::bits) && is_kind(Kind::integer)) reinterpret(c, e, Kind::bits);
-    if (is_dtl(*e.operands[0]->type) && is_dtl(*e.operands[1]->type)) become_moments(c, e);
-    const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
-    const bool order = e.op != Word::equal && e.op != Word::unequal;
+    if (is_kind(Kind::bits) && is_kind(Kind::integer)) reinterpret(c, *e, Kind::bits);
+    if (is_dtl(*e->operands[0]->type) && is_dtl(*e->operands[1]->type)) become_moments(c, *e);
+    const Type &a = *e->operands[0]->type, &b = *e->operands[1]->type;
+    const bool order = e->op != Word::equal && e->op != Word::unequal;
     if (a.kind == Kind::text && b.kind == Kind::text) return &bool_type;
     if (a.kind == Kind::text || b.kind == Kind::text)
         return c.fail(
-            "L0905", e.token.place,
-            fmt::format("'{}' does not go with {} and {}", shown(e.op), describe(a), describe(b)),
+            "L0905", e->token.place,
+            fmt::format("'{}' does not go with {} and {}", shown(e->op), describe(a), describe(b)),
             "a STRING is compared with a STRING");
     for (const Type* type : {&a, &b}) {
         const bool fits = type->is_scalar() && !(order && type->kind == Kind::enumeration);
         if (!fits)
-            return c.fail("L0905", e.token.place,
-                          fmt::format("'{}' does not compare {}", shown(e.op), describe(*type)),
+            return c.fail("L0905", e->token.place,
+                          fmt::format("'{}' does not compare {}", shown(e->op), describe(*type)),
                           type->is_scalar()
                               ? "the values of an enumeration are equal or not; compare TO_INT(...)"
                               : "compare its parts one by one");
     }
-    if (!unite(c, e)) return nullptr;
-    e.type = &bool_type;
+    if (!unite(c, *e)) return nullptr;
+    e->type = &bool_type;
     fold(c, e);
-    return e.type;
+    return e->type;
 }
 
-const Type* check_arithmetic(Checking& c, Expression& e, const Type* expected) {
-    if (is_dtl(*e.operands[0]->type) || is_dtl(*e.operands[1]->type))
+const Type* check_arithmetic(Checking& c, Expression*& e, const Type* expected) {
+    if (is_dtl(*e->operands[0]->type) || is_dtl(*e->operands[1]->type))
         return check_dtl_arithmetic(c, e);
-    const Type &a = *e.operands[0]->type, &b = *e.operands[1]->type;
+    const Type &a = *e->operands[0]->type, &b = *e->operands[1]->type;
     if (a.is_time() || b.is_time()) return check_time_arithmetic(c, e);
-    reinterpret(c, e, Kind::bits, expected);
-    for (const Expression* operand : e.operands) {
+    reinterpret(c, *e, Kind::bits, expected);
+    for (const Expression* operand : e->operands) {
         const Type& type = *operand->type;
         if (type.is_number() || type.is_any()) continue;
         std::string help;
@@ -101,21 +101,21 @@ const Type* check_arithmetic(Checking& c, Expression& e, const Type* expected) {
         if (type.kind == Kind::enumeration) help = "convert it: TO_INT(...)";
         if (type.kind == Kind::text) help = "join texts with CONCAT(...)";
         return c.fail("L0905", operand->place,
-                      fmt::format("'{}' does not go with {}", shown(e.op), describe(type)), help);
+                      fmt::format("'{}' does not go with {}", shown(e->op), describe(type)), help);
     }
-    e.type = unite(c, e, expected);
-    if (e.type && e.type->kind == Kind::any_bits) e.type = &any_integer_type;
-    if (e.type && e.op == Word::mod_ && e.type->is_real())
-        return c.fail("L0905", e.token.place, "MOD takes whole numbers",
+    e->type = unite(c, *e, expected);
+    if (e->type && e->type->kind == Kind::any_bits) e->type = &any_integer_type;
+    if (e->type && e->op == Word::mod_ && e->type->is_real())
+        return c.fail("L0905", e->token.place, "MOD takes whole numbers",
                       "write a - TRUNC(a / b) * b");
-    if (e.type) fold(c, e);
-    return e.type;
+    if (e->type) fold(c, e);
+    return e->type;
 }
 
-const Type* check_power(Checking& c, Expression& e, const Type* expected) {
-    Expression *&left = e.operands[0], *&right = e.operands[1];
-    for (Expression*& operand : e.operands) become_number(c, operand);
-    for (Expression* operand : e.operands)
+const Type* check_power(Checking& c, Expression*& e, const Type* expected) {
+    Expression *&left = e->operands[0], *&right = e->operands[1];
+    for (Expression*& operand : e->operands) become_number(c, operand);
+    for (Expression* operand : e->operands)
         if (!operand->type->is_number())
             return c.fail("L0905", operand->place,
                           fmt::format("'**' does not go with {}", describe(*operand->type)));
@@ -129,9 +129,9 @@ const Type* check_power(Checking& c, Expression& e, const Type* expected) {
             value = product(value, left->constant.integer);
         if (right->constant.integer <= 64 || left->constant.integer <= 1) {
             if (value >= most || value <= -most)
-                return c.fail("L0908", e.place, "the result is out of range");
-            become(e, any_integer_type, {.integer = value});
-            return e.type;
+                return c.fail("L0908", e->place, "the result is out of range");
+            e = make_constant(c, *e, any_integer_type, {.integer = value});
+            return e->type;
         }
     }
     const auto is_narrow = [](const Type& t) { return t.is_any() || t.bits <= 32; };
@@ -150,44 +150,44 @@ const Type* check_power(Checking& c, Expression& e, const Type* expected) {
 
 }  // namespace
 
-const Type* check_unary(Checking& c, Expression& e, const Type* expected) {
-    Expression*& operand = e.operands[0];
-    const Type* type = check(c, *operand, expected);
+const Type* check_unary(Checking& c, Expression*& e, const Type* expected) {
+    Expression*& operand = e->operands[0];
+    const Type* type = check(c, operand, expected);
     if (!type) return nullptr;
-    reinterpret(c, e, e.op == Word::not_ ? Kind::integer : Kind::bits, expected);
-    if (e.op == Word::not_) take_width(c, operand, expected);
+    reinterpret(c, *e, e->op == Word::not_ ? Kind::integer : Kind::bits, expected);
+    if (e->op == Word::not_) take_width(c, operand, expected);
     type = operand->type;
-    const bool fits = e.op == Word::not_ ? type->kind == Kind::boolean || type->is_bits()
-                                         : type->is_integer() || type->is_real() ||
-                                               type->kind == Kind::time || type->is_bits();
+    const bool fits = e->op == Word::not_ ? type->kind == Kind::boolean || type->is_bits()
+                                          : type->is_integer() || type->is_real() ||
+                                                type->kind == Kind::time || type->is_bits();
     if (!fits)
-        return c.fail("L0905", e.place,
-                      fmt::format("{} does not go with {}", shown(e.op), describe(*type)),
-                      e.op == Word::not_ ? "NOT takes a BOOL or a bit string" : "");
-    if (e.op == Word::not_ && type->kind == Kind::any_bits)
-        return c.fail("L0905", e.place, "the width of this number is not known",
+        return c.fail("L0905", e->place,
+                      fmt::format("{} does not go with {}", shown(e->op), describe(*type)),
+                      e->op == Word::not_ ? "NOT takes a BOOL or a bit string" : "");
+    if (e->op == Word::not_ && type->kind == Kind::any_bits)
+        return c.fail("L0905", e->place, "the width of this number is not known",
                       "write its type: NOT WORD#16#FF");
-    e.type = &type->plain();
-    if (type->kind == Kind::any_bits) e.type = &any_integer_type;
-    if (is_constant(*operand)) fold_unary(e, operand->constant);
-    return e.type;
+    e->type = &type->plain();
+    if (type->kind == Kind::any_bits) e->type = &any_integer_type;
+    if (is_constant(*operand)) fold_unary(c, e);
+    return e->type;
 }
 
-const Type* check_binary(Checking& c, Expression& e, const Type* expected) {
-    Expression *&left = e.operands[0], *&right = e.operands[1];
-    const Type* wanted = is_comparison(e.op) || is_logic(e.op) ? nullptr : expected;
-    const bool name_first = left->kind == E::name && is_comparison(e.op);
+const Type* check_binary(Checking& c, Expression*& e, const Type* expected) {
+    Expression *&left = e->operands[0], *&right = e->operands[1];
+    const Type* wanted = is_comparison(e->op) || is_logic(e->op) ? nullptr : expected;
+    const bool name_first = left->kind == E::name && is_comparison(e->op);
     if (name_first && !find_variable(c, left->token)) {
-        check(c, *right);
-        check(c, *left, right->type);
+        check(c, right);
+        check(c, left, right->type);
     }
-    if (is_logic(e.op)) check_masks(c, e, expected);
-    check(c, *left, wanted);
-    check(c, *right, is_comparison(e.op) ? left->type : wanted);
+    if (is_logic(e->op)) check_masks(c, *e, expected);
+    check(c, left, wanted);
+    check(c, right, is_comparison(e->op) ? left->type : wanted);
     if (!left->type || !right->type) return nullptr;
-    if (is_logic(e.op)) return check_logic(c, e);
-    if (is_comparison(e.op)) return check_comparison(c, e);
-    if (e.op == Word::power) return check_power(c, e, expected);
+    if (is_logic(e->op)) return check_logic(c, e);
+    if (is_comparison(e->op)) return check_comparison(c, e);
+    if (e->op == Word::power) return check_power(c, e, expected);
     return check_arithmetic(c, e, expected);
 }
 

@@ -15,43 +15,43 @@
 
 namespace lineshaft::st {
 
-const Type* check_member(Checking& c, Expression& e) {
-    if (const Type* enumeration = enumeration_of(c, e))
-        return check_value(c, e, *enumeration, e.token);
-    if (is_object_of(c, e))
-        use_object(c, *e.operands[0], *object_type(c, *standard_type(c, "axis_ref")));
-    const Type* type = check(c, *e.operands[0]);
+const Type* check_member(Checking& c, Expression*& e) {
+    if (const Type* enumeration = enumeration_of(c, *e))
+        return check_value(c, e, *enumeration, e->token);
+    if (is_object_of(c, *e))
+        use_object(c, e->operands[0], *object_type(c, *standard_type(c, "axis_ref")));
+    const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
-    if (Routine* part = find_part(c, *type, e.token.text)) return check_part(c, e, *part);
+    if (Routine* part = find_part(c, *type, e->token.text)) return check_part(c, e, *part);
     if (type->kind == Kind::handle) {
         type = object_type(c, *type);
-        convert(c, e.operands[0], *type);
+        convert(c, e->operands[0], *type);
     }
-    const std::string_view name = standard_name(*type, e.token.text);
+    const std::string_view name = standard_name(*type, e->token.text);
     if (type->kind == Kind::block) {
         Routine& routine = *type->routine;
         for (Variable& variable : routine.variables) {
             if (!same_name(variable.text, name)) continue;
             if (variable.space == Space::constant && c.is_in_test()) {
-                become(e, *variable.type, variable.value);
+                e = make_constant(c, *e, *variable.type, variable.value);
                 return variable.type;
             }
             if (variable.section == Section::temp || variable.space == Space::constant)
-                return c.fail("L0904", e.token.place,
+                return c.fail("L0904", e->token.place,
                               fmt::format("'{}' of {} is not seen from outside", name, type->name),
                               "make it a VAR_OUTPUT");
             variable.used = true;
-            e.variable = &variable;
+            e->variable = &variable;
             return variable.type;
         }
     }
     for (Variable* member : type->members) {
         if (!same_name(member->text, name)) continue;
-        e.variable = member;
+        e->variable = member;
         return member->type;
     }
     if (type->kind == Kind::array && same_name(name, "this")) {  // "Recipes".THIS[1]
-        e = Expression(*e.operands[0]);
+        e = e->operands[0];
         return type;
     }
     std::vector<std::string> names;
@@ -59,20 +59,20 @@ const Type* check_member(Checking& c, Expression& e) {
         for (const Variable& variable : type->routine->variables) names.emplace_back(variable.text);
     for (const Variable* member : type->members) names.emplace_back(member->text);
     if (names.empty())
-        return c.fail("L0905", e.token.place, fmt::format("{} has no parts", describe(*type)),
+        return c.fail("L0905", e->token.place, fmt::format("{} has no parts", describe(*type)),
                       "'.' takes a part of a structure or of an instance");
     if (type->is_object())
         for (const auto& [routine, part] : c.prelude.routines)
             if (routine.starts_with(std::string(type->standard->handle) + '.'))
                 names.emplace_back(routine.substr(type->standard->handle.size() + 1));
     std::ranges::sort(names);
-    return c.fail("L0904", e.token.place, fmt::format("{} has no '{}'", describe(*type), name),
+    return c.fail("L0904", e->token.place, fmt::format("{} has no '{}'", describe(*type), name),
                   suggest(name, names));
 }
 
 const Type* check_index(Checking& c, Expression& e) {
-    const Type* type = check(c, *e.operands[0]);
-    for (Argument& argument : e.arguments) check(c, *argument.value);
+    const Type* type = check(c, e.operands[0]);
+    for (Argument& argument : e.arguments) check(c, argument.value);
     for (Argument& argument : e.arguments) {
         if (!type) return nullptr;
         const bool of_text = type->kind == Kind::text;
@@ -94,19 +94,19 @@ const Type* check_index(Checking& c, Expression& e) {
                               fmt::format("there is no element {}", to_string(value)),
                               fmt::format("the index goes from {} to {}", to_string(lower),
                                           to_string(upper)));
-            argument.value->type = &lint_type;
+            take_type(c, argument.value, lint_type, {.integer = value});
         }
         type = of_text ? &char_type : type->element;
     }
     return type;
 }
 
-const Type* check_bit(Checking& c, Expression& e) {
-    const Type* type = check(c, *e.operands[0]);
+const Type* check_bit(Checking& c, Expression*& e) {
+    const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
-    std::string_view text = e.token.text;
+    std::string_view text = e->token.text;
     int bits = 1;
-    if (e.token.word == Word::direct) {
+    if (e->token.word == Word::direct) {
         const char letter = text.size() > 1 ? text[1] : '\0';
         const bool has_letter = letter < '0' || letter > '9';
         bits = !has_letter || letter == 'X' || letter == 'x' ? 1
@@ -118,26 +118,26 @@ const Type* check_bit(Checking& c, Expression& e) {
     }
     const auto number = read_integer(text);
     if (!number || bits == 0)
-        return c.fail("L0902", e.token.place, fmt::format("'{}' is not a bit", e.token.text),
+        return c.fail("L0902", e->token.place, fmt::format("'{}' is not a bit", e->token.text),
                       "write .%X0 for a bit, .%B0 for a byte, .%W0 for a word");
     const bool whole = type->kind == Kind::bits || type->kind == Kind::integer;
     if (!whole)
-        return c.fail("L0905", e.token.place, fmt::format("{} has no bits", describe(*type)),
+        return c.fail("L0905", e->token.place, fmt::format("{} has no bits", describe(*type)),
                       "bits are those of BYTE to LWORD and of integers");
     if ((*number + 1) * bits > type->bits)
-        return c.fail("L0908", e.token.place,
-                      fmt::format("{} has no part '{}'", describe(*type), e.token.text),
+        return c.fail("L0908", e->token.place,
+                      fmt::format("{} has no part '{}'", describe(*type), e->token.text),
                       fmt::format("its {} are 0 to {}",
                                   bits == 1    ? "bits"
                                   : bits == 8  ? "bytes"
                                   : bits == 16 ? "words"
                                                : "double words",
                                   type->bits / bits - 1));
-    const Expression& part = *e.operands[0];
+    const Expression& part = *e->operands[0];
     const bool of_part = part.kind == E::bit;
     const Wide first = *number * bits + (of_part ? part.bits.first : 0);
-    e.bits = {static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(bits)};
-    if (of_part) e.operands[0] = part.operands[0];
+    if (of_part) e = make_bit(c, *e, part.operands[0]);
+    e->bits = {static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(bits)};
     return bits == 1 ? &bool_type : &bits_type(bits);
 }
 

@@ -21,7 +21,7 @@ bool leaves(const Statement& statement) {
 
 void check(Checking& c, Block& block) {
     for (std::size_t i = 0; i < block.size(); ++i) {
-        check(c, *block[i]);
+        check(c, block[i]);
         if (leaves(*block[i]) && i + 1 < block.size()) {
             c.warn("L0922", block[i + 1]->place, "this is never reached",
                    "the statement before it leaves");
@@ -32,14 +32,14 @@ void check(Checking& c, Block& block) {
 /// The value of a standard function may be left, as that of any other.
 void check_call(Checking& c, Statement& s) {
     if (s.value->type) return;
-    const Type* type = check_call(c, *s.value, true, nullptr);
+    const Type* type = check_call(c, s.value, true, nullptr);
     if (!type || !s.value->standard) return;
     s.value->type = type;
     make_concrete(c, s.value, *type);
 }
 
 void check_condition(Checking& c, Expression*& condition, std::string_view of) {
-    const Type* type = check(c, *condition, &bool_type);
+    const Type* type = check(c, condition, &bool_type);
     if (!type || type->kind == Kind::boolean) return;
     c.fail("L0905", condition->place,
            fmt::format("the condition of {} is a BOOL, not {}", of, describe(*type)),
@@ -47,7 +47,7 @@ void check_condition(Checking& c, Expression*& condition, std::string_view of) {
 }
 
 void check_case(Checking& c, Statement& s) {
-    const Type* type = check(c, *s.value);
+    const Type* type = check(c, s.value);
     const bool fits =
         type && (type->kind == Kind::integer || type->is_bits() || type->kind == Kind::enumeration);
     if (type && !fits)
@@ -80,7 +80,7 @@ void check_case(Checking& c, Statement& s) {
 }
 
 void check_for(Checking& c, Statement& s) {
-    const Type* type = check(c, *s.target);
+    const Type* type = check(c, s.target);
     if (type && type->kind != Kind::integer && type->kind != Kind::bits) {
         c.fail("L0905", s.target->place,
                fmt::format("FOR counts in an integer, not in {}", describe(*type)),
@@ -89,7 +89,7 @@ void check_for(Checking& c, Statement& s) {
     }
     if (type && check_target(c, *s.target))
         for (Expression** part : {&s.value, &s.limit, &s.step})
-            if (*part && check(c, **part, type))
+            if (*part && check(c, *part, type))
                 coerce(c, *part, part == &s.value ? *type : type->plain());
     if (s.step && s.step->type && s.step->kind == E::constant && s.step->constant.integer == 0)
         c.fail("L0908", s.step->place, "a loop with step 0 does not end");
@@ -108,11 +108,12 @@ void check_body(Checking& c, Routine& routine) {
     c.routine = nullptr;
 }
 
-void check(Checking& c, Statement& s) {
-    if (rewrite(c, s)) return;
+void check(Checking& c, Statement*& slot) {
+    if (rewrite(c, slot)) return;
+    Statement& s = *slot;
     switch (s.kind) {
         case S::assign:
-            return check_assignment(c, s);
+            return check_assignment(c, slot);
         case S::call:
             return check_call(c, s);
         case S::if_:
@@ -143,32 +144,26 @@ void check(Checking& c, Statement& s) {
     }
 }
 
-void check_assignment(Checking& c, Statement& s) {
-    const Type* type = check(c, *s.target);
-    if (s.op != Word::assign && type) {
-        Expression* sum = make(c, E::binary, *s.target);
-        sum->op = s.op == Word::plus_assign    ? Word::plus
-                  : s.op == Word::minus_assign ? Word::minus
-                  : s.op == Word::times_assign ? Word::times
-                                               : Word::divided;
-        sum->place = s.place;
-        sum->token.place = s.place;
-        sum->operands[0] = s.target;
-        sum->operands[1] = s.value;
-        s.value = sum;
+void check_assignment(Checking& c, Statement*& s) {
+    const Type* type = check(c, s->target);
+    if (s->op != Word::assign && type) {
+        const Word op = s->op == Word::plus_assign    ? Word::plus
+                        : s->op == Word::minus_assign ? Word::minus
+                        : s->op == Word::times_assign ? Word::times
+                                                      : Word::divided;
+        Expression* value = make_binary(c, *s->target, s->place, op, s->target, s->value);
+        value->place = s->place;
+        s = make_assignment(c, s->place, s->target, value);
     }
-    if (s.value->kind == E::list) {
-        check(c, *s.value);
+    check(c, s->value, type);
+    if (s->value->kind == E::list || !type || !check_target(c, *s->target) || !s->value->type)
         return;
-    }
-    check(c, *s.value, type);
-    if (!type || !check_target(c, *s.target) || !s.value->type) return;
     if (type->is_instance()) {
-        c.fail("L0910", s.place, "an instance is not assigned as a whole",
+        c.fail("L0910", s->place, "an instance is not assigned as a whole",
                "assign its inputs one by one");
         return;
     }
-    coerce(c, s.value, *type);
+    coerce(c, s->value, *type);
 }
 
 }  // namespace lineshaft::st

@@ -31,11 +31,9 @@ bool is_whole(const Type& type) {
 }
 
 /// `"text"` is a text where it names nothing.
-void become_text(Checking& c, Expression& e) {
-    if (e.kind != E::name || !e.token.quoted || find_variable(c, e.token)) return;
-    e.kind = E::constant;
-    e.type = &string_type;
-    e.constant.text = e.token.text;
+void become_text(Checking& c, Expression*& e) {
+    if (e->kind != E::name || !e->token.quoted || find_variable(c, e->token)) return;
+    e = make_constant(c, *e, string_type, {.text = std::string(e->token.text)});
 }
 
 /// Their number, and the message.
@@ -55,12 +53,12 @@ bool check_test_arguments(Checking& c, Expression& call, const TestStatement& kn
             return refuse(argument.name.place,
                           fmt::format("the arguments of {} have no names", known.name),
                           "leave the name out");
-    for (Argument& argument : call.arguments) become_text(c, *argument.value);
+    for (Argument& argument : call.arguments) become_text(c, argument.value);
     if (count == values) return true;
-    Expression& message = *call.arguments.back().value;
+    Expression*& message = call.arguments.back().value;
     const Type* type = check(c, message, &string_type);
     if (type && type->kind != Kind::text)
-        c.fail("L0905", message.place,
+        c.fail("L0905", message->place,
                fmt::format("the message of {} is a STRING, not {}", known.name, describe(*type)));
     return type && type->kind == Kind::text;
 }
@@ -69,7 +67,7 @@ bool check_test_arguments(Checking& c, Expression& call, const TestStatement& kn
 void check_single(Checking& c, Expression& call) {
     Expression*& value = call.arguments[0].value;
     const bool is_time = call.test == TestCall::advance_time;
-    const Type* given = check(c, *value, is_time ? &time_type : &bool_type);
+    const Type* given = check(c, value, is_time ? &time_type : &bool_type);
     if (!given) return;
     if (given->is_any() && !given->is_real()) coerce(c, value, lint_type);
     const Type& type = *value->type;
@@ -81,7 +79,8 @@ void check_single(Checking& c, Expression& call) {
 }
 
 void check_mocked(Checking& c, Expression& call) {
-    Expression& instance = *call.arguments[0].value;
+    Expression*& slot = call.arguments[0].value;
+    const Expression& instance = *slot;
     const TestStatement& known = info(call.test);
     if (instance.kind == E::name && !find_variable(c, instance.token)) {
         const Routine* routine = c.find_routine(instance.token);
@@ -96,17 +95,17 @@ void check_mocked(Checking& c, Expression& call) {
                                instance.token.text),
                    "name the variable");
         else
-            check(c, instance);
+            check(c, slot);
         return;
     }
-    const Type* type = check(c, instance);
+    const Type* type = check(c, slot);
     if (!type) return;
-    if (!is_place(instance) || !type->is_instance())
+    if (!is_place(*slot) || !type->is_instance())
         c.fail("L0905", instance.place,
                fmt::format("{} takes an instance of a function block, not {}", known.name,
                            describe(*type)),
                "MOCK_FUNCTION replaces a function");
-    if (known.values == 2 && check(c, *call.arguments[1].value, &lint_type))
+    if (known.values == 2 && check(c, call.arguments[1].value, &lint_type))
         coerce(c, call.arguments[1].value, lint_type);
 }
 
@@ -114,9 +113,9 @@ void check_mocked(Checking& c, Expression& call) {
 bool check_compared(Checking& c, Expression& call) {
     const TestStatement& known = info(call.test);
     Expression *&a = call.arguments[0].value, *&b = call.arguments[1].value;
-    if (a->kind == E::name && !find_variable(c, a->token)) check(c, *b);
-    const Type* first = check(c, *a, b->type);
-    const Type* second = check(c, *b, first);
+    if (a->kind == E::name && !find_variable(c, a->token)) check(c, b);
+    const Type* first = check(c, a, b->type);
+    const Type* second = check(c, b, first);
     if (!first || !second) return false;
     unite_texts(c, a, b);
     first = a->type, second = b->type;
@@ -156,7 +155,7 @@ bool check_distance(Checking& c, Expression& call) {
     const Type* like = nullptr;
     for (int i = 0; i < 3; ++i) {
         Expression*& value = call.arguments[static_cast<std::size_t>(i)].value;
-        const Type* type = check(c, *value, like);
+        const Type* type = check(c, value, like);
         if (!type) return false;
         if (!type->is_number() && type->kind != Kind::time) {
             c.fail("L0905", value->place,
@@ -209,7 +208,7 @@ void check_mock_function(Checking& c, Expression& call) {
     const Type* type = function.result->type;
     if (!type) return;
     Expression*& value = call.arguments[1].value;
-    if (check(c, *value, type)) coerce(c, value, *type);
+    if (check(c, value, type)) coerce(c, value, *type);
     if (!function.mock_flag) add_mock(c, function);
     call.routine = &function;
 }

@@ -176,7 +176,7 @@ const Type* resolve_declared(Checking& c, NamedType& named) {
         Type& copy = c.checked.types.emplace_back(*type);
         copy.initial_value = declared.initial;
         type = &copy;
-        auto* value = const_cast<Expression*>(declared.initial);
+        Expression* value = declared.initial;
         check_initial(c, value, copy);
         copy.initial_value = value;
     }

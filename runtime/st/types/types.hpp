@@ -117,7 +117,7 @@ struct Variable {
     bool is_byte = false;
     int global = -1;
     Constant value = {};  ///< of a constant scalar
-    const Expression* initial = nullptr;
+    Expression* initial = nullptr;
     std::string unit = {};
     const Pou* of = nullptr;  ///< null: a member of a structure, or of the catalogue
     bool used = false;
@@ -135,6 +135,7 @@ struct Routine {
     NameMap<Variable*> names = {};
     NameMap<Routine*> methods = {};
     Variable* result = nullptr;
+    Block edge_calls = {};  ///< what runs before its body, of inputs with R_EDGE and F_EDGE
     Type* type = nullptr;  ///< of its instances, of a block
     std::vector<Routine*> calls = {};
     std::vector<Place> call_places = {};
