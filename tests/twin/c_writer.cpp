@@ -284,8 +284,7 @@ class CWriter {
             if (!is_block) put("{} {};", c_type(*v.type), name_of(v));
             begin(v, (is_block ? "self->" : "") + name_of(v));
         }
-        write(routine.edge_calls);
-        write(routine.pou->body);
+        write(routine.body);
         put("leave:;");
         for (const Variable& v : routine.variables)
             if (!is_block && v.section == Section::output && v.space == Space::frame)
@@ -360,6 +359,8 @@ class CWriter {
                 return put("goto next{};", loops_.back());
             case S::return_:
                 return put("goto leave;");
+            case S::sequence:
+                return write(s.body);
         }
     }
 

@@ -15,6 +15,7 @@
 #include "runtime/st/check/test_statements.hpp"
 #include "runtime/st/functions/standard.hpp"
 #include "runtime/st/vendors/instead.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
@@ -70,15 +71,14 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     const Type* type = parameter.type;
     const bool is_set = c.is_in_test() && !argument.is_output && argument.is_named() &&
                         parameter.section != Section::in_out;
-    const bool is_eno = argument.is_output && parameter.section == Section::temp;
-    if (!is_set && !is_eno && argument.is_output != (parameter.section == Section::output) &&
-        argument.is_named()) {
+    const bool is_output = parameter.section == Section::output;
+    const bool fits_sign = argument.is_output ? parameter.can_be_taken() : !is_output || is_set;
+    if (argument.is_named() && !fits_sign) {
         check(c, value);
         c.fail("L0907", argument.name.place,
                fmt::format("'{}' is {} of the call", parameter.text,
-                           parameter.section == Section::output ? "an output" : "an input"),
-               parameter.section == Section::output ? "write '=>' and the variable that it goes to"
-                                                    : "write ':='");
+                           is_output ? "an output" : "an input"),
+               is_output ? "write '=>' and the variable that it goes to" : "write ':='");
         return;
     }
     if (parameter.section == Section::input || is_set) {
@@ -161,22 +161,10 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
     e = make_with(c, call, std::move(left_out));
 }
 
-/// Of a block that commands an axis, inputs that vendors add to PLCopen's: an axis without a real
-/// drive does the same with and without, with some if they are this constant.
-struct VendorsOwn {
-    std::string_view name;
-    std::optional<double> only = {};
-};
-
-const VendorsOwn* vendors_own(const Type& type, std::string_view argument) {
-    static constexpr VendorsOwn known[] = {
-        {"StartMode"},    {"StopMode"},    {"Restart"},    {"PositionControlled"},
-        {"bRegulatorOn"}, {"bDriveStart"}, {"Current", 0}, {"AbortAcceleration", 0},
-        {"Override", 100}};
+/// What vendors add to a block that commands an axis; null for another input.
+const AddedInput* added_input(const Type& type, std::string_view argument) {
     const auto refers = [](const Variable* member) { return member->type->is_handle(); };
-    const auto* it = std::ranges::find_if(
-        known, [&](const VendorsOwn& input) { return same_name(input.name, argument); });
-    return it != std::end(known) && std::ranges::any_of(type.members, refers) ? it : nullptr;
+    return std::ranges::any_of(type.members, refers) ? find_added_input(argument) : nullptr;
 }
 
 void ignore(Checking& c, const Type& type, Argument& argument, std::optional<double> only) {
@@ -206,8 +194,8 @@ void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
                     found = member;
         }
         argument.variable = found;
-        const VendorsOwn* ignored =
-            found || argument.is_output ? nullptr : vendors_own(type, argument.name.text);
+        const AddedInput* ignored =
+            found || argument.is_output ? nullptr : added_input(type, argument.name.text);
         if (ignored) {
             ignore(c, type, argument, ignored->only);
             continue;
@@ -219,11 +207,10 @@ void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
             break;
         }
         if (!found) {
+            const std::string_view instead = instead_of_input(argument.name.text);
             c.fail("L0907", argument.name.place,
                    fmt::format("{} has no argument '{}'", type.name, argument.name.text),
-                   same_name(argument.name.text, "cam")
-                       ? "select the cam with MC_CamTableSelect, and give its CamTableID"
-                       : suggest(argument.name.text, names));
+                   instead.empty() ? suggest(argument.name.text, names) : std::string(instead));
             continue;
         }
         check_argument(c, argument, *found);
@@ -271,26 +258,13 @@ const Type* check_routine_call(Checking& c, Expression*& e, Routine& routine, bo
 }
 
 std::string_view standard_name(const Type& type, std::string_view name) {
-    constexpr std::pair<std::string_view, std::string_view> others[] = {
-        {"reset", "r"},
-        {"load", "ld"},
-        {"set1", "s1"},
-        {"set", "s"},
-        {"reset1", "r1"},
-        {"busy", "valid"},
-        {"mode", "homingmode"},
-        {"qu", "q"},
-        {"qd", "q"},
-        {"enable_positive", "enablepositive"},
-        {"enable_negative", "enablenegative"}};
     if (type.kind != Kind::standard) return name;
     const auto has = [&](std::string_view known) {
         return std::ranges::any_of(type.members,
                                    [&](const Variable* m) { return same_name(m->text, known); });
     };
-    const auto* it = std::ranges::find_if(
-        others, [&](const auto& other) { return same_name(other.first, name); });
-    return !has(name) && it != std::end(others) && has(it->second) ? it->second : name;
+    const std::string_view other = has(name) ? std::string_view() : standard_part_name(name);
+    return !other.empty() && has(other) ? other : name;
 }
 
 const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Type* expected) {

@@ -3,58 +3,42 @@
 #include <algorithm>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
 namespace {
 
-/// What the standard's and Siemens' counters count in, by the number of `data_type`.
-constexpr std::string_view counter_types[] = {"int",   "dint", "lint",  "udint",
-                                              "ulint", "sint", "usint", "uint"};
-
-/// A kind of the catalogue that counts in one of them.
-struct Counter {
-    std::string_view kind;
-    std::size_t type = 0;
+/// A kind of block by its name: `TON`, `CTU_UDINT`.
+struct NamedKind {
+    const BlockType* kind = nullptr;   ///< null: there is none of that name
+    const Field* data_type = nullptr;  ///< by which it says of what type its whole numbers are
+    std::size_t number = 0;            ///< of that type
 };
 
-/// `CTU`, `CTD_UDINT`, `IEC_DCOUNTER`.
-std::optional<Counter> find_counter(std::string_view name) {
-    static constexpr std::pair<std::string_view, std::size_t> siemens[] = {
-        {"iec_counter", 0},  {"iec_dcounter", 1},  {"iec_udcounter", 3},
-        {"iec_scounter", 5}, {"iec_uscounter", 6}, {"iec_ucounter", 7}};
-    for (const auto& [own, type] : siemens)
-        if (same_name(name, own)) return Counter{"ctu", type};
-    const std::size_t end = std::min(name.find('_'), name.size());
-    for (const std::string_view kind : {"ctu", "ctd", "ctud"}) {
-        if (!same_name(name.substr(0, end), kind)) continue;
-        if (end == name.size()) return Counter{kind};
-        for (std::size_t type = 0; type < std::size(counter_types); ++type)
-            if (same_name(name.substr(end + 1), counter_types[type])) return Counter{kind, type};
-    }
-    return {};
-}
-
-constexpr std::pair<std::string_view, std::string_view> aliases[] = {
-    {"ton_time", "ton"},  {"tof_time", "tof"}, {"tp_time", "tp"},    {"ton_ltime", "ton"},
-    {"tof_ltime", "tof"}, {"tp_ltime", "tp"},  {"iec_timer", "ton"}, {"iec_ltimer", "ton"}};
-
-/// What Siemens and CODESYS call references.
-constexpr std::pair<std::string_view, std::string_view> handles[] = {
-    {"to_axis", "axis_ref"},
-    {"to_speedaxis", "axis_ref"},
-    {"to_positioningaxis", "axis_ref"},
-    {"to_synchronousaxis", "axis_ref"},
-    {"axis_ref_sm3", "axis_ref"},
-    {"axis_ref_virtual_sm3", "axis_ref"},
-    {"to_cam", "cam_ref"}};
-
-/// What the numbers mean that Siemens' MC_MOVEABSOLUTE and MC_MOVEVELOCITY have for a Direction,
-/// and MC_HOME for its Mode.
-std::vector<std::int64_t> numbers_of(std::string_view field) {
-    if (field == "Direction") return {0, 1, 2, 0};
-    if (field == "HomingMode") return {0, -1, -1, -1, -1, -1, -1, 0};
-    return {};
+NamedKind find_kind(const Catalog& catalog, std::string_view name) {
+    const auto find = [&](std::string_view wanted) {
+        const auto it = std::ranges::find_if(
+            catalog.types(), [&](const BlockType& type) { return same_name(type.name, wanted); });
+        return it == catalog.types().end() || it->is_device() ? nullptr : &*it;
+    };
+    const auto data_type_of = [](const BlockType& kind) {
+        const auto it = std::ranges::find(kind.fields, "data_type", &Field::name);
+        const bool is_type =
+            it != kind.fields.end() && !it->names.empty() && find_elementary(it->names.front());
+        return is_type ? &*it : nullptr;
+    };
+    if (const BlockType* kind = find(name)) return {kind, data_type_of(*kind)};
+    const std::size_t end = name.find('_');
+    const BlockType* kind = end == name.npos ? nullptr : find(name.substr(0, end));
+    const Field* types = kind ? data_type_of(*kind) : nullptr;
+    if (!types) return {};
+    const auto is_type = [&](std::string_view type) {
+        return same_name(type, name.substr(end + 1));
+    };
+    const auto it = std::ranges::find_if(types->names, is_type);
+    if (it == types->names.end()) return {};
+    return {kind, types, static_cast<std::size_t>(it - types->names.begin())};
 }
 
 /// Enumerations that the standards make a WORD.
@@ -71,6 +55,8 @@ const Type* handle_type(Checking& c, std::string_view name) {
         return !type.handle.empty() && same_name(type.handle, name);
     });
     if (kind == c.catalog.types().end()) return nullptr;
+    if (const auto it = c.catalog_types.find(kind->handle); it != c.catalog_types.end())
+        return it->second;
     Type& type = c.make_type(Kind::handle, std::string(kind->handle));
     type.standard = &*kind;
     type.slots = 1;
@@ -78,57 +64,56 @@ const Type* handle_type(Checking& c, std::string_view name) {
     return c.catalog_types[type.name] = &type;
 }
 
+const Type& make_enumeration(Checking& c, const BlockType& kind, const Field& field) {
+    Type& values = c.make_type(Kind::enumeration, fmt::format("{}.{}", kind.name, field.name));
+    values.slots = 1;
+    values.base = &lint_type;
+    const auto meanings = meanings_of_numbers(field.name);
+    values.of_number.assign(meanings.begin(), meanings.end());
+    values.is_code = std::ranges::any_of(
+        code_names, [&](std::string_view code) { return same_name(field.name, code); });
+    for (const std::string_view value : field.names) {
+        values.numbers.push_back(static_cast<std::int64_t>(values.values.size()));
+        values.values.emplace_back(value);
+    }
+    return values;
+}
+
+const Type* type_of(Checking& c, const NamedKind& named, const Field& field) {
+    if (field.type == lineshaft::Type::boolean) return &bool_type;
+    if (field.type == lineshaft::Type::real) return &lreal_type;
+    if (field.type == lineshaft::Type::enumeration) return &make_enumeration(c, *named.kind, field);
+    const BlockType* referred = c.catalog.find(field.refers);
+    if (referred && !referred->handle.empty()) return standard_type(c, referred->handle);
+    if (named.data_type && field.direction != Direction::parameter)
+        return find_elementary(named.data_type->names[named.number]);
+    return field.unit == "ns" ? &time_type : &lint_type;
+}
+
 }  // namespace
 
 const Type* standard_type(Checking& c, std::string_view name) {
     if (const auto it = c.catalog_types.find(name); it != c.catalog_types.end()) return it->second;
-    for (const auto& [theirs, ours] : handles)
-        if (same_name(theirs, name)) return standard_type(c, ours);
-    if (const Type* handle = handle_type(c, name)) return handle;
-    const auto counter = find_counter(name);
-    const auto* alias =
-        std::ranges::find_if(aliases, [&](const auto& a) { return same_name(a.first, name); });
-    std::string_view wanted = name;
-    if (counter) wanted = counter->kind;
-    if (alias != std::end(aliases)) wanted = alias->second;
-    const auto kind = std::ranges::find_if(
-        c.catalog.types(), [&](const BlockType& type) { return same_name(type.name, wanted); });
-    if (kind == c.catalog.types().end() || kind->is_device()) return nullptr;
+    const std::string_view wanted = standard_type_name(name);
+    if (const Type* handle = handle_type(c, wanted)) return handle;
+    const NamedKind named = find_kind(c.catalog, wanted);
+    if (!named.kind) return nullptr;
+    const BlockType& kind = *named.kind;
     Type& type = c.make_type(Kind::standard, upper(name));
-    type.standard = &*kind;
-    type.slots = static_cast<std::uint32_t>((kind->size + 7) / 8) + (c.has_tests ? 1 : 0);
-    for (const Field& field : kind->fields) {
+    type.standard = &kind;
+    type.slots = static_cast<std::uint32_t>((kind.size + 7) / 8) + (c.has_tests ? 1 : 0);
+    for (const Field& field : kind.fields) {
         Variable& member = c.checked.variables.emplace_back();
         member.text = field.name;
         member.section = section_of(field.direction);
         member.slot = static_cast<std::uint32_t>(field.offset / 8);
         member.byte = static_cast<std::uint32_t>(field.offset);
         member.is_byte = field.type == lineshaft::Type::boolean;
-        member.type = field.type == lineshaft::Type::boolean ? &bool_type
-                      : field.type == lineshaft::Type::real  ? &lreal_type
-                      : field.unit == "ns"                   ? &time_type
-                                                             : &lint_type;
-        const BlockType* referred = c.catalog.find(field.refers);
-        if (referred && !referred->handle.empty()) member.type = standard_type(c, referred->handle);
-        if (field.type == lineshaft::Type::enumeration) {
-            Type& values =
-                c.make_type(Kind::enumeration, fmt::format("{}.{}", kind->name, field.name));
-            values.slots = 1;
-            values.base = &lint_type;
-            values.of_number = numbers_of(field.name);
-            values.is_code = std::ranges::any_of(
-                code_names, [&](std::string_view code) { return same_name(field.name, code); });
-            for (const std::string_view value : field.names) {
-                values.numbers.push_back(static_cast<std::int64_t>(values.values.size()));
-                values.values.emplace_back(value);
-            }
-            member.type = &values;
-        }
-        const bool counts = same_name(field.name, "pv") || same_name(field.name, "cv");
-        if (counter && counts) member.type = find_elementary(counter_types[counter->type]);
+        member.type = type_of(c, named, field);
         type.members.push_back(&member);
     }
-    if (counter) type.presets.push_back({"data_type", {.integer = Wide(counter->type)}});
+    if (named.data_type)
+        type.presets.push_back({named.data_type->name, {.integer = Wide(named.number)}});
     return c.catalog_types[type.name] = &type;
 }
 

@@ -6,9 +6,11 @@ namespace lineshaft::st {
 
 /// REAL.
 bool is_single(const Type& type);
-/// Makes `e` a value of `to` where the language does that by itself, and tells where it does not.
+/// Makes `e`, which has a type, a value of `to` where the language does that by itself: a constant
+/// of it, or a conversion. False where it does not, which was told: L0905, L0906, or L0908 for a
+/// constant that is out of range.
 bool coerce(Checking& c, Expression*& e, const Type& to);
-/// Puts a conversion in, or converts a constant at once.
+/// Makes `e` a value of `to` in any case: a conversion is put in, or a constant converted at once.
 void convert(Checking& c, Expression*& e, const Type& to);
 
 /// `16#FF` has that of the bit string that is wanted.
@@ -27,7 +29,8 @@ void unite_texts(Checking& c, Expression*& a, Expression*& b);
 /// Gives a number without type that of the other one, if it fits.
 bool make_concrete(Checking& c, Expression*& e, const Type& other);
 
-/// Brings both operands to one type, if there is one.
+/// Brings both operands to one type, that of the result or one that `expected` suggests; null if
+/// there is none, which was told, L0905 or L0906.
 const Type* unite(Checking& c, Expression& e, const Type* expected = nullptr);
 
 // In place, for standard_calls.cpp.

@@ -4,6 +4,7 @@
 
 namespace lineshaft::st {
 
+/// Of all variables, and what stands behind BEGIN of data blocks.
 void check_initial_values(Checking& c);
 /// What the variable begins with; of `a, b : INT := 2 + 3` it is checked once for all.
 void check_initial(Checking& c, Variable& variable);

@@ -4,7 +4,7 @@
 
 namespace lineshaft::st {
 
-/// A literal as it is written.
+/// A literal as it is written: notes its value. A number has no type of its own yet.
 const Type* check_literal(Checking& c, Expression*& e);
 /// `INT#5`, `Colour#red`.
 const Type* check_typed(Checking& c, Expression*& e);

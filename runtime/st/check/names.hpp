@@ -23,6 +23,8 @@ const Type* enumeration_of(Checking& c, const Expression& member);
 /// The value of that name.
 const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, const Token& name);
 
+/// A variable, a value of an enumeration, TRUE, ENO, a block of the program where a reference is
+/// `expected`. L0904 for what is not declared.
 const Type* check_name(Checking& c, Expression*& e, const Type* expected);
 
 }  // namespace lineshaft::st

@@ -135,7 +135,7 @@ Statement* make_if(Checking& c, Place place, Expression* condition, Block then, 
 
 Statement* make_sequence(Checking& c, Place place, Block statements) {
     Statement& made = c.tree.statements.emplace_back();
-    made.kind = S::if_;
+    made.kind = S::sequence;
     made.place = place;
     made.body = std::move(statements);
     return &made;

@@ -6,6 +6,7 @@
 #include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
@@ -52,7 +53,7 @@ bool is_object_of(Checking& c, const Expression& member) {
     const Expression& of = *member.operands[0];
     if (of.kind != E::name || of.type || !of.token.quoted) return false;
     if (find_variable(c, of.token) || c.find_routine(of.token)) return false;
-    const Type* axis = standard_type(c, "axis_ref");
+    const Type* axis = standard_type(c, technology_object);
     if (!axis || enumeration_of(c, member)) return false;
     return find_part(c, *axis, member.token.text) ||
            std::ranges::any_of(object_type(c, *axis)->members, [&](const Variable* field) {

@@ -4,6 +4,8 @@
 
 namespace lineshaft::st {
 
+/// `-x`, `NOT x`, `a + b`: checks the operands, brings them to one type, and folds constants. L0905
+/// and L0906 where an operator does not go with them.
 const Type* check_unary(Checking& c, Expression*& e, const Type* expected);
 const Type* check_binary(Checking& c, Expression*& e, const Type* expected);
 

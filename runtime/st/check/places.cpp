@@ -12,6 +12,7 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/objects.hpp"
 #include "runtime/st/syntax/literals.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
@@ -19,7 +20,7 @@ const Type* check_member(Checking& c, Expression*& e) {
     if (const Type* enumeration = enumeration_of(c, *e))
         return check_value(c, e, *enumeration, e->token);
     if (is_object_of(c, *e))
-        use_object(c, e->operands[0], *object_type(c, *standard_type(c, "axis_ref")));
+        use_object(c, e->operands[0], *object_type(c, *standard_type(c, technology_object)));
     const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
     if (Routine* part = find_part(c, *type, e->token.text)) return check_part(c, e, *part);

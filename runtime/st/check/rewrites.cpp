@@ -22,9 +22,10 @@ const Argument* find_argument(const Expression& call, std::string_view name) {
     return it == call.arguments.end() ? nullptr : &*it;
 }
 
+/// A block of the standard that has a preset time.
 bool is_timer(const Type& type) {
     if (type.kind == Kind::block)
-        return type.name == "TONR" && type.routine->pou->place.source->is_prelude();
+        return type.routine->pou->place.source->is_prelude() && type.routine->names.contains("pt");
     return type.kind == Kind::standard &&
            std::ranges::any_of(type.members, [](const Variable* m) { return m->text == "pt"; });
 }
@@ -154,7 +155,8 @@ Variable& eno_of(Checking& c, Routine& routine) {
     return variable;
 }
 
-void call_edges(Checking& c, Routine& routine) {
+Block edge_calls(Checking& c, Routine& routine) {
+    Block calls;
     for (Variable& variable : routine.variables) {
         if (!variable.edge) continue;
         Expression like;
@@ -165,8 +167,9 @@ void call_edges(Checking& c, Routine& routine) {
         const Token clk{.word = Word::name, .place = input->place, .text = "clk"};
         Expression* call = make_call(c, like, make_name(c, like, variable.edge->text),
                                      {{.name = clk, .value = input}});
-        check(c, routine.edge_calls.emplace_back(make_call_statement(c, call)));
+        calls.push_back(make_call_statement(c, call));
     }
+    return calls;
 }
 
 const Type* use_edge(Checking& c, Expression*& e, Variable& input) {

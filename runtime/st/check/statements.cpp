@@ -103,8 +103,9 @@ void check_for(Checking& c, Statement& s) {
 void check_body(Checking& c, Routine& routine) {
     c.routine = &routine;
     c.loops = 0;
-    call_edges(c, routine);
-    check(c, const_cast<Pou*>(routine.pou)->body);
+    routine.body = edge_calls(c, routine);
+    routine.body.insert(routine.body.end(), routine.pou->body.begin(), routine.pou->body.end());
+    check(c, routine.body);
     c.routine = nullptr;
 }
 
@@ -141,6 +142,8 @@ void check(Checking& c, Statement*& slot) {
             return;
         case S::return_:
             return;
+        case S::sequence:
+            return check(c, s.body);
     }
 }
 

@@ -6,7 +6,8 @@ namespace lineshaft::st {
 
 constexpr Wide most_elements = 1 << 24;  ///< of an array
 
-/// Null where a type is wrong, which was told.
+/// The type that is written; null where it is wrong, which was told: L0904 for a name that is none,
+/// L0911 for a type that contains itself.
 const Type* resolve(Checking& c, const TypeText& text);
 const Type* resolve_name(Checking& c, const Token& name);
 const Type* resolve_declared(Checking& c, NamedType& named);

@@ -87,8 +87,7 @@ void write(Writing& w, Routine& routine) {
     begin(w, routine);
     begin_mockable(w, routine);
     w.cover(CoverPoint::Kind::function, routine.pou->place);
-    write_block(w, routine.edge_calls);
-    write_block(w, routine.pou->body);
+    write_block(w, routine.body);
     w.put(Op::leave);
     finish(w, routine);
 }

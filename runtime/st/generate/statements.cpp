@@ -273,6 +273,9 @@ void write_statement(Writing& w, const Statement& s) {
             return w.jump(Op::jump, 0, 0, w.loops.back().nexts);
         case S::return_:
             return w.put(Op::leave);
+        case S::sequence:
+            w.cover_branch(s, 0);
+            return write_block(w, s.body);
     }
 }
 

@@ -34,7 +34,7 @@ Evaluated evaluate(Expression& expression) {
     target.type = expression.type;
     target.variable = &result;
     Statement assigned{.place = place, .target = &target, .value = &expression};
-    pou.body = {&assigned};
+    routine.body = {&assigned};
     alone.order = {&routine};
     Diagnostics wrong;
     Generated made = generate(alone, wrong, {});

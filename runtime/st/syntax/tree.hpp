@@ -119,7 +119,8 @@ struct Statement {
         repeat,
         exit,
         continue_,
-        return_
+        return_,
+        sequence,  ///< several one behind the other, put in by the checker for one
     };
 
     Kind kind = Kind::assign;
@@ -129,7 +130,7 @@ struct Statement {
     Expression* value = nullptr;   ///< assigned, called, tested; of a FOR its first one
     Expression *limit = nullptr, *step = nullptr;  ///< of a FOR
     std::vector<Branch> branches = {};             ///< of IF and CASE
-    Block body = {};                               ///< of a loop; of IF and CASE what ELSE does
+    Block body = {};  ///< of a loop, a sequence; of IF and CASE what ELSE does
 };
 
 /// A type as it is written.

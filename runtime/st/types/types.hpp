@@ -124,6 +124,9 @@ struct Variable {
     Variable* edge = nullptr;    ///< of `x : BOOL R_EDGE`: the R_TRIG whose Q its name means inside
     std::string_view text = {};  ///< its name
     std::string_view doc = {};   ///< comments, as they are written
+
+    /// By a call, with `=>`: an output, and ENO, which is a temporary.
+    bool can_be_taken() const { return section == Section::output || section == Section::temp; }
 };
 
 /// What runs: the body of a POU, or a method.
@@ -135,8 +138,8 @@ struct Routine {
     NameMap<Variable*> names = {};
     NameMap<Routine*> methods = {};
     Variable* result = nullptr;
-    Block edge_calls = {};  ///< what runs before its body, of inputs with R_EDGE and F_EDGE
-    Type* type = nullptr;  ///< of its instances, of a block
+    Type* type = nullptr;   ///< of its instances, of a block
+    Block body = {};  ///< as checked: what its statements stand for
     std::vector<Routine*> calls = {};
     std::vector<Place> call_places = {};
     std::vector<int> objects = {};  ///< globals that are blocks of the program, and that it names

@@ -76,6 +76,9 @@ constexpr Instead functions_of_vendors[] = {
     {"Chars_TO_Strg", "keep the characters in a STRING"},
     {"Strg_TO_Chars", "keep the characters in a STRING"}};
 
+constexpr Instead inputs_of_vendors[] = {
+    {"cam", "select the cam with MC_CamTableSelect, and give its CamTableID"}};
+
 std::string_view instead_in(std::span<const Instead> rows, std::string_view name) {
     const auto it =
         std::ranges::find_if(rows, [&](const Instead& row) { return same_name(row.name, name); });
@@ -90,6 +93,10 @@ std::string_view instead_of_type(std::string_view name) {
 
 std::string_view instead_of_function(std::string_view name) {
     return instead_in(functions_of_vendors, name);
+}
+
+std::string_view instead_of_input(std::string_view name) {
+    return instead_in(inputs_of_vendors, name);
 }
 
 }  // namespace lineshaft::st

@@ -1,0 +1,83 @@
+#include "runtime/st/vendors/names.hpp"
+
+#include <algorithm>
+
+#include "runtime/st/syntax/token.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+struct Renamed {
+    std::string_view theirs, standard;
+};
+
+constexpr Renamed types[] = {{"to_axis", "axis_ref"},
+                             {"to_speedaxis", "axis_ref"},
+                             {"to_positioningaxis", "axis_ref"},
+                             {"to_synchronousaxis", "axis_ref"},
+                             {"axis_ref_sm3", "axis_ref"},
+                             {"axis_ref_virtual_sm3", "axis_ref"},
+                             {"to_cam", "cam_ref"},
+                             {"ton_time", "ton"},
+                             {"tof_time", "tof"},
+                             {"tp_time", "tp"},
+                             {"ton_ltime", "ton"},
+                             {"tof_ltime", "tof"},
+                             {"tp_ltime", "tp"},
+                             {"iec_timer", "ton"},
+                             {"iec_ltimer", "ton"},
+                             {"iec_counter", "ctu_int"},
+                             {"iec_dcounter", "ctu_dint"},
+                             {"iec_udcounter", "ctu_udint"},
+                             {"iec_scounter", "ctu_sint"},
+                             {"iec_uscounter", "ctu_usint"},
+                             {"iec_ucounter", "ctu_uint"}};
+
+constexpr Renamed parts[] = {{"reset", "r"},
+                             {"load", "ld"},
+                             {"set1", "s1"},
+                             {"set", "s"},
+                             {"reset1", "r1"},
+                             {"busy", "valid"},
+                             {"mode", "homingmode"},
+                             {"qu", "q"},
+                             {"qd", "q"},
+                             {"enable_positive", "enablepositive"},
+                             {"enable_negative", "enablenegative"}};
+
+constexpr AddedInput added_inputs[] = {
+    {"StartMode"},    {"StopMode"},    {"Restart"},    {"PositionControlled"},
+    {"bRegulatorOn"}, {"bDriveStart"}, {"Current", 0}, {"AbortAcceleration", 0},
+    {"Override", 100}};
+
+/// Of MC_MOVEABSOLUTE's and MC_MOVEVELOCITY's Direction, and of MC_HOME's Mode.
+constexpr std::int64_t directions[] = {0, 1, 2, 0}, homing_modes[] = {0, -1, -1, -1, -1, -1, -1, 0};
+
+}  // namespace
+
+std::string_view standard_type_name(std::string_view name) {
+    const auto* it = std::ranges::find_if(
+        types, [&](const Renamed& renamed) { return same_name(renamed.theirs, name); });
+    return it == std::end(types) ? name : it->standard;
+}
+
+std::string_view standard_part_name(std::string_view name) {
+    const auto* it = std::ranges::find_if(
+        parts, [&](const Renamed& renamed) { return same_name(renamed.theirs, name); });
+    return it == std::end(parts) ? std::string_view() : it->standard;
+}
+
+const AddedInput* find_added_input(std::string_view name) {
+    const auto* it = std::ranges::find_if(
+        added_inputs, [&](const AddedInput& input) { return same_name(input.name, name); });
+    return it == std::end(added_inputs) ? nullptr : it;
+}
+
+std::span<const std::int64_t> meanings_of_numbers(std::string_view input) {
+    if (input == "Direction") return directions;
+    if (input == "HomingMode") return homing_modes;
+    return {};
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace lineshaft::st {
+
+/// IEC 61131-3's or PLCopen's name of a type or a kind of block that vendors call otherwise:
+/// `TO_POSITIONINGAXIS` is AXIS_REF, `IEC_TIMER` is TON. Any other name is its own.
+std::string_view standard_type_name(std::string_view name);
+
+/// What a kind of block calls a part that vendors call otherwise, where it has that: RESET is R.
+/// Empty for any other name.
+std::string_view standard_part_name(std::string_view name);
+
+/// What Siemens' programs name by `"Axis_1"` without declaring it.
+inline constexpr std::string_view technology_object = "axis_ref";
+
+/// An input that vendors add to PLCopen's commands of an axis: one without a real drive does the
+/// same with and without, with some if they are this constant.
+struct AddedInput {
+    std::string_view name;
+    std::optional<double> only = {};
+};
+
+/// Null for another name.
+const AddedInput* find_added_input(std::string_view name);
+
+/// Of an enumeration of PLCopen's commands what the numbers mean that Siemens gives it, by the name
+/// of its input: the place of a value in its list, -1 for nothing. Empty where there are none.
+std::span<const std::int64_t> meanings_of_numbers(std::string_view input);
+
+}  // namespace lineshaft::st
