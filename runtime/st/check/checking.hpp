@@ -62,8 +62,6 @@ struct Checking {
     NameMap<Variable*> globals = {};
     NameMap<const Declaration*> constants = {};  ///< of VAR_GLOBAL, until all globals are declared
     std::unordered_set<const Declaration*> begun_constants = {};  ///< declared, or being so
-    std::unordered_map<const Expression*, Expression*> initial_values =
-        {};        ///< as they are checked
     int hops = 0;  ///< from constant to constant that is declared later
     NameMap<const Type*> catalog_types = {};
     bool has_tests = false;

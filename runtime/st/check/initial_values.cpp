@@ -134,10 +134,13 @@ void check_initial_values(Checking& c) {
 }
 
 void check_initial(Checking& c, Variable& variable) {
-    const auto [found, is_new] = c.initial_values.emplace(variable.initial, variable.initial);
-    Expression*& value = found->second;
-    if (is_new) check_initial(c, value, *variable.type);
-    variable.initial = value;
+    Expression& written = *variable.initial;
+    if (!written.initial) {
+        Expression* value = &written;
+        check_initial(c, value, *variable.type);
+        written.initial = value;
+    }
+    variable.initial = written.initial;
 }
 
 void check_initial(Checking& c, Expression*& value, const Type& type) {

@@ -2,6 +2,23 @@
 
 namespace lineshaft::st {
 
+namespace {
+
+Expression* keep(Checking& c, Expression made) {
+    return &c.tree.expressions.emplace_back(std::move(made));
+}
+
+Statement* keep(Checking& c, Statement made) {
+    return &c.tree.statements.emplace_back(std::move(made));
+}
+
+Token with_text(Token token, std::string_view text) {
+    token.text = text;
+    return token;
+}
+
+}  // namespace
+
 bool is_constant(const Expression& expression) {
     return expression.kind == E::constant && expression.type;
 }
@@ -12,22 +29,16 @@ double as_real(const Expression& constant) {
 }
 
 Expression* make(Checking& c, Expression::Kind kind, const Expression& like) {
-    Expression& made = c.tree.expressions.emplace_back();
-    made.kind = kind;
-    made.token = like.token;
-    made.place = like.place;
-    return &made;
+    return keep(c, {.kind = kind, .token = like.token, .place = like.place});
 }
 
 Expression* make_copy(Checking& c, const Expression& e) {
-    return &c.tree.expressions.emplace_back(e);
+    return keep(c, Expression(e));
 }
 
 Expression* make_constant(Checking& c, const Expression& like, const Type& type, Constant value) {
-    Expression* made = make(c, E::constant, like);
-    made->type = &type;
-    made->constant = std::move(value);
-    return made;
+    return keep(
+        c, {.token = like.token, .place = like.place, .type = &type, .constant = std::move(value)});
 }
 
 Expression* make_boolean(Checking& c, const Expression& like, bool value) {
@@ -35,61 +46,60 @@ Expression* make_boolean(Checking& c, const Expression& like, bool value) {
 }
 
 Expression* make_name(Checking& c, const Expression& like, std::string_view text) {
-    Expression* made = make(c, E::name, like);
-    made->token.text = text;
-    return made;
+    return keep(c, {.kind = E::name, .token = with_text(like.token, text), .place = like.place});
 }
 
 Expression* make_member(Checking& c, Expression* of, std::string_view text) {
-    Expression* made = make(c, E::member, *of);
-    made->token.text = text;
-    made->operands[0] = of;
-    return made;
+    return keep(c, {.kind = E::member,
+                    .token = with_text(of->token, text),
+                    .place = of->place,
+                    .operands = {of}});
 }
 
 Expression* make_element(Checking& c, Expression* of, std::int64_t index) {
-    Expression* made = make(c, E::index, *of);
-    made->operands[0] = of;
-    made->arguments.push_back({.value = make_constant(c, *of, lint_type, {.integer = index})});
-    return made;
+    Expression* value = make_constant(c, *of, lint_type, {.integer = index});
+    return keep(c, {.kind = E::index,
+                    .token = of->token,
+                    .place = of->place,
+                    .operands = {of},
+                    .arguments = {{.value = value}}});
 }
 
 Expression* make_bit(Checking& c, const Expression& like, Expression* of) {
-    Expression* made = make(c, E::bit, like);
-    made->operands[0] = of;
-    return made;
+    return keep(c, {.kind = E::bit, .token = like.token, .place = like.place, .operands = {of}});
 }
 
 Expression* make_bit(Checking& c, Expression* of, std::string_view number) {
-    Expression* made = make_bit(c, *of, of);
-    made->token.word = Word::integer;
-    made->token.text = number;
-    return made;
+    const Token token{.word = Word::integer, .place = of->place, .text = number};
+    return keep(c, {.kind = E::bit, .token = token, .place = of->place, .operands = {of}});
 }
 
-Expression* make_binary(Checking& c, const Expression& like, Place at, Word op, Expression* left,
+Expression* make_binary(Checking& c, Place place, Place sign, Word op, Expression* left,
                         Expression* right) {
-    Expression* made = make(c, E::binary, like);
-    made->token.place = at;
-    made->op = op;
-    made->operands[0] = left;
-    made->operands[1] = right;
-    return made;
+    return keep(c, {.kind = E::binary,
+                    .op = op,
+                    .token = {.place = sign},
+                    .place = place,
+                    .operands = {left, right}});
 }
 
 Expression* make_converted(Checking& c, Expression* e, const Type& to) {
-    Expression* made = make(c, E::converted, *e);
-    made->operands[0] = e;
-    made->type = &to;
-    return made;
+    return keep(
+        c,
+        {.kind = E::converted, .token = e->token, .place = e->place, .operands = {e}, .type = &to});
 }
 
 Expression* make_call(Checking& c, const Expression& like, Expression* callee,
                       std::vector<Argument> arguments) {
-    Expression* made = make(c, E::call, like);
-    made->operands[0] = callee;
-    made->arguments = std::move(arguments);
-    return made;
+    return keep(c, {.kind = E::call,
+                    .token = like.token,
+                    .place = like.place,
+                    .operands = {callee},
+                    .arguments = std::move(arguments)});
+}
+
+Expression* make_call(Checking& c, std::string_view function, Expression* argument) {
+    return make_call(c, *argument, make_name(c, *argument, function), {{.value = argument}});
 }
 
 Expression* make_with(Checking& c, const Expression& call, std::vector<Argument> arguments) {
@@ -98,47 +108,28 @@ Expression* make_with(Checking& c, const Expression& call, std::vector<Argument>
     return made;
 }
 
-Expression* make_call(Checking& c, std::string_view function, Expression* argument) {
-    return make_call(c, *argument, make_name(c, *argument, function), {{.value = argument}});
-}
-
 Statement* make_assignment(Checking& c, Place place, Expression* target, Expression* value) {
-    Statement& made = c.tree.statements.emplace_back();
-    made.place = place;
-    made.target = target;
-    made.value = value;
-    return &made;
+    return keep(c, {.place = place, .target = target, .value = value});
 }
 
 Statement* make_with(Checking& c, const Statement& s, Expression* value) {
-    Statement& made = c.tree.statements.emplace_back(s);
-    made.value = value;
-    return &made;
+    return keep(c,
+                {.kind = s.kind, .op = s.op, .place = s.place, .target = s.target, .value = value});
 }
 
 Statement* make_call_statement(Checking& c, Expression* call) {
-    Statement& made = c.tree.statements.emplace_back();
-    made.kind = S::call;
-    made.place = call->place;
-    made.value = call;
-    return &made;
+    return keep(c, {.kind = S::call, .place = call->place, .value = call});
 }
 
 Statement* make_if(Checking& c, Place place, Expression* condition, Block then, Block otherwise) {
-    Statement& made = c.tree.statements.emplace_back();
-    made.kind = S::if_;
-    made.place = place;
-    made.branches.push_back({.condition = condition, .body = std::move(then)});
-    made.body = std::move(otherwise);
-    return &made;
+    return keep(c, {.kind = S::if_,
+                    .place = place,
+                    .branches = {{.condition = condition, .body = std::move(then)}},
+                    .body = std::move(otherwise)});
 }
 
 Statement* make_sequence(Checking& c, Place place, Block statements) {
-    Statement& made = c.tree.statements.emplace_back();
-    made.kind = S::sequence;
-    made.place = place;
-    made.body = std::move(statements);
-    return &made;
+    return keep(c, {.kind = S::sequence, .place = place, .body = std::move(statements)});
 }
 
 void take_type(Checking& c, Expression*& number, const Type& type, Constant value) {

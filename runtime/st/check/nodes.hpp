@@ -31,8 +31,8 @@ Expression* make_element(Checking& c, Expression* of, std::int64_t index);
 Expression* make_bit(Checking& c, const Expression& like, Expression* of);
 /// `of.number`; the text is that of the number.
 Expression* make_bit(Checking& c, Expression* of, std::string_view number);
-/// `left op right`, where `like` stands; `at` is what messages show as the operator.
-Expression* make_binary(Checking& c, const Expression& like, Place at, Word op, Expression* left,
+/// `left op right`; `sign` is where the operator is.
+Expression* make_binary(Checking& c, Place place, Place sign, Word op, Expression* left,
                         Expression* right);
 /// `e` as a value of `to`, which is not converted yet.
 Expression* make_converted(Checking& c, Expression* e, const Type& to);

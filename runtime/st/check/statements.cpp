@@ -154,9 +154,8 @@ void check_assignment(Checking& c, Statement*& s) {
                         : s->op == Word::minus_assign ? Word::minus
                         : s->op == Word::times_assign ? Word::times
                                                       : Word::divided;
-        Expression* value = make_binary(c, *s->target, s->place, op, s->target, s->value);
-        value->place = s->place;
-        s = make_assignment(c, s->place, s->target, value);
+        s = make_assignment(c, s->place, s->target,
+                            make_binary(c, s->place, s->place, op, s->target, s->value));
     }
     check(c, s->value, type);
     if (s->value->kind == E::list || !type || !check_target(c, *s->target) || !s->value->type)

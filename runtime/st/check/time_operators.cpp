@@ -13,7 +13,7 @@ namespace {
 const Type* check_date_arithmetic(Checking& c, Expression*& e) {
     const Word op = e->op;
     if (op == Word::plus && e->operands[0]->type->kind == Kind::time)
-        e = make_binary(c, *e, e->token.place, op, e->operands[1], e->operands[0]);
+        e = make_binary(c, e->place, e->token.place, op, e->operands[1], e->operands[0]);
     const Type &a = *e->operands[0]->type, &b = *e->operands[1]->type;
     const bool joins = op == Word::plus && a.kind == Kind::date && b.kind == Kind::clock;
     const bool distance = op == Word::minus && same_type(a, b);

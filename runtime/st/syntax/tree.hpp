@@ -73,6 +73,7 @@ struct Expression {
     Variable* variable = nullptr;                ///< that a name or a member means
     Routine* routine = nullptr;                  ///< that a name means, or a call calls
     const StandardFunction* standard = nullptr;  ///< that a call calls
+    Expression* initial = nullptr;               ///< what it is to all of `a, b : INT := 2 + 3`
 
     TestCall test = TestCall::none;  ///< the statement of tests that a call is
 
