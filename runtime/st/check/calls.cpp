@@ -189,9 +189,7 @@ void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
         if (!argument.is_named()) {
             if (position < type.members.size()) found = type.members[position++];
         } else {
-            for (Variable* member : type.members)
-                if (same_name(member->text, standard_name(type, argument.name.text)))
-                    found = member;
+            found = find_member(type, standard_name(type, argument.name.text));
         }
         argument.variable = found;
         const AddedInput* ignored =
@@ -259,12 +257,9 @@ const Type* check_routine_call(Checking& c, Expression*& e, Routine& routine, bo
 
 std::string_view standard_name(const Type& type, std::string_view name) {
     if (type.kind != Kind::standard) return name;
-    const auto has = [&](std::string_view known) {
-        return std::ranges::any_of(type.members,
-                                   [&](const Variable* m) { return same_name(m->text, known); });
-    };
-    const std::string_view other = has(name) ? std::string_view() : standard_part_name(name);
-    return !other.empty() && has(other) ? other : name;
+    const std::string_view other =
+        find_member(type, name) ? std::string_view() : standard_part_name(name);
+    return find_member(type, other) ? other : name;
 }
 
 const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Type* expected) {

@@ -9,6 +9,7 @@
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/literals.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/places.hpp"
 #include "runtime/st/check/types.hpp"
 
 namespace lineshaft::st {
@@ -92,15 +93,8 @@ void check_members(Checking& c, Expression& list, const Type& type) {
             continue;
         }
         std::vector<std::string> names;
-        const auto& members = type.members;
-        for (const Variable* member : members) names.emplace_back(member->text);
-        Variable* found = nullptr;
-        if (type.kind == Kind::block) {
-            const auto it = type.routine->names.find(argument.name.text);
-            if (it != type.routine->names.end()) found = it->second;
-        }
-        for (Variable* member : members)
-            if (same_name(member->text, argument.name.text)) found = member;
+        for (const Variable* member : type.members) names.emplace_back(member->text);
+        Variable* found = find_member(type, argument.name.text);
         argument.variable = found;
         if (!found) {
             c.fail("L0904", argument.name.place,
@@ -160,7 +154,7 @@ void check_initial(Checking& c, Expression*& value, const Type& type) {
     }
     if (value->kind == E::repeated && type.kind == Kind::array) {
         Expression* list = make(c, E::list, *value);
-        list->arguments.push_back({{}, false, value, nullptr});
+        list->arguments.push_back({.value = value});
         value = list;
         return check_initial(c, value, type);
     }

@@ -6,6 +6,7 @@
 #include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/places.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
@@ -56,9 +57,7 @@ bool is_object_of(Checking& c, const Expression& member) {
     const Type* axis = standard_type(c, technology_object);
     if (!axis || enumeration_of(c, member)) return false;
     return find_part(c, *axis, member.token.text) ||
-           std::ranges::any_of(object_type(c, *axis)->members, [&](const Variable* field) {
-               return same_name(field->text, member.token.text);
-           });
+           find_member(*object_type(c, *axis), member.token.text);
 }
 
 const Type* check_part(Checking& c, Expression*& member, Routine& part) {

@@ -16,6 +16,16 @@
 
 namespace lineshaft::st {
 
+Variable* find_member(const Type& type, std::string_view name) {
+    if (type.kind == Kind::block) {
+        const auto it = type.routine->names.find(name);
+        return it == type.routine->names.end() ? nullptr : it->second;
+    }
+    const auto it = std::ranges::find_if(
+        type.members, [&](const Variable* member) { return same_name(member->text, name); });
+    return it == type.members.end() ? nullptr : *it;
+}
+
 const Type* check_member(Checking& c, Expression*& e) {
     if (const Type* enumeration = enumeration_of(c, *e))
         return check_value(c, e, *enumeration, e->token);
@@ -29,27 +39,19 @@ const Type* check_member(Checking& c, Expression*& e) {
         convert(c, e->operands[0], *type);
     }
     const std::string_view name = standard_name(*type, e->token.text);
-    if (type->kind == Kind::block) {
-        Routine& routine = *type->routine;
-        for (Variable& variable : routine.variables) {
-            if (!same_name(variable.text, name)) continue;
-            if (variable.space == Space::constant && c.is_in_test()) {
-                e = make_constant(c, *e, *variable.type, variable.value);
-                return variable.type;
-            }
-            if (variable.section == Section::temp || variable.space == Space::constant)
-                return c.fail("L0904", e->token.place,
-                              fmt::format("'{}' of {} is not seen from outside", name, type->name),
-                              "make it a VAR_OUTPUT");
-            variable.used = true;
-            e->variable = &variable;
-            return variable.type;
+    if (Variable* found = find_member(*type, name)) {
+        const bool is_value = found->space == Space::constant;
+        if (is_value && c.is_in_test()) {
+            e = make_constant(c, *e, *found->type, found->value);
+            return found->type;
         }
-    }
-    for (Variable* member : type->members) {
-        if (!same_name(member->text, name)) continue;
-        e->variable = member;
-        return member->type;
+        if (type->kind == Kind::block && (found->section == Section::temp || is_value))
+            return c.fail("L0904", e->token.place,
+                          fmt::format("'{}' of {} is not seen from outside", name, type->name),
+                          "make it a VAR_OUTPUT");
+        found->used = true;
+        e->variable = found;
+        return found->type;
     }
     if (type->kind == Kind::array && same_name(name, "this")) {  // "Recipes".THIS[1]
         e = e->operands[0];

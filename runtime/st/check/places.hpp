@@ -4,6 +4,10 @@
 
 namespace lineshaft::st {
 
+/// What a structure, an instance of the catalogue or a block of the sources has by that name; null
+/// if there is nothing.
+Variable* find_member(const Type& type, std::string_view name);
+
 /// `motor.speed`, whose variable is noted; also `Colour.red`, and a part of a block that is a
 /// function. L0904 where there is none.
 const Type* check_member(Checking& c, Expression*& e);
