@@ -798,9 +798,6 @@ const Form& template_form() {
     return form;
 }
 
-/// Nothing is kept here: see connect_report().
-struct ReportPlan {};
-
 Shape drawn() {
     return list_of(either({a_signal, a_name})).unique("'{}' stands in this list already");
 }
@@ -812,21 +809,28 @@ const Form& report_form() {
          .doc =
              "the page that 'lineshaft report' makes of the program's traces, as it is when it is "
              "opened: whoever looks at it may arrange it in another way",
-         .keys = {key("plots", list_of(drawn().filled("a plot has no signal")),
+         .keys = {key<&ReportPlan::plots>(
+                      "plots", list_of(drawn().filled("a plot has no signal")),
                       "signals and curves of each plot over time, from the top; what no plot names "
                       "follows, grouped by units"),
-                  key("own_axis", drawn(), "signals and curves that have an axis of their own"),
-                  key("hide", drawn(), "signals and curves that are not drawn until asked for"),
-                  key("curves", named("a curve", a_value.as("a formula")),
+                  key<&ReportPlan::own_axis>("own_axis", drawn(),
+                                             "signals and curves that have an axis of their own"),
+                  key<&ReportPlan::hide>("hide", drawn(),
+                                         "signals and curves that are not drawn until asked for"),
+                  key<&ReportPlan::curves>(
+                      "curves", named("a curve", a_value.as("a formula")),
                       "further curves: + - * /, parentheses, abs, sqrt, min, max, mean and "
                       "derivative(x), by time, over recorded signals"),
-                  key("paths",
+                  key<&ReportPlan::paths>(
+                      "paths",
                       list_of(list_of(a_signal).within(2, 2)).filled("'paths' has no path"),
                       "pairs of signals, the second drawn over the first"),
-                  key("circle", list_of(a_number).within(3, 3),
+                  key<&ReportPlan::circle>(
+                      "circle", list_of(a_number).within(3, 3),
                       "x, y and radius of the circle that the paths are compared with; else one "
                       "that is found in them"),
-                  key("while", a_signal,
+                  key<&ReportPlan::condition>(
+                      "while", a_signal,
                       "a boolean signal: a path is compared with the circle while it is true")},
          .rules = {{only_with,
                     "circle",
@@ -843,6 +847,10 @@ const Form& report_form() {
     return form;
 }
 
+void read_report(const Reader& read, const Node& node, Program& program) {
+    read_form(report_form(), read, node, program.report.emplace());
+}
+
 }  // namespace
 
 const Form& program_form() {
@@ -856,7 +864,8 @@ const Form& program_form() {
              {key("lineshaft", a_version, "version of this form").must(),
               key<&Program::title>("title", a_value.as("the title"),
                                    "shown in messages and reports"),
-              key("notes", one_or_list(a_value.as("a note")), "said in reports of its traces"),
+              key<&Program::notes>("notes", one_or_list(a_value.as("a note")),
+                                   "said in reports of its traces"),
               slow_key(),
               key("parameters", named("a parameter", a_value),
                   "names and values; $NAME stands for the value, --set and studies change it"),
@@ -868,9 +877,10 @@ const Form& program_form() {
                   "Structured Text (.st, .scl, .s7dcl, .udt, .db), files or folders, relative to "
                   "this file: "
                   "its programs and function blocks are types of blocks"),
-              key("overflow", one_of("what an overflow does", {"wrap", "fault"}),
-                  "what an integer of Structured Text does beyond its "
-                  "type: wrap, or end the scan with an error")
+              key<&Program::overflow_faults>("overflow",
+                                             one_of("what an overflow does", {"wrap", "fault"}),
+                                             "what an integer of Structured Text does beyond its "
+                                             "type: wrap, or end the scan with an error")
                   .by_default("wrap"),
               key<read_blocks>(
                   "blocks",
@@ -899,7 +909,8 @@ const Form& program_form() {
               key<read_traces>("traces",
                                named("a trace", a_form(trace_form)).filled("'traces' has no trace"),
                                "further traces, written to FILE.NAME.csv"),
-              key("report", a_form(report_form), "how 'lineshaft report' arranges its traces"),
+              key<read_report>("report", a_form(report_form),
+                               "how 'lineshaft report' arranges its traces"),
               key<read_modbus>("modbus", a_form(modbus_form),
                                "where clients of 'lineshaft serve' find signals"),
               key<&Program::expectations>("expect", list_of(a_form(expectation_form)),

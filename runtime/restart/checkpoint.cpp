@@ -56,7 +56,7 @@ std::string fingerprint(const Program& program, const Machine& machine) {
         text += fmt::format("{} {} {} {};", signal.name, name_of(signal.type), signal.unit,
                             signal.slot - machine.memory.data());
     for (const Force& force : machine.forces)
-        text += fmt::format("{} {} {};", force.text, force.from, force.until);
+        text += fmt::format("{} {} {};", force.text(), force.from, force.until);
     for (const Replay& replay : machine.replays)
         text += fmt::format("{};", text_hash(bytes_of(replay.points())));
     return text_hash(text);

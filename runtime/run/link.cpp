@@ -17,9 +17,7 @@ namespace lineshaft {
 namespace {
 
 st::Options options_of(const Program& program) {
-    const Node* overflow = program.root.find("overflow");
-    return {.times = program.instruction_times,
-            .overflow_faults = overflow && overflow->text == "fault"};
+    return {.times = program.instruction_times, .overflow_faults = program.overflow_faults};
 }
 
 /// What the program's Structured Text brings along; null if there is a mistake in it.

@@ -163,7 +163,7 @@ std::vector<Route> make_routes() {
          true, {}, values_schema(wanted_doc), stamp_schema, &Api::force},
         {"POST", "/api/release", "Forces signals no more",
          true, {}, object({{"signals", list_of(of_type("string"))}}, {"signals"}), stamp_schema,
-         &Api::release},
+         &Api::lift_force},
         {"POST", "/api/pause", "Stands still between two scans",
          true, {}, {}, state_schema(), &Api::pause},
         {"POST", "/api/resume", "Goes on", true, {}, {}, state_schema(), &Api::resume},
@@ -354,7 +354,7 @@ ApiReply Api::force(const ApiRequest& request) {
     return change(Change::Kind::force, wanted);
 }
 
-ApiReply Api::release(const ApiRequest& request) {
+ApiReply Api::lift_force(const ApiRequest& request) {
     const Json& body = request.body;
     std::vector<Wanted> wanted;
     if (body.is_object() && body.contains("signals") && body["signals"].is_array())
@@ -362,7 +362,7 @@ ApiReply Api::release(const ApiRequest& request) {
             if (name.is_string()) wanted.push_back({name.get<std::string>(), {}});
     if (wanted.empty())
         return failure(400, "expected names of signals", "{\"signals\": [\"slave.ratio\"]}");
-    return change(Change::Kind::release, wanted);
+    return change(Change::Kind::lift_force, wanted);
 }
 
 ApiReply Api::pause(const ApiRequest&) {

@@ -15,24 +15,25 @@ using Json = nlohmann::ordered_json;
 
 class ReportSetup {
   public:
-    ReportSetup(const Connecting& to, const std::vector<TraceSetup>& traces, const Node& report)
-        : to_(to), traces_(traces), report_(report), curves_(report.find("curves")) {}
+    ReportSetup(const Connecting& to, const std::vector<TraceSetup>& traces,
+                const ReportPlan& report)
+        : to_(to), traces_(traces), report_(report) {}
 
     Json connect() const {
         Json made = Json::object();
-        if (const Node* plots = report_.find("plots"))
-            for (const Node& plot : plots->items) made["plots"].push_back(drawn(plot));
-        for (const char* key : {"own_axis", "hide"})
-            if (const Node* names = report_.find(key)) made[key] = drawn(*names);
-        if (curves_)
-            for (const auto& [name, formula] : curves_->entries) {
+        if (report_.plots)
+            for (const Node& plot : report_.plots->items) made["plots"].push_back(drawn(plot));
+        if (report_.own_axis) made["own_axis"] = drawn(*report_.own_axis);
+        if (report_.hide) made["hide"] = drawn(*report_.hide);
+        if (report_.curves)
+            for (const auto& [name, formula] : report_.curves->entries) {
                 check(formula);
                 made["curves"][name.text] = formula.text;
             }
-        if (const Node* paths = report_.find("paths"))
-            for (const Node& pair : paths->items) made["paths"].push_back(path(pair));
-        if (const Node* circle = report_.find("circle")) made["circle"] = circle_of(*circle);
-        if (const Node* condition = report_.find("while")) made["while"] = recorded(*condition);
+        if (report_.paths)
+            for (const Node& pair : report_.paths->items) made["paths"].push_back(path(pair));
+        if (report_.circle) made["circle"] = circle_of(*report_.circle);
+        if (report_.condition) made["while"] = recorded(*report_.condition);
         return made;
     }
 
@@ -59,7 +60,8 @@ class ReportSetup {
     Json drawn(const Node& names) const {
         Json list = Json::array();
         for (const Node& node : names.items)
-            list.push_back(curves_ && curves_->find(node.text) ? node.text : recorded(node));
+            list.push_back(report_.curves && report_.curves->find(node.text) ? node.text
+                                                                             : recorded(node));
         return list;
     }
 
@@ -72,9 +74,8 @@ class ReportSetup {
     }
 
     std::optional<Unit> unit_of_paths() const {
-        const Node* paths = report_.find("paths");
-        if (!paths || paths->items.empty() || paths->items[0].items.empty()) return {};
-        const Signal* signal = find(paths->items[0].items[0].text);
+        if (!report_.paths || report_.paths->items[0].items.empty()) return {};
+        const Signal* signal = find(report_.paths->items[0].items[0].text);
         return signal ? Unit::parse(signal->unit) : std::nullopt;
     }
 
@@ -115,14 +116,13 @@ class ReportSetup {
 
     const Connecting& to_;
     const std::vector<TraceSetup>& traces_;
-    const Node& report_;
-    const Node* curves_;  ///< null: none
+    const ReportPlan& report_;
 };
 
 }  // namespace
 
 nlohmann::ordered_json connect_report(const Connecting& to, const std::vector<TraceSetup>& traces) {
-    const Node* report = to.program.root.find("report");
+    const auto& report = to.program.report;
     return report ? ReportSetup(to, traces, *report).connect() : Json();
 }
 
