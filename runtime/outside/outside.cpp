@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "runtime/model/literal.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -32,7 +33,7 @@ void add_force(Connecting& to, const ForcePlan& plan) {
         return other.live == force->live && plan.from < other.until && other.from < plan.until;
     };
     if (std::ranges::any_of(to.machine.forces, overlaps))
-        return to.read.fail("L0212", plan.signal,
+        return to.read.fail(code::named_twice, plan.signal,
                             fmt::format("'{}' is forced twice at one time", force->name));
     to.machine.forces.push_back(std::move(*force));
 }
@@ -77,7 +78,7 @@ std::optional<Target> find_settable(const Connecting& to, const Node& node) {
     auto target = find_target(to, node);
     if (!target || !target->is_of_block()) return target;
     if (is_wired(to.net, *target)) {
-        to.read.fail("L0409", node,
+        to.read.fail(code::stimulus_on_wired_input, node,
                      fmt::format("'{}' is wired and cannot be set", target->signal.name),
                      "wire an input of the program (inputs.name) and set that, or force it");
         return {};
@@ -85,7 +86,7 @@ std::optional<Target> find_settable(const Connecting& to, const Node& node) {
     const Field* field = settable_field(to.net, *target);
     const Direction direction = to.net.field(target->signal.port).direction;
     if (!field || field->direction == Direction::parameter) {
-        to.read.fail("L0405", node,
+        to.read.fail(code::port_cannot_be_set, node,
                      fmt::format("'{}' is {} and cannot be set", target->signal.name,
                                  field                            ? "a parameter"
                                  : direction == Direction::output ? "an output"
@@ -123,7 +124,7 @@ std::optional<Stimulus> find_stimulus(const Connecting& to, const Node& signal, 
 std::optional<Target> find_forceable(const Connecting& to, const Node& signal) {
     auto target = find_target(to, signal);
     if (!target || target->field.direction != Direction::parameter) return target;
-    to.read.fail("L0405", signal,
+    to.read.fail(code::port_cannot_be_set, signal,
                  fmt::format("'{}' is a parameter and cannot be forced", target->signal.name),
                  "a force takes inputs and outputs");
     return {};

@@ -4,6 +4,7 @@
 #include "runtime/program/program_form.hpp"
 #include "runtime/program/program_parts.hpp"
 #include "runtime/program/templates.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -12,7 +13,8 @@ namespace {
 void read_block(const Reader& read, const Node& name, const Node& body, Program& program) {
     if (!read.identifier(name, "a block")) return;
     if (name.text == "inputs" || name.text == "outputs")
-        return read.fail("L0210", name, fmt::format("a block cannot be called '{}'", name.text),
+        return read.fail(code::unusable_name, name,
+                         fmt::format("a block cannot be called '{}'", name.text),
                          fmt::format("{0}.x names the program's own {0}", name.text));
     if (body.is_map() && body.find("use")) {  // of no template, which is told
         UsePlan use;

@@ -4,6 +4,7 @@
 
 #include "runtime/program/program.hpp"
 #include "runtime/program/program_parts.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -44,7 +45,8 @@ void read_between(const Reader& read, const Node& node, ExpectPlan& plan) {
     plan.from = read.time(node.items[0]).value_or(0);
     plan.until = read.time(node.items[1]).value_or(never);
     if (plan.until < plan.from)
-        read.fail("L0213", node.items[1], "'between' ends before it begins");
+        read.fail(code::entries_do_not_go_together, node.items[1],
+                  "'between' ends before it begins");
 }
 
 /// `within 2 s of inputs.start: move.Done`
@@ -61,7 +63,7 @@ void read_answer(const Reader& read, const Node& name, const Node& value, Expect
     plan.when = When::answered;
     plan.signal = value;
     if (of == name.text.npos)
-        return read.fail("L0201", name, fmt::format("'{}' names no signal", name.text),
+        return read.fail(code::unknown_key, name, fmt::format("'{}' names no signal", name.text),
                          "write within 2 s of inputs.start: move.Done");
     plan.cause = part(of + middle.size(), name.text.npos);
     const auto limit = read.time(part(begin.size(), of));
@@ -77,7 +79,7 @@ void read_expected(const Reader& read, const Node& item, ExpectPlan& plan) {
             continue;
         }
         if (!plan.signal.text.empty()) {
-            read.fail("L0201", name,
+            read.fail(code::unknown_key, name,
                       fmt::format("an expectation has one signal, '{}' is a second", name.text));
             continue;
         }
@@ -102,25 +104,27 @@ void check_expectation(const Reader& read, const Node& item, ExpectPlan& plan) {
     const bool of_boolean = has("always") || has("never");
     if ((has("count") && !has("rising")) || (has("equals") && !of_boolean)) return;
     if (plan.signal.text.empty())
-        return read.fail("L0202", item, "an expectation names no signal", expectation_help);
+        return read.fail(code::entry_is_missing, item, "an expectation names no signal",
+                         expectation_help);
     if (plan.when == When::answered) {
         if (plan.equals || bounded)
-            read.fail("L0213", item, "an answer is a signal that becomes true, without a value");
+            read.fail(code::entries_do_not_go_together, item,
+                      "an answer is a signal that becomes true, without a value");
         return;
     }
     if (plan.when == When::counted && !plan.equals && !bounded)
-        return read.fail("L0202", item, "an expectation has no count",
+        return read.fail(code::entry_is_missing, item, "an expectation has no count",
                          "write count: 3, at_least or at_most");
     if (!plan.equals && !bounded && !of_boolean)
-        return read.fail("L0202", item, "an expectation has no value and no bound",
+        return read.fail(code::entry_is_missing, item, "an expectation has no value and no bound",
                          "write SIGNAL: VALUE, at_least or at_most");
     if (plan.within && !plan.equals)
         return read.fail(
-            "L0202", *plan.within, "'within' is for a value, and there is none",
+            code::entry_is_missing, *plan.within, "'within' is for a value, and there is none",
             of_boolean ? "write equals: VALUE beside it" : "write SIGNAL: VALUE beside it");
     if (plan.equals && bounded)
-        read.fail("L0213", item, "an expectation has a value or bounds, not both",
-                  "write two expectations");
+        read.fail(code::entries_do_not_go_together, item,
+                  "an expectation has a value or bounds, not both", "write two expectations");
 }
 
 }  // namespace

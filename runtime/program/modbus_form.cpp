@@ -2,6 +2,7 @@
 
 #include "runtime/program/program.hpp"
 #include "runtime/program/program_parts.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -54,7 +55,7 @@ void read_registers(const Reader& read, const Node& node, Program& program) {
         Mapped mapped{.signal = value, .type = {}, .scale = {}, .write = {}};
         if (value.is_map()) read_form(register_form(), read, value, mapped);
         if (mapped.signal.is_empty())
-            read.fail("L0202", value,
+            read.fail(code::entry_is_missing, value,
                       fmt::format("there is no signal at the address {}", address.text),
                       "name one, or leave the address out");
         else

@@ -4,6 +4,7 @@
 
 #include "runtime/program/program.hpp"
 #include "runtime/program/program_parts.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -29,7 +30,8 @@ struct Forced {
 void check_force(const Reader& read, const Node& body, Forced& forced) {
     const Node* until = body.find("until");
     if (until && forced.until <= forced.from)
-        read.fail("L0213", *until, "'until' is not after 'from': this never forces");
+        read.fail(code::entries_do_not_go_together, *until,
+                  "'until' is not after 'from': this never forces");
 }
 
 }  // namespace

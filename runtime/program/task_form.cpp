@@ -4,6 +4,7 @@
 
 #include "runtime/program/program.hpp"
 #include "runtime/program/program_parts.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -27,7 +28,7 @@ void check_times(const Reader& read, const Node& body, const TaskPlan& task) {
         place.mark = task.mark;
         for (const char* key : keys)
             if (const Node* node = body.find(key); node && place.text.empty()) place = *node;
-        read.fail("L0305", place, fmt::format(fmt::runtime(what), task.name));
+        read.fail(code::number_out_of_range, place, fmt::format(fmt::runtime(what), task.name));
     };
     if (task.every > 0 && task.jitter >= task.every)
         fail({"jitter", "every"}, "the jitter of task '{}' is not below its interval");
@@ -48,7 +49,8 @@ void check_task(const Reader& read, const Node& body, TaskPlan& task) {
     if (said) task.unattached = false;
     if (!said && task.every == 0 && task.on.empty() && task.on_overrun.empty() && !task.unattached)
         read.diagnostics().add(
-            "L0202", task.mark, fmt::format("task '{}' has no 'every' and no 'on'", task.name),
+            code::entry_is_missing, task.mark,
+            fmt::format("task '{}' has no 'every' and no 'on'", task.name),
             "write its interval, such as every: 2 ms, or the event that starts it, such as "
             "on: inputs.start or on_overrun: main");
     check_times(read, body, task);

@@ -2,6 +2,7 @@
 
 #include "runtime/program/program.hpp"
 #include "runtime/program/program_parts.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -49,14 +50,20 @@ const Form& trigger_form() {
                           .within(2, 2, "'inside' has two bounds", "write inside: [LOW, HIGH]"),
                       "of a number: the lower and the upper bound"),
                   key<&TriggerPlan::values>("equals", a_value, "of any type")},
-         .rules = {{at_least_one, {}, {"signal"}, one_condition, trigger_help, the_map, "L0213"},
+         .rules = {{at_least_one,
+                    {},
+                    {"signal"},
+                    one_condition,
+                    trigger_help,
+                    the_map,
+                    code::entries_do_not_go_together},
                    {exactly_one,
                     {},
                     {"edge", "above", "below", "inside", "equals"},
                     one_condition,
                     trigger_help,
                     the_map,
-                    "L0213"}},
+                    code::entries_do_not_go_together}},
          .check = by<check_trigger>});
     return form;
 }
@@ -65,7 +72,8 @@ void read_trigger(const Reader& read, const Node& node, TracePlan& trace) {
     if (node.is_map())
         read_form(trigger_form(), read, node, trace.trigger);
     else
-        read.fail("L0306", node, fmt::format("'{}' is not a trigger", node.text), trigger_help);
+        read.fail(code::no_allowed_name, node, fmt::format("'{}' is not a trigger", node.text),
+                  trigger_help);
 }
 
 constexpr const char* triggered = "'{1}' is for a trace with a trigger";
@@ -114,8 +122,20 @@ const Form& trace_form() {
                   "repeat", an_integer.within(1, 1000),
                   "measurements at most; of several, each in a file of its own: out.change.1.csv")
                   .by_default("1")},
-         .rules = {{only_with, "pre_trigger", {"trigger"}, triggered, start_only, the_key, "L0213"},
-                   {only_with, "repeat", {"trigger"}, triggered, start_only, the_key, "L0213"},
+         .rules = {{only_with,
+                    "pre_trigger",
+                    {"trigger"},
+                    triggered,
+                    start_only,
+                    the_key,
+                    code::entries_do_not_go_together},
+                   {only_with,
+                    "repeat",
+                    {"trigger"},
+                    triggered,
+                    start_only,
+                    the_key,
+                    code::entries_do_not_go_together},
                    {only_with,
                     "repeat",
                     {"samples", "for"},
@@ -133,7 +153,7 @@ void read_traces(const Reader& read, const Node& node, Program& program) {
     for (const auto& [name, body] : node.entries) {
         if (!read.identifier(name, "a trace")) continue;
         if (name.text == "events") {
-            read.fail("L0210", name, "a trace cannot be called 'events'",
+            read.fail(code::unusable_name, name, "a trace cannot be called 'events'",
                       "NAME.events.csv has the events of the run");
             continue;
         }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "runtime/run/signal_json.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/version.hpp"
 
 namespace lineshaft {
@@ -334,11 +335,12 @@ ApiReply Api::change(Change::Kind kind, const std::vector<Wanted>& wanted) {
     auto changes = desk_.changes(kind, wanted, out);
     if (!out.empty()) return mistake(out);
     if (std::string error = live_.recording_error(); !error.empty())
-        return failure(507, std::move(error), help, "L0512");
+        return failure(507, std::move(error), help, code::recording_cannot_be_written);
     const auto applied = live_.mailbox().ask([&] { return live_.apply(changes); });
     if (!applied) return too_much();
     if (const std::string error = live_.keep(*applied); !error.empty())
-        return failure(507, "this counts, but is not in the recording: " + error, help, "L0512");
+        return failure(507, "this counts, but is not in the recording: " + error, help,
+                       code::recording_cannot_be_written);
     return {200, {{"time_s", seconds_of(applied->at)}, {"time_ns", applied->at}}};
 }
 

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
+
 namespace lineshaft {
 
 namespace {
@@ -34,7 +36,7 @@ std::vector<Change> Desk::changes(Change::Kind kind, const std::vector<Wanted>& 
     const Connecting to{loaded_.program, loaded_.linked.net, loaded_.linked.machine, Reader(out)};
     std::vector<Change> changes;
     for (const Wanted& each : wanted) changes.push_back(change(to, kind, each));
-    if (changes.empty()) out.add("L0202", {}, "the request names no signal");
+    if (changes.empty()) out.add(code::entry_is_missing, {}, "the request names no signal");
     return changes;
 }
 

@@ -10,6 +10,7 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/source/input_file.hpp"
 #include "runtime/source/yaml_builder.hpp"
@@ -24,7 +25,7 @@ void build(const YamlText& source, YamlBuilder& builder, Diagnostics& out) {
         std::istringstream in{std::string(source.text())};
         YAML::Parser parser(in);
         if (!parser.HandleNextDocument(builder)) {
-            out.add("L0105", source.mark(0), "the file is empty");
+            out.add(code::root_is_no_map, source.mark(0), "the file is empty");
             return;
         }
         parser.HandleNextDocument(builder);
@@ -34,7 +35,7 @@ void build(const YamlText& source, YamlBuilder& builder, Diagnostics& out) {
         builder.check_open_maps();
         report_mistake(fault, source, builder, out);
     } catch (const std::exception& fault) {
-        out.add("L0101", source.mark(0),
+        out.add(code::not_yaml, source.mark(0),
                 fmt::format("the file cannot be read as YAML: {}", fault.what()));
     }
 }
@@ -72,7 +73,7 @@ std::optional<Node> parse_yaml(std::shared_ptr<const SourceFile> file, Diagnosti
                                const YamlLimits& limits) {
     assert(file);
     if (file->text.size() > limits.bytes) {
-        out.add("L0106", {file, 1, 1, 1},
+        out.add(code::file_too_large, {file, 1, 1, 1},
                 fmt::format("the file has more than {} bytes", limits.bytes));
         return {};
     }
@@ -97,12 +98,12 @@ std::shared_ptr<const SourceFile> read_source(const std::string& path, Diagnosti
     std::string text;
     if (error == 0) text = read_bytes(path, limits.bytes + 1, error);
     if (error != 0) {
-        out.add("L0001", std::move(where),
+        out.add(code::file_cannot_be_read, std::move(where),
                 fmt::format("cannot read '{}': {}", path, reason_of(error)), looked_for);
         return nullptr;
     }
     if (text.size() > limits.bytes) {
-        out.add("L0106", std::move(where),
+        out.add(code::file_too_large, std::move(where),
                 fmt::format("'{}' has more than {} bytes", path, limits.bytes));
         return nullptr;
     }

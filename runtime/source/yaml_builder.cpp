@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
 
@@ -13,7 +14,7 @@ void YamlBuilder::OnDocumentStart(const YAML::Mark& mark) {
     if (documents_++ == 0) return;
     const std::size_t begin = source_.offset(mark);
     const bool marked = source_.text().substr(begin).starts_with("---");
-    stop("L0103", source_.mark(begin, marked ? begin + 3 : source_.line_end(begin)),
+    stop(code::second_document, source_.mark(begin, marked ? begin + 3 : source_.line_end(begin)),
          marked ? "the file holds a second document" : "text stands after the end of the document",
          "a file holds one document");
 }
@@ -22,9 +23,9 @@ void YamlBuilder::OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) {
     const std::size_t begin = source_.offset(mark);
     check_properties(begin, "?", anchor);
     count_node(begin);
-    if (stack_.empty()) stop("L0105", source_.mark(0), "the file is empty");
+    if (stack_.empty()) stop(code::root_is_no_map, source_.mark(0), "the file is empty");
     if (expects_key()) {
-        out_.add("L0107", source_.mark(begin), "a key is empty",
+        out_.add(code::key_is_no_name, source_.mark(begin), "a key is empty",
                  "a key that is called null or ~ stands in quotes");
     }
     Node node;
@@ -35,7 +36,8 @@ void YamlBuilder::OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) {
 void YamlBuilder::OnAlias(const YAML::Mark& mark, YAML::anchor_t) {
     const std::size_t begin = source_.offset(mark);
     count_node(begin);
-    out_.add("L0104", source_.mark(begin, word_end(begin)), "this is a YAML alias", no_alias);
+    out_.add(code::yaml_anchor_or_tag, source_.mark(begin, word_end(begin)), "this is a YAML alias",
+             no_alias);
     Node node;
     node.mark = source_.mark(begin);
     attach(std::move(node), begin + 1);
@@ -91,7 +93,7 @@ void YamlBuilder::stop(std::string code, Mark mark, std::string message, std::st
 }
 
 void YamlBuilder::root_is_no_map(std::size_t begin, std::size_t end) {
-    stop("L0105", source_.mark(begin, end), "the file is not a map",
+    stop(code::root_is_no_map, source_.mark(begin, end), "the file is not a map",
          "its first level is made of lines such as 'key: value'");
 }
 
@@ -101,7 +103,7 @@ bool YamlBuilder::expects_key() const {
 
 void YamlBuilder::count_node(std::size_t begin) {
     if (++nodes_ <= limits_.nodes) return;
-    stop("L0106", source_.mark(begin),
+    stop(code::file_too_large, source_.mark(begin),
          fmt::format("the file has more than {} values", limits_.nodes));
 }
 
@@ -116,26 +118,27 @@ void YamlBuilder::check_properties(std::size_t begin, const std::string& tag,
     const bool tagged = !implicit || source_.at(begin) == '!';
     if (anchor == YAML::NullAnchor && !tagged) return;
     const Mark mark = source_.mark(begin, word_end(begin));
-    if (anchor != YAML::NullAnchor) out_.add("L0104", mark, "this is a YAML anchor", no_alias);
-    if (tagged) out_.add("L0104", mark, "this is a YAML tag", no_tag);
+    if (anchor != YAML::NullAnchor)
+        out_.add(code::yaml_anchor_or_tag, mark, "this is a YAML anchor", no_alias);
+    if (tagged) out_.add(code::yaml_anchor_or_tag, mark, "this is a YAML tag", no_tag);
 }
 
 void YamlBuilder::check_closed(const Node& node, std::size_t begin) {
     if (!is_quote(source_.at(begin))) return;
     if (quoted_end(source_.text(), begin) != std::string_view::npos) return;
-    stop("L0101", node.mark, "a quote is never closed", quote_help);
+    stop(code::not_yaml, node.mark, "a quote is never closed", quote_help);
 }
 
 void YamlBuilder::check_scalar(const Node& node) {
     if (node.text.size() > limits_.scalar_bytes) {
-        stop("L0106", node.mark,
+        stop(code::file_too_large, node.mark,
              fmt::format("a text has more than {} bytes", limits_.scalar_bytes));
     }
     for (std::string_view rest = node.text; !rest.empty();) {
         const auto [code, bytes, valid] = first_character(rest);
         rest.remove_prefix(bytes);
         if (!is_control(code) || code == '\n' || code == '\t') continue;
-        out_.add("L0108", node.mark,
+        out_.add(code::not_plain_text, node.mark,
                  fmt::format("a text contains the control character U+{:04X}",
                              static_cast<unsigned>(code)));
         return;
@@ -157,7 +160,7 @@ void YamlBuilder::open(Node::Kind kind, const YAML::Mark& mark, const std::strin
     count_node(begin);
     if (stack_.empty() && kind != Node::Kind::map) root_is_no_map(begin, begin + 1);
     if (stack_.size() >= limits_.depth) {
-        stop("L0106", source_.mark(begin),
+        stop(code::file_too_large, source_.mark(begin),
              fmt::format("the file is nested deeper than {} levels", limits_.depth));
     }
     Frame frame;
@@ -174,7 +177,7 @@ void YamlBuilder::close() {
     Frame frame = std::move(stack_.back());
     stack_.pop_back();
     if (frame.is_key && !frame.in_key) {
-        out_.add("L0107", source_.mark(frame.begin), "a key is not a name",
+        out_.add(code::key_is_no_name, source_.mark(frame.begin), "a key is not a name",
                  "a key is a word; a text with brackets stands in quotes");
     }
     attach(std::move(frame.node), frame.begin + 1);
@@ -201,7 +204,8 @@ void YamlBuilder::attach(Node node, std::size_t end) {
 
 void YamlBuilder::check_merge(const Node& key) {
     if (key.quoted || key.text != "<<") return;
-    out_.add("L0104", key.mark, "this is a YAML merge key", "write the values out");
+    out_.add(code::yaml_anchor_or_tag, key.mark, "this is a YAML merge key",
+             "write the values out");
 }
 
 void YamlBuilder::check_duplicates(const Node& map) const {
@@ -218,7 +222,7 @@ void YamlBuilder::check_duplicates(const Node& map) const {
             first = key;
             continue;
         }
-        out_.add("L0102", key->mark, fmt::format("the key '{}' stands twice", key->text),
+        out_.add(code::key_twice, key->mark, fmt::format("the key '{}' stands twice", key->text),
                  fmt::format("it was first given in line {}", first->mark.line));
     }
 }
@@ -232,7 +236,7 @@ void YamlBuilder::check_decimal_commas(const Node& map) const {
         if (!digits || value.quoted || !nothing.is_empty()) continue;
         Mark mark = value.mark;
         mark.length = std::max(1, key.mark.column + key.mark.length - mark.column);
-        out_.add("L0301", std::move(mark),
+        out_.add(code::not_a_number, std::move(mark),
                  fmt::format("'{},{}' is not a number", value.text, key.text),
                  fmt::format("a number has a decimal point: {}.{}", value.text, key.text));
     }

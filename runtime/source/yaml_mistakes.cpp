@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/habits.hpp"
 
 namespace lineshaft {
@@ -22,38 +23,50 @@ struct Translation {
 const Translation* translation_of(std::string_view message) {
     static constexpr std::string_view quotes = "a text with special characters stands in quotes";
     static const auto table = std::to_array<Translation>({
-        {YAML::ErrorMsg::TAB_IN_INDENTATION, "L0101",
+        {YAML::ErrorMsg::TAB_IN_INDENTATION, code::not_yaml,
          "a tab character indents the line; YAML indents with spaces", "replace it by spaces"},
-        {YAML::ErrorMsg::END_OF_MAP_FLOW, "L0101", "expected ',' or '}'", quotes},
-        {YAML::ErrorMsg::END_OF_MAP, "L0101", "this does not continue the map above",
+        {YAML::ErrorMsg::END_OF_MAP_FLOW, code::not_yaml, "expected ',' or '}'", quotes},
+        {YAML::ErrorMsg::END_OF_MAP, code::not_yaml, "this does not continue the map above",
          "expected 'key: value', indented like the keys above"},
-        {YAML::ErrorMsg::END_OF_SEQ_FLOW, "L0101", "expected ',' or ']'", quotes},
-        {YAML::ErrorMsg::END_OF_SEQ, "L0101", "this does not continue the list above",
+        {YAML::ErrorMsg::END_OF_SEQ_FLOW, code::not_yaml, "expected ',' or ']'", quotes},
+        {YAML::ErrorMsg::END_OF_SEQ, code::not_yaml, "this does not continue the list above",
          "expected '- item', indented like the items above"},
-        {YAML::ErrorMsg::UNKNOWN_TOKEN, "L0101", "no value may begin with this character", quotes},
-        {YAML::ErrorMsg::DOC_IN_SCALAR, "L0101", "a document's mark stands inside quotes",
+        {YAML::ErrorMsg::UNKNOWN_TOKEN, code::not_yaml, "no value may begin with this character",
+         quotes},
+        {YAML::ErrorMsg::DOC_IN_SCALAR, code::not_yaml, "a document's mark stands inside quotes",
          "the quote that opens this text is not closed before it"},
-        {YAML::ErrorMsg::EOF_IN_SCALAR, "L0101", "a quote is never closed",
+        {YAML::ErrorMsg::EOF_IN_SCALAR, code::not_yaml, "a quote is never closed",
          YamlBuilder::quote_help},
-        {YAML::ErrorMsg::FLOW_END, "L0101", "this bracket closes nothing", quotes},
-        {YAML::ErrorMsg::BLOCK_ENTRY, "L0101", "no list item may begin here",
+        {YAML::ErrorMsg::FLOW_END, code::not_yaml, "this bracket closes nothing", quotes},
+        {YAML::ErrorMsg::BLOCK_ENTRY, code::not_yaml, "no list item may begin here",
          "each '- item' stands on a line of its own, or the list in brackets"},
-        {YAML::ErrorMsg::MAP_KEY, "L0101", "no key may begin here", quotes},
-        {YAML::ErrorMsg::MAP_VALUE, "L0101", "no ':' may stand here",
+        {YAML::ErrorMsg::MAP_KEY, code::not_yaml, "no key may begin here", quotes},
+        {YAML::ErrorMsg::MAP_VALUE, code::not_yaml, "no ':' may stand here",
          "a key is indented like its neighbours, a nested map begins on a line of its own, a text "
          "with ': ' stands in quotes"},
-        {YAML::ErrorMsg::INVALID_ESCAPE, "L0101", "this escape in double quotes is not known",
+        {YAML::ErrorMsg::INVALID_ESCAPE, code::not_yaml,
+         "this escape in double quotes is not known",
          "a backslash is written '\\\\'; in single quotes it stands for itself"},
-        {YAML::ErrorMsg::UNKNOWN_ANCHOR, "L0104", "this is a YAML alias", YamlBuilder::no_alias},
-        {YAML::ErrorMsg::MULTIPLE_ANCHORS, "L0104", "this is a YAML anchor", YamlBuilder::no_alias},
-        {YAML::ErrorMsg::ALIAS_NOT_FOUND, "L0104", "a YAML alias has no name", quotes},
-        {YAML::ErrorMsg::ANCHOR_NOT_FOUND, "L0104", "a YAML anchor has no name", quotes},
-        {YAML::ErrorMsg::CHAR_IN_ALIAS, "L0104", "this is a YAML alias", YamlBuilder::no_alias},
-        {YAML::ErrorMsg::CHAR_IN_ANCHOR, "L0104", "this is a YAML anchor", YamlBuilder::no_alias},
-        {YAML::ErrorMsg::MULTIPLE_TAGS, "L0104", "this is a YAML tag", YamlBuilder::no_tag},
-        {YAML::ErrorMsg::CHAR_IN_TAG_HANDLE, "L0104", "this is a YAML tag", YamlBuilder::no_tag},
-        {YAML::ErrorMsg::TAG_WITH_NO_SUFFIX, "L0104", "this is a YAML tag", YamlBuilder::no_tag},
-        {YAML::ErrorMsg::END_OF_VERBATIM_TAG, "L0104", "this is a YAML tag", YamlBuilder::no_tag},
+        {YAML::ErrorMsg::UNKNOWN_ANCHOR, code::yaml_anchor_or_tag, "this is a YAML alias",
+         YamlBuilder::no_alias},
+        {YAML::ErrorMsg::MULTIPLE_ANCHORS, code::yaml_anchor_or_tag, "this is a YAML anchor",
+         YamlBuilder::no_alias},
+        {YAML::ErrorMsg::ALIAS_NOT_FOUND, code::yaml_anchor_or_tag, "a YAML alias has no name",
+         quotes},
+        {YAML::ErrorMsg::ANCHOR_NOT_FOUND, code::yaml_anchor_or_tag, "a YAML anchor has no name",
+         quotes},
+        {YAML::ErrorMsg::CHAR_IN_ALIAS, code::yaml_anchor_or_tag, "this is a YAML alias",
+         YamlBuilder::no_alias},
+        {YAML::ErrorMsg::CHAR_IN_ANCHOR, code::yaml_anchor_or_tag, "this is a YAML anchor",
+         YamlBuilder::no_alias},
+        {YAML::ErrorMsg::MULTIPLE_TAGS, code::yaml_anchor_or_tag, "this is a YAML tag",
+         YamlBuilder::no_tag},
+        {YAML::ErrorMsg::CHAR_IN_TAG_HANDLE, code::yaml_anchor_or_tag, "this is a YAML tag",
+         YamlBuilder::no_tag},
+        {YAML::ErrorMsg::TAG_WITH_NO_SUFFIX, code::yaml_anchor_or_tag, "this is a YAML tag",
+         YamlBuilder::no_tag},
+        {YAML::ErrorMsg::END_OF_VERBATIM_TAG, code::yaml_anchor_or_tag, "this is a YAML tag",
+         YamlBuilder::no_tag},
     });
     const auto found = std::find_if(table.begin(), table.end(), [&](const Translation& entry) {
         return message.starts_with(entry.library);
@@ -78,7 +91,7 @@ bool report_look_alike(const YamlText& source, std::size_t offset, Diagnostics& 
         const std::string_view text = source.text().substr(begin, source.line_break(begin) - begin);
         const auto found = find_look_alike(text);
         if (found && text.find_first_not_of(' ') == found->offset) {
-            out.add("L0109", source.mark(begin + found->offset),
+            out.add(code::look_alike_character, source.mark(begin + found->offset),
                     fmt::format("a line begins with {}", found->name),
                     fmt::format("write {} instead", found->instead));
             return true;
@@ -129,7 +142,7 @@ void report_mistake(const YAML::Exception& fault, const YamlText& source,
     }
     const std::size_t tab = indenting_tab(source, offset);
     if (tab != std::string_view::npos) {
-        out.add("L0101", source.mark(tab),
+        out.add(code::not_yaml, source.mark(tab),
                 "a tab character indents the line; YAML indents with spaces",
                 "replace it by spaces");
         return;
@@ -138,17 +151,18 @@ void report_mistake(const YAML::Exception& fault, const YamlText& source,
     const auto [opened, bracket] = builder.open_bracket();
     const bool in_brackets = bracket == '[' || bracket == '{';
     if (at_end && in_brackets) {
-        out.add("L0101", opened, fmt::format("this '{}' is never closed", bracket));
+        out.add(code::not_yaml, opened, fmt::format("this '{}' is never closed", bracket));
         return;
     }
     const std::size_t glued = glued_colon(source, offset);
     if (fault.msg == YAML::ErrorMsg::MAP_VALUE && glued != std::string_view::npos) {
-        out.add("L0101", source.mark(glued), "a blank is missing after ':'");
+        out.add(code::not_yaml, source.mark(glued), "a blank is missing after ':'");
         return;
     }
     const Translation* known = translation_of(fault.msg);
     if (known == nullptr) {
-        out.add("L0101", source.mark(offset), fmt::format("this is not YAML: {}", fault.msg));
+        out.add(code::not_yaml, source.mark(offset),
+                fmt::format("this is not YAML: {}", fault.msg));
         return;
     }
     const bool unclosed = in_brackets && known->message.starts_with("expected");
@@ -157,7 +171,7 @@ void report_mistake(const YAML::Exception& fault, const YamlText& source,
     if (const std::string_view name = indexed_name(source.text(), offset); !name.empty())
         help = fmt::format("a name with an index stands in quotes here: '{}'", name);
     else if (unclosed && opened.line != here.line)
-        return out.add("L0101", opened, fmt::format("this '{}' is not closed", bracket),
+        return out.add(code::not_yaml, opened, fmt::format("this '{}' is not closed", bracket),
                        fmt::format("{} before line {}", known->message, here.line));
     else if (unclosed)
         help = fmt::format("the '{}' of line {} is still open", bracket, opened.line);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
 
@@ -83,7 +84,7 @@ std::size_t YamlText::characters(std::size_t begin, std::size_t end) const {
 
 void check_characters(const YamlText& source, Diagnostics& out) {
     if (is_utf16(source.text())) {
-        out.add("L0108", source.mark(0), "the file is UTF-16 or UTF-32, not UTF-8",
+        out.add(code::not_plain_text, source.mark(0), "the file is UTF-16 or UTF-32, not UTF-8",
                 "save it as UTF-8");
         return;
     }
@@ -97,7 +98,8 @@ void check_characters(const YamlText& source, Diagnostics& out) {
         if (!fault.empty()) {
             const std::size_t offset = source.text().size() - rest.size();
             const auto byte = static_cast<unsigned char>(rest.front());
-            out.add("L0108", source.mark(offset), fmt::format("the file contains {}", fault),
+            out.add(code::not_plain_text, source.mark(offset),
+                    fmt::format("the file contains {}", fault),
                     character.valid
                         ? fmt::format("it is U+{:04X}", static_cast<unsigned>(character.code))
                         : fmt::format("the byte is {:02X}", byte));
@@ -121,7 +123,7 @@ void check_brackets(const YamlText& source, const YamlLimits& limits, Diagnostic
         if (open == limits.depth) too_deep = i;
     }
     if (open <= most) return;
-    out.add("L0106", source.mark(too_deep),
+    out.add(code::file_too_large, source.mark(too_deep),
             fmt::format("the file is nested deeper than {} levels", limits.depth));
 }
 

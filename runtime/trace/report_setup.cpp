@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/formula.hpp"
 
 namespace lineshaft {
@@ -51,7 +52,8 @@ class ReportSetup {
         const auto signal = to_.net.find(to_.read, node, node.text);
         if (!signal) return {};
         if (!find(signal->name))
-            to_.read.fail("L0203", node, fmt::format("no trace records '{}'", signal->name),
+            to_.read.fail(code::unknown_port, node,
+                          fmt::format("no trace records '{}'", signal->name),
                           "add it to the signals of 'trace'");
         return signal->name;
     }
@@ -68,7 +70,7 @@ class ReportSetup {
     Json path(const Node& pair) const {
         if (pair.items.size() == 2)
             return {{"x", recorded(pair.items[0])}, {"y", recorded(pair.items[1])}};
-        to_.read.fail("L0202", pair, "a path takes two signals",
+        to_.read.fail(code::entry_is_missing, pair, "a path takes two signals",
                       "write [x.position, y.position]: the second is drawn over the first");
         return {};
     }
@@ -82,7 +84,7 @@ class ReportSetup {
     Json circle_of(const Node& node) const {
         constexpr std::array names{"x", "y", "radius"};
         if (node.items.size() != names.size()) {
-            to_.read.fail("L0202", node, "a circle takes three numbers",
+            to_.read.fail(code::entry_is_missing, node, "a circle takes three numbers",
                           "they are x, y and radius");
             return {};
         }
@@ -95,7 +97,7 @@ class ReportSetup {
             made[names[i]] = *value;
         }
         if (made["radius"] <= 0.0)
-            to_.read.fail("L0305", node.items[2],
+            to_.read.fail(code::number_out_of_range, node.items[2],
                           fmt::format("the radius '{}' is not above 0", node.items[2].text));
         return made;
     }
@@ -106,11 +108,13 @@ class ReportSetup {
         };
         const FormulaResult result = evaluate(formula.text, known, "derivative");
         if (result.error.empty()) return;
-        if (result.name.empty()) return to_.read.fail("L0602", formula, result.error);
+        if (result.name.empty())
+            return to_.read.fail(code::mistake_in_formula, formula, result.error);
         std::vector<std::string> names;
         for (const TraceSetup& trace : traces_)
             for (const Signal& signal : trace.signals) names.push_back(signal.name);
-        to_.read.fail("L0602", formula, fmt::format("no trace records '{}'", result.name),
+        to_.read.fail(code::mistake_in_formula, formula,
+                      fmt::format("no trace records '{}'", result.name),
                       suggest(result.name, names));
     }
 

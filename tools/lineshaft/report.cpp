@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/json_text.hpp"
 #include "runtime/source/yaml.hpp"
 #include "runtime/trace/output_file.hpp"
@@ -73,7 +74,7 @@ Json read_study_results(const std::string& path, Diagnostics& out) {
     if (study.is_object() && study.contains("title") && study["title"].is_string() &&
         are_rows("rows") && are_rows("claims"))
         return study;
-    out.add("L0726", {file, 1, 1, 1}, "these are not the results of a study",
+    out.add(code::not_a_study_result, {file, 1, 1, 1}, "these are not the results of a study",
             "write them by: lineshaft study STUDY.yaml --json >FILE.json");
     return {};
 }
@@ -122,13 +123,14 @@ std::vector<TracedCase> choose_cases(const ReportCommand& command, const Json& s
             for (TracedCase& one : traced_cases(studies[i], paths[i], wanted))
                 chosen.push_back(std::move(one));
     } catch (const std::regex_error& error) {
-        out.add("L0502", {},
+        out.add(code::unusable_option, {},
                 fmt::format("--cases: '{}' is not a regular expression: {}", command.cases,
                             error.what()));
         return {};
     }
     if (!command.cases.empty() && chosen.empty())
-        out.add("L0502", {}, fmt::format("--cases: no traced case has '{}'", command.cases),
+        out.add(code::unusable_option, {},
+                fmt::format("--cases: no traced case has '{}'", command.cases),
                 "trace the cases by: lineshaft study STUDY.yaml --json --traces DIR >FILE.json");
     if (command.cases.empty() && chosen.size() > most_traces_unasked) {
         if (!command.quiet)
