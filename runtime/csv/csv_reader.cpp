@@ -71,7 +71,7 @@ void Lines::fill() {
     if (file_.error() != 0) error_ = file_.error();
 }
 
-/// Of the line at begin_, in what has been read; each byte is looked at once.
+/// Looks for the end of the line at begin_ in what has been read; each byte is looked at once.
 bool Lines::find_end() {
     const auto find = [this](char wanted, std::size_t from, std::size_t to) {
         const void* found = std::memchr(buffer_.data() + from, wanted, to - from);

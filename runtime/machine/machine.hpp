@@ -41,7 +41,7 @@ struct Wires {
     std::vector<ScaledCopy> scaled;
 };
 
-/// Of any call.
+/// Feeds and scans a call of any kind of block.
 bool feed_and_scan(const FedBlock& call, const Scan& now);
 
 /// One entry of a task's list: blocks of one kind, of which none waits for another, one behind the

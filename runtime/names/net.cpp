@@ -140,7 +140,7 @@ Signal Net::signal(Port port) const {
             .port = port};
 }
 
-/// Of a reference that is missing, which is reported, any.
+/// Any unit where a reference is missing, which is reported.
 std::string Net::chosen_unit(const Instance& block, const Field& chosen) const {
     const Value value = load(chosen.type, block.image.data() + chosen.offset);
     if (chosen.direction != Direction::in_out)

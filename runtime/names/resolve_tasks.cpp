@@ -9,7 +9,7 @@ namespace lineshaft {
 
 namespace {
 
-/// Of the main task, as Siemens' controllers have it [ns].
+/// What the main task has in Siemens' controllers [ns].
 constexpr std::int64_t default_maximum_cycle_time = 150'000'000;
 
 TaskSettings settings_of(const TaskPlan& plan) {

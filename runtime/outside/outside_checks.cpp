@@ -13,7 +13,7 @@ namespace {
 
 using Places = std::set<const std::byte*>;
 
-/// Of what stimuli, replays and forces set, and of what is retained.
+/// The places that stimuli, replays and forces set, and of what is retained.
 Places set_from_outside(const Machine& machine) {
     Places places;
     for (const Stimulus& stimulus : machine.stimuli) places.insert(stimulus.target);

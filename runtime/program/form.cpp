@@ -28,7 +28,7 @@ bool says_default(const Key& key, const Node& node) {
            (node.text == key.word || node.text == key.otherwise);
 }
 
-/// Of a list or a map. A limit without a message is for who reads it.
+/// Whether a list or a map is as long as it may be. A limit without a message is for who reads it.
 bool check_size(const Reader& read, const Shape& s, const Node& node, std::size_t size) {
     const auto count = static_cast<std::int64_t>(size);
     if (s.limit.empty() || (count >= s.least && count <= s.most)) return true;
@@ -84,7 +84,7 @@ bool accept_map(const Reader& read, const Shape& s, const Node& node, std::strin
     return good;
 }
 
-/// Of a template, whose parameters have no values yet.
+/// A block of a template, whose parameters have no values yet.
 bool accept_block(const Reader& read, const Form& common, const Node& node) {
     if (!read.expect_map(node, common.what)) return false;
     bool good = true;
@@ -97,7 +97,7 @@ bool accept_block(const Reader& read, const Form& common, const Node& node) {
     return good;
 }
 
-/// Of `shapes`, the one that is meant.
+/// The one of `shapes` that is meant.
 const Shape& meant(const std::vector<Shape>& shapes, const Node& node) {
     const auto fits = [&](const Shape& s) {
         if (s.kind == Kind::list) return node.is_sequence();

@@ -142,7 +142,7 @@ struct Form {
     bool (*probe)(const Form&, const Reader&, const Node&) = nullptr;  ///< reads, and keeps nothing
 
     const Key* find(std::string_view key) const;
-    /// Of a map, what stands at this key, or at the phrase if that is its name; or null.
+    /// What stands in a map at this key, or at the phrase if that is its name; or null.
     const Node* find_in(const Node& map, std::string_view key) const;
     /// It begins with the phrase's first word, and another follows.
     bool is_phrase(std::string_view key) const;

@@ -60,7 +60,7 @@ void Substitution::unknown(Node& node, const std::string& name) const {
     node.text = "$" + name;
 }
 
-/// Of a parameter that stands in a formula; empty if it is one.
+/// Why a parameter that stands in a formula is no number; empty if it is one.
 std::string Substitution::why_not_a_number(const std::string& name) {
     const Node* value = find(name);
     if (!value || (value->is_scalar() && !value->quoted &&

@@ -257,7 +257,8 @@ std::int64_t Executive::next_time() {
     return next_event();
 }
 
-/// Of what waits: a device's next moment, the end of the scan under way, a deadline.
+/// When the first of what waits is due: a device's next moment, the end of the scan under way, a
+/// deadline.
 std::int64_t Executive::next_end() {
     std::int64_t next = never;
     for (const DeviceCall& device : machine_.devices)

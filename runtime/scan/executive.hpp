@@ -158,7 +158,7 @@ class Executive {
         void set_next(const Task& task);
     };
 
-    /// Of a device's warnings.
+    /// What has been told of a device's warnings.
     struct Warned {
         std::int64_t count = 0;      ///< told so far
         std::int64_t first = never;  ///< when [ns]

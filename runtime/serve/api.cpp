@@ -46,7 +46,7 @@ Json state_json(const LiveState& state, const Loaded& loaded) {
         {"pace", to_json(state.pace)}};
 }
 
-/// Of an object of signals and values; empty for anything else.
+/// What an object of signals and values wants; nothing for anything else.
 std::vector<Wanted> wanted_of(const Json& values) {
     std::vector<Wanted> wanted;
     if (!values.is_object()) return wanted;

@@ -61,7 +61,7 @@ std::string unknown_factor(std::string_view text) {
     return {};
 }
 
-/// Of what is reported where a value, a wire or a signal is expected.
+/// The codes of what is reported where a value, a wire or a signal is expected.
 constexpr std::string_view codes_of_values[] = {code::unknown_parameter, code::unknown_signal,
                                                 code::not_a_number,      code::unknown_unit,
                                                 code::not_a_boolean,     code::not_a_whole_number};
@@ -89,7 +89,7 @@ bool is_identifier(std::string_view text) {
            std::ranges::all_of(text, [](char c) { return is_letter(c) || is_digit(c); });
 }
 
-/// Of a part: sources may name it with letters beyond ASCII.
+/// Sources may name a part with letters beyond ASCII.
 bool is_part_letter(char c) {
     return is_letter(c) || !is_ascii(c);
 }

@@ -84,7 +84,7 @@ std::vector<RunDifference> differences(const CsvTable& a, const CsvTable& b) {
     return run_differences(*a.metadata, *b.metadata);
 }
 
-/// Of the columns with any distance, also where it is tolerated.
+/// Sums up the columns with any distance, also where it is tolerated.
 void print_summary(const CsvTable& a, const TraceComparison& found) {
     if (found.apart.empty()) return;
     fmt::print("\n{:32} {:>14} {:>14}  {}\n", "apart", "greatest", "rms", "where");

@@ -113,7 +113,7 @@ std::vector<TracedCase> traced_cases(const Json& study, const std::string& study
     return found;
 }
 
-/// Of all studies; without --cases not too many.
+/// The cases of all studies that are drawn; without --cases not too many.
 std::vector<TracedCase> choose_cases(const ReportCommand& command, const Json& studies,
                                      const std::vector<std::string>& paths, Diagnostics& out) {
     std::vector<TracedCase> chosen;
@@ -232,7 +232,7 @@ std::string page(const Json& report) {
            script(report) + text.substr(data_at + data_mark.size());
 }
 
-/// Of `studies`, which were read from `paths`, and of the command's traces.
+/// The report of `studies`, which were read from `paths`, and of the command's traces.
 Json make_report(const ReportCommand& command, Json studies, const std::vector<std::string>& paths,
                  Diagnostics& out) {
     const auto cases = choose_cases(command, studies, paths, out);
