@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "blocks/axis/axis.hpp"
@@ -92,9 +93,35 @@ MotionError Axis::administer(const Context& context, const Moment& at, const Req
         case Command::write_bool_parameter:
             if (!is_bool_parameter(request.option)) return MotionError::no_such_parameter;
             return write_parameter(context, request.option, request.position);
-        default:
+        case Command::write_parameter:
             return write_parameter(context, request.option, request.position);
+        case Command::none:
+        case Command::home:
+        case Command::stop:
+        case Command::halt:
+        case Command::move_absolute:
+        case Command::move_relative:
+        case Command::move_additive:
+        case Command::move_superimposed:
+        case Command::halt_superimposed:
+        case Command::move_velocity:
+        case Command::move_continuous_absolute:
+        case Command::move_continuous_relative:
+        case Command::position_profile:
+        case Command::velocity_profile:
+        case Command::acceleration_profile:
+        case Command::gear_in:
+        case Command::gear_out:
+        case Command::gear_in_pos:
+        case Command::cam_in:
+        case Command::cam_out:
+        case Command::phasing_absolute:
+        case Command::phasing_relative:
+        case Command::combine_axes:
+            break;
     }
+    assert(!is_administrative(request.command));
+    return MotionError::wrong_state;
 }
 
 void Axis::switch_power(const Context& context, const Moment& at, const Request& request) {

@@ -67,7 +67,7 @@ struct Cam {
     double periods(double x) const;
     CurvePoint at(double x) const;
 
-    /// Of one that is not periodic: at its last point, as the curve comes there.
+    /// The last point of a cam that is not periodic, as the curve comes there.
     CurvePoint last() const;
     /// The integral of y from the first point to x, within the cam.
     double area(double x) const;

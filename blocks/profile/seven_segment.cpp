@@ -198,7 +198,7 @@ double length_through_Vm(const SevenSegment& p, const Move& m) {
     return (p.Vs + p.Vm) * m.ramps[0].half_time() + (p.Vm + p.Ve) * m.ramps[1].half_time();
 }
 
-/// Of two triangular ramps the longer one makes up for what rounding takes from the shorter, so
+/// The longer of two triangular ramps makes up for what rounding takes from the shorter, so
 /// that the end velocity bears one rounding only.
 void match_triangles(const SevenSegment& p, Move& m) {
     const double rise = p.Vm - p.Vs;

@@ -21,7 +21,7 @@ struct Envelope {
         return std::min({limit, from + k * per_step, to + (n + 1 - k) * per_step});
     }
 
-    /// Of all n steps.
+    /// What all n steps come to.
     double sum(double n) const {
         const double meet = std::floor((to - from + (n + 1) * per_step) / (2 * per_step));
         const double rising = steps_below(limit - from, per_step, std::clamp(meet, 0.0, n));
@@ -48,7 +48,7 @@ struct Steps {
         return {D, -up.from, -up.to, per_step};
     }
 
-    /// Of the upper envelope; outside of 0..1: n steps do not serve.
+    /// The weight of the upper envelope; outside of 0..1: n steps do not serve.
     double weight(double n) const {
         const Envelope up = upper(n);
         const double reach = (n + 1) * per_step * (1 + rounding);
@@ -63,7 +63,7 @@ struct Steps {
         return greatest > least ? std::clamp((sum - least) / (greatest - least), 0.0, 1.0) : 0;
     }
 
-    /// Of the first of n steps.
+    /// The acceleration of the first of n steps.
     double acceleration(double n) const {
         const double least = -lower(n).at(1, n), greatest = upper(n).at(1, n);
         return least + weight(n) * (greatest - least);

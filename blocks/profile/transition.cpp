@@ -31,7 +31,7 @@ MotionPlan as_plan(const VelocityRamp& ramp, double start) {
     return p;
 }
 
-/// Of the slave over a phase.
+/// The velocity of the slave over a phase.
 Polynomial<2> velocity_of(const MotionState& r, const MotionState& g) {
     return {{r.velocity + g.velocity, r.acceleration + g.acceleration, 0.5 * (r.jerk + g.jerk)}};
 }

@@ -65,7 +65,7 @@ class PulseTrain {
     /// The last pulse has ended at `time` [ns] or before. All edges up to `time` must be taken.
     bool ends(std::int64_t time) const;
 
-    /// Of a train whose edges have all been taken, or of a `continuous` one.
+    /// The end of a train whose edges have all been taken, or of a `continuous` one.
     PulseTime end() const;
 
     /// Whether these can be the numbers of a train whose edges up to `time` [ns] have been taken.

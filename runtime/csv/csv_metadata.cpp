@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/csv/checksum.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/json_text.hpp"
 #include "runtime/source/yaml.hpp"
 
@@ -119,7 +120,8 @@ std::optional<CsvMetadata> read_metadata(const std::string& csv_path, Diagnostic
     const Json json = parse_json(file->text);
     const Json::json_pointer pointer("/tableSchema/columns");
     if (!json.is_object() || !json.contains(pointer) || !json[pointer].is_array()) {
-        out.add("L0707", {file, 0, 0, 1}, "this is not a CSVW description of a table",
+        out.add(code::sidecar_not_understood, {file, 0, 0, 1},
+                "this is not a CSVW description of a table",
                 "remove it if the CSV is not a trace of lineshaft");
         return {};
     }

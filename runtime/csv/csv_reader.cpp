@@ -15,6 +15,7 @@
 
 #include "runtime/csv/checksum.hpp"
 #include "runtime/csv/csv_cells.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/input_file.hpp"
 #include "runtime/source/utf8.hpp"
 #include "runtime/source/yaml.hpp"
@@ -70,7 +71,7 @@ void Lines::fill() {
     if (file_.error() != 0) error_ = file_.error();
 }
 
-/// Of the line at begin_, in what has been read; each byte is looked at once.
+/// Looks for the end of the line at begin_ in what has been read; each byte is looked at once.
 bool Lines::find_end() {
     const auto find = [this](char wanted, std::size_t from, std::size_t to) {
         const void* found = std::memchr(buffer_.data() + from, wanted, to - from);
@@ -195,20 +196,21 @@ bool CsvReader::is_yaml() {
     if (kind == std::end(kinds)) return false;
     std::string command(kind->command);
     if (!command.empty()) command.replace(command.find("{}"), 2, path_);
-    out_.add("L0701", {file, 0, 0, 1}, fmt::format("this is {}, not a trace", kind->name),
+    out_.add(code::no_columns, {file, 0, 0, 1}, fmt::format("this is {}, not a trace", kind->name),
              command.empty() ? "" : "a trace is written by: " + command);
     return true;
 }
 
 void CsvReader::check_file() {
     if (lines_.error() == EFBIG)
-        return out_.add("L0704", {table_.header, 0, 0, 1},
+        return out_.add(code::row_of_another_length, {table_.header, 0, 0, 1},
                         fmt::format("line {} has more than {} bytes", number_ + 1, chunk));
     if (lines_.error() != 0)
-        return out_.add("L0001", {},
+        return out_.add(code::file_cannot_be_read, {},
                         fmt::format("cannot read '{}': {}", path_, std::strerror(lines_.error())));
     if (number_ == 0)
-        out_.add("L0701", {std::make_shared<const SourceFile>(SourceFile{path_, ""}), 0, 0, 1},
+        out_.add(code::no_columns,
+                 {std::make_shared<const SourceFile>(SourceFile{path_, ""}), 0, 0, 1},
                  "the file is empty", "the first line names the columns");
 }
 
@@ -238,7 +240,7 @@ void CsvReader::add_column(std::string_view cell) {
     column.title = column.name = unquoted(cell);
     double number = 0;
     if (column.title.empty() || !parse(column.title, number))
-        return fail("L0701", cell,
+        return fail(code::no_columns, cell,
                     column.title.empty()
                         ? "a column has no name"
                         : fmt::format("'{}' is not a name of a column", column.title),
@@ -257,7 +259,7 @@ void CsvReader::add_column(std::string_view cell) {
     }
     const bool is_new = names_.insert(column.name).second;
     if (!is_new || (column.title != column.name && !names_.insert(column.title).second))
-        fail("L0703", cell, fmt::format("two columns are called '{}'", column.title));
+        fail(code::column_twice, cell, fmt::format("two columns are called '{}'", column.title));
     table_.columns.push_back(std::move(column));
 }
 
@@ -285,7 +287,7 @@ void CsvReader::rows() {
             continue;
         }
         if (table_.rows + blank_ >= options_.most_rows)
-            return out_.add("L0710", {table_.header, 0, 0, 1},
+            return out_.add(code::too_many_rows, {table_.header, 0, 0, 1},
                             fmt::format("more than {} rows do not fit into the memory that is "
                                         "allowed for them",
                                         options_.most_rows));
@@ -293,7 +295,7 @@ void CsvReader::rows() {
         row();
         if (!is_enough()) continue;
         return out_.add(
-            "L0705", {table_.header, 0, 0, 1},
+            code::cell_is_no_number, {table_.header, 0, 0, 1},
             fmt::format("there are {} mistakes; the rest of the file is not read", mistakes_));
     }
     if (lines_.error() == 0 && mistakes_ == 0) end_of_rows();
@@ -322,7 +324,7 @@ void CsvReader::row() {
     ++table_.rows;
     const bool cut = !lines_.is_ended() && options_.last_row_may_be_cut;
     if (cut || mistakes_ != before || count == order_.size()) return;
-    fail(lines_.is_ended() ? "L0704" : "L0706", line_,
+    fail(lines_.is_ended() ? code::row_of_another_length : code::csv_is_not_whole, line_,
          fmt::format("the row has {} {} instead of {}{}", count, count == 1 ? "cell" : "cells",
                      order_.size(), lines_.is_ended() ? "" : ": the file is cut"),
          separator_ == ',' && count > order_.size()
@@ -373,7 +375,8 @@ void CsvReader::odd_cell(CsvColumn& column, std::string_view cell) {
         real = static_cast<double>(whole);
     }
     if (wrong)
-        fail("L0705", cell, fmt::format("'{}' in column '{}' {}", text, column.title, wrong),
+        fail(code::cell_is_no_number, cell,
+             fmt::format("'{}' in column '{}' {}", text, column.title, wrong),
              column.type == Type::real ? "leave the cell empty where there is no value"
                                        : fmt::format("the column is {}", name_of(column.type)));
     column.values.push_back(real);
@@ -389,7 +392,7 @@ void CsvReader::end_of_rows() {
     if (options_.last_row_may_be_cut || !table_.metadata || !table_.metadata->rows) return;
     const auto due = static_cast<std::size_t>(*table_.metadata->rows);
     if (due == table_.rows && lines_.is_ended()) return;
-    out_.add("L0706", {table_.header, 0, 0, 1},
+    out_.add(code::csv_is_not_whole, {table_.header, 0, 0, 1},
              due == table_.rows ? "the file is cut: its last row has no end"
                                 : fmt::format("the file has {} rows, where its sidecar tells of {}",
                                               table_.rows, due),
@@ -431,8 +434,8 @@ const CsvColumn* CsvTable::require(std::string_view name, Diagnostics& out, Mark
     std::vector<std::string> names;
     for (const CsvColumn& column : columns) names.push_back(column.name);
     if (!where.file) where = {header, 1, 1, static_cast<int>(count_characters(header->text))};
-    out.add("L0702", std::move(where), fmt::format("'{}' has no column '{}'", header->path, name),
-            suggest(name, names));
+    out.add(code::unknown_column, std::move(where),
+            fmt::format("'{}' has no column '{}'", header->path, name), suggest(name, names));
     return nullptr;
 }
 

@@ -8,6 +8,7 @@
 #include "runtime/csv/csv_time.hpp"
 #include "runtime/fit/fit.hpp"
 #include "runtime/fit/fit_form.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/study/study_reader.hpp"
 
 namespace lineshaft {
@@ -91,17 +92,17 @@ void FitReader::parameter(const FitParameterPlan& plan) {
     made.from = low->number;
     made.to = *high;
     if (!(made.from < made.to))
-        return read_.fail("L0305", plan.to,
+        return read_.fail(code::number_out_of_range, plan.to,
                           fmt::format("'to' is not above 'from' ({})", plan.from.text));
     const auto number = [&](const std::optional<Node>& node, double otherwise) {
         return node ? read_.real(*node, made.unit).value_or(otherwise) : otherwise;
     };
     made.start = number(plan.start, (made.from + made.to) / 2);
     if (made.start < made.from || made.start > made.to)
-        read_.fail("L0305", *plan.start, "'start' is outside of 'from' and 'to'");
+        read_.fail(code::number_out_of_range, *plan.start, "'start' is outside of 'from' and 'to'");
     made.step = number(plan.step, (made.to - made.from) * default_step);
     if (!(made.step > 0 && made.step <= (made.to - made.from) / 2))
-        read_.fail("L0305", *plan.step,
+        read_.fail(code::number_out_of_range, *plan.step,
                    "'step' must be above 0 and at most half of the way from 'from' to 'to'");
     options_.settings.push_back(
         {made.name, made.text(made.start), plan.name.mark, place_of(plan.start, plan.from).mark});
@@ -113,7 +114,7 @@ void FitReader::forbid(const std::vector<Setting>& settings) const {
         for (const FitParameterPlan& parameter : file_.parameters)
             if (parameter.name.text == setting.name)
                 read_.diagnostics().add(
-                    "L0213", setting.mark,
+                    code::entries_do_not_go_together, setting.mark,
                     fmt::format("'{}' is set here, and looked for as well", setting.name),
                     "leave it out, or take it out of 'parameters'");
 }
@@ -147,10 +148,11 @@ void FitReader::figures(const FitCasePlan& plan, FitCell& cell) const {
         const ComparisonPlan& p = plan.run.comparisons[k];
         const Comparison& comparison = cell.run.comparisons[k];
         if (p.column)
-            read_.fail("L0202", *p.column, "the case has no 'trace' with this column",
+            read_.fail(code::entry_is_missing, *p.column,
+                       "the case has no 'trace' with this column",
                        "name the file in the case: trace: measured.csv");
         else if (!comparison.bounds.paper)
-            read_.fail("L0202", p.signal,
+            read_.fail(code::entry_is_missing, p.signal,
                        fmt::format("'{}' has nothing to be compared with", comparison.name()),
                        "write what was measured, {paper: VALUE}, or the case's trace: FILE");
         else if (const auto u = uncertainty(p, comparison, comparison.bounds.paper))
@@ -167,7 +169,8 @@ std::optional<double> FitReader::uncertainty(const ComparisonPlan& plan,
     const Unit unit = Unit::parse(comparison.unit).value();
     const auto size = whole ? read_.real_or_share(node, unit, *whole) : read_.real(node, unit);
     if (!size || *size > 0) return size;
-    read_.fail("L0305", node, fmt::format("an uncertainty of '{}' is not above 0", node.text));
+    read_.fail(code::number_out_of_range, node,
+               fmt::format("an uncertainty of '{}' is not above 0", node.text));
     return {};
 }
 
@@ -177,7 +180,8 @@ void FitReader::trace(const FitCasePlan& plan, FitCell& cell) const {
     const auto path = resolve_path(name.text, plan_.file->path, plan_.include_dirs, name.mark, out);
     if (!path) return;
     if (!std::filesystem::exists(*path))
-        return read_.fail("L0001", name, fmt::format("there is no file '{}'", *path));
+        return read_.fail(code::file_cannot_be_read, name,
+                          fmt::format("there is no file '{}'", *path));
     const std::string time_name = plan.trace.time ? plan.trace.time->text : "time";
     CsvOptions csv{.columns = {time_name}};
     for (const ComparisonPlan& p : plan.run.comparisons) csv.columns.push_back(column_of(p).text);
@@ -195,7 +199,7 @@ Unit FitReader::unit_of(const CsvColumn& column, const std::string& wanted,
     if (column.unit.empty()) return due;
     const auto found = Unit::parse(column.unit);
     if (found && found->same_dimension(due)) return *found;
-    read_.fail("L0303", place,
+    read_.fail(code::unit_measures_something_else, place,
                fmt::format("column '{}' is in {}, not in {}", column.name, column.unit,
                            wanted.empty() ? "plain numbers" : wanted));
     return due;
@@ -211,7 +215,8 @@ void FitReader::samples(const FitCasePlan& plan, const CsvTable& table, const Cs
         const Comparison& comparison = cell.run.comparisons[k];
         if (comparison.bounds.paper || comparison.bounds.judged() ||
             p.statistic == Statistic::spread)
-            read_.fail("L0213", p.signal, "a signal of a trace is compared sample by sample",
+            read_.fail(code::entries_do_not_go_together, p.signal,
+                       "a signal of a trace is compared sample by sample",
                        "leave out paper, within, at_least, at_most and spread");
         const Node& place = column_of(p);
         const CsvColumn* column = table.require(place.text, out, place.mark);
@@ -239,11 +244,14 @@ void FitReader::samples(const FitCasePlan& plan, const CsvTable& table, const Cs
 void FitReader::check_times(const Node& place, const std::vector<std::int64_t>& times) const {
     const char* help = "time counts from the start of the run; offset: TIME moves the trace";
     if (times.empty())
-        read_.fail("L0605", place, "the trace has no row with all of the columns");
+        read_.fail(code::measurement_cannot_be_compared, place,
+                   "the trace has no row with all of the columns");
     else if (times.front() < 0)
-        read_.fail("L0605", place, "the trace begins before the run", help);
+        read_.fail(code::measurement_cannot_be_compared, place, "the trace begins before the run",
+                   help);
     else if (std::ranges::adjacent_find(times, std::greater_equal<>{}) != times.end())
-        read_.fail("L0605", place, "the times of the trace do not rise from row to row");
+        read_.fail(code::measurement_cannot_be_compared, place,
+                   "the times of the trace do not rise from row to row");
 }
 
 /// Differences in mm and in s cannot be added.
@@ -259,7 +267,7 @@ void FitReader::check_units() const {
     for (const FitCasePlan& plan : file_.cases)
         for (const ComparisonPlan& compared : plan.run.comparisons)
             if (!compared.uncertainty)
-                read_.fail("L0603", compared.signal,
+                read_.fail(code::uncertainties_are_missing, compared.signal,
                            "the plan compares values of different units, and this one has no "
                            "uncertainty to count its difference in",
                            "write how exact the figure is: uncertainty: 5 %");
@@ -277,7 +285,7 @@ void FitReader::check_count() const {
     }
     if (plan_.hold_out_each) kept = std::min(kept, all - largest);
     if (kept >= plan_.parameters.size()) return;
-    read_.fail("L0604", file_.parameters.front().name,
+    read_.fail(code::too_few_figures, file_.parameters.front().name,
                fmt::format("{} parameters are looked for, but only {} {} not held out",
                            plan_.parameters.size(), kept, kept == 1 ? "figure is" : "figures are"),
                "compare more, or look for less");

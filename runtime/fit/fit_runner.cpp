@@ -181,7 +181,7 @@ LeastSquaresOptions Fitter::search(std::int64_t index) {
     return options;
 }
 
-/// Of the cells that are not held out; empty where one of them does not run.
+/// Residuals of the cells that are not held out; empty where one of them does not run.
 std::vector<VectorXd> Fitter::residuals(const std::vector<VectorXd>& points) {
     const std::vector<Figures> all = figures(identification_, points);
     std::vector<VectorXd> out(points.size());
@@ -219,7 +219,7 @@ Figures over_repeats(const FitCell& cell, std::span<const Figures> runs) {
     return out;
 }
 
-/// Of every cell at every point (points outside, cells inside).
+/// The figures of every cell at every point (points outside, cells inside).
 std::vector<Figures> Fitter::figures(const std::vector<const FitCell*>& cells,
                                      const std::vector<VectorXd>& points) {
     std::vector<Job> jobs;
@@ -334,7 +334,7 @@ void Fitter::take_rows(const LeastSquares& best) {
     if (report_.faults.empty() && !first_fault_.empty()) report_.faults.push_back(first_fault_);
 }
 
-/// Of the cells that run.
+/// A row for each of the cells that run.
 std::vector<FitRow> Fitter::rows(const std::vector<const FitCell*>& cells, const VectorXd& point) {
     std::vector<FitRow> made;
     const std::vector<Figures> all = figures(cells, {point});

@@ -19,7 +19,7 @@ class KeptMemory {
     /// What outlives a scan of a block, into the place of that block.
     void take(const BlockPlace& block, std::byte* place, const std::byte* kept);
 
-    /// Of a block that was taken when others were not: see BlockType::mend_links.
+    /// Mends a block that was taken when others were not: see BlockType::mend_links.
     void mend(std::size_t block);
 
     /// When all has been taken: the first block that is not as it may be, `'x' (axis)`; or empty.

@@ -15,7 +15,7 @@ void Machine::impose(Force force) {
     forces.push_back(std::move(force));
 }
 
-void Machine::lift(const std::byte* place, std::int64_t at) {
+void Machine::lift_force(const std::byte* place, std::int64_t at) {
     for (Force& force : forces)
         if (force.live == place && force.from <= at) force.until = std::min(force.until, at);
 }

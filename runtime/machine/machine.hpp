@@ -41,7 +41,7 @@ struct Wires {
     std::vector<ScaledCopy> scaled;
 };
 
-/// Of any call.
+/// Feeds and scans a call of any kind of block.
 bool feed_and_scan(const FedBlock& call, const Scan& now);
 
 /// One entry of a task's list: blocks of one kind, of which none waits for another, one behind the
@@ -146,7 +146,9 @@ struct Force {
     int task = -1;                     ///< of the block
     Type type = Type::real;
     Value value;
-    std::string name, text;  ///< `slave.ratio`, `slave.ratio = 2`
+    std::string name, value_text = {};  ///< `slave.ratio`, `2`
+
+    std::string text() const { return "force " + name + " = " + value_text; }
 };
 
 /// A value that outlives the run: see runtime/restart/retain.hpp.
@@ -209,7 +211,7 @@ struct Machine {
     /// From its time on in place of every other force of its signal.
     void impose(Force force);
     /// Ends at `at` what keeps the signal at `live` then.
-    void lift(const std::byte* live, std::int64_t at);
+    void lift_force(const std::byte* live, std::int64_t at);
 
     /// Where the value stands: for its own task, and for all others.
     std::byte* live(Port port);

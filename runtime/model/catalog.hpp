@@ -39,7 +39,7 @@ struct KeptState;
 /// The bytes of an instance, by its number.
 using InstanceAt = std::function<const std::byte*(std::int64_t instance)>;
 
-/// Of an instance, by its number.
+/// Gives the name of an instance.
 using NameOf = std::function<std::string(std::int64_t instance)>;
 
 /// What the runtime knows of a kind of block: how to make one, how to call it, what it is made of.
@@ -67,8 +67,8 @@ struct BlockType {
     void (*take)(std::byte* block, const std::byte* kept, const void* context) = nullptr;
     /// Places in a block that others link into their lists, as the Job of a command.
     void (*add_links)(std::vector<std::size_t>& places, const BlockType& type) = nullptr;
-    /// Of a block that was retained when others were not: what it was linked with is forgotten
-    /// where that is not linked with it. Or null.
+    /// A block that was retained when others were not forgets what it was linked with, where that
+    /// is not linked with it. Or null.
     void (*mend_links)(std::byte* block, const KeptState& machine) = nullptr;
     bool sets_parameters = false;  ///< its own, while it runs
     /// Where its last error came from, for people; empty: nobody can say. Or null.
@@ -77,7 +77,7 @@ struct BlockType {
     std::optional<std::size_t> time_taken = {};  ///< place of what a scan took: std::int64_t [ns]
     std::string_view handle =
         {};  ///< `AXIS_REF`: how Structured Text calls references to it; or empty
-    /// Of Structured Text: FUNCTIONs `"AXIS_REF.StatusWord"`, which sources read of such a
+    /// Structured Text: FUNCTIONs `"AXIS_REF.StatusWord"`, which sources read of such a
     /// reference as if they were its fields, `axis.StatusWord`; FUNCTION_BLOCKs. Or empty.
     std::string_view structured_text = {};
     bool single = false;                     ///< one a program, without an entry: a data block

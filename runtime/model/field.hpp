@@ -136,7 +136,7 @@ constexpr Type type_of() {
     }
 }
 
-/// Of a member of the block.
+/// Where a member stands in its block, in bytes.
 template <class Block, class T>
 std::size_t offset_of(T Block::*member) {
     static const Block probe{};
@@ -157,7 +157,7 @@ Field field(Direction direction, std::string_view name, T Block::*member, std::s
     return f;
 }
 
-/// Of a member of one of the block's parts.
+/// The field of a member of one of the block's parts.
 template <class Block, class Part, class T>
 Field field(Direction direction, std::string_view name, Part Block::*part, T Part::*member,
             std::string_view unit, std::string_view doc) {
@@ -224,8 +224,8 @@ Field output(std::string_view name, Part Block::*part, T Part::*member, std::str
     return detail::field(Direction::output, name, part, member, unit, doc);
 }
 
-/// Of a member with `std::int64_t size` and an array `rows`, whose element is a plain struct of the
-/// columns.
+/// The list of a member with `std::int64_t size` and an array `rows`, whose element is a plain
+/// struct of the columns.
 template <class Block, class T>
 TableField table(std::string_view name, T Block::*member, std::span<const Field> columns,
                  std::string_view doc) {
@@ -241,7 +241,7 @@ TableField table(std::string_view name, T Block::*member, std::span<const Field>
 }
 
 /// One number of a row; limits as those of a field.
-/// Of real numbers; `{p}` in the unit as of a field.
+/// A column of real numbers; `{p}` in its unit means what it does in a field's.
 inline Field real_column(std::string_view name, std::string_view unit, std::string_view doc) {
     Field f;
     f.name = name;
@@ -250,7 +250,7 @@ inline Field real_column(std::string_view name, std::string_view unit, std::stri
     return f;
 }
 
-/// Of the names of an enumeration; in a file of their numbers.
+/// A column of names of an enumeration, which a file has as their numbers.
 inline Field name_column(std::string_view name, std::span<const std::string_view> names,
                          std::string_view doc) {
     Field f;

@@ -4,7 +4,7 @@ namespace lineshaft {
 
 namespace {
 
-/// Of none, or of a block of the kind that it takes.
+/// Whether `number` refers to no block, or to one of the kind that the field takes.
 bool is_reference(const Field& field, std::int64_t number, const KeptState& machine) {
     if (number < 0) return number == -1;
     return number < machine.context.blocks &&

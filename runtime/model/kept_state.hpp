@@ -55,7 +55,7 @@ constexpr bool is_one_of(Enumeration value, Enumeration last) {
     return value >= Enumeration{} && value <= last;
 }
 
-/// Of a block's fields: booleans, enumerations, references to blocks.
+/// Whether booleans, enumerations and references of a block's fields are such.
 bool fields_are_valid(const BlockType& type, const std::byte* block, const KeptState& machine);
 
 /// That, and what the kind itself says.

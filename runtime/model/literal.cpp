@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
+
 namespace lineshaft {
 
 namespace {
@@ -15,7 +17,8 @@ std::optional<Value> read_name(const Reader& read, const Node& node, const Field
     if (it != field.names.end()) return Value(static_cast<std::int64_t>(it - field.names.begin()));
     std::vector<std::string> names(field.names.begin(), field.names.end());
     std::erase(names, "");
-    read.fail("L0306", node, fmt::format("'{}' is not a value of '{}'", node.text, field.name),
+    read.fail(code::no_allowed_name, node,
+              fmt::format("'{}' is not a value of '{}'", node.text, field.name),
               suggest(node.text, names));
     return {};
 }
@@ -35,7 +38,7 @@ std::optional<Value> read_integer(const Reader& read, const Node& node, const Fi
     if (*value == std::trunc(*value) && std::abs(*value) < 9e15)
         return Value(static_cast<std::int64_t>(*value));
     read.fail(
-        "L0309", node,
+        code::not_a_whole_number, node,
         fmt::format("'{}' is not a whole number of {} for '{}'", node.text, unit.text, field.name));
     return {};
 }
@@ -72,7 +75,8 @@ std::optional<Value> read_literal(const Reader& read, const Node& node, const Fi
     else if (const auto number = read.real(node, unit))
         value = *number;
     if (!value || field.admits(*value)) return value;
-    read.fail("L0305", node, fmt::format("'{}' is out of range for '{}'", node.text, field.name),
+    read.fail(code::number_out_of_range, node,
+              fmt::format("'{}' is out of range for '{}'", node.text, field.name),
               "it must be " + describe_limits(field, unit.text));
     return {};
 }

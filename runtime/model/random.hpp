@@ -25,7 +25,7 @@ class Random {
     /// In (0, 1): the middle of one of 2^52 equal parts.
     double share();
 
-    /// Of the standard normal distribution (Box and Muller 1958).
+    /// Draws from the standard normal distribution (Box and Muller 1958).
     double normal();
 
   private:

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/library/library.hpp"
 
 namespace lineshaft {
@@ -31,7 +32,7 @@ std::string Instance::described() const {
 std::optional<Signal> Net::find(const Reader& read, const Node& node, std::string_view text) const {
     const auto name = split_signal(text);
     if (!name) {
-        read.fail("L0208", node, fmt::format("'{}' is not a signal", text),
+        read.fail(code::unknown_signal, node, fmt::format("'{}' is not a signal", text),
                   "a signal is written block.port, inputs.name or outputs.name");
         return {};
     }
@@ -50,7 +51,7 @@ int Net::find_block(const Reader& read, const Node& node, std::string_view name)
     if (it != instance_numbers.end()) return it->second;
     const bool may_be_in_sources = !kinds;
     if (!may_be_in_sources)
-        read.fail("L0204", node, fmt::format("the program has no block '{}'", name),
+        read.fail(code::unknown_block, node, fmt::format("the program has no block '{}'", name),
                   suggest(name, names(instances)));
     return -1;
 }
@@ -58,7 +59,7 @@ int Net::find_block(const Reader& read, const Node& node, std::string_view name)
 void Net::unknown_port(const Reader& read, const Node& node, const Instance& block,
                        std::string_view port) const {
     if (const auto text = st::find_text(*block.type, port); !text.empty())
-        return read.fail("L0203", node,
+        return read.fail(code::unknown_port, node,
                          fmt::format("'{}.{}' is a STRING, which is no signal", block.name, text),
                          fmt::format("compare it in {}, and take the BOOL: is_so := {} = 'text'",
                                      block.type->name, text));
@@ -74,10 +75,10 @@ void Net::unknown_port(const Reader& read, const Node& node, const Instance& blo
                same_letters(name.substr(0, port.size()), port);
     };
     if (const auto part = std::ranges::find_if(names, is_part); part != names.end())
-        return read.fail("L0203", node,
+        return read.fail(code::unknown_port, node,
                          fmt::format("'{}.{}' is more than one value", block.name, port),
                          fmt::format("name one of them, such as {}.{}", block.name, *part));
-    read.fail("L0203", node, fmt::format("{} has no port '{}'", block.described(), port),
+    read.fail(code::unknown_port, node, fmt::format("{} has no port '{}'", block.described(), port),
               suggest(misspelt(port), names, block.name + "."));
 }
 
@@ -92,7 +93,7 @@ std::optional<Signal> Net::find_input(const Reader& read, const Node& node,
                                       std::string_view name) const {
     const auto it = std::ranges::find(inputs, name, &InputNode::name);
     if (it != inputs.end()) return it->signal;
-    read.fail("L0208", node, fmt::format("the program has no input '{}'", name),
+    read.fail(code::unknown_signal, node, fmt::format("the program has no input '{}'", name),
               inputs.empty() ? "it has no 'inputs:'" : suggest(name, names(inputs)));
     return {};
 }
@@ -101,7 +102,7 @@ std::optional<Signal> Net::find_output(const Reader& read, const Node& node,
                                        std::string_view name) const {
     const auto it = std::ranges::find(outputs, name, &OutputNode::name);
     if (it == outputs.end()) {
-        read.fail("L0208", node, fmt::format("the program has no output '{}'", name),
+        read.fail(code::unknown_signal, node, fmt::format("the program has no output '{}'", name),
                   outputs.empty() ? "it has no 'outputs:'" : suggest(name, names(outputs)));
         return {};
     }
@@ -114,7 +115,7 @@ int Net::find_task(const Reader& read, const Node& node, std::string_view name) 
     const auto it = std::ranges::find(tasks, name, &TaskSettings::name);
     if (it != tasks.end()) return static_cast<int>(it - tasks.begin());
     if (tasks_known && !name.empty())
-        read.fail("L0206", node, fmt::format("the program has no task '{}'", name),
+        read.fail(code::unknown_task, node, fmt::format("the program has no task '{}'", name),
                   suggest(name, names(tasks)));
     return -1;
 }
@@ -139,7 +140,7 @@ Signal Net::signal(Port port) const {
             .port = port};
 }
 
-/// Of a reference that is missing, which is reported, any.
+/// Any unit where a reference is missing, which is reported.
 std::string Net::chosen_unit(const Instance& block, const Field& chosen) const {
     const Value value = load(chosen.type, block.image.data() + chosen.offset);
     if (chosen.direction != Direction::in_out)

@@ -40,7 +40,7 @@ struct Reference {
     int to = -1;  ///< the other's number, which stands in the field, too
 };
 
-/// Of two blocks of a task, the one that is scanned first.
+/// Which of two blocks of a task is scanned first.
 struct Order {
     int before = 0, after = 0;
     bool together = false;  ///< both may stand in one call: all its inputs are copied first
@@ -111,16 +111,16 @@ struct Net {
     /// Those that feed the instance, in the order of the file.
     std::span<const Wire> wires_to(int instance) const;
 
-    /// Of the instance's field.
+    /// Where a field of the instance is.
     Port port(int instance, const Field& field) const;
     Signal signal(Port port) const;
 
     /// `{unit}/s` with the instance's own parameter `unit` put in, `{Axis}/s` with that of the
     /// block which its reference `Axis` names.
     const Unit& unit_of(Port port) const;
-    /// Of a text of the block's fields, as they have it.
+    /// The unit of a text as the block's fields have it.
     const Unit& unit_of(const Instance& block, std::string_view text) const;
-    /// Of a text that is a unit.
+    /// The unit that a text is.
     const Unit& unit(const std::string& text) const;
 
   private:

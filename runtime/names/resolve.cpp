@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
+
 namespace lineshaft {
 
 namespace {
@@ -15,7 +17,8 @@ std::optional<Signal> read_input(const Reader& read, const Node& value, Value& i
         return signal;
     }
     if (!value.quoted && is_identifier(value.text))
-        read.fail("L0307", value, fmt::format("'{}' is not a value of an input", value.text),
+        read.fail(code::not_a_boolean, value,
+                  fmt::format("'{}' is not a value of an input", value.text),
                   "write true, false or a number");
     const auto quantity = is_identifier(value.text) ? std::nullopt : read.quantity(value);
     if (!quantity) return {};
@@ -47,7 +50,8 @@ void resolve_outputs(Resolving& to) {
         OutputNode output{.name = name.text};
         const auto parts = split_signal(shown.text);
         if (parts && parts->owner == "outputs")
-            to.read.fail("L0208", shown, fmt::format("'{}' is an output itself", shown.text),
+            to.read.fail(code::unknown_signal, shown,
+                         fmt::format("'{}' is an output itself", shown.text),
                          "an output shows a signal block.port");
         else
             output.shows = to.net.find(to.read, shown, shown.text);

@@ -8,6 +8,7 @@
 #include "runtime/csv/csv_time.hpp"
 #include "runtime/model/literal.hpp"
 #include "runtime/names/resolve.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -40,7 +41,7 @@ std::optional<Value> interval_of(const Resolving& to, const Assignment& assignme
     if (number < 0) return 0.0;
     const TaskSettings& task = to.net.tasks[static_cast<std::size_t>(number)];
     if (task.on_event) {
-        to.read.fail("L0213", value,
+        to.read.fail(code::entries_do_not_go_together, value,
                      fmt::format("'{}' is an event task: it has no interval", task.name));
         return 0.0;
     }
@@ -73,13 +74,13 @@ void set_constant(Resolving& to, const Assignment& assignment) {
     const Unit& unit = to.net.unit_of(to.net.port(number, *field));
     std::optional<Value> constant = interval_of(to, assignment, unit);
     if (!constant && field->direction == Direction::input && resembles_wire(*value))
-        return to.read.fail("L0208", *value,
+        return to.read.fail(code::unknown_signal, *value,
                             fmt::format("'{}' is neither a constant nor a wire", value->text),
                             "a wire is written block.port, NOT block.port or previous(block.port)");
     if (const std::string meant = meant_by(to, value->text);
         !constant && !value->quoted && !meant.empty() &&
         std::ranges::find(field->names, value->text) == field->names.end())
-        return to.read.fail("L0208", *value,
+        return to.read.fail(code::unknown_signal, *value,
                             fmt::format("'{}' is neither a constant nor a wire", value->text),
                             meant);
     if (!constant) constant = read_literal(to.read, *value, *field, unit);
@@ -95,7 +96,7 @@ void set_row(Resolving& to, const Instance& block, const TableField& table, cons
         std::vector<std::string_view> names;
         for (const Field& column : table.columns) names.push_back(column.name);
         return to.read.fail(
-            "L0214", row,
+            code::row_of_wrong_length, row,
             fmt::format("a row of '{}' has {} {}, not {}", table.name,
                         least < most ? fmt::format("{} to {}", least, most) : std::to_string(most),
                         table.has_names() ? "values" : "numbers", row.items.size()),
@@ -112,7 +113,7 @@ void set_row(Resolving& to, const Instance& block, const TableField& table, cons
 
 bool has_room(const Resolving& to, const TableField& table, const Node& value, std::size_t rows) {
     if (rows > 0 && rows <= table.capacity) return true;
-    to.read.fail("L0305", value,
+    to.read.fail(code::number_out_of_range, value,
                  rows == 0 ? fmt::format("'{}' has no rows", table.name)
                            : fmt::format("'{}' has {} rows, more than its {}", table.name, rows,
                                          table.capacity),
@@ -130,7 +131,7 @@ void complete(const Resolving& to, Instance& block, const TableField& table, con
     if (!fault) return;
     const bool in_file = value.items.empty();
     to.read.fail(
-        "L0216", in_file ? value : value.items[fault->row],
+        code::rows_do_not_go_together, in_file ? value : value.items[fault->row],
         in_file
             ? fmt::format("line {} of '{}': {}", line_of(fault->row), value.text, fault->message)
             : fmt::format("row {} of '{}': {}", fault->row + 1, table.name, fault->message),
@@ -151,7 +152,7 @@ bool set_cell(const Resolving& to, const Instance& block, const Field& column,
                                           (value >= 0 && value < double(column.names.size()))));
     if (!unit || !unit->same_dimension(due) || !known || !column.admits(cell)) {
         to.read.fail(
-            "L0705", file,
+            code::cell_is_no_number, file,
             fmt::format("'{}' in line {} of '{}' is not a value of '{}'",
                         format_number(from.values[row]), line_of(row), file.text, column.name),
             !unit || !unit->same_dimension(due)
@@ -169,7 +170,8 @@ void set_table_from_file(const Resolving& to, Instance& block, const TableField&
         resolve_path(value.text, to.program.file->path, {}, value.mark, to.read.diagnostics());
     std::error_code unknown;
     if (path && !std::filesystem::is_regular_file(*path, unknown))
-        return to.read.fail("L0001", value, fmt::format("there is no file '{}'", *path));
+        return to.read.fail(code::file_cannot_be_read, value,
+                            fmt::format("there is no file '{}'", *path));
     const auto csv = path ? read_csv(*path, to.read.diagnostics()) : std::nullopt;
     if (!csv || !has_room(to, table, value, csv->rows)) return;
     const std::size_t needed = table.needed > 0 ? table.needed : table.columns.size();
@@ -219,7 +221,7 @@ void set_initial(Resolving& to, int number, const Node& output, const Node& valu
         std::vector<std::string> outputs;
         for (const Field& f : block.type->fields)
             if (f.direction == Direction::output) outputs.emplace_back(f.name);
-        return to.read.fail("L0203", output,
+        return to.read.fail(code::unknown_port, output,
                             fmt::format("{} has no output '{}'", block.described(), output.text),
                             suggest(output.text, outputs));
     }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "runtime/names/resolve.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/st/library/library.hpp"
 
 namespace lineshaft {
@@ -16,7 +17,7 @@ void add_cost(Resolving& to, const BlockPlan& plan, Instance& block) {
     block.cost = to.read.time(*plan.cost).value_or(0);
     task.cost += block.cost;
     if (!task.on_event && task.cost - task.cost_jitter > task.every)
-        to.read.fail("L0305", *plan.cost,
+        to.read.fail(code::number_out_of_range, *plan.cost,
                      fmt::format("the costs of task '{}' and its blocks are above its interval: it "
                                  "never ends in time",
                                  task.name));
@@ -36,8 +37,8 @@ void find_type(Resolving& to, const Node& name, Instance& block) {
     if (!to.net.kinds) return;
     auto names = to.catalog.names();
     std::ranges::copy(to.net.kinds->names(), std::back_inserter(names));
-    to.read.fail("L0205", name, fmt::format("there is no block type '{}'", name.text),
-                 suggest(name.text, names));
+    to.read.fail(code::unknown_block_type, name,
+                 fmt::format("there is no block type '{}'", name.text), suggest(name.text, names));
 }
 
 /// Data blocks have no entry in the program: they belong to the main task.
@@ -50,7 +51,8 @@ void add_single_blocks(Resolving& to) {
         if (!added) {
             const Instance& other = to.net.instance(it->second);
             if (other.type != &type)
-                to.read.fail("L0212", to.program.blocks[static_cast<std::size_t>(it->second)].name,
+                to.read.fail(code::named_twice,
+                             to.program.blocks[static_cast<std::size_t>(it->second)].name,
                              fmt::format("'{}' is the name of a data block, too", type.name));
             continue;
         }
@@ -74,7 +76,7 @@ void refuse_global(Resolving& to, const Instance& block, const Node& place, cons
                    int found) {
     if (found >= 0)
         return to.read.fail(
-            "L0401", place,
+            code::wire_between_types, place,
             fmt::format("the sources of {} name {}, a block of type {}, which {} is not",
                         block.described(), field.name, field.refers,
                         to.net.instance(found).described()));
@@ -82,7 +84,7 @@ void refuse_global(Resolving& to, const Instance& block, const Node& place, cons
     for (const Instance& other : to.net.instances)
         if (other.type && other.type->name == field.refers) fitting.push_back(other.name);
     const std::string known = suggest(std::string(field.global), fitting);
-    to.read.fail("L0204", place,
+    to.read.fail(code::unknown_block, place,
                  fmt::format("the sources of {} name {}, and the program has no {} '{}'",
                              block.described(), field.name, field.refers, field.global),
                  fmt::format("declare it, {}: {{type: {}, task: ...}}, or the source takes it as "
@@ -135,7 +137,7 @@ std::optional<WireText> parse_wire(const Node& node) {
 void refuse_port(Resolving& to, const Instance& block, const Node& key) {
     if (const Field* field = block.type->find_readable(key.text))
         return to.read.fail(
-            "L0405", key,
+            code::port_cannot_be_set, key,
             fmt::format("'{}' is {} {} of {} and cannot be set", key.text,
                         field->direction == Direction::output ? "an" : "a",
                         name_of(field->direction), block.described()),
@@ -145,14 +147,14 @@ void refuse_port(Resolving& to, const Instance& block, const Node& key) {
     const std::string message =
         fmt::format("{} has no parameter or input '{}'", block.described(), key.text);
     if (key.text == "on_error")
-        return to.read.fail("L0203", key, message,
+        return to.read.fail(code::unknown_port, key, message,
                             "it is said of the whole run: run: {for: 2 s, on_error: continue}");
     std::vector<std::string> settable{"type", "task"};
     for (const Field& f : block.type->fields)
         if (block.type->find_settable(f.name) == &f && f.global.empty())
             settable.emplace_back(f.name);
     for (const TableField& t : block.type->tables) settable.emplace_back(t.name);
-    to.read.fail("L0203", key, message, suggest(to.net.misspelt(key.text), settable));
+    to.read.fail(code::unknown_port, key, message, suggest(to.net.misspelt(key.text), settable));
 }
 
 void check_required(const Resolving& to, const BlockPlan& plan, const Instance& block) {
@@ -161,7 +163,7 @@ void check_required(const Resolving& to, const BlockPlan& plan, const Instance& 
             return same_letters(field.name, port.first.text);
         };
         if (!field.required || std::ranges::any_of(plan.ports, is_field)) continue;
-        to.read.fail("L0403", plan.name,
+        to.read.fail(code::port_is_not_set, plan.name,
                      fmt::format("{} needs its {} '{}': {}", block.described(),
                                  name_of(field.direction), field.name, field.doc));
     }
@@ -174,7 +176,7 @@ void refer(Resolving& to, int number, const Field& field, const Node& value) {
         std::vector<std::string> fitting;
         for (const Instance& other : to.net.instances)
             if (other.type && other.type->name == field.refers) fitting.push_back(other.name);
-        return to.read.fail("L0204", value,
+        return to.read.fail(code::unknown_block, value,
                             fmt::format("the program has no block '{}'", value.text),
                             suggest(value.text, fitting));
     }
@@ -182,7 +184,7 @@ void refer(Resolving& to, int number, const Field& field, const Node& value) {
     if (!other.known()) return;
     if (other.type->name != field.refers)
         return to.read.fail(
-            "L0401", value,
+            code::wire_between_types, value,
             fmt::format("'{}' of {} refers to a block of type {}, which {} is not", field.name,
                         block.described(), field.refers, other.described()));
     to.net.references.push_back({to.net.port(number, field), it->second});
@@ -199,7 +201,7 @@ void assign(Resolving& to, int number, const Node& key, const Node& value) {
     Assignment assignment{number, field, &value, parse_wire(value)};
     if (assignment.wire && field->direction == Direction::parameter)
         return to.read.fail(
-            "L0406", value,
+            code::wire_into_parameter, value,
             fmt::format("'{}' is a parameter of {} and takes no wire", key.text, block.described()),
             "a parameter is constant while the program runs");
     to.assignments.push_back(std::move(assignment));

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include "runtime/names/resolve.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
 namespace {
 
-/// Of the main task, as Siemens' controllers have it [ns].
+/// What the main task has in Siemens' controllers [ns].
 constexpr std::int64_t default_maximum_cycle_time = 150'000'000;
 
 TaskSettings settings_of(const TaskPlan& plan) {
@@ -34,7 +35,7 @@ void add_costs(Resolving& to) {
         auto& costs = to.net.tasks[static_cast<std::size_t>(task)].costs;
         if (!costs.empty() && costs.back().scan == plan.at)
             to.read.fail(
-                "L0212", *plan.task,
+                code::named_twice, *plan.task,
                 fmt::format("scan {} of '{}' has a cost already", plan.at, plan.task->text));
         costs.push_back({plan.at, *plan.cost});
     }
@@ -45,12 +46,12 @@ void add_overrun(Resolving& to, int handler, const Node& node) {
     if (index < 0) return;
     TaskSettings& task = to.net.tasks[static_cast<std::size_t>(index)];
     if (task.motion || index == handler)
-        to.read.fail("L0410", node,
+        to.read.fail(code::time_error_without_task, node,
                      fmt::format("'{}' {}", node.text,
                                  task.motion ? "is a motion task: its overrun is STOP"
                                              : "cannot handle its own overrun"));
     else if (task.on_overrun >= 0)
-        to.read.fail("L0212", node,
+        to.read.fail(code::named_twice, node,
                      fmt::format("the overrun of '{}' starts '{}' already", node.text,
                                  to.net.tasks[static_cast<std::size_t>(task.on_overrun)].name));
     else

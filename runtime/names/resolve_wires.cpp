@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "runtime/names/resolve.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -63,7 +64,7 @@ bool check_order(const Resolving& to, const Assignment& wire, int source) {
     if (later == wire.wire->previous) return true;
     if (wire.wire->previous && same_task) {
         to.read.diagnostics().warn(
-            "L0407", wire.value->mark,
+            code::needless_previous, wire.value->mark,
             fmt::format("'{}' is scanned earlier in this task: with previous() its value comes a "
                         "scan late",
                         net.instance(source).name),
@@ -72,17 +73,18 @@ bool check_order(const Resolving& to, const Assignment& wire, int source) {
     }
     if (wire.wire->previous) {
         to.read.fail(
-            "L0407", *wire.value,
+            code::needless_previous, *wire.value,
             fmt::format("'{}' needs no previous(): it comes from outside of this task", signal),
             fmt::format("did you mean '{}'?", signal));
         return false;
     }
     const std::string path = loop(to, wire.instance, source);
     if (!path.empty())
-        to.read.fail("L0404", *wire.value, fmt::format("this feedback needs previous(): {}", path),
+        to.read.fail(code::feedback_without_previous, *wire.value,
+                     fmt::format("this feedback needs previous(): {}", path),
                      fmt::format("write previous({}) where the loop may be a scan late", signal));
     else
-        to.read.fail("L0404", *wire.value,
+        to.read.fail(code::feedback_without_previous, *wire.value,
                      fmt::format("'{}' is scanned after '{}': its value of this scan is not ready",
                                  net.instance(source).name, block.name),
                      fmt::format("move it before '{}', or write previous({})", block.name, signal));
@@ -94,7 +96,7 @@ bool check_source(const Resolving& to, const Assignment& wire, const Signal& sou
     if (source.port.instance < 0) return true;
     const Direction direction = to.net.field(source.port).direction;
     if (direction == Direction::output) return true;
-    to.read.fail("L0203", *wire.value,
+    to.read.fail(code::unknown_port, *wire.value,
                  fmt::format("'{}' is {} {}, not an output", source.name,
                              direction == Direction::input ? "an" : "a", name_of(direction)),
                  "a wire comes from an output");
@@ -105,7 +107,7 @@ bool check_type(const Resolving& to, const Assignment& wire, const Signal& sourc
     const auto& [number, field, value, text] = wire;
     if (text->negated && source.type != Type::boolean) {
         to.read.fail(
-            "L0408", *value,
+            code::not_of_no_boolean, *value,
             fmt::format("NOT is for booleans, '{}' is {}", source.name, name_of(source.type)));
         return false;
     }
@@ -114,7 +116,7 @@ bool check_type(const Resolving& to, const Assignment& wire, const Signal& sourc
     if ((source.type == field->type || widens) && std::ranges::equal(source.names, field->names))
         return true;
     to.read.fail(
-        "L0401", *value,
+        code::wire_between_types, *value,
         fmt::format("'{}' is {}, '{}' takes {}", source.name, kind(source.type, source.names),
                     field->name, kind(field->type, field->names)),
         narrows ? "a block converts it: see 'lineshaft explain L0401'" : "");
@@ -125,7 +127,7 @@ bool check_unit(const Resolving& to, const Assignment& wire, const Signal& sourc
                 const Unit& given, const Unit& wanted) {
     const bool whole = wire.field->type == Type::integer && given.text != wanted.text;
     if (given.same_dimension(wanted) && !whole) return true;
-    to.read.fail("L0402", *wire.value,
+    to.read.fail(code::wire_between_dimensions, *wire.value,
                  fmt::format("'{}' is in {}, '{}' takes {}", source.name,
                              given.text.empty() ? "plain numbers" : given.text, wire.field->name,
                              wanted.text.empty() ? "plain numbers" : wanted.text));
@@ -137,7 +139,7 @@ void connect(Resolving& to, const Assignment& wire) {
     const auto name = split_signal(text->signal);
     if (name && name->owner == "outputs")
         return to.read.fail(
-            "L0203", *value,
+            code::unknown_port, *value,
             fmt::format("'{}' is for outside; a wire comes from a block or an input", text->signal),
             "wire the signal that the output shows");
     const auto source = to.net.find(to.read, *value, text->signal);

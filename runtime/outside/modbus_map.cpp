@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
+
 namespace lineshaft {
 
 namespace {
@@ -40,7 +42,7 @@ std::optional<double> scale_of(const Connecting& to, const RegisterPlan& plan,
     const auto scale = numeric ? to.read.real(*plan.scale, to.net.unit(signal.unit)) : std::nullopt;
     if (scale && *scale != 0) return scale;
     if (!numeric || scale)
-        to.read.fail("L0423", *plan.scale,
+        to.read.fail(code::register_does_not_fit, *plan.scale,
                      numeric ? "the scale is 0"
                              : fmt::format("'{}' is {} and has no scale", signal.name,
                                            kind(signal.type, signal.names)));
@@ -58,12 +60,12 @@ void set_type(const Connecting& to, const RegisterPlan& plan, MappedSignal& mapp
     const Signal& signal = mapped.signal;
     if (has_bits(plan.table)) {
         if (signal.type != Type::boolean)
-            to.read.fail("L0423", plan.signal,
+            to.read.fail(code::register_does_not_fit, plan.signal,
                          fmt::format("'{}' is {}, and a bit is a boolean", signal.name,
                                      kind(signal.type, signal.names)),
                          "put it into holding_registers or input_registers");
         if (plan.type || plan.scale)
-            to.read.fail("L0423", plan.type ? *plan.type : *plan.scale,
+            to.read.fail(code::register_does_not_fit, plan.type ? *plan.type : *plan.scale,
                          "a bit has no type and no scale");
         return;
     }
@@ -74,7 +76,7 @@ void set_type(const Connecting& to, const RegisterPlan& plan, MappedSignal& mapp
     set_scale(mapped, scale_of(to, plan, signal).value_or(1));
     constexpr int of_64_bits = 4;
     if (signal.type == Type::integer && mapped.count == of_64_bits && mapped.divisor == 0)
-        to.read.fail("L0423", *plan.scale,
+        to.read.fail(code::register_does_not_fit, *plan.scale,
                      fmt::format("whole numbers of 64 bits would lose digits by the scale {}",
                                  plan.scale->text),
                      "take a whole number or one over a whole number, such as 0.001, or another "
@@ -85,7 +87,7 @@ void set_type(const Connecting& to, const RegisterPlan& plan, MappedSignal& mapp
 std::optional<Target> find_written(const Connecting& to, const RegisterPlan& plan) {
     if (!plan.write || plan.write->text != "true") return {};
     if (!may_be_written(plan.table)) {
-        to.read.fail("L0422", *plan.write, "clients cannot write this table",
+        to.read.fail(code::table_is_not_written, *plan.write, "clients cannot write this table",
                      "write coils or holding_registers, and leave 'write' out here");
         return {};
     }
@@ -108,14 +110,14 @@ void add(Connecting& to, const RegisterPlan& plan, std::vector<MappedSignal>& ta
     constexpr int addresses = 65536;
     if (mapped.end() > addresses)
         return to.read.fail(
-            "L0421", plan.address,
+            code::registers_overlap, plan.address,
             fmt::format("{} registers from {} on end beyond 65535", mapped.count, mapped.address));
     const auto overlaps = [&](const MappedSignal& other) {
         return other.address < mapped.end() && mapped.address < other.end();
     };
     const auto other = std::ranges::find_if(table, overlaps);
     if (other != table.end())
-        return to.read.fail("L0421", plan.address,
+        return to.read.fail(code::registers_overlap, plan.address,
                             fmt::format("'{}' has the registers {} to {}, '{}' those from {} on",
                                         other->signal.name, other->address, other->end() - 1,
                                         mapped.signal.name, mapped.address),

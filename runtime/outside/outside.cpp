@@ -5,14 +5,11 @@
 #include <fmt/format.h>
 
 #include "runtime/model/literal.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
 namespace {
-
-std::optional<Value> read_value(const Connecting& to, const Target& target, const Node& value) {
-    return read_literal(to.read, value, target.field, to.net.unit(target.signal.unit));
-}
 
 /// The field of that name that a program may set; null when there is none.
 const Field* settable_field(const Net& net, const Target& target) {
@@ -36,7 +33,7 @@ void add_force(Connecting& to, const ForcePlan& plan) {
         return other.live == force->live && plan.from < other.until && other.from < plan.until;
     };
     if (std::ranges::any_of(to.machine.forces, overlaps))
-        return to.read.fail("L0212", plan.signal,
+        return to.read.fail(code::named_twice, plan.signal,
                             fmt::format("'{}' is forced twice at one time", force->name));
     to.machine.forces.push_back(std::move(*force));
 }
@@ -52,8 +49,9 @@ void add_recorded(Connecting& to, const RecordedPlan& plan) {
             force->from = plan.at;
             to.machine.impose(std::move(*force));
         }
-    for (const Node& signal : plan.release)
-        if (const auto target = find_target(to, signal)) to.machine.lift(target->live, plan.at);
+    for (const Node& signal : plan.lift_force)
+        if (const auto target = find_target(to, signal))
+            to.machine.lift_force(target->live, plan.at);
 }
 
 }  // namespace
@@ -80,7 +78,7 @@ std::optional<Target> find_settable(const Connecting& to, const Node& node) {
     auto target = find_target(to, node);
     if (!target || !target->is_of_block()) return target;
     if (is_wired(to.net, *target)) {
-        to.read.fail("L0409", node,
+        to.read.fail(code::stimulus_on_wired_input, node,
                      fmt::format("'{}' is wired and cannot be set", target->signal.name),
                      "wire an input of the program (inputs.name) and set that, or force it");
         return {};
@@ -88,7 +86,7 @@ std::optional<Target> find_settable(const Connecting& to, const Node& node) {
     const Field* field = settable_field(to.net, *target);
     const Direction direction = to.net.field(target->signal.port).direction;
     if (!field || field->direction == Direction::parameter) {
-        to.read.fail("L0405", node,
+        to.read.fail(code::port_cannot_be_set, node,
                      fmt::format("'{}' is {} and cannot be set", target->signal.name,
                                  field                            ? "a parameter"
                                  : direction == Direction::output ? "an output"
@@ -104,43 +102,57 @@ std::optional<Target> find_settable(const Connecting& to, const Node& node) {
     return target;
 }
 
+std::optional<Value> read_value(const Connecting& to, const Target& target, const Node& value) {
+    return read_literal(to.read, value, target.field, to.net.unit(target.signal.unit));
+}
+
+Stimulus stimulus_of(const Target& target, const Value& value, std::string_view name,
+                     std::string_view text) {
+    return {.target = target.live,
+            .type = target.field.type,
+            .value = value,
+            .text = fmt::format("{} = {}", name, text)};
+}
+
 std::optional<Stimulus> find_stimulus(const Connecting& to, const Node& signal, const Node& value) {
-    const auto set = find_settable(to, signal);
-    if (!set) return {};
-    const auto v = read_value(to, *set, value);
+    const auto target = find_settable(to, signal);
+    const auto v = target ? read_value(to, *target, value) : std::nullopt;
     if (!v) return {};
-    return Stimulus{.target = set->live,
-                    .type = set->field.type,
-                    .value = *v,
-                    .text = fmt::format("{} = {}", signal.text, value.text)};
+    return stimulus_of(*target, *v, signal.text, value.text);
+}
+
+std::optional<Target> find_forceable(const Connecting& to, const Node& signal) {
+    auto target = find_target(to, signal);
+    if (!target || target->field.direction != Direction::parameter) return target;
+    to.read.fail(code::port_cannot_be_set, signal,
+                 fmt::format("'{}' is a parameter and cannot be forced", target->signal.name),
+                 "a force takes inputs and outputs");
+    return {};
+}
+
+Force force_of(const Machine& machine, const Target& target, const Value& value, std::string text) {
+    const std::byte* of_block =
+        target.is_of_block()
+            ? machine.blocks[static_cast<std::size_t>(target.signal.port.instance)].live
+            : nullptr;
+    const bool split = target.published != target.live;
+    return {.live = target.live,
+            .published = split ? target.published : nullptr,
+            .block = of_block,
+            .is_output = of_block && target.field.direction != Direction::input,
+            .is_local = of_block && target.field.direction == Direction::local,
+            .task = target.signal.task,
+            .type = target.field.type,
+            .value = value,
+            .name = target.signal.name,
+            .value_text = std::move(text)};
 }
 
 std::optional<Force> find_force(const Connecting& to, const Node& signal, const Node& value) {
-    const auto forced = find_target(to, signal);
-    if (!forced) return {};
-    const std::string& name = forced->signal.name;
-    if (forced->field.direction == Direction::parameter) {
-        to.read.fail("L0405", signal, fmt::format("'{}' is a parameter and cannot be forced", name),
-                     "a force takes inputs and outputs");
-        return {};
-    }
-    const auto v = read_value(to, *forced, value);
+    const auto target = find_forceable(to, signal);
+    const auto v = target ? read_value(to, *target, value) : std::nullopt;
     if (!v) return {};
-    const std::byte* of_block =
-        forced->is_of_block()
-            ? to.machine.blocks[static_cast<std::size_t>(forced->signal.port.instance)].live
-            : nullptr;
-    const bool split = forced->published != forced->live;
-    return Force{.live = forced->live,
-                 .published = split ? forced->published : nullptr,
-                 .block = of_block,
-                 .is_output = of_block && forced->field.direction != Direction::input,
-                 .is_local = of_block && forced->field.direction == Direction::local,
-                 .task = forced->signal.task,
-                 .type = forced->field.type,
-                 .value = *v,
-                 .name = name,
-                 .text = fmt::format("force {} = {}", name, value.text)};
+    return force_of(to.machine, *target, *v, value.text);
 }
 
 void connect_stimuli(Connecting& to) {

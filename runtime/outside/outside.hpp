@@ -50,4 +50,12 @@ std::optional<Target> find_settable(const Connecting& to, const Node& node);
 std::optional<Stimulus> find_stimulus(const Connecting& to, const Node& signal, const Node& value);
 std::optional<Force> find_force(const Connecting& to, const Node& signal, const Node& value);
 
+/// The same in steps: what a force may keep, reported if it cannot be; the value that is meant;
+/// and what is made of both. `name` and `text` are as they were written.
+std::optional<Target> find_forceable(const Connecting& to, const Node& signal);
+std::optional<Value> read_value(const Connecting& to, const Target& target, const Node& value);
+Stimulus stimulus_of(const Target& target, const Value& value, std::string_view name,
+                     std::string_view text);
+Force force_of(const Machine& machine, const Target& target, const Value& value, std::string text);
+
 }  // namespace lineshaft

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "runtime/outside/outside.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
 
 namespace lineshaft {
@@ -12,7 +13,7 @@ namespace {
 
 using Places = std::set<const std::byte*>;
 
-/// Of what stimuli, replays and forces set, and of what is retained.
+/// The places that stimuli, replays and forces set, and of what is retained.
 Places set_from_outside(const Machine& machine) {
     Places places;
     for (const Stimulus& stimulus : machine.stimuli) places.insert(stimulus.target);
@@ -40,11 +41,12 @@ void check_block(Connecting& to, int number, const Places& set) {
                                       [](const auto& port) { return port.first.text; });
     const Node& place = at != plan.ports.end() ? at->second : plan.name;
     if (place.is_scalar())
-        to.read.fail("L0305", place,
+        to.read.fail(code::number_out_of_range, place,
                      fmt::format("'{}' is out of range for '{}'", place.text, misfit->field),
                      misfit->why);
     else
-        to.read.fail("L0305", place, fmt::format("'{}' is not used", misfit->field), misfit->why);
+        to.read.fail(code::number_out_of_range, place,
+                     fmt::format("'{}' is not used", misfit->field), misfit->why);
 }
 
 void warn_of_doubt(const Connecting& to, int number) {
@@ -57,7 +59,7 @@ void warn_of_doubt(const Connecting& to, int number) {
     if (!doubt) return;
     const BlockPlan& plan = to.program.blocks[static_cast<std::size_t>(number)];
     to.read.diagnostics().warn(
-        "L0808", plan.name.mark,
+        code::cam_does_not_close, plan.name.mark,
         fmt::format("'{}' of {} {}", doubt->field, block.described(), doubt->why));
 }
 
@@ -81,7 +83,7 @@ void warn_of_idle_command(const Connecting& to, int number, const Places& set) {
     if (is_said || is_mapped || set.contains(place) || as_real(load(Type::boolean, place)) != 0)
         return;
     to.read.diagnostics().warn(
-        "L0807", plan.name.mark,
+        code::command_never_begins, plan.name.mark,
         fmt::format("nothing in the program sets '{}' of {}, so it never begins", pin->name,
                     block.described()),
         fmt::format("write {0}: inputs.start, for instance, or {0}: true to begin at once",
@@ -119,16 +121,17 @@ void warn_of_what_comes_late(const Connecting& to) {
             "let the run be longer: run: {for: ...}");
     };
     for (const StimulusPlan& plan : to.program.stimuli)
-        if (begin_of(to.net, plan) > end) warn("L0801", plan.mark, "the stimulus comes");
+        if (begin_of(to.net, plan) > end)
+            warn(code::after_the_end, plan.mark, "the stimulus comes");
     for (const ReplayPlan& plan : to.program.replays)
-        if (plan.at > end) warn("L0801", plan.file.mark, "the replay begins");
+        if (plan.at > end) warn(code::after_the_end, plan.file.mark, "the replay begins");
     for (const ForcePlan& plan : to.program.forces)
-        if (plan.from > end) warn("L0801", plan.mark, "the force begins");
+        if (plan.from > end) warn(code::after_the_end, plan.mark, "the force begins");
     for (const ExpectPlan& plan : to.program.expectations)
         if (plan.from > end)
-            warn("L0802", plan.mark, "the expectation would be looked at");
+            warn(code::expectation_never_judged, plan.mark, "the expectation would be looked at");
         else if (plan.when == ExpectPlan::When::always && plan.until != never && plan.until > end)
-            warn("L0802", plan.mark, "the expectation would be decided");
+            warn(code::expectation_never_judged, plan.mark, "the expectation would be decided");
 }
 
 }  // namespace lineshaft

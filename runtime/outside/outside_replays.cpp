@@ -7,6 +7,7 @@
 #include "runtime/csv/csv_time.hpp"
 #include "runtime/model/literal.hpp"
 #include "runtime/outside/outside.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -57,7 +58,7 @@ std::optional<Unit> column_unit(Connecting& to, const CsvColumn& column, const s
     const Unit& due = to.net.unit(wanted);
     const auto found = column.unit.empty() ? std::optional(due) : Unit::parse(column.unit);
     if (found && found->same_dimension(due)) return found;
-    to.read.fail("L0303", place,
+    to.read.fail(code::unit_measures_something_else, place,
                  fmt::format("column '{}' is in {}, not in {}", column.name, column.unit,
                              wanted.empty() ? "plain numbers" : wanted));
     return {};
@@ -66,7 +67,7 @@ std::optional<Unit> column_unit(Connecting& to, const CsvColumn& column, const s
 std::optional<Target> replayed(Connecting& to, const ReplayPlan& plan, const Node& key) {
     auto input = find_settable(to, key);
     if (!input || !plan.interpolated || input->field.type == Type::real) return input;
-    to.read.fail("L0213", key,
+    to.read.fail(code::entries_do_not_go_together, key,
                  fmt::format("'{}' is {}: there is nothing between two values", key.text,
                              kind(input->field.type, input->field.names)),
                  "only reals are interpolated: between: held");
@@ -82,7 +83,7 @@ std::optional<std::vector<std::int64_t>> replay_times(Connecting& to, const Repl
         return std::nullopt;
     };
     if (table.rows == 0)
-        return fail("L0721", fmt::format("'{}' has no rows", plan.file.text),
+        return fail(code::no_rows, fmt::format("'{}' has no rows", plan.file.text),
                     "there is nothing to replay");
     const auto unit = column_unit(to, time, "s", plan.file);
     if (!unit) return {};
@@ -91,7 +92,7 @@ std::optional<std::vector<std::int64_t>> replay_times(Connecting& to, const Repl
     for (std::size_t row = 0; row < table.rows; ++row) {
         const bool missing = time.is_missing(row);
         if (missing || (row > 0 && time.values[row] < time.values[row - 1]))
-            return fail("L0722",
+            return fail(code::time_does_not_rise,
                         fmt::format("the time in line {} of '{}' {}", line_of(row), plan.file.text,
                                     missing ? "is missing" : "is before that of the line above"),
                         "rows stand in the order of time");
@@ -108,11 +109,11 @@ void wrong_cell(Connecting& to, const Target& input, const Node& name, const Csv
         fmt::format("'{}' in line {} of column '{}'", format_number(column.values[row]),
                     line_of(row), name.text);
     if (is_out_of_range)
-        to.read.fail("L0305", name,
+        to.read.fail(code::number_out_of_range, name,
                      fmt::format("{} is out of range for '{}'", what, input.signal.name),
                      "it must be " + describe_limits(input.field, input.signal.unit));
     else
-        to.read.fail("L0705", name,
+        to.read.fail(code::cell_is_no_number, name,
                      fmt::format("{} is not a value of '{}'", what, input.signal.name),
                      "it takes " + kind(input.field.type, input.field.names));
 }
@@ -126,7 +127,7 @@ std::vector<Replay::Point> replay_points(Connecting& to, const Target& input, co
     const std::vector<std::string_view> names(column.names.begin(), column.names.end());
     if (!fits(column, is_typed, input.field)) {
         to.read.fail(
-            "L0401", name,
+            code::wire_between_types, name,
             fmt::format("column '{}' is {}, '{}' takes {}", name.text, kind(column.type, names),
                         input.signal.name, kind(input.field.type, input.field.names)));
         return {};
@@ -146,7 +147,7 @@ std::vector<Replay::Point> replay_points(Connecting& to, const Target& input, co
         store(input.field.type, points.back().value.data(), *value);
     }
     if (points.empty())
-        to.read.fail("L0721", name, fmt::format("column '{}' has no values", name.text),
+        to.read.fail(code::no_rows, name, fmt::format("column '{}' has no values", name.text),
                      "there is nothing to replay");
     return points;
 }

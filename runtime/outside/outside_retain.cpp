@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runtime/outside/outside.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/text_hash.hpp"
 #include "runtime/st/library/library.hpp"
 #include "runtime/version.hpp"
@@ -34,7 +35,7 @@ void retain_block(Connecting& to, const Node& node) {
     if (number < 0 || !to.net.instance(number).known()) return;
     if (to.net.instance(number).type->is_device())
         return to.read.fail(
-            "L0411", node,
+            code::cannot_be_retained, node,
             fmt::format("{} is a device and cannot be retained: it starts anew with the power",
                         to.net.instance(number).described()),
             fmt::format("retain some of its outputs, such as {}.position", node.text));
@@ -45,7 +46,7 @@ void retain_block(Connecting& to, const Node& node) {
 void warn_of_what_is_not_kept(const Connecting& to, const Node& node, const Signal& signal) {
     const Instance& block = to.net.instance(signal.port);
     to.read.diagnostics().warn(
-        "L0805", node.mark,
+        code::retained_without_block, node.mark,
         fmt::format("'{}' is retained alone: {} forgets everything else, as the edges it has seen",
                     signal.name, block.described()),
         fmt::format("write the block's name to keep all of it: retain: [{}]", block.name));
@@ -58,7 +59,7 @@ void retain_signal(Connecting& to, const Node& node) {
     const Port port = kept->signal.port;
     if (is_parameter ||
         (kept->is_of_block() && to.net.instance(port).wired[static_cast<std::size_t>(port.field)]))
-        return to.read.fail("L0411", node,
+        return to.read.fail(code::cannot_be_retained, node,
                             fmt::format("'{}' is {} and cannot be retained", kept->signal.name,
                                         is_parameter ? "a parameter" : "wired"),
                             "retain blocks, their outputs, and inputs that are set from outside");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runtime/outside/outside.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -14,7 +15,7 @@ std::optional<Signal> find_boolean(Connecting& to, const Node& node, const char*
     if (!found) return {};
     if (found->type == Type::boolean) return to.machine.placed(*found);
     to.read.fail(
-        "L0401", node,
+        code::wire_between_types, node,
         fmt::format("'{}' takes a boolean, '{}' is {}", what, found->name, name_of(found->type)));
     return {};
 }

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
+
 namespace lineshaft {
 
 namespace {
@@ -26,11 +28,12 @@ bool says_default(const Key& key, const Node& node) {
            (node.text == key.word || node.text == key.otherwise);
 }
 
-/// Of a list or a map. A limit without a message is for who reads it.
+/// Whether a list or a map is as long as it may be. A limit without a message is for who reads it.
 bool check_size(const Reader& read, const Shape& s, const Node& node, std::size_t size) {
     const auto count = static_cast<std::int64_t>(size);
     if (s.limit.empty() || (count >= s.least && count <= s.most)) return true;
-    read.fail(s.least == 1 ? "L0202" : "L0214", node, std::string(s.limit), std::string(s.help));
+    read.fail(s.least == 1 ? code::entry_is_missing : code::row_of_wrong_length, node,
+              std::string(s.limit), std::string(s.help));
     return false;
 }
 
@@ -50,7 +53,7 @@ bool accept_list(const Reader& read, const Shape& s, const Node& node, std::stri
         const auto same = [&](const Node& other) { return other.text == item->text; };
         if (s.twice.empty() || !item->is_scalar() || std::none_of(node.items.begin(), item, same))
             continue;
-        read.fail("L0212", *item, fmt::format(fmt::runtime(s.twice), item->text));
+        read.fail(code::named_twice, *item, fmt::format(fmt::runtime(s.twice), item->text));
         good = false;
     }
     return good;
@@ -61,7 +64,7 @@ std::optional<std::int64_t> whole(const Reader& read, const Shape& s, const Node
     const auto number = time ? read.time(node) : read.integer(node, std::string(s.help));
     if (!number || (*number >= s.least && *number <= s.most)) return number;
     const bool below = *number < s.least;
-    read.fail(time ? "L0308" : "L0305", node,
+    read.fail(time ? code::not_a_time : code::number_out_of_range, node,
               s.limit.empty() ? fmt::format("'{}' is {} {}", node.text, below ? "below" : "above",
                                             below ? s.least : s.most)
                               : fmt::format(fmt::runtime(s.limit), node.text),
@@ -81,20 +84,20 @@ bool accept_map(const Reader& read, const Shape& s, const Node& node, std::strin
     return good;
 }
 
-/// Of a template, whose parameters have no values yet.
+/// A block of a template, whose parameters have no values yet.
 bool accept_block(const Reader& read, const Form& common, const Node& node) {
     if (!read.expect_map(node, common.what)) return false;
     bool good = true;
     for (const Key& key : common.keys) {
         if (!key.required || node.find(key.name)) continue;
-        read.fail("L0202", node, fmt::format("{} has no '{}'", common.what, key.name),
-                  std::string(key.help));
+        read.fail(code::entry_is_missing, node,
+                  fmt::format("{} has no '{}'", common.what, key.name), std::string(key.help));
         good = false;
     }
     return good;
 }
 
-/// Of `shapes`, the one that is meant.
+/// The one of `shapes` that is meant.
 const Shape& meant(const std::vector<Shape>& shapes, const Node& node) {
     const auto fits = [&](const Shape& s) {
         if (s.kind == Kind::list) return node.is_sequence();
@@ -110,7 +113,7 @@ std::optional<std::size_t> chosen(const Reader& read, const Shape& s, const Node
     if (!read.expect_scalar(node, key)) return {};
     const auto it = std::ranges::find(s.names, node.text);
     if (it != s.names.end()) return static_cast<std::size_t>(it - s.names.begin());
-    read.fail("L0306", node, fmt::format("'{}' is not {}", node.text, s.what),
+    read.fail(code::no_allowed_name, node, fmt::format("'{}' is not {}", node.text, s.what),
               fmt::format("known: {}", fmt::join(s.names, ", ")));
     return {};
 }
@@ -127,8 +130,8 @@ void apply(const Form& form, const Rule& rule, const Reader& read, const Node& m
         const Node* at = rule.place == Rule::Place::the_map ? &map : place;
         const bool both = rule.kind == Rule::Kind::not_with;
         read.fail(rule.code ? rule.code
-                  : both    ? "L0213"
-                            : "L0202",
+                  : both    ? code::entries_do_not_go_together
+                            : code::entry_is_missing,
                   *at, fmt::format(fmt::runtime(message), form.what, rule.key, other),
                   std::string(rule.help));
     };
@@ -353,8 +356,8 @@ bool detail::read_form(const Form& form, const Reader& read, const Node& map, vo
     for (const Key& key : form.keys) {
         const Node* node = map.find(key.name);
         if (!node && key.required)
-            read.fail("L0202", place ? *place : map, fmt::format("{} has no '{}'", what, key.name),
-                      std::string(key.help));
+            read.fail(code::entry_is_missing, place ? *place : map,
+                      fmt::format("{} has no '{}'", what, key.name), std::string(key.help));
         if (!node || (!key.word.empty() && node->text == key.word)) continue;
         if (!key.store)
             accept(read, key.shape, *node, quoted(key.name));

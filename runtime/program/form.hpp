@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "runtime/model/field.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/reader.hpp"
 
 /// What `Field` is for a block, a key is for a form of YAML: declared once, with type, limits,
@@ -136,12 +137,12 @@ struct Form {
     Key others = {};  ///< keys that the file chooses, for `check` to read; nameless: there are none
     Key phrase = {};  ///< a key with values in it: `within TIME of SIGNAL`; likewise
     std::string_view unknown = "{1} has no key '{0}'";  ///< message about another key
-    const char* unknown_code = "L0201";
+    const char* unknown_code = code::unknown_key;
     void (*check)(const Reader&, const Node&, void* plan) = nullptr;   ///< when all keys are read
     bool (*probe)(const Form&, const Reader&, const Node&) = nullptr;  ///< reads, and keeps nothing
 
     const Key* find(std::string_view key) const;
-    /// Of a map, what stands at this key, or at the phrase if that is its name; or null.
+    /// What stands in a map at this key, or at the phrase if that is its name; or null.
     const Node* find_in(const Node& map, std::string_view key) const;
     /// It begins with the phrase's first word, and another follows.
     bool is_phrase(std::string_view key) const;

@@ -9,6 +9,7 @@
 #include "runtime/program/recording_form.hpp"
 #include "runtime/program/shared_folder.hpp"
 #include "runtime/program/templates.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/st/library/test_sources.hpp"
 
@@ -86,7 +87,8 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     program_.file = file;
     program_.title = fs::path(file->path).stem().string();
     if (is_structured_text(file->path)) {
-        read_.diagnostics().add("L0211", {file, 1, 1, 1}, "this is Structured Text, not a program",
+        read_.diagnostics().add(code::unknown_kind_of_file, {file, 1, 1, 1},
+                                "this is Structured Text, not a program",
                                 "name it in the 'sources' of a program");
         return std::move(program_);
     }
@@ -120,7 +122,7 @@ void ProgramReader::recording() {
     if (program_.recording && !program_.recording->meaning.empty() &&
         program_.recording->meaning != meaning_of(program_).in_force)
         read_.diagnostics().warn(
-            "L0806", {},
+            code::recording_of_another_program, {},
             fmt::format("'{}' was recorded from another program, or with other parameters",
                         options_.recording),
             "give the same program and --set as lineshaft serve had, and the same bytes come");
@@ -154,7 +156,8 @@ void ProgramReader::unused_parameters(const Node& root, const std::set<std::stri
     for (const auto& [key, value] : declared->entries)
         if (values_.contains(key.text) && !used.contains(key.text))
             read_.diagnostics().warn(
-                "L0803", key.mark, fmt::format("nothing uses the parameter '{}'", key.text),
+                code::never_read, key.mark,
+                fmt::format("nothing uses the parameter '{}'", key.text),
                 fmt::format("write ${} where it is meant, or remove it", key.text));
 }
 
@@ -165,7 +168,7 @@ void ProgramReader::settings(ParameterValues& values) {
         const auto it = values.find(setting.name);
         if (it == values.end()) {
             read_.diagnostics().add(
-                "L0501", setting.mark,
+                code::setting_of_no_parameter, setting.mark,
                 fmt::format("the program has no parameter '{}' to set", setting.name),
                 values.empty() ? "it has no 'parameters:'" : suggest(setting.name, known));
             continue;
@@ -196,8 +199,8 @@ std::optional<std::string> ProgramReader::named_controller(const Node& node) con
     for (const auto& entry : fs::directory_iterator(folders.back(), unknown))
         if (entry.path().extension() == ".yaml") known.push_back(entry.path().stem().string());
     std::ranges::sort(known);
-    read_.fail("L0001", node, fmt::format("there is no controller '{}'", node.text),
-               suggest(node.text, known));
+    read_.fail(code::file_cannot_be_read, node,
+               fmt::format("there is no controller '{}'", node.text), suggest(node.text, known));
     return {};
 }
 
@@ -232,7 +235,7 @@ void ProgramReader::check_attached(const Node& task) const {
     const auto plan = std::ranges::find(program_.tasks, task.text, &TaskPlan::name);
     if (plan == program_.tasks.end() || !plan->unattached) return;
     read_.fail(
-        "L0202", task,
+        code::entry_is_missing, task,
         fmt::format("the controller's task '{}' never runs: nothing starts it", task.text),
         fmt::format("attach it to an event: tasks: {{{}: {{on: inputs.start}}}}", task.text));
 }
@@ -247,7 +250,8 @@ void ProgramReader::find_file(ReplayPlan& replay) const {
     if (path && fs::is_regular_file(*path, unknown))
         replay.path = *path;
     else if (path)
-        read_.fail("L0001", replay.file, fmt::format("there is no file '{}'", *path));
+        read_.fail(code::file_cannot_be_read, replay.file,
+                   fmt::format("there is no file '{}'", *path));
 }
 
 /// A file, or a folder with all that lie below it, other than files of tests.
@@ -263,10 +267,10 @@ void ProgramReader::find_source(const Node& named) {
     std::error_code error;
     const std::vector<std::string> files = structured_text_below(*path, error);
     if (error)
-        read_.fail("L0001", named,
+        read_.fail(code::file_cannot_be_read, named,
                    fmt::format("cannot read the folder '{}': {}", named.text, error.message()));
     else if (files.empty())
-        read_.fail("L0001", named,
+        read_.fail(code::file_cannot_be_read, named,
                    fmt::format("the folder '{}' has no file of Structured Text", named.text),
                    "their names end with .st, .scl, .s7dcl, .udt or .db");
     program_.sources_known = program_.sources_known && !error && !files.empty();
@@ -290,8 +294,8 @@ void ProgramReader::force(const std::string& text) {
     const std::string times = at < text.size() ? text.substr(at + 1) : "..";
     const auto dots = times.find("..");
     if (equals == std::string::npos || equals == 0 || equals + 1 >= at || dots == std::string::npos)
-        return read_.fail("L0505", node_of(text), fmt::format("'{}' forces nothing", text),
-                          force_help);
+        return read_.fail(code::not_a_force, node_of(text),
+                          fmt::format("'{}' forces nothing", text), force_help);
     ForcePlan plan;
     plan.signal = node_of(text.substr(0, equals));
     plan.value = node_of(text.substr(equals + 1, at - equals - 1));
@@ -301,8 +305,8 @@ void ProgramReader::force(const std::string& text) {
     plan.from = time(times.substr(0, dots), 0);
     plan.until = time(times.substr(dots + 2), never);
     if (plan.until <= plan.from)
-        return read_.fail("L0505", node_of(text), fmt::format("'{}' ends before it begins", text),
-                          force_help);
+        return read_.fail(code::not_a_force, node_of(text),
+                          fmt::format("'{}' ends before it begins", text), force_help);
     program_.forces.push_back(std::move(plan));
 }
 
@@ -319,17 +323,19 @@ bool check_kind(const Reader& read, const Node& root, std::string_view kind) {
     const std::string begin = fmt::format("{} begins with '{}: 1'", wanted, kind);
     if (const Node* version = root.find(kind)) {
         if (version->text == "1") return true;
-        read.fail("L0211", *version,
+        read.fail(code::unknown_kind_of_file, *version,
                   fmt::format("version '{}' of {} is not known", version->text, wanted), begin);
         return false;
     }
     for (const auto& [key, value] : root.entries)
         for (const auto& [other, what] : kinds)
             if (key.text == other) {
-                read.fail("L0211", key, fmt::format("this is {}, not {}", what, wanted), begin);
+                read.fail(code::unknown_kind_of_file, key,
+                          fmt::format("this is {}, not {}", what, wanted), begin);
                 return false;
             }
-    read.fail("L0211", root, fmt::format("this file does not say that it is {}", wanted), begin);
+    read.fail(code::unknown_kind_of_file, root,
+              fmt::format("this file does not say that it is {}", wanted), begin);
     return false;
 }
 
@@ -348,7 +354,7 @@ std::optional<std::string> resolve_path(const std::string& named, const std::str
     // `..` of a linked folder is the folder around what it is a link to.
     const fs::path& path = real_path(normal, unknown) == real ? normal : whole;
     if (error) {
-        out.add("L0001", std::move(where),
+        out.add(code::file_cannot_be_read, std::move(where),
                 fmt::format("cannot read '{}': {}", named, error.message()));
         return {};
     }
@@ -358,12 +364,13 @@ std::optional<std::string> resolve_path(const std::string& named, const std::str
     const fs::file_status status = fs::status(real, error);
     if (allowed && fs::exists(status) && !fs::is_regular_file(status) &&
         !fs::is_directory(status)) {
-        out.add("L0001", std::move(where), fmt::format("'{}' is not a regular file", named),
+        out.add(code::file_cannot_be_read, std::move(where),
+                fmt::format("'{}' is not a regular file", named),
                 "only the command line may name a pipe or a device");
         return {};
     }
     if (allowed) return path.string();
-    out.add("L0002", std::move(where),
+    out.add(code::file_outside_project, std::move(where),
             fmt::format("'{}' lies outside of the program's project", named),
             "a project is the nearest folder above that holds config/; allow others with "
             "--include-dir");

@@ -118,7 +118,7 @@ struct RecordedPlan {
     Mark mark = {};
     std::int64_t at = 0;  ///< [ns]
     std::vector<std::pair<Node, Node>> set = {}, force = {};
-    std::vector<Node> release = {};
+    std::vector<Node> lift_force = {};
     bool end = false;
 };
 
@@ -169,12 +169,19 @@ struct ExpectPlan {
     std::optional<Node> equals, within, at_least, at_most;
 };
 
+/// `report:`, each as it is written; what stands beside a mistake is not here.
+struct ReportPlan {
+    std::optional<Node> plots = {}, own_axis = {}, hide = {}, curves = {}, paths = {}, circle = {},
+                        condition = {};
+};
+
 /// A program file as plain data: its structure is checked, its names are not yet.
 struct Program {
     std::shared_ptr<const SourceFile> file;
     Node root;                                                  ///< parameters replaced
     std::optional<Node> controller_name = {}, controller = {};  ///< the file's name, its root
     std::string title;
+    std::vector<std::string> notes;
     std::vector<std::pair<std::string, std::string>> parameters;  ///< name, value in force
     std::vector<TaskPlan> tasks;
     std::optional<st::InstructionTimes> instruction_times;  ///< of the controller
@@ -183,6 +190,7 @@ struct Program {
     std::vector<Node> sources;                             ///< files and folders of Structured Text
     std::vector<std::shared_ptr<const SourceFile>> texts;  ///< what they are
     bool sources_known = true;                             ///< false: not all could be read
+    bool overflow_faults = false;  ///< of an integer of Structured Text; else it wraps
     std::vector<std::pair<Node, Node>> inputs;
     std::vector<std::pair<Node, Node>> outputs;  ///< name and the signal it shows
     std::vector<Node> retain;                    ///< blocks, signals
@@ -191,6 +199,7 @@ struct Program {
     std::vector<ForcePlan> forces;
     std::optional<RecordingPlan> recording;  ///< that is played back
     std::vector<TracePlan> traces;
+    std::optional<ReportPlan> report;
     std::vector<RegisterPlan> registers;  ///< `modbus:`
     std::vector<ExpectPlan> expectations;
     RunPlan run;

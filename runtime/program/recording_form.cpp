@@ -24,8 +24,8 @@ const Form& entry_form() {
                                           "inputs and their new values"),
                   key<&RecordedPlan::force>("force", signals_to(a_value.as("a value")),
                                             "signals, and the values that they keep from then on"),
-                  key<&RecordedPlan::release>("release", list_of(a_signal),
-                                              "signals that are not forced any more"),
+                  key<&RecordedPlan::lift_force>("release", list_of(a_signal),
+                                                 "signals that are not forced any more"),
                   key<&RecordedPlan::end>("end", a_boolean, "the machine was served until then")
                       .by_default("false")},
          .rules = {{Rule::Kind::at_least_one, {}, {"set", "force", "release", "end"}}},

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/formula.hpp"
 #include "runtime/source/habits.hpp"
 
@@ -52,13 +53,14 @@ void Substitution::apply_to_program(Node& root) {
 void Substitution::unknown(Node& node, const std::string& name) const {
     const std::vector<std::string> known = names();
     if (outer_ || !declared_ || declared_->is_map())
-        read_.fail("L0207", node, fmt::format("the program has no parameter '{}'", name),
+        read_.fail(code::unknown_parameter, node,
+                   fmt::format("the program has no parameter '{}'", name),
                    known.empty() ? "it has no 'parameters:'" : suggest(name, known, "$"));
     node.parameter = name;
     node.text = "$" + name;
 }
 
-/// Of a parameter that stands in a formula; empty if it is one.
+/// Why a parameter that stands in a formula is no number; empty if it is one.
 std::string Substitution::why_not_a_number(const std::string& name) {
     const Node* value = find(name);
     if (!value || (value->is_scalar() && !value->quoted &&
@@ -99,7 +101,7 @@ void Substitution::compute(Node& node) {
     }
     const std::string help = expression_help(formula);
     const bool is_signal = split_signal(result.name).has_value();
-    read_.diagnostics().add("L0217", place.mark,
+    read_.diagnostics().add(code::expression_for_a_value, place.mark,
                             fmt::format("'{}' cannot be computed: {}", formula,
                                         !refused.empty()        ? refused
                                         : !result.error.empty() ? result.error

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "runtime/program/program_form.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -36,7 +37,7 @@ class Expansion {
         }
         std::vector<std::string> known;
         for (const auto& [name, value] : values_) known.push_back(name);
-        read_.fail("L0207", entry.first,
+        read_.fail(code::unknown_parameter, entry.first,
                    fmt::format("the template '{}' has no parameter '{}'", of, entry.first.text),
                    suggest(entry.first.text, known));
     }
@@ -46,7 +47,7 @@ class Expansion {
         const std::size_t before = read_.diagnostics().count();
         for (const auto& [name, value] : values_)
             if (value.is_empty())
-                read_.fail("L0403", name_,
+                read_.fail(code::port_is_not_set, name_,
                            fmt::format("'{}' uses the template '{}' without its parameter '{}'",
                                        name_.text, of, name),
                            fmt::format("write set: {{{}: ...}}", name));
@@ -106,7 +107,7 @@ class Templates {
     void warn_of_unused() const {
         for (const auto& [name, body] : declared_ ? declared_->entries : std::vector<Entry>())
             if (!used_.contains(name.text))
-                read_.diagnostics().warn("L0803", name.mark,
+                read_.diagnostics().warn(code::never_read, name.mark,
                                          fmt::format("nothing uses the template '{}'", name.text),
                                          "write NAME: {use: ...} in 'blocks', or remove it");
     }
@@ -122,7 +123,8 @@ class Templates {
         used_.insert(plan.use.text);
         if (!found)
             return read_.fail(
-                "L0205", plan.use, fmt::format("there is no template '{}'", plan.use.text),
+                code::unknown_block_type, plan.use,
+                fmt::format("there is no template '{}'", plan.use.text),
                 suggest(plan.use.text, declared_ ? declared_->keys() : std::vector<std::string>()));
         const Node* blocks = found->is_map() ? found->find("blocks") : nullptr;
         if (!blocks || !blocks->is_map()) return;  // the template's form tells
@@ -136,7 +138,8 @@ class Templates {
         expansion.append_to(into);
         for (auto it = into.begin() + first; it != into.end(); ++it)
             if (!names_.insert(it->first.text).second)
-                read_.fail("L0212", name, fmt::format("there are two blocks '{}'", it->first.text));
+                read_.fail(code::named_twice, name,
+                           fmt::format("there are two blocks '{}'", it->first.text));
     }
 
     const Node* declared_;

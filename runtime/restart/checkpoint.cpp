@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/program/meaning.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/input_file.hpp"
 #include "runtime/source/json_text.hpp"
 #include "runtime/source/text_hash.hpp"
@@ -56,7 +57,7 @@ std::string fingerprint(const Program& program, const Machine& machine) {
         text += fmt::format("{} {} {} {};", signal.name, name_of(signal.type), signal.unit,
                             signal.slot - machine.memory.data());
     for (const Force& force : machine.forces)
-        text += fmt::format("{} {} {};", force.text, force.from, force.until);
+        text += fmt::format("{} {} {};", force.text(), force.from, force.until);
     for (const Replay& replay : machine.replays)
         text += fmt::format("{};", text_hash(bytes_of(replay.points())));
     return text_hash(text);
@@ -83,7 +84,7 @@ std::optional<std::string> read_checkpoint(const std::string& path, const std::s
     int error = 0;
     std::string bytes = read_bytes(path, std::numeric_limits<std::size_t>::max(), error);
     if (error != 0) {
-        out.add("L0001", {}, fmt::format("cannot read the checkpoint '{}'", path),
+        out.add(code::file_cannot_be_read, {}, fmt::format("cannot read the checkpoint '{}'", path),
                 "--checkpoint-every writes one, --checkpoint names it");
         return {};
     }
@@ -93,7 +94,8 @@ std::optional<std::string> read_checkpoint(const std::string& path, const std::s
     state.erase(0, std::min(end + 1, state.size()));
     const std::string wrong = refusal(head, state, program);
     if (wrong.empty()) return state;
-    out.add("L0506", {std::make_shared<SourceFile>(SourceFile{path, {}}), 0, 0, 1}, wrong,
+    out.add(code::checkpoint_does_not_fit,
+            {std::make_shared<SourceFile>(SourceFile{path, {}}), 0, 0, 1}, wrong,
             "run the program from its start: without --resume");
     return {};
 }

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/machine/kept_memory.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/input_file.hpp"
 #include "runtime/source/json_text.hpp"
 #include "runtime/source/text_hash.hpp"
@@ -113,7 +114,7 @@ struct Reading {
     Diagnostics& out;
 
     void fail(const std::string& message) const {
-        out.add("L0507", {file, 0, 0, 1}, message, std::string(help));
+        out.add(code::retain_file_does_not_fit, {file, 0, 0, 1}, message, std::string(help));
     }
     /// Null where the file does not have it.
     const Json* find(const char* list, const std::string& name) const {
@@ -190,7 +191,7 @@ std::string readable(const std::string& path, Diagnostics& out) {
     const bool exists = std::filesystem::exists(path, unknown);
     if (exists && !std::filesystem::is_regular_file(path, unknown)) return path;
     if (is_good(path) || !is_good(copy_before(path))) return exists ? path : "";
-    out.warn("L0507", {},
+    out.warn(code::retain_file_does_not_fit, {},
              fmt::format("'{}' is {}: the copy before it, '{}', is taken", path,
                          exists ? "damaged" : "not there", copy_before(path)));
     return copy_before(path);

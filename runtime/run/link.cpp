@@ -8,6 +8,7 @@
 #include "runtime/names/resolve.hpp"
 #include "runtime/outside/outside.hpp"
 #include "runtime/scan/expectations.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/st/library/library.hpp"
 #include "runtime/trace/report_setup.hpp"
 #include "runtime/trace/trace_setup.hpp"
@@ -17,9 +18,7 @@ namespace lineshaft {
 namespace {
 
 st::Options options_of(const Program& program) {
-    const Node* overflow = program.root.find("overflow");
-    return {.times = program.instruction_times,
-            .overflow_faults = overflow && overflow->text == "fault"};
+    return {.times = program.instruction_times, .overflow_faults = program.overflow_faults};
 }
 
 /// What the program's Structured Text brings along; null if there is a mistake in it.
@@ -63,7 +62,8 @@ void warn_of_unused_inputs(const Program& program, Linked& linked, Diagnostics& 
     for (std::size_t i = 0; i < program.inputs.size(); ++i) {
         const Node& name = program.inputs[i].first;
         if (!read.contains(linked.machine.live({-1, static_cast<int>(i)})))
-            out.warn("L0803", name.mark, fmt::format("nothing uses the input '{}'", name.text),
+            out.warn(code::never_read, name.mark,
+                     fmt::format("nothing uses the input '{}'", name.text),
                      fmt::format("wire inputs.{} where it is meant, or remove it", name.text));
     }
 }

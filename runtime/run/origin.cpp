@@ -23,15 +23,6 @@ std::string text_of(const ForcePlan& force) {
     return text;
 }
 
-Json notes_of(const Program& program) {
-    const Node* notes = program.root.find("notes");
-    if (!notes) return {};
-    if (notes->is_scalar()) return Json::array({notes->text});
-    Json list = Json::array();
-    for (const Node& note : notes->items) list.push_back(note.text);
-    return list;
-}
-
 }  // namespace
 
 TraceOrigin origin_of(const Loaded& loaded) {
@@ -49,7 +40,7 @@ TraceOrigin origin_of(const Loaded& loaded) {
     return {.title = program.title,
             .program = meaning.in_force,
             .run = std::move(run),
-            .notes = notes_of(program),
+            .notes = program.notes,
             .report = linked.report};
 }
 

@@ -10,6 +10,7 @@
 #include "runtime/restart/checkpoint.hpp"
 #include "runtime/restart/retain.hpp"
 #include "runtime/run/origin.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/st/library/library.hpp"
 #include "runtime/trace/event_writer.hpp"
 #include "runtime/trace/pulse_writer.hpp"
@@ -238,7 +239,7 @@ bool SingleRun::open_files() {
     if (begun_)
         for (bool& file : before) begun_->get(file);
     if (files != before || (begun_ && !begun_->ok())) {
-        report_.refused.add("L0506", {},
+        report_.refused.add(code::checkpoint_does_not_fit, {},
                             "the checkpoint was made with other files than this run has",
                             "give the same --trace, --pulses and --record as before");
         return false;
@@ -266,7 +267,8 @@ void SingleRun::open(std::optional<Writer>& writer, Arguments&&... arguments) {
 
 void SingleRun::refuse(const std::string& error) {
     if (!error.empty())
-        report_.refused.add("L0506", {}, error, "run the program from its start: without --resume");
+        report_.refused.add(code::checkpoint_does_not_fit, {}, error,
+                            "run the program from its start: without --resume");
 }
 
 void SingleRun::open_traces() {

@@ -224,8 +224,8 @@ std::int64_t Executive::force(Force force) {
     return forces_changed();
 }
 
-std::int64_t Executive::release(const std::byte* live) {
-    machine_.lift(live, known_until_);
+std::int64_t Executive::lift_force(const std::byte* live) {
+    machine_.lift_force(live, known_until_);
     return forces_changed();
 }
 
@@ -257,7 +257,8 @@ std::int64_t Executive::next_time() {
     return next_event();
 }
 
-/// Of what waits: a device's next moment, the end of the scan under way, a deadline.
+/// When the first of what waits is due: a device's next moment, the end of the scan under way, a
+/// deadline.
 std::int64_t Executive::next_end() {
     std::int64_t next = never;
     for (const DeviceCall& device : machine_.devices)
@@ -353,10 +354,10 @@ void Executive::start(int index) {
 
 void Executive::scan_forced(const Task& task, const Scan& scan) {
     for (const Call& call : task.calls) {
-        for (std::size_t i = 0; i < call.count; ++i) forces_.release_inputs(call.block(i));
+        for (std::size_t i = 0; i < call.count; ++i) forces_.lift_inputs(call.block(i));
         feed(call);
         for (std::size_t i = 0; i < call.count; ++i) forces_.impose_inputs(call.block(i));
-        for (std::size_t i = 0; i < call.count; ++i) forces_.release_outputs(call.block(i));
+        for (std::size_t i = 0; i < call.count; ++i) forces_.lift_outputs(call.block(i));
         call.scan(call.first, call.count, scan, call.context);
         for (std::size_t i = 0; i < call.count; ++i) forces_.impose_outputs(call.block(i));
     }

@@ -120,9 +120,9 @@ class Executive {
     /// So many values can be posted, and so many forces imposed, without taking memory.
     void make_room(std::size_t values);
 
-    /// Likewise: see Machine::impose() and lift().
+    /// Likewise: see Machine::impose() and lift_force().
     std::int64_t force(Force force);
-    std::int64_t release(const std::byte* live);
+    std::int64_t lift_force(const std::byte* live);
 
     /// After run(): what the devices have put up with, a sentence for each that has.
     std::vector<std::string> warnings() const;
@@ -158,7 +158,7 @@ class Executive {
         void set_next(const Task& task);
     };
 
-    /// Of a device's warnings.
+    /// What has been told of a device's warnings.
     struct Warned {
         std::int64_t count = 0;      ///< told so far
         std::int64_t first = never;  ///< when [ns]

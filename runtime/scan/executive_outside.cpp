@@ -13,14 +13,14 @@ void Executive::advance_devices() {
 
 /// A device runs on its own outputs, forced or not.
 void Executive::advance_device(const DeviceCall& device) {
-    if (forces_.active()) forces_.release_outputs(device.block);
+    if (forces_.active()) forces_.lift_outputs(device.block);
     device.calls.advance(device.block, now_, device.sink);
     report_warnings(device, -1);
     if (forces_.active()) forces_.impose_outputs(device.block);
 }
 
 void Executive::publish_device(const DeviceCall& device) {
-    if (forces_.active()) forces_.release_outputs(device.block);
+    if (forces_.active()) forces_.lift_outputs(device.block);
     device.calls.publish(device.block, now_);
     device.calls.advance(device.block, now_, device.sink);
     state(device.task).may_err = true;
@@ -30,7 +30,7 @@ void Executive::publish_device(const DeviceCall& device) {
 
 std::int64_t Executive::next_event_time(const DeviceCall& device) {
     if (!forces_.active()) return device.calls.next_event_time(device.block);
-    forces_.release_outputs(device.block);
+    forces_.lift_outputs(device.block);
     const std::int64_t next = device.calls.next_event_time(device.block);
     forces_.impose_outputs(device.block);
     return next;

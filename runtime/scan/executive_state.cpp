@@ -56,7 +56,7 @@ void save(StateWriter& out, const Machine& machine, const Force& force) {
     out.put(force.task);
     put_value(out, force.type, force.value);
     out.put(force.name);
-    out.put(force.text);
+    out.put(force.value_text);
 }
 
 void restore(StateReader& in, Machine& machine, Force& force) {
@@ -70,7 +70,7 @@ void restore(StateReader& in, Machine& machine, Force& force) {
     in.get(force.task, -1, static_cast<int>(machine.tasks.size()) - 1);
     get_value(in, force.type, force.value);
     in.get(force.name);
-    in.get(force.text);
+    in.get(force.value_text);
 }
 
 void save(StateWriter& out, const Machine& machine, const Stimulus& stimulus) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "runtime/model/literal.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
 
 namespace lineshaft {
@@ -30,7 +31,7 @@ Value moved(const Value& value, const Value& slack, int sign) {
 std::optional<Value> read_tolerance(const Connecting& to, const Signal& signal, const Node& node,
                                     const Value& around) {
     if (signal.type == Type::boolean || signal.type == Type::enumeration) {
-        to.read.fail("L0213", node,
+        to.read.fail(code::entries_do_not_go_together, node,
                      fmt::format("'within' is for numbers, '{}' is {}", signal.name,
                                  kind(signal.type, signal.names)));
         return {};
@@ -46,7 +47,7 @@ std::optional<Value> read_tolerance(const Connecting& to, const Signal& signal, 
     else
         value = to.read.real_or_share(node, to.net.unit(signal.unit), as_real(around));
     if (!value || compare(*value, 0.0) >= 0) return value;
-    to.read.fail("L0305", node, fmt::format("'{}' is below 0", node.text));
+    to.read.fail(code::number_out_of_range, node, fmt::format("'{}' is below 0", node.text));
     return {};
 }
 
@@ -95,14 +96,15 @@ void read_bounds(const Connecting& to, const ExpectPlan& plan, const Signal& tar
     side(plan.at_least, "at least", e.low);
     side(plan.at_most, "at most", e.high);
     if (plan.at_least && plan.at_most && compare(e.low, e.high) > 0)
-        to.read.fail("L0213", *plan.at_least, "'at_least' is above 'at_most': this never holds");
+        to.read.fail(code::entries_do_not_go_together, *plan.at_least,
+                     "'at_least' is above 'at_most': this never holds");
 }
 
 /// False, and reported, where what is to be true or to rise is no boolean.
 bool is_boolean(const Connecting& to, const Signal& signal, const Node& place) {
     if (signal.type == Type::boolean) return true;
     to.read.fail(
-        "L0401", place,
+        code::wire_between_types, place,
         fmt::format("a boolean is expected here, '{}' is {}", signal.name, name_of(signal.type)));
     return false;
 }

@@ -14,7 +14,7 @@ Forces::Forces(std::vector<Force>& forces) : forces_(forces) {
 void Forces::update(std::int64_t now, EventSink* events) {
     const auto tell = [&](const Force& force, const char* what) {
         if (events)
-            events->happened({.time = now, .kind = EventKind::force, .text = force.text + what});
+            events->happened({.time = now, .kind = EventKind::force, .text = force.text() + what});
     };
     for (std::size_t i = 0; i < forces_.size(); ++i) {
         if (!own_[i].active || forces_[i].until > now) continue;
@@ -84,7 +84,7 @@ void Forces::exchange(const std::byte* block, bool outputs, Way way) {
     for (std::size_t i = 0; i < forces_.size(); ++i) {
         const Force& force = forces_[i];
         if (!own_[i].active || force.block != block || force.is_output != outputs) continue;
-        if (way == Way::release) {
+        if (way == Way::lift) {
             if (force.is_local) continue;
             std::memcpy(force.live, own_[i].live, size_of(force.type));
         } else {

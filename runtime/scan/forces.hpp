@@ -28,10 +28,10 @@ class Forces {
     bool active() const { return active_; }
 
     /// Around the copies into the inputs of `block`.
-    void release_inputs(const std::byte* block) { exchange(block, false, Way::release); }
+    void lift_inputs(const std::byte* block) { exchange(block, false, Way::lift); }
     void impose_inputs(const std::byte* block) { exchange(block, false, Way::impose); }
     /// Around whatever a block's own code does.
-    void release_outputs(const std::byte* block) { exchange(block, true, Way::release); }
+    void lift_outputs(const std::byte* block) { exchange(block, true, Way::lift); }
     void impose_outputs(const std::byte* block) { exchange(block, true, Way::impose); }
 
     /// After the outputs of `task` were copied to where others see them.
@@ -50,7 +50,7 @@ class Forces {
     void forget_ended(std::int64_t now);
 
   private:
-    enum class Way { release, impose };
+    enum class Way { lift, impose };
     struct Own {
         std::byte live[8] = {};
         std::byte published[8] = {};

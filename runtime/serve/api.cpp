@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "runtime/run/signal_json.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/version.hpp"
 
 namespace lineshaft {
@@ -45,7 +46,7 @@ Json state_json(const LiveState& state, const Loaded& loaded) {
         {"pace", to_json(state.pace)}};
 }
 
-/// Of an object of signals and values; empty for anything else.
+/// What an object of signals and values wants; nothing for anything else.
 std::vector<Wanted> wanted_of(const Json& values) {
     std::vector<Wanted> wanted;
     if (!values.is_object()) return wanted;
@@ -163,7 +164,7 @@ std::vector<Route> make_routes() {
          true, {}, values_schema(wanted_doc), stamp_schema, &Api::force},
         {"POST", "/api/release", "Forces signals no more",
          true, {}, object({{"signals", list_of(of_type("string"))}}, {"signals"}), stamp_schema,
-         &Api::release},
+         &Api::lift_force},
         {"POST", "/api/pause", "Stands still between two scans",
          true, {}, {}, state_schema(), &Api::pause},
         {"POST", "/api/resume", "Goes on", true, {}, {}, state_schema(), &Api::resume},
@@ -334,11 +335,12 @@ ApiReply Api::change(Change::Kind kind, const std::vector<Wanted>& wanted) {
     auto changes = desk_.changes(kind, wanted, out);
     if (!out.empty()) return mistake(out);
     if (std::string error = live_.recording_error(); !error.empty())
-        return failure(507, std::move(error), help, "L0512");
+        return failure(507, std::move(error), help, code::recording_cannot_be_written);
     const auto applied = live_.mailbox().ask([&] { return live_.apply(changes); });
     if (!applied) return too_much();
     if (const std::string error = live_.keep(*applied); !error.empty())
-        return failure(507, "this counts, but is not in the recording: " + error, help, "L0512");
+        return failure(507, "this counts, but is not in the recording: " + error, help,
+                       code::recording_cannot_be_written);
     return {200, {{"time_s", seconds_of(applied->at)}, {"time_ns", applied->at}}};
 }
 
@@ -354,7 +356,7 @@ ApiReply Api::force(const ApiRequest& request) {
     return change(Change::Kind::force, wanted);
 }
 
-ApiReply Api::release(const ApiRequest& request) {
+ApiReply Api::lift_force(const ApiRequest& request) {
     const Json& body = request.body;
     std::vector<Wanted> wanted;
     if (body.is_object() && body.contains("signals") && body["signals"].is_array())
@@ -362,7 +364,7 @@ ApiReply Api::release(const ApiRequest& request) {
             if (name.is_string()) wanted.push_back({name.get<std::string>(), {}});
     if (wanted.empty())
         return failure(400, "expected names of signals", "{\"signals\": [\"slave.ratio\"]}");
-    return change(Change::Kind::release, wanted);
+    return change(Change::Kind::lift_force, wanted);
 }
 
 ApiReply Api::pause(const ApiRequest&) {

@@ -60,7 +60,7 @@ class Api {
     ApiReply stream(const ApiRequest&);
     ApiReply set(const ApiRequest&);
     ApiReply force(const ApiRequest&);
-    ApiReply release(const ApiRequest&);
+    ApiReply lift_force(const ApiRequest&);
     ApiReply pause(const ApiRequest&);
     ApiReply resume(const ApiRequest&);
     ApiReply step(const ApiRequest&);

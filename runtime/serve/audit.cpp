@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Of the wall's clock, to the millisecond.
+/// What the wall's clock says, to the millisecond.
 std::string date() {
     using namespace std::chrono;
     const auto now = floor<milliseconds>(system_clock::now());

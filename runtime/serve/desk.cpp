@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
+
 namespace lineshaft {
 
 namespace {
@@ -14,8 +16,16 @@ Node node_of(std::string text) {
     return node;
 }
 
-std::optional<Target> target_of(Connecting& to, Change::Kind kind, const Node& signal) {
-    return kind == Change::Kind::set ? find_settable(to, signal) : find_target(to, signal);
+std::optional<Target> target_of(const Connecting& to, Change::Kind kind, const Node& signal) {
+    switch (kind) {
+        case Change::Kind::set:
+            return find_settable(to, signal);
+        case Change::Kind::force:
+            return find_forceable(to, signal);
+        case Change::Kind::lift_force:
+            break;
+    }
+    return find_target(to, signal);
 }
 
 }  // namespace
@@ -23,40 +33,33 @@ std::optional<Target> target_of(Connecting& to, Change::Kind kind, const Node& s
 std::vector<Change> Desk::changes(Change::Kind kind, const std::vector<Wanted>& wanted,
                                   Diagnostics& out) {
     const std::lock_guard lock(mutex_);
-    Connecting to{loaded_.program, loaded_.linked.net, loaded_.linked.machine, Reader(out)};
+    const Connecting to{loaded_.program, loaded_.linked.net, loaded_.linked.machine, Reader(out)};
     std::vector<Change> changes;
     for (const Wanted& each : wanted) changes.push_back(change(to, kind, each));
-    if (changes.empty()) out.add("L0202", {}, "the request names no signal");
+    if (changes.empty()) out.add(code::entry_is_missing, {}, "the request names no signal");
     return changes;
 }
 
-Change Desk::change(Connecting& to, Change::Kind kind, const Wanted& wanted) {
+/// The text that is recorded is read again as the same value.
+Change Desk::change(const Connecting& to, Change::Kind kind, const Wanted& wanted) {
     Change change{.kind = kind, .name = wanted.signal, .text = {}};
     const auto target = target_of(to, kind, node_of(wanted.signal));
     if (!target) return change;
-    if (kind == Change::Kind::release) {
+    if (kind == Change::Kind::lift_force) {
         change.live = target->live;
         return change;
     }
     const std::string& unit = target->signal.unit;
-    find_value(
-        to, change,
-        node_of(wanted.is_number && !unit.empty() ? wanted.value + " " + unit : wanted.value));
-    if (!to.read.diagnostics().empty()) return change;
-    const Value value = kind == Change::Kind::set ? change.stimulus.value : change.force.value;
-    change.text = describe(value, target->field.type, target->field.names, unit);
-    find_value(to, change, node_of(change.text));
+    const bool lacks_unit = wanted.is_number && !unit.empty();
+    const auto value =
+        read_value(to, *target, node_of(lacks_unit ? wanted.value + " " + unit : wanted.value));
+    if (!value) return change;
+    change.text = describe(*value, target->field.type, target->field.names, unit);
+    if (kind == Change::Kind::set)
+        change.stimulus = stimulus_of(*target, *value, change.name, change.text);
+    else
+        change.force = force_of(to.machine, *target, *value, change.text);
     return change;
-}
-
-/// Found again from the text that is recorded, a value is what it will be when it is played back.
-void Desk::find_value(Connecting& to, Change& change, const Node& value) {
-    const Node signal = node_of(change.name);
-    if (change.kind == Change::Kind::set) {
-        if (auto stimulus = find_stimulus(to, signal, value)) change.stimulus = *stimulus;
-    } else if (auto force = find_force(to, signal, value)) {
-        change.force = *force;
-    }
 }
 
 std::vector<const Signal*> Desk::signals(const std::vector<std::string>& names, Diagnostics& out) {

@@ -35,8 +35,7 @@ class Desk {
     bool is_settable(const std::string& signal);
 
   private:
-    Change change(Connecting& to, Change::Kind kind, const Wanted& wanted);
-    void find_value(Connecting& to, Change& change, const Node& value);
+    static Change change(const Connecting& to, Change::Kind kind, const Wanted& wanted);
 
     Loaded& loaded_;
     std::mutex mutex_;  ///< the net keeps the units that it has parsed

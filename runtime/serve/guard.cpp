@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
+
 namespace lineshaft {
 
 namespace {
@@ -82,20 +84,25 @@ std::optional<ApiReply> Guard::refuse(const Visitor& visitor, bool writes) {
     if (is_too_much(token == Token::right ? "the token" : visitor.peer))
         return failure(429, "too many requests", "ask less often");
     if (!is_known(visitor.host))
-        return failure(403, "this is not the address of the machine", "use its number", "L0513");
+        return failure(403, "this is not the address of the machine", "use its number",
+                       code::request_not_allowed);
     if (!visitor.origin.empty() && visitor.origin != "http://" + visitor.host)
-        return failure(403, "a page of another origin asks", "open the machine's own", "L0513");
+        return failure(403, "a page of another origin asks", "open the machine's own",
+                       code::request_not_allowed);
     if (token == Token::wrong) {
         slow_down(visitor.peer);
-        return failure(403, "this is not the token", "send the one that --token-file has", "L0513");
+        return failure(403, "this is not the token", "send the one that --token-file has",
+                       code::request_not_allowed);
     }
     if (!writes) return {};
     if (!options_.allow_write)
         return failure(403, "this machine is only looked at",
-                       "serve it with --allow-write to change something", "L0513");
+                       "serve it with --allow-write to change something",
+                       code::request_not_allowed);
     if (token != Token::right && !Address{visitor.peer}.is_loopback())
         return failure(403, "writing from another machine takes the token",
-                       "send 'Authorization: Bearer TOKEN', as --token-file has it", "L0513");
+                       "send 'Authorization: Bearer TOKEN', as --token-file has it",
+                       code::request_not_allowed);
     return {};
 }
 

@@ -1,7 +1,6 @@
 #include "runtime/serve/live.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <numeric>
 
 namespace lineshaft {
@@ -153,7 +152,7 @@ Applied Live::apply(const std::vector<Change>& changes) {
         else if (change.kind == Change::Kind::force)
             executive_.force(std::move(change.force));
         else
-            executive_.release(change.live);
+            executive_.lift_force(change.live);
     }
     return applied;
 }
@@ -203,8 +202,7 @@ LiveState Live::state() const {
                     .recording_error = recording_error()};
     for (const Force& force : machine_.forces)
         if (force.from <= time() + 1 && time() + 1 < force.until)
-            state.forced.push_back(
-                {force.name, force.text.substr(std::strlen("force  = ") + force.name.size())});
+            state.forced.push_back({force.name, force.value_text});
     return state;
 }
 

@@ -92,7 +92,7 @@ class Live : public Observer {
     /// The value that an input has been set to since the machine last moved.
     std::optional<Value> posted(const std::byte* input) const { return executive_.posted(input); }
 
-    /// Of any thread. Waits until the recording has what was applied; empty, or why it has not.
+    /// For any thread. Waits until the recording has what was applied; empty, or why it has not.
     std::string keep(const Applied& applied);
     /// Likewise: why nothing more may be changed now; empty when all is well.
     std::string recording_error() const { return recording_ ? recording_->error() : ""; }

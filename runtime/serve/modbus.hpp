@@ -12,7 +12,7 @@
 
 namespace lineshaft {
 
-/// Of the MODBUS Application Protocol Specification V1.1b3, chapter 7.
+/// Exceptions by the MODBUS Application Protocol Specification V1.1b3, chapter 7.
 enum class ModbusException : std::uint8_t {
     none = 0,
     illegal_function = 1,

@@ -49,18 +49,18 @@ std::string value_text(const Change& change) {
 }  // namespace
 
 std::string recorded(std::int64_t time, std::span<const Change> changes) {
-    const bool releases = changes.front().kind == Change::Kind::release;
-    const char* const key = releases                                      ? "release"
+    const bool lifts = changes.front().kind == Change::Kind::lift_force;
+    const char* const key = lifts                                         ? "release"
                             : changes.front().kind == Change::Kind::force ? "force"
                                                                           : "set";
     std::string list;
     for (const Change& change : changes) {
         if (!list.empty()) list += ", ";
         list += name_text(change.name);
-        if (!releases) list += ": " + value_text(change);
+        if (!lifts) list += ": " + value_text(change);
     }
     return fmt::format("- {{at: {}, {}: {}}}\n", time_text(time), key,
-                       releases ? "[" + list + "]" : "{" + list + "}");
+                       lifts ? "[" + list + "]" : "{" + list + "}");
 }
 
 RecordingWriter::RecordingWriter(World& world, std::string path, const std::string& program,

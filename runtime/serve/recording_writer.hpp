@@ -10,13 +10,13 @@ namespace lineshaft {
 
 /// What comes from outside, checked: text as a program has it, and what it means.
 struct Change {
-    enum class Kind : std::uint8_t { set, force, release };
+    enum class Kind : std::uint8_t { set, force, lift_force };
 
     Kind kind = Kind::set;
     std::string name, text;     ///< of the signal; of the value
     Stimulus stimulus = {};     ///< of set
     Force force = {};           ///< of force
-    std::byte* live = nullptr;  ///< of release
+    std::byte* live = nullptr;  ///< of lift_force
 };
 
 /// An entry of a recording: changes of one kind that count from `time` [ns] on.

@@ -9,7 +9,7 @@ namespace lineshaft {
 
 namespace {
 
-/// Of products of two whole numbers.
+/// Holds products of two whole numbers.
 __extension__ using Wide = __int128;
 
 template <class T>

@@ -6,6 +6,7 @@
 
 #include "runtime/program/meaning.hpp"
 #include "runtime/serve/modbus_session.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -19,7 +20,7 @@ void refuse_address(const Address& address, Diagnostics& refused) {
     if (address.port == 0) return;
     std::string cure;
     const std::string error = address.obstacle(cure);
-    if (!error.empty()) refused.add("L0510", {}, error, cure);
+    if (!error.empty()) refused.add(code::unusable_address, {}, error, cure);
 }
 
 /// What is written to the recording's file, if there is one.
@@ -31,14 +32,16 @@ void open_recording(std::optional<RecordingWriter>& recording, const Loaded& loa
     recording.emplace(World::system(), options.record, program, meaning_of(loaded.program).in_force,
                       goes_on, options.sync);
     if (!recording->error().empty())
-        refused.add("L0512", {}, recording->error(), "name another file: --record FILE.yaml");
+        refused.add(code::recording_cannot_be_written, {}, recording->error(),
+                    "name another file: --record FILE.yaml");
 }
 
 void open_audit(std::optional<Audit>& audit, const std::string& path, Diagnostics& refused) {
     if (path.empty()) return;
     audit.emplace(World::system(), path);
     if (!audit->error().empty())
-        refused.add("L0512", {}, audit->error(), "name another file: --audit FILE");
+        refused.add(code::recording_cannot_be_written, {}, audit->error(),
+                    "name another file: --audit FILE");
 }
 
 /// A server's clients, and where they come in.
@@ -56,7 +59,7 @@ void open_door(std::optional<Door>& door, std::size_t most, Clients::Answer answ
     if (address.port == 0) return;
     door.emplace(most, std::move(answer), address);
     if (!door->listener.error().empty())
-        refused.add("L0510", {},
+        refused.add(code::unusable_address, {},
                     fmt::format("cannot listen at {}: {}", address.text(), door->listener.error()),
                     "allow this program more threads, files or memory, or name another port");
 }
@@ -78,7 +81,7 @@ ServeReport serve(Loaded& loaded, RunOptions how, const ServeOptions& options,
         open_recording(recording, loaded, options, how.restart == Restart::hot, refused);
     if (options.realtime > 0)
         if (const std::string error = Pacer::be_realtime(options.realtime); !error.empty())
-            refused.add("L0511", {}, error, realtime_help);
+            refused.add(code::no_realtime_priority, {}, error, realtime_help);
     if (!refused.empty()) return report;
 
     std::int64_t end = 0;

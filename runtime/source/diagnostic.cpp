@@ -169,7 +169,7 @@ bool spells_out(std::string_view word, std::string_view name) {
     return word.starts_with(name) && 3 * name.size() >= 2 * word.size();
 }
 
-/// Of `a.position` 8.
+/// The length of the longest part of a name: 8 for `a.position`.
 std::size_t longest_part(std::string_view word) {
     const std::size_t dot = std::min(word.find('.'), word.size());
     return std::max(dot, word.size() - dot);

@@ -48,8 +48,8 @@ class Diagnostics {
     /// Errors that were added, kept or not.
     std::size_t count() const { return count_; }
 
-    /// Of what is allowed and hardly meant: no error, so that the list may be empty. Equal ones are
-    /// kept once.
+    /// Tells what is allowed and hardly meant: no error, so that the list may be empty. Equal
+    /// warnings are kept once.
     void warn(std::string code, Mark mark, std::string message, std::string help = {});
     const std::vector<Diagnostic>& warnings() const { return warnings_; }
     /// Warnings become errors.

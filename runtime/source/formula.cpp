@@ -37,7 +37,7 @@ constexpr Function functions[] = {
     {"exp", [](double x) -> double { return Sleef_cinz_expd1_u10purec(x); }},
     {"ln", [](double x) -> double { return Sleef_cinz_logd1_u10purec(x); }}};
 
-/// Of one unit with the others: `abs`, `min`; see Evaluator::call.
+/// Functions whose arguments and value have one unit: `abs`, `min`; see Evaluator::call.
 constexpr std::string_view of_units[] = {"abs", "sqrt", "min", "max", "mean", "atan2"};
 
 bool is_function(std::string_view name) {

@@ -14,7 +14,7 @@ class InputFile {
   public:
     /// Does not wait for the other end of a pipe.
     explicit InputFile(const std::string& path);
-    /// Of a descriptor that stays open, such as the standard input.
+    /// Reads a descriptor that stays open, such as the standard input.
     explicit InputFile(int descriptor);
     ~InputFile();
     InputFile(const InputFile&) = delete;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/formula.hpp"
 #include "runtime/source/habits.hpp"
 #include "runtime/source/letters.hpp"
@@ -60,9 +61,10 @@ std::string unknown_factor(std::string_view text) {
     return {};
 }
 
-/// Of what is reported where a value, a wire or a signal is expected.
-constexpr std::string_view codes_of_values[] = {"L0207", "L0208", "L0301",
-                                                "L0304", "L0307", "L0309"};
+/// The codes of what is reported where a value, a wire or a signal is expected.
+constexpr std::string_view codes_of_values[] = {code::unknown_parameter, code::unknown_signal,
+                                                code::not_a_number,      code::unknown_unit,
+                                                code::not_a_boolean,     code::not_a_whole_number};
 
 /// `at` and what is wrong become the character's.
 void name_character(Diagnostic& at, std::string_view text, const LookAlike& character) {
@@ -71,7 +73,7 @@ void name_character(Diagnostic& at, std::string_view text, const LookAlike& char
         at.mark.column += static_cast<int>(count_characters(text.substr(0, character.offset)));
         at.mark.length = 1;
     }
-    at.code = "L0109";
+    at.code = code::look_alike_character;
     at.message = fmt::format("{} stands in '{}'", character.name, text);
     at.help = fmt::format("write {} instead", character.instead);
 }
@@ -87,7 +89,7 @@ bool is_identifier(std::string_view text) {
            std::ranges::all_of(text, [](char c) { return is_letter(c) || is_digit(c); });
 }
 
-/// Of a part: sources may name it with letters beyond ASCII.
+/// Sources may name a part with letters beyond ASCII.
 bool is_part_letter(char c) {
     return is_letter(c) || !is_ascii(c);
 }
@@ -126,8 +128,8 @@ void Reader::fail(const char* code, const Node& node, std::string message, std::
                                  ? std::string()
                                  : expression_help(node.text);
         if (!better.empty())
-            found = {"L0217", node.mark, fmt::format("'{}' is an expression", node.text),
-                     std::move(better)};
+            found = {code::expression_for_a_value, node.mark,
+                     fmt::format("'{}' is an expression", node.text), std::move(better)};
     }
     if (node.used_in_line > 0)
         found.message +=
@@ -142,28 +144,30 @@ void Reader::fail(const char* code, const Node& node, std::string message, std::
 
 bool Reader::expect_map(const Node& node, std::string_view what, std::string help) const {
     if (!node.is_map())
-        fail("L0209", node, fmt::format("{} is a map, not {}", what, name_of(node.kind)),
-             std::move(help));
+        fail(code::wrong_kind_of_value, node,
+             fmt::format("{} is a map, not {}", what, name_of(node.kind)), std::move(help));
     return node.is_map();
 }
 
 bool Reader::expect_sequence(const Node& node, std::string_view what) const {
     if (!node.is_sequence())
-        fail("L0209", node, fmt::format("{} is a list, not {}", what, name_of(node.kind)));
+        fail(code::wrong_kind_of_value, node,
+             fmt::format("{} is a list, not {}", what, name_of(node.kind)));
     return node.is_sequence();
 }
 
 bool Reader::expect_scalar(const Node& node, std::string_view what) const {
     if (!node.is_scalar())
-        fail("L0209", node, fmt::format("{} is a single value, not {}", what, name_of(node.kind)));
+        fail(code::wrong_kind_of_value, node,
+             fmt::format("{} is a single value, not {}", what, name_of(node.kind)));
     else if (node.is_empty())
-        fail("L0209", node, fmt::format("{} has no value", what));
+        fail(code::wrong_kind_of_value, node, fmt::format("{} has no value", what));
     return node.is_scalar() && !node.is_empty();
 }
 
 bool Reader::identifier(const Node& node, std::string_view what) const {
     if (node.is_scalar() && is_identifier(node.text)) return true;
-    fail("L0210", node, fmt::format("'{}' is not a name for {}", node.text, what),
+    fail(code::unusable_name, node, fmt::format("'{}' is not a name for {}", node.text, what),
          "a name has letters, digits and '_', and does not begin with a digit");
     return false;
 }
@@ -172,7 +176,7 @@ std::optional<bool> Reader::boolean(const Node& node) const {
     if (!expect_scalar(node, "a boolean")) return {};
     if (!node.quoted && node.text == "true") return true;
     if (!node.quoted && node.text == "false") return false;
-    fail("L0307", node, fmt::format("'{}' is not a boolean", node.text),
+    fail(code::not_a_boolean, node, fmt::format("'{}' is not a boolean", node.text),
          node.quoted ? "write it without quotes" : "write true or false");
     return {};
 }
@@ -180,23 +184,26 @@ std::optional<bool> Reader::boolean(const Node& node) const {
 std::optional<Quantity> Reader::quantity(const Node& node, std::string expected) const {
     if (!expect_scalar(node, "a number")) return {};
     if (node.quoted) {
-        fail("L0301", node, "a text in quotes is not a number", "write it without quotes");
+        fail(code::not_a_number, node, "a text in quotes is not a number",
+             "write it without quotes");
         return {};
     }
     const auto result = parse_quantity(node.text);
     if (const auto* quantity = std::get_if<Quantity>(&result)) return *quantity;
     const QuantityError error = std::get<QuantityError>(result);
     if (error == QuantityError::out_of_range) {
-        fail("L0305", node, fmt::format("'{}' is beyond a 64-bit number's range", node.text));
+        fail(code::number_out_of_range, node,
+             fmt::format("'{}' is beyond a 64-bit number's range", node.text));
         return {};
     }
     const std::string unit =
         error == QuantityError::unknown_unit ? unknown_factor(node.text) : std::string();
     if (unit.empty() || unit.starts_with(','))
-        fail("L0301", node, fmt::format("'{}' is not a number", node.text),
+        fail(code::not_a_number, node, fmt::format("'{}' is not a number", node.text),
              number_help(node.text, std::move(expected)));
     else
-        fail("L0304", node, fmt::format("the unit '{}' in '{}' is not known", unit, node.text),
+        fail(code::unknown_unit, node,
+             fmt::format("the unit '{}' in '{}' is not known", unit, node.text),
              unit_help(unit, expected));
     return {};
 }
@@ -209,7 +216,8 @@ std::optional<std::int64_t> Reader::integer(const Node& node, std::string help) 
         help = "write it without point and exponent";
     else if (help.empty())
         help = "expected a whole number without a unit";
-    fail("L0309", node, fmt::format("'{}' is not a whole number", node.text), std::move(help));
+    fail(code::not_a_whole_number, node, fmt::format("'{}' is not a whole number", node.text),
+         std::move(help));
     return {};
 }
 
@@ -219,18 +227,19 @@ std::optional<double> Reader::real(const Node& node, const Unit& unit) const {
                                       : fmt::format("expected a number in {}", unit.text));
     if (!q) return {};
     if (!q->has_unit && !is_plain(unit)) {
-        fail("L0302", node, fmt::format("'{}' has no unit", node.text),
+        fail(code::unit_is_missing, node, fmt::format("'{}' has no unit", node.text),
              fmt::format("did you mean '{} {}'?", node.text, unit.text));
         return {};
     }
     if (!q->unit.same_dimension(unit)) {
-        fail("L0303", node,
+        fail(code::unit_measures_something_else, node,
              fmt::format("'{}' is {}, expected {}", node.text, given(*q), expected_in(unit)));
         return {};
     }
     const double value = convert(q->number, q->unit, unit);
     if (std::isfinite(value)) return value;
-    fail("L0305", node, fmt::format("'{}' is beyond a 64-bit number's range", node.text));
+    fail(code::number_out_of_range, node,
+         fmt::format("'{}' is beyond a 64-bit number's range", node.text));
     return {};
 }
 
@@ -240,20 +249,22 @@ std::optional<std::int64_t> Reader::time(const Node& node) const {
     if (!q) return {};
     static const Unit second = *Unit::parse("s");
     if (!q->has_unit) {
-        fail("L0302", node, fmt::format("'{}' has no time unit", node.text),
+        fail(code::unit_is_missing, node, fmt::format("'{}' has no time unit", node.text),
              fmt::format("did you mean '{} ms' or '{} s'?", node.text, node.text));
         return {};
     }
     if (!q->unit.same_dimension(second)) {
-        fail("L0308", node, fmt::format("'{}' is {}, not a time", node.text, given(*q)), help);
+        fail(code::not_a_time, node, fmt::format("'{}' is {}, not a time", node.text, given(*q)),
+             help);
         return {};
     }
     const auto ns = to_nanoseconds(*q);
     if (ns && *ns >= 0) return ns;
     if (q->number < 0)
-        fail("L0308", node, fmt::format("'{}' is below 0", node.text));
+        fail(code::not_a_time, node, fmt::format("'{}' is below 0", node.text));
     else
-        fail("L0308", node, fmt::format("'{}' is not a whole number of nanoseconds", node.text),
+        fail(code::not_a_time, node,
+             fmt::format("'{}' is not a whole number of nanoseconds", node.text),
              "times are counted in ns, up to 292 years");
     return {};
 }
@@ -263,7 +274,8 @@ std::optional<std::int64_t> Reader::time_or_share(const Node& node, std::int64_t
     const auto share = real(node, Unit());
     if (!share) return {};
     if (*share >= 0 && *share <= 1) return std::llround(*share * static_cast<double>(whole));
-    fail("L0305", node, fmt::format("'{}' is not between 0 % and 100 %", node.text));
+    fail(code::number_out_of_range, node,
+         fmt::format("'{}' is not between 0 % and 100 %", node.text));
     return {};
 }
 

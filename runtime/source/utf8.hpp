@@ -24,7 +24,7 @@ inline std::size_t plain_length(std::string_view text) {
     return static_cast<std::size_t>(at - text.data());
 }
 
-/// Of a text whose first byte is not ASCII.
+/// The first character of a text whose first byte is not ASCII.
 Utf8Character first_beyond_ascii(std::string_view text);
 
 /// The first character of `text`, which is not empty.

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
+
 namespace lineshaft {
 
 namespace fs = std::filesystem;
@@ -23,14 +25,17 @@ std::vector<Part> find_parts(const std::string& folder, Diagnostics& out) {
     for (auto it = fs::directory_iterator(folder, error); !error && it != fs::directory_iterator();
          it.increment(error))
         if (it->path().extension() == ".csv") paths.push_back(it->path().string());
-    if (error) out.add("L0001", {}, fmt::format("cannot read '{}': {}", folder, error.message()));
+    if (error)
+        out.add(code::file_cannot_be_read, {},
+                fmt::format("cannot read '{}': {}", folder, error.message()));
     std::ranges::sort(paths);
     std::vector<Part> parts;
     for (const std::string& path : paths)
         if (auto identity = read_identity(path); !identity)
             continue;
         else if (identity->is_damaged)
-            out.add("L0612", {}, fmt::format("the sidecar of '{}' names no chunk", path),
+            out.add(code::chunk_of_another_study, {},
+                    fmt::format("the sidecar of '{}' names no chunk", path),
                     "compute it again, or move it out of the folder");
         else if (identity->chunk)
             parts.push_back({path, std::move(*identity)});
@@ -53,11 +58,11 @@ std::string ranges(const std::vector<std::int64_t>& numbers) {
 bool belongs(const Part& part, std::int64_t of, const Study& study, Diagnostics& out) {
     const Chunk& chunk = *part.identity.chunk;
     if (part.identity.study != study.identity)
-        out.add("L0612", {},
+        out.add(code::chunk_of_another_study, {},
                 fmt::format("'{}' was computed from another plan or program", part.path),
                 "compute it again, or move it out of the folder");
     else if (chunk.of != of)
-        out.add("L0612", {},
+        out.add(code::chunk_of_another_study, {},
                 fmt::format("'{}' is chunk {} of {}, others are of {}", part.path, chunk.index,
                             chunk.of, of),
                 "keep the chunks of one division in the folder");
@@ -68,7 +73,8 @@ bool is_whole(const Part& part, const Study& study, const StudyCsv& csv, Diagnos
     const Chunk& chunk = *part.identity.chunk;
     const ResultFile file(part.path, study, csv, chunk);
     if (file.take_whole([](const CaseResult&) {})) return true;
-    out.add("L0613", {}, fmt::format("'{}' is not what its sidecar describes", part.path),
+    out.add(code::damaged_chunk, {},
+            fmt::format("'{}' is not what its sidecar describes", part.path),
             fmt::format("compute it again: --chunk {}/{} -o {}", chunk.index, chunk.of, part.path));
     return false;
 }
@@ -79,7 +85,7 @@ std::vector<std::string> find_chunks(const std::string& folder, const Study& stu
                                      const StudyCsv& csv, Diagnostics& out) {
     const std::vector<Part> parts = find_parts(folder, out);
     if (parts.empty() && out.empty())
-        out.add("L0611", {}, fmt::format("there is no chunk in '{}'", folder),
+        out.add(code::chunks_are_missing, {}, fmt::format("there is no chunk in '{}'", folder),
                 "compute them with --chunk 1/4 -o FOLDER/part_1.csv and so on");
     if (!out.empty()) return {};
     const std::int64_t of = parts.front().identity.chunk->of;
@@ -92,7 +98,7 @@ std::vector<std::string> find_chunks(const std::string& folder, const Study& stu
     for (std::int64_t i = 1; i <= of; ++i)
         if (!found.contains(i)) missing.push_back(i);
     if (!missing.empty()) {
-        out.add("L0611", {},
+        out.add(code::chunks_are_missing, {},
                 fmt::format("of {} chunks in '{}' {} missing: {}", of, folder,
                             missing.size() == 1 ? "one is" : fmt::format("{} are", missing.size()),
                             ranges(missing)),

@@ -46,7 +46,7 @@ class ResultReader {
 
     /// The next row; empty at the end.
     std::optional<CaseResult> next();
-    /// Of what was read as text.
+    /// The hash of what was read as text.
     const std::string& rows_hash() const { return hash_; }
     std::int64_t bytes() const { return bytes_; }
 

@@ -17,7 +17,8 @@ class Scatter {
         squares_ += above * (value - middle_);
     }
     double mean() const { return sum_ / count_; }
-    /// Of the sample: sqrt(sum of (value - mean)^2 / (count - 1)); 0 of fewer than two.
+    /// The standard deviation of the sample: sqrt(sum of (value - mean)^2 / (count - 1)); 0 of
+    /// fewer than two.
     double spread() const { return count_ > 1 ? std::sqrt(squares_ / (count_ - 1)) : 0; }
     double value(Statistic statistic) const {
         return statistic == Statistic::mean ? mean() : spread();

@@ -16,7 +16,7 @@ void replace(std::vector<Setting>& settings, Setting setting) {
     settings.push_back(std::move(setting));
 }
 
-/// Of `combination` of the grid, counted with the last axis fastest.
+/// Adds the settings of a combination of the grid, counted with the last axis fastest.
 void choose(const std::vector<GridAxis>& grid, std::int64_t combination,
             std::vector<Setting>& settings) {
     std::vector<const Setting*> chosen(grid.size());

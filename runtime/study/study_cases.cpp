@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/study/study_file_reader.hpp"
 
 namespace lineshaft {
@@ -59,7 +60,7 @@ void StudyFileReader::one_case(const CasePlan& plan) {
 
 void StudyFileReader::check_name(const Node& name) {
     if (name.is_empty() || names_.insert(name.text).second) return;
-    read_.fail("L0212", name, fmt::format("a case before has the name '{}'", name.text));
+    read_.fail(code::named_twice, name, fmt::format("a case before has the name '{}'", name.text));
     cases_known_ = false;
 }
 
@@ -74,7 +75,7 @@ bool StudyFileReader::count(CaseGroup& group, const Mark& place) {
     if (runs > most_runs) {
         const std::string text = product_text(group);
         const bool beyond = runs == std::numeric_limits<std::int64_t>::max();
-        read_.diagnostics().add("L0601", place,
+        read_.diagnostics().add(code::too_many_runs, place,
                                 beyond
                                     ? fmt::format("this makes {} runs, which is beyond 2^63", text)
                                 : text.find('x') == std::string::npos
@@ -82,7 +83,7 @@ bool StudyFileReader::count(CaseGroup& group, const Mark& place) {
                                     : fmt::format("this makes {} = {} runs", text, runs),
                                 limit);
     } else if (runs_ <= most_runs && runs_ + runs > most_runs) {
-        read_.diagnostics().add("L0601", group.mark,
+        read_.diagnostics().add(code::too_many_runs, group.mark,
                                 fmt::format("with this case the study makes {} runs", runs_ + runs),
                                 limit);
     }

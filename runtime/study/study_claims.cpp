@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/formula.hpp"
 #include "runtime/study/study_file_reader.hpp"
 
@@ -21,7 +22,7 @@ bool has_paper(const CaseGroup& group) {
 void StudyFileReader::compare(const ComparisonPlan& plan, const Machine& machine,
                               CaseGroup& group) {
     if (plan.statistic == Statistic::spread && group.repeat < 2)
-        read_.fail("L0213", plan.signal,
+        read_.fail(code::entries_do_not_go_together, plan.signal,
                    "'spread' is the standard deviation over the repeats, and there is one run",
                    "write repeat: 4");
     if (const Signal* signal = machine.find(plan.signal.text)) {
@@ -31,7 +32,7 @@ void StudyFileReader::compare(const ComparisonPlan& plan, const Machine& machine
     }
     std::vector<std::string> names;
     for (const Signal& s : machine.signals) names.push_back(s.name);
-    read_.fail("L0203", plan.signal,
+    read_.fail(code::unknown_port, plan.signal,
                fmt::format("the program has no signal '{}'", plan.signal.text),
                suggest(plan.signal.text, names));
     cases_known_ = false;
@@ -46,7 +47,8 @@ Bounds StudyFileReader::bounds(const BoundsPlan& plan, const Unit& unit) const {
                   .at_least = number(plan.at_least),
                   .at_most = number(plan.at_most)};
     if (bounds.at_least && bounds.at_most && *bounds.at_least > *bounds.at_most)
-        read_.fail("L0213", *plan.at_least, "'at_least' is above 'at_most': this never holds");
+        read_.fail(code::entries_do_not_go_together, *plan.at_least,
+                   "'at_least' is above 'at_most': this never holds");
     if (bounds.paper)
         for (const Node& distance : plan.within) within(distance, unit, bounds);
     return bounds;
@@ -64,7 +66,7 @@ void StudyFileReader::within(const Node& node, const Unit& unit, Bounds& bounds)
         distance = read_.real_or_share(node, unit, *bounds.paper);
     }
     if (distance && *distance < 0)
-        read_.fail("L0305", node, fmt::format("'{}' is below 0", node.text));
+        read_.fail(code::number_out_of_range, node, fmt::format("'{}' is below 0", node.text));
     if (distance) bounds.within.push_back(*distance);
 }
 
@@ -99,7 +101,8 @@ void StudyFileReader::check_formula(const Node& formula) const {
         place.mark.column += static_cast<int>(result.position) + quote;
         place.mark.length = std::max(1, static_cast<int>(result.name.size()));
     }
-    read_.fail("L0602", place, result.error, misspelt ? suggest(result.name, known) : "");
+    read_.fail(code::mistake_in_formula, place, result.error,
+               misspelt ? suggest(result.name, known) : "");
 }
 
 }  // namespace lineshaft

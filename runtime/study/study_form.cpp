@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "runtime/program/program_form.hpp"
+#include "runtime/source/codes.hpp"
 
 // clang-format off: tables are laid out by hand
 
@@ -31,20 +32,23 @@ void check_limits(const Reader& read, const Node& values, const RandomParameter&
     const Node& first = values.items[0];
     const Node& second = values.items[1];
     if (p.distribution == Distribution::normal) {
-        if (p.b < 0) read.fail("L0305", second, fmt::format("'{}' is below 0", second.text));
+        if (p.b < 0)
+            read.fail(code::number_out_of_range, second,
+                      fmt::format("'{}' is below 0", second.text));
         return;
     }
     if (p.b < p.a)
-        return read.fail("L0305", second,
+        return read.fail(code::number_out_of_range, second,
                          fmt::format("'{}' is below '{}'", second.text, first.text),
                          "write the least value first");
     if (p.distribution == Distribution::log_uniform && !(p.a > 0))
-        return read.fail("L0305", first,
+        return read.fail(code::number_out_of_range, first,
                          fmt::format("'{}' is not above 0 and has no logarithm", first.text));
     if (p.distribution != Distribution::integer) return;
     for (const auto& [node, value] : {std::pair(&first, p.a), std::pair(&second, p.b)})
         if (value != std::trunc(value) || std::abs(value) > greatest_integer)
-            return read.fail("L0309", *node, fmt::format("'{}' is not a whole number", node->text));
+            return read.fail(code::not_a_whole_number, *node,
+                             fmt::format("'{}' is not a whole number", node->text));
 }
 
 /// Two numbers of one unit; a standard deviation may be in % of the mean.
@@ -53,7 +57,7 @@ void read_limits(const Reader& read, const Node& values, RandomParameter& p) {
     constexpr bool normal = distribution == Distribution::normal;
     p.distribution = distribution;
     if (values.items.size() != 2)
-        return read.fail("L0202", values,
+        return read.fail(code::entry_is_missing, values,
                          fmt::format("'{}' takes two numbers", name_of(distribution)),
                          normal ? "they are the mean and the standard deviation"
                                 : "they are the least and the greatest");
@@ -106,9 +110,9 @@ const Form& distribution_form() {
                     "a random value has one distribution",
                     "write it as {uniform: [5 mm/s, 10 mm/s]}",
                     the_map,
-                    "L0202"}},
+                    code::entry_is_missing}},
          .unknown = "'{}' is not a distribution",
-         .unknown_code = "L0306"});
+         .unknown_code = code::no_allowed_name});
     return form;
 }
 
@@ -117,7 +121,7 @@ const Form& distribution_form() {
 void read_random(const Reader& read, const Node& node, CasePlan& plan) {
     for (const auto& [name, body] : node.entries) {
         if (std::ranges::find(plan.grid, name.text, &GridAxis::name) != plan.grid.end())
-            read.fail("L0213", name,
+            read.fail(code::entries_do_not_go_together, name,
                       fmt::format("'{}' is drawn here, and a part of the grid as well", name.text));
         RandomParameter made;
         made.name = name.text;
@@ -136,7 +140,7 @@ void read_grid(const Reader& read, const Node& node, CasePlan& plan) {
             axis.values.push_back({name.text, value.text, name.mark, value.mark});
         }
         if (axis.values.empty())
-            return read.fail("L0202", values,
+            return read.fail(code::entry_is_missing, values,
                              fmt::format("the grid has no value of '{}'", name.text));
         plan.grid.push_back(std::move(axis));
     }
@@ -219,7 +223,7 @@ void read_cases(const Reader& read, const Node& node, StudyPlan& study) {
 void read_unit(const Reader& read, const Node& node, ClaimPlan& claim) {
     claim.percent = node.text == "%";
     if (!claim.percent)
-        read.fail("L0304", node,
+        read.fail(code::unknown_unit, node,
                   fmt::format("a claim is a plain number or in %, not in '{}'", node.text));
 }
 

@@ -15,12 +15,12 @@ namespace lineshaft {
 
 namespace {
 
-/// Of all before and `text`.
+/// The hash is then that of all before and `text`.
 void add(std::string& hash, const std::string& text) {
     hash = text_hash(hash + text);
 }
 
-/// Of a file's bytes; of none where it cannot be read.
+/// The checksum of a file's bytes; of none where it cannot be read.
 std::string checksum_of(const std::string& path) {
     Checksum checksum;
     InputFile file(path);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
 
 namespace lineshaft {
@@ -121,7 +122,7 @@ std::vector<RunDifference> run_differences(const CsvMetadata& a, const CsvMetada
 
 void check_comparable(const CsvTable& a, const CsvTable& b, bool same_program, Diagnostics& out) {
     const auto fail = [&](const std::string& what, const std::string& help) {
-        out.add("L0708", {b.header, 0, 0, 1},
+        out.add(code::traces_cannot_be_compared, {b.header, 0, 0, 1},
                 fmt::format("the trace cannot be compared with '{}': {}", a.header->path, what),
                 help);
     };

@@ -4,15 +4,9 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <filesystem>
 #include <limits>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include "runtime/csv/csv_metadata.hpp"
 #include "runtime/source/number_text.hpp"
-#include "runtime/version.hpp"
 
 namespace lineshaft {
 
@@ -25,26 +19,6 @@ char* append(char* end, Type type, std::uint64_t bits) {
                               : write_integer(end, static_cast<std::int64_t>(bits));
 }
 
-std::string csvw_type(Type type) {
-    switch (type) {
-        case Type::boolean:
-            return "boolean";
-        case Type::real:
-            return "double";
-        default:
-            return "integer";
-    }
-}
-
-nlohmann::ordered_json csvw_column(const Signal& signal, const std::string& title) {
-    nlohmann::ordered_json column{{"titles", title}, {"datatype", csvw_type(signal.type)}};
-    if (title != signal.name) column["lineshaft:signal"] = signal.name;
-    if (signal.type == Type::boolean) column["datatype"] = {{"base", "boolean"}, {"format", "1|0"}};
-    if (!signal.unit.empty()) column["unit"] = signal.unit;
-    if (!signal.names.empty()) column["values"] = signal.names;
-    return column;
-}
-
 }  // namespace
 
 CsvWriter::CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& style)
@@ -53,8 +27,9 @@ CsvWriter::CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& 
       signals_(setup.signals),
       style_(style),
       separator_(style.excel_de ? ';' : ',') {
-    std::string header = title("time", "s") + separator_ + "scan";
-    for (const Signal& signal : signals_) header += separator_ + title(signal.name, signal.unit);
+    std::string header = title_of(style_, "time", "s") + separator_ + "scan";
+    for (const Signal& signal : signals_)
+        header += separator_ + title_of(style_, signal.name, signal.unit);
     write(header + "\n");
     make_room();
 }
@@ -101,13 +76,6 @@ void CsvWriter::rows(const std::uint64_t* words, std::size_t rows) {
     row_count_ += static_cast<std::int64_t>(rows);
 }
 
-std::string CsvWriter::title(std::string_view name, std::string_view unit) const {
-    std::string text(name);
-    const char dot = style_.names == CsvStyle::Names::slash ? '/' : '_';
-    if (style_.names != CsvStyle::Names::dot) std::ranges::replace(text, '.', dot);
-    return style_.units && !unit.empty() ? fmt::format("{} [{}]", text, unit) : text;
-}
-
 void CsvWriter::write(std::string_view text) {
     checksum_.add(text);
     file_->write(text);
@@ -136,33 +104,16 @@ char* CsvWriter::append_cell(char* end, Cell& cell, std::uint64_t bits) {
     return end + cell.length;
 }
 
-void CsvWriter::finish(OutputSet& files, const TraceOrigin& origin, const std::string& stopped,
-                       const nlohmann::ordered_json& expectations) {
-    files.add(std::move(file_), sidecar(origin, stopped, expectations));
+WrittenTable CsvWriter::written() const {
+    return {.path = path_,
+            .signals = signals_,
+            .style = style_,
+            .rows = row_count_,
+            .crc32 = checksum_.text()};
 }
 
-std::string CsvWriter::sidecar(const TraceOrigin& origin, const std::string& stopped,
-                               const nlohmann::ordered_json& expectations) const {
-    nlohmann::ordered_json columns = nlohmann::ordered_json::array();
-    for (const Signal& s : {Signal{.name = "time", .type = Type::real, .unit = "s", .names = {}},
-                            Signal{.name = "scan", .type = Type::integer, .unit = {}, .names = {}}})
-        columns.push_back(csvw_column(s, title(s.name, s.unit)));
-    for (const Signal& s : signals_) columns.push_back(csvw_column(s, title(s.name, s.unit)));
-    nlohmann::ordered_json metadata{{"@context", "http://www.w3.org/ns/csvw"},
-                                    {"url", std::filesystem::path(path_).filename().string()},
-                                    {"dc:title", origin.title},
-                                    {"lineshaft:version", version()},
-                                    {"lineshaft:program", origin.program}};
-    if (!origin.run.is_null()) metadata["lineshaft:run"] = origin.run;
-    if (!origin.notes.is_null()) metadata["lineshaft:notes"] = origin.notes;
-    if (!origin.report.is_null()) metadata["lineshaft:report"] = origin.report;
-    metadata["lineshaft:rows"] = row_count_;
-    metadata["lineshaft:crc32"] = checksum_.text();
-    if (!stopped.empty()) metadata["lineshaft:stopped"] = stopped;
-    if (style_.excel_de) metadata["dialect"] = {{"delimiter", ";"}};
-    if (!expectations.empty()) metadata["lineshaft:expectations"] = expectations;
-    metadata["tableSchema"] = {{"columns", columns}};
-    return sidecar_text(std::move(metadata));
+void CsvWriter::hand_over(OutputSet& files, std::string sidecar) {
+    files.add(std::move(file_), std::move(sidecar));
 }
 
 }  // namespace lineshaft

@@ -3,37 +3,13 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "runtime/csv/checksum.hpp"
 #include "runtime/source/number_text.hpp"
+#include "runtime/trace/csv_sidecar.hpp"
 #include "runtime/trace/output_set.hpp"
 #include "runtime/trace/recorder.hpp"
 
 namespace lineshaft {
-
-/// How a CSV file is written.
-struct CsvStyle {
-    enum class Names : std::uint8_t {
-        dot,    ///< `shaft.position`, as in the program
-        slash,  ///< `shaft/position`: PlotJuggler makes a tree of it
-        snake,  ///< `shaft_position`: a name in most languages
-    };
-
-    Names names = Names::dot;
-    bool units = false;  ///< in the header: `shaft.position [mm]`
-    bool excel_de =
-        false;  ///< semicolons between cells and decimal commas, as a German Excel reads
-};
-
-/// What made a trace, for its sidecar.
-struct TraceOrigin {
-    std::string title = {};              ///< of the program
-    std::string program = {};            ///< Meaning::in_force of the program
-    nlohmann::ordered_json run = {};     ///< see origin_of(); null: not told
-    nlohmann::ordered_json notes = {};   ///< of the program, a list; null: none
-    nlohmann::ordered_json report = {};  ///< see connect_report(); null: not said
-};
 
 /// Writes rows as RFC 4180 CSV: one header row, then `time` [s], `scan`, and a column a signal;
 /// comma, newline, shortest round-trip numbers, booleans 0/1, enumerations as integers,
@@ -49,11 +25,12 @@ class CsvWriter : public TraceSink {
 
     void rows(const std::uint64_t* words, std::size_t rows) override;
 
-    /// Hands the file over, with its CSVW sidecar `PATH-metadata.json`: types, units, what made it,
-    /// rows, a checksum, why the run stopped if it did not complete, and what came of its
-    /// expectations (see verdicts_json). Nothing may follow.
-    void finish(OutputSet& files, const TraceOrigin& origin, const std::string& stopped = {},
-                const nlohmann::ordered_json& expectations = {});
+    /// What has been written so far, as its sidecar tells it.
+    WrittenTable written() const;
+
+    /// Hands the file over, with what stands in its sidecar `PATH-metadata.json`. Nothing may
+    /// follow.
+    void hand_over(OutputSet& files, std::string sidecar);
 
     /// Whether writing goes wrong. May be asked while another thread writes.
     bool failed() const { return file_->failed(); }
@@ -69,10 +46,7 @@ class CsvWriter : public TraceSink {
     };
 
     void make_room();
-    std::string title(std::string_view name, std::string_view unit) const;
     void write(std::string_view text);
-    std::string sidecar(const TraceOrigin& origin, const std::string& stopped,
-                        const nlohmann::ordered_json& expectations) const;
     static char* append_cell(char* end, Cell& cell, std::uint64_t bits);
     /// The text up to `end` into the file; returns where the next begins.
     char* write_out(char* end);

@@ -28,7 +28,7 @@ class FolderLocks {
 /// when a disk fails. Of a folder that may not be read nobody is told whether one does.
 bool flush_file_system(const std::string& folder);
 
-/// Of a file: `.` for a bare name.
+/// The folder that a file stands in: `.` for a bare name.
 std::string folder_of(const std::string& path);
 
 }  // namespace lineshaft

@@ -33,7 +33,7 @@ std::string tail_of(const std::string& path, std::int64_t size) {
     return file ? tail : "";
 }
 
-/// Of a part's name: `.part`, `.part2`.
+/// Whether a part's name ends so: `.part`, `.part2`.
 bool is_suffix(std::string_view text) {
     constexpr std::string_view begin = ".part";
     return text.starts_with(begin) &&

@@ -30,7 +30,7 @@ class OutputSet {
     void save(StateWriter& out);
     void restore(StateReader& in, const std::vector<std::string>& known);
 
-    /// Of the first file that went wrong; empty while all is well.
+    /// What is wrong with the first file that went wrong; empty while all is well.
     const std::string& error() const { return error_; }
 
   private:

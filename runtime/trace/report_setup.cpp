@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/formula.hpp"
 
 namespace lineshaft {
@@ -15,24 +16,25 @@ using Json = nlohmann::ordered_json;
 
 class ReportSetup {
   public:
-    ReportSetup(const Connecting& to, const std::vector<TraceSetup>& traces, const Node& report)
-        : to_(to), traces_(traces), report_(report), curves_(report.find("curves")) {}
+    ReportSetup(const Connecting& to, const std::vector<TraceSetup>& traces,
+                const ReportPlan& report)
+        : to_(to), traces_(traces), report_(report) {}
 
     Json connect() const {
         Json made = Json::object();
-        if (const Node* plots = report_.find("plots"))
-            for (const Node& plot : plots->items) made["plots"].push_back(drawn(plot));
-        for (const char* key : {"own_axis", "hide"})
-            if (const Node* names = report_.find(key)) made[key] = drawn(*names);
-        if (curves_)
-            for (const auto& [name, formula] : curves_->entries) {
+        if (report_.plots)
+            for (const Node& plot : report_.plots->items) made["plots"].push_back(drawn(plot));
+        if (report_.own_axis) made["own_axis"] = drawn(*report_.own_axis);
+        if (report_.hide) made["hide"] = drawn(*report_.hide);
+        if (report_.curves)
+            for (const auto& [name, formula] : report_.curves->entries) {
                 check(formula);
                 made["curves"][name.text] = formula.text;
             }
-        if (const Node* paths = report_.find("paths"))
-            for (const Node& pair : paths->items) made["paths"].push_back(path(pair));
-        if (const Node* circle = report_.find("circle")) made["circle"] = circle_of(*circle);
-        if (const Node* condition = report_.find("while")) made["while"] = recorded(*condition);
+        if (report_.paths)
+            for (const Node& pair : report_.paths->items) made["paths"].push_back(path(pair));
+        if (report_.circle) made["circle"] = circle_of(*report_.circle);
+        if (report_.condition) made["while"] = recorded(*report_.condition);
         return made;
     }
 
@@ -50,7 +52,8 @@ class ReportSetup {
         const auto signal = to_.net.find(to_.read, node, node.text);
         if (!signal) return {};
         if (!find(signal->name))
-            to_.read.fail("L0203", node, fmt::format("no trace records '{}'", signal->name),
+            to_.read.fail(code::unknown_port, node,
+                          fmt::format("no trace records '{}'", signal->name),
                           "add it to the signals of 'trace'");
         return signal->name;
     }
@@ -59,29 +62,29 @@ class ReportSetup {
     Json drawn(const Node& names) const {
         Json list = Json::array();
         for (const Node& node : names.items)
-            list.push_back(curves_ && curves_->find(node.text) ? node.text : recorded(node));
+            list.push_back(report_.curves && report_.curves->find(node.text) ? node.text
+                                                                             : recorded(node));
         return list;
     }
 
     Json path(const Node& pair) const {
         if (pair.items.size() == 2)
             return {{"x", recorded(pair.items[0])}, {"y", recorded(pair.items[1])}};
-        to_.read.fail("L0202", pair, "a path takes two signals",
+        to_.read.fail(code::entry_is_missing, pair, "a path takes two signals",
                       "write [x.position, y.position]: the second is drawn over the first");
         return {};
     }
 
     std::optional<Unit> unit_of_paths() const {
-        const Node* paths = report_.find("paths");
-        if (!paths || paths->items.empty() || paths->items[0].items.empty()) return {};
-        const Signal* signal = find(paths->items[0].items[0].text);
+        if (!report_.paths || report_.paths->items[0].items.empty()) return {};
+        const Signal* signal = find(report_.paths->items[0].items[0].text);
         return signal ? Unit::parse(signal->unit) : std::nullopt;
     }
 
     Json circle_of(const Node& node) const {
         constexpr std::array names{"x", "y", "radius"};
         if (node.items.size() != names.size()) {
-            to_.read.fail("L0202", node, "a circle takes three numbers",
+            to_.read.fail(code::entry_is_missing, node, "a circle takes three numbers",
                           "they are x, y and radius");
             return {};
         }
@@ -94,7 +97,7 @@ class ReportSetup {
             made[names[i]] = *value;
         }
         if (made["radius"] <= 0.0)
-            to_.read.fail("L0305", node.items[2],
+            to_.read.fail(code::number_out_of_range, node.items[2],
                           fmt::format("the radius '{}' is not above 0", node.items[2].text));
         return made;
     }
@@ -105,24 +108,25 @@ class ReportSetup {
         };
         const FormulaResult result = evaluate(formula.text, known, "derivative");
         if (result.error.empty()) return;
-        if (result.name.empty()) return to_.read.fail("L0602", formula, result.error);
+        if (result.name.empty())
+            return to_.read.fail(code::mistake_in_formula, formula, result.error);
         std::vector<std::string> names;
         for (const TraceSetup& trace : traces_)
             for (const Signal& signal : trace.signals) names.push_back(signal.name);
-        to_.read.fail("L0602", formula, fmt::format("no trace records '{}'", result.name),
+        to_.read.fail(code::mistake_in_formula, formula,
+                      fmt::format("no trace records '{}'", result.name),
                       suggest(result.name, names));
     }
 
     const Connecting& to_;
     const std::vector<TraceSetup>& traces_;
-    const Node& report_;
-    const Node* curves_;  ///< null: none
+    const ReportPlan& report_;
 };
 
 }  // namespace
 
 nlohmann::ordered_json connect_report(const Connecting& to, const std::vector<TraceSetup>& traces) {
-    const Node* report = to.program.root.find("report");
+    const auto& report = to.program.report;
     return report ? ReportSetup(to, traces, *report).connect() : Json();
 }
 

@@ -50,7 +50,7 @@ void TraceFiles::rows(const std::uint64_t* words, std::size_t rows) {
 
 void TraceFiles::end() {
     background_->finish();
-    csv_->finish(files_, origin_, stopped_, expectations_);
+    csv_->hand_over(files_, csv_sidecar(csv_->written(), origin_, stopped_, expectations_));
     background_.reset();
     csv_.reset();
 }

@@ -40,7 +40,7 @@ class TraceFiles : public TraceSink {
     /// What has been written.
     const std::vector<std::string>& paths() const { return paths_; }
     bool is_open() const { return csv_.has_value(); }
-    /// Of the open file; empty when all is well.
+    /// What is wrong with the open file; empty when all is well.
     std::string error() const { return csv_ ? csv_->error() : ""; }
     /// Whether writing goes wrong: the rest of the run would not be recorded.
     bool failed() const { return csv_ && csv_->failed(); }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "runtime/scan/expectations.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -21,7 +22,7 @@ TraceTrigger connect_trigger(const Connecting& to, const TriggerPlan& plan) {
     const bool of_edge = plan.kind == rising || plan.kind == falling;
     const bool is_number = watched->type == Type::real || watched->type == Type::integer;
     if (of_edge ? watched->type != Type::boolean : !is_number && plan.kind != equals)
-        to.read.fail("L0401", plan.signal,
+        to.read.fail(code::wire_between_types, plan.signal,
                      fmt::format("{} takes a {}, '{}' is {}", of_edge ? "an edge" : "a bound",
                                  of_edge ? "boolean" : "number", watched->name,
                                  kind(watched->type, watched->names)),
@@ -32,7 +33,8 @@ TraceTrigger connect_trigger(const Connecting& to, const TriggerPlan& plan) {
         if (plan.values.size() > 1)
             trigger.high = read_bound(to, *watched, plan.values.back()).value_or(0.0);
         if (compare(trigger.low, trigger.high) > 0)
-            to.read.fail("L0213", plan.values.front(), "the lower bound is above the upper one");
+            to.read.fail(code::entries_do_not_go_together, plan.values.front(),
+                         "the lower bound is above the upper one");
     }
     return trigger;
 }
@@ -65,7 +67,7 @@ std::vector<TraceSetup> connect_traces(const Connecting& to) {
         memory += std::min(own, 2 * most_memory);
         if (plan.pre_trigger == 0 || memory <= most_memory) continue;
         to.read.fail(
-            "L0215", plan.ring,
+            code::too_many_rows_kept, plan.ring,
             fmt::format("{} rows before the trigger take {} MiB, and all traces may take {}",
                         plan.pre_trigger, own >> 20, most_memory >> 20),
             "keep fewer rows or signals, or record every n-th scan only");

@@ -17,7 +17,7 @@ struct TraceTrigger {
     Value low = 0.0;
     Value high = 0.0;
 
-    /// Of the signal's present value.
+    /// Whether the signal's present value is one that triggers.
     bool condition_holds() const;
 };
 

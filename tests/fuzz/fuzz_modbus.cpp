@@ -21,7 +21,7 @@ void hold(bool holds, const char* what) {
 
 constexpr std::size_t most_pdu_bytes = 253;
 
-/// Of a frame without its header: function code and what follows it.
+/// Whether a frame without its header is one: function code and what follows it.
 bool is_answer(std::string_view frame) {
     const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(frame[at]); };
     if (frame.empty() || frame.size() > most_pdu_bytes) return false;

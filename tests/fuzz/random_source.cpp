@@ -308,7 +308,7 @@ class SourceMaker {
 
     const Type& any_scalar() { return *choices_.one_of(scalars_); }
 
-    /// Of values that are copied: no instance.
+    /// A type of values that are copied: no instance.
     const Type& any_type() {
         const std::size_t kind = below(8);
         if (kind == 7) return *choices_.one_of(texts_);
@@ -336,7 +336,7 @@ class SourceMaker {
         return fmt::format("ARRAY[{}] OF {}", text, written_type(*type.element));
     }
 
-    /// Of rows in several dimensions it could be read in two ways.
+    /// Rows in several dimensions could be read in two ways.
     static bool can_begin(const Type& type) {
         if (type.kind == Kind::block) return false;
         if (type.kind == Kind::array)
@@ -774,7 +774,7 @@ class SourceMaker {
         }
     }
 
-    /// Of a real number, or of texts.
+    /// A whole number made of a real one, or of texts.
     std::string whole_of_other(const Type& type, int depth) {
         const Type& any = *choices_.one_of(texts_);
         if (type.name == "DINT") {
@@ -1113,7 +1113,7 @@ class SourceMaker {
         return "(" + text + ")";
     }
 
-    /// Of an instance, a method, or a function, as a statement; its result goes somewhere or not.
+    /// Calls an instance, a method or a function as a statement; its result goes somewhere or not.
     void call_something() {
         std::vector<const Callable*> fitting;
         for (const Callable& callable : callables_)
@@ -1230,7 +1230,7 @@ class SourceMaker {
         if (first) line(fmt::format("{} := {} := {};", *first, *second, expression(type, 3).text));
     }
 
-    /// Of a text that is long enough, mostly.
+    /// Sets a character of a text that is long enough, mostly.
     void set_character() {
         const Type& any = *choices_.one_of(texts_);
         const auto text = place(any, true);

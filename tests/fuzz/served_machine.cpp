@@ -74,7 +74,7 @@ std::string ServedMachine::state() const {
 void ServedMachine::go_on() {
     Machine& machine = loaded_.linked.machine;
     while (!machine.forces.empty()) {
-        executive_.release(machine.forces.front().live);
+        executive_.lift_force(machine.forces.front().live);
         live.step(-1, 1);
     }
     live.set_speed(1);

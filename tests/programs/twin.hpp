@@ -11,7 +11,7 @@
 
 namespace lineshaft::test {
 
-/// Of files of programs/paper.
+/// The library of files of programs/paper.
 inline st::Library compiled(const std::vector<std::string>& files) {
     std::vector<std::shared_ptr<const SourceFile>> sources;
     for (const std::string& file : files)

@@ -146,7 +146,7 @@ bool HandCircleJob::inputs_finite() const {
            std::isfinite(x_velocity) && std::isfinite(y_position) && std::isfinite(y_velocity);
 }
 
-/// Of the parameters: looked at before an arc, not on the way.
+/// What is wrong with the parameters: looked at before an arc, not on the way.
 HandCircleJob::Error HandCircleJob::check_arc(const Scan& now) const {
     if (!std::isnormal(master_speed()) || !std::isfinite(end_angle - start_angle))
         return Error::not_finite;

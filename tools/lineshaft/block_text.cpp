@@ -30,7 +30,7 @@ bool is_reference(const Field& field) {
     return field.direction == Direction::in_out;
 }
 
-/// Of a reference the kind that it takes.
+/// The unit; for a reference the kind that it takes.
 std::string unit_text(const Field& field) {
     std::string text(is_reference(field) ? field.refers : field.unit);
     std::erase_if(text, [](char c) { return c == '{' || c == '}'; });

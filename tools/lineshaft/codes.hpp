@@ -5,9 +5,10 @@
 
 namespace lineshaft {
 
-/// What `lineshaft explain` knows of a message.
+/// What `lineshaft explain` knows of a message: a part of runtime/source/codes.txt.
 struct CodeText {
-    std::string_view code;
+    std::string_view code;  ///< `L0203`
+    std::string_view name;  ///< `unknown_port`, in namespace code
     std::string_view title;
     std::string_view paragraph;
 };

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/source/codes.hpp"
 
 namespace lineshaft {
 
@@ -66,7 +67,8 @@ LoadOptions CommonOptions::load_options(Diagnostics& out) const {
     for (const std::string& text : settings) {
         const auto equals = text.find('=');
         if (equals == std::string::npos || equals == 0) {
-            out.add("L0502", {}, fmt::format("'{}' sets nothing", text), "write --set name=value");
+            out.add(code::unusable_option, {}, fmt::format("'{}' sets nothing", text),
+                    "write --set name=value");
             continue;
         }
         options.settings.push_back({text.substr(0, equals), text.substr(equals + 1)});
@@ -113,10 +115,10 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
         if (was_read(*output) || std::ranges::any_of(inputs, [&](const std::string& input) {
                 return is_same_file(*output, input);
             }))
-            out.add("L0509", {}, fmt::format("'{}' would replace what is read", *output),
-                    "name another file");
+            out.add(code::output_is_an_input, {},
+                    fmt::format("'{}' would replace what is read", *output), "name another file");
         if (std::find(outputs.begin(), output, *output) != output)
-            out.add("L0509", {}, fmt::format("two outputs would be '{}'", *output),
+            out.add(code::output_is_an_input, {}, fmt::format("two outputs would be '{}'", *output),
                     "name another file");
     }
 }

@@ -11,6 +11,7 @@
 #include "blocks/contour/command_path.hpp"
 #include "blocks/contour/magnitude_statistics.hpp"
 #include "runtime/csv/csv_reader.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
 #include "tools/lineshaft/command.hpp"
 
@@ -69,7 +70,7 @@ double factor_to(std::string_view unit, const CsvColumn& column, const CsvTable&
     if (column.unit.empty()) return 1;
     const std::optional<Unit> given = Unit::parse(column.unit);
     if (given && given->same_dimension(wanted)) return convert(1, *given, wanted);
-    out.add("L0303", {table.header, 1, 1, 1},
+    out.add(code::unit_measures_something_else, {table.header, 1, 1, 1},
             fmt::format("column '{}' is in {}, not in {}", column.name, column.unit, unit),
             "choose columns of positions");
     return 1;
@@ -114,7 +115,7 @@ Recording record(const CsvTable& table, const ContourCommand& command, Diagnosti
         recording.samples.push_back({{v[0], v[1]}, {v[2], v[3]}, recording.path.size() - 1});
     }
     if (recording.samples.empty())
-        out.add("L0721", {table.header, 1, 1, 1}, "no row has all four positions",
+        out.add(code::no_rows, {table.header, 1, 1, 1}, "no row has all four positions",
                 "there is nothing to compare");
     set_interval_and_speed(table, recording, out);
     return recording;

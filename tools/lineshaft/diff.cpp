@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/trace/compare.hpp"
 #include "tools/lineshaft/command.hpp"
@@ -21,7 +22,7 @@ std::optional<double> read_tolerance(const std::string& text, const CsvColumn* c
     const auto parsed = parse_quantity(text);
     const auto* quantity = std::get_if<Quantity>(&parsed);
     if (!quantity || quantity->number < 0) {
-        out.add("L0301", {}, fmt::format("'{}' is not a tolerance", text),
+        out.add(code::not_a_number, {}, fmt::format("'{}' is not a tolerance", text),
                 "write --tolerance 1e-9 or --tolerance a.x=1um");
         return {};
     }
@@ -29,7 +30,7 @@ std::optional<double> read_tolerance(const std::string& text, const CsvColumn* c
     const auto unit = column ? Unit::parse(column->unit) : std::nullopt;
     if (unit && unit->same_dimension(quantity->unit))
         return convert(quantity->number, quantity->unit, *unit);
-    out.add("L0303", {},
+    out.add(code::unit_measures_something_else, {},
             column ? fmt::format("'{}' does not measure '{}'", text, column->name)
                    : fmt::format("'{}' has a unit, but is for columns of all units", text),
             "write --tolerance COLUMN=VALUE");
@@ -83,7 +84,7 @@ std::vector<RunDifference> differences(const CsvTable& a, const CsvTable& b) {
     return run_differences(*a.metadata, *b.metadata);
 }
 
-/// Of the columns with any distance, also where it is tolerated.
+/// Sums up the columns with any distance, also where it is tolerated.
 void print_summary(const CsvTable& a, const TraceComparison& found) {
     if (found.apart.empty()) return;
     fmt::print("\n{:32} {:>14} {:>14}  {}\n", "apart", "greatest", "rms", "where");
@@ -169,7 +170,7 @@ void keep_common(CsvTable& a, CsvTable& b, Diagnostics& out) {
             return column.name != "time" && column.name != "scan";
         }))
         return;
-    out.add("L0708", {b.header, 0, 0, 1},
+    out.add(code::traces_cannot_be_compared, {b.header, 0, 0, 1},
             fmt::format("the trace has no column in common with '{}'", a.header->path));
 }
 

@@ -7,7 +7,7 @@
 
 namespace lineshaft {
 
-/// Of all files that lineshaft reads.
+/// The forms of all files that lineshaft reads.
 inline constexpr FormOf files[] = {program_form, controller_form, study_form, fit_form,
                                    recording_form};
 

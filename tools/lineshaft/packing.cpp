@@ -23,7 +23,7 @@ constexpr double noise_bits = 24;  // a sample
 
 using Whole = std::vector<std::int64_t>;
 
-/// Of the value with its sign.
+/// The bits of a value with its sign.
 std::size_t bits_of(std::int64_t value) {
     const auto size = static_cast<std::uint64_t>(value ^ (value >> 63));
     return value == 0 ? 0 : static_cast<std::size_t>(std::bit_width(size)) + 1;
@@ -70,7 +70,7 @@ struct Differences {
     double bits = 0;
 };
 
-/// Of the order that takes the fewest bits.
+/// The differences of the order that takes the fewest bits.
 Differences smallest_differences(Whole values) {
     Differences best{.values = values, .order = 0, .bits = bits_per_sample(values)};
     for (std::size_t order = 1; order <= highest_order; ++order) {

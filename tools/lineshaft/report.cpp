@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/json_text.hpp"
 #include "runtime/source/yaml.hpp"
 #include "runtime/trace/output_file.hpp"
@@ -73,7 +74,7 @@ Json read_study_results(const std::string& path, Diagnostics& out) {
     if (study.is_object() && study.contains("title") && study["title"].is_string() &&
         are_rows("rows") && are_rows("claims"))
         return study;
-    out.add("L0726", {file, 1, 1, 1}, "these are not the results of a study",
+    out.add(code::not_a_study_result, {file, 1, 1, 1}, "these are not the results of a study",
             "write them by: lineshaft study STUDY.yaml --json >FILE.json");
     return {};
 }
@@ -112,7 +113,7 @@ std::vector<TracedCase> traced_cases(const Json& study, const std::string& study
     return found;
 }
 
-/// Of all studies; without --cases not too many.
+/// The cases of all studies that are drawn; without --cases not too many.
 std::vector<TracedCase> choose_cases(const ReportCommand& command, const Json& studies,
                                      const std::vector<std::string>& paths, Diagnostics& out) {
     std::vector<TracedCase> chosen;
@@ -122,13 +123,14 @@ std::vector<TracedCase> choose_cases(const ReportCommand& command, const Json& s
             for (TracedCase& one : traced_cases(studies[i], paths[i], wanted))
                 chosen.push_back(std::move(one));
     } catch (const std::regex_error& error) {
-        out.add("L0502", {},
+        out.add(code::unusable_option, {},
                 fmt::format("--cases: '{}' is not a regular expression: {}", command.cases,
                             error.what()));
         return {};
     }
     if (!command.cases.empty() && chosen.empty())
-        out.add("L0502", {}, fmt::format("--cases: no traced case has '{}'", command.cases),
+        out.add(code::unusable_option, {},
+                fmt::format("--cases: no traced case has '{}'", command.cases),
                 "trace the cases by: lineshaft study STUDY.yaml --json --traces DIR >FILE.json");
     if (command.cases.empty() && chosen.size() > most_traces_unasked) {
         if (!command.quiet)
@@ -230,7 +232,7 @@ std::string page(const Json& report) {
            script(report) + text.substr(data_at + data_mark.size());
 }
 
-/// Of `studies`, which were read from `paths`, and of the command's traces.
+/// The report of `studies`, which were read from `paths`, and of the command's traces.
 Json make_report(const ReportCommand& command, Json studies, const std::vector<std::string>& paths,
                  Diagnostics& out) {
     const auto cases = choose_cases(command, studies, paths, out);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "runtime/csv/csv_cells.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/json_text.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/source/yaml.hpp"
@@ -84,7 +85,7 @@ bool check_sidecar(const CsvTable& table, Diagnostics& out) {
     if (!table.metadata) return true;
     for (const CsvColumn& column : table.columns)
         if (!table.metadata->find(column.title)) {
-            out.add("L0723", header_of(table),
+            out.add(code::sidecar_of_another_trace, header_of(table),
                     fmt::format("the sidecar of this file knows no column '{}'", column.title),
                     "it belongs to another trace");
             return false;
@@ -94,13 +95,14 @@ bool check_sidecar(const CsvTable& table, Diagnostics& out) {
 
 bool check_time(const CsvTable& table, const CsvColumn& time, Diagnostics& out) {
     if (table.rows == 0) {
-        out.add("L0721", header_of(table), "the trace has no rows", "there is nothing to draw");
+        out.add(code::no_rows, header_of(table), "the trace has no rows",
+                "there is nothing to draw");
         return false;
     }
     for (std::size_t row = 0; row < table.rows; ++row) {
         if (!time.is_missing(row) && (row == 0 || time.values[row] >= time.values[row - 1]))
             continue;
-        out.add("L0722", header_of(table),
+        out.add(code::time_does_not_rise, header_of(table),
                 fmt::format("the time {} in row {}", time.is_missing(row) ? "is missing" : "falls",
                             row + 1),
                 "rows stand in the order of time");
@@ -192,7 +194,7 @@ void check_overlay(const ReportRun& first, const ReportRun& second, Diagnostics&
             return std::ranges::find(its, name) == its.end();
         });
         if (missing == others.end()) return false;
-        out.add("L0724", header_of(run.table),
+        out.add(code::traces_of_other_signals, header_of(run.table),
                 fmt::format("the trace has no column '{}', which {} has", *missing, other.path),
                 "only runs of the same signals can be laid over each other; --signals picks some");
         return true;
@@ -200,7 +202,7 @@ void check_overlay(const ReportRun& first, const ReportRun& second, Diagnostics&
     if (lacks(second, theirs, first, ours) || lacks(first, ours, second, theirs)) return;
     const double a = interval(first), b = interval(second);
     if (a == 0 || b == 0 || std::abs(a - b) <= 0.05 * std::min(a, b)) return;
-    out.add("L0725", header_of(second.table),
+    out.add(code::traces_of_other_intervals, header_of(second.table),
             fmt::format("the trace has a row each {:.6g} ms, but each {:.6g} ms in {}", b * 1e3,
                         a * 1e3, first.path),
             "record both at the same interval");

@@ -7,6 +7,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/csv/csv_metadata.hpp"
 #include "runtime/run/signal_json.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/reader.hpp"
 #include "runtime/trace/event_writer.hpp"
 #include "runtime/trace/trace_files.hpp"
@@ -110,10 +111,10 @@ void add_style(CLI::App& sub, CsvStyle& style) {
 void check_stdout(const RunCommand& command, const Loaded& loaded, Diagnostics& out) {
     const auto& traces = loaded.linked.traces;
     if (command.common.json)
-        out.add("L0509", {}, "'-' and --json would both write to the standard output",
-                "name a file");
+        out.add(code::output_is_an_input, {},
+                "'-' and --json would both write to the standard output", "name a file");
     if (command.trace == "-" && (traces.size() > 1 || (traces.size() == 1 && traces[0].repeat > 1)))
-        out.add("L0509", {}, "the program records more than one trace",
+        out.add(code::output_is_an_input, {}, "the program records more than one trace",
                 "name a file: --trace FILE.csv");
 }
 
@@ -121,13 +122,16 @@ void check_stdout(const RunCommand& command, const Loaded& loaded, Diagnostics& 
 void check_files(const RunCommand& command, const Loaded& loaded, Diagnostics& out) {
     const Mark program{loaded.program.file, 0, 0, 1};
     if (!command.trace.empty() && loaded.linked.traces.empty())
-        out.add("L0503", program, "the program has no 'trace:' to write to " + command.trace,
+        out.add(code::no_trace_to_write, program,
+                "the program has no 'trace:' to write to " + command.trace,
                 "say under 'trace:' which task and signals to record");
     if (!command.pulses.empty() && loaded.linked.machine.devices.empty())
-        out.add("L0504", program, "the program has no pulse channel to write to " + command.pulses,
+        out.add(code::no_pulses_to_write, program,
+                "the program has no pulse channel to write to " + command.pulses,
                 "'lineshaft blocks pto' describes one");
     if (!command.retain.empty() && loaded.linked.machine.retains_nothing())
-        out.add("L0508", program, "the program has nothing to keep in " + command.retain,
+        out.add(code::nothing_to_retain, program,
+                "the program has nothing to keep in " + command.retain,
                 "say under 'retain:' which blocks and signals outlive a run");
     if (writes_to_stdout(command)) check_stdout(command, loaded, out);
 }
@@ -219,7 +223,8 @@ RunOptions run_options(const RunCommand& command, Diagnostics& out) {
     every.text = command.checkpoint_every;
     options.checkpoint_every = Reader(out).time(every).value_or(1);
     if (options.checkpoint_every == 0)
-        out.add("L0308", {}, "--checkpoint-every must be above 0 s", "write 10s, for instance");
+        out.add(code::not_a_time, {}, "--checkpoint-every must be above 0 s",
+                "write 10s, for instance");
     return options;
 }
 

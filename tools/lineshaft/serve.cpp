@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include "runtime/serve/api.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/input_file.hpp"
 #include "runtime/source/reader.hpp"
 #include "tools/lineshaft/run_command.hpp"
@@ -56,7 +57,7 @@ double speed_of(const std::string& text, Diagnostics& out) {
     if (!speed ||
         (!speed->has_unit && speed->number >= Pacer::least && speed->number <= Pacer::most))
         return speed ? speed->number : 1;
-    out.add("L0305", {}, fmt::format("'{}' is not a speed", text),
+    out.add(code::number_out_of_range, {}, fmt::format("'{}' is not a speed", text),
             "write --speed 1 for the clock's, 0.1, 10, or max; from 1e-6 to 1e6");
     return 1;
 }
@@ -77,7 +78,8 @@ RecordSync sync_of(const std::string& text, Diagnostics& out) {
     Diagnostics of_time;
     const auto time = Reader(of_time).time(node);
     if (time && *time > 0) return {*time};
-    out.add("L0305", {}, fmt::format("'{}' is not a time for --record-sync", text),
+    out.add(code::number_out_of_range, {},
+            fmt::format("'{}' is not a time for --record-sync", text),
             "write each, none, or a time such as '10 ms'");
     return {};
 }
@@ -86,7 +88,7 @@ RecordSync sync_of(const std::string& text, Diagnostics& out) {
 Address address_of(const std::string& text, const char* option, Diagnostics& out) {
     if (text.empty() || text == "off") return {};
     if (const auto address = Address::parse(text)) return *address;
-    out.add("L0510", {}, fmt::format("'{}' is not an address", text),
+    out.add(code::unusable_address, {}, fmt::format("'{}' is not an address", text),
             fmt::format("write {} 127.0.0.1:8080, or off", option));
     return {};
 }
@@ -99,7 +101,7 @@ std::string token_of(const std::string& path, Diagnostics& out) {
     const std::string text = read_bytes(path, most, error);
     const std::string token = text.substr(0, text.find_first_of("\r\n"));
     if (error != 0 || token.size() < shortest)
-        out.add("L0514", {}, fmt::format("'{}' has no token of 16 characters or more", path),
+        out.add(code::no_token, {}, fmt::format("'{}' has no token of 16 characters or more", path),
                 "make one: openssl rand -hex 16 >token; chmod 600 token");
     else if (struct stat file{}; ::stat(path.c_str(), &file) == 0 && (file.st_mode & 077) != 0)
         spdlog::warn("others on this machine may read or change the token in '{}': chmod 600 '{}'",
@@ -167,7 +169,7 @@ Exit execute(const ServeCommand& command) {
     how.interrupt = nullptr;
     auto loaded = load(command.run, {options.record, options.audit}, out);
     if (loaded && options.modbus.port > 0 && loaded->linked.modbus.empty())
-        out.add("L0503", {loaded->program.file, 0, 0, 1},
+        out.add(code::no_trace_to_write, {loaded->program.file, 0, 0, 1},
                 "the program has no 'modbus:' for clients of --modbus",
                 "say under 'modbus:' which signals they find where");
     if (!loaded || !out.empty()) return report(out, command.run.common.json);

@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/study/merge.hpp"
 #include "runtime/study/study_reader.hpp"
 #include "runtime/trace/folder_locks.hpp"
@@ -33,7 +34,7 @@ std::optional<Chunk> parse_chunk(const std::string& text, Diagnostics& out) {
     const int read = std::sscanf(text.c_str(), "%ld/%ld%n", &chunk.index, &chunk.of, &end);
     const bool whole = read == 2 && static_cast<std::size_t>(end) == text.size();
     if (whole && chunk.index >= 1 && chunk.index <= chunk.of && chunk.of <= most_runs) return chunk;
-    out.add("L0502", {}, fmt::format("'{}' is not a chunk", text),
+    out.add(code::unusable_option, {}, fmt::format("'{}' is not a chunk", text),
             fmt::format("write --chunk 3/8, the third of eight, at most {}", most_runs));
     return {};
 }
@@ -181,7 +182,8 @@ void StudyRun::print(const StudyReport& result) const {
 std::optional<Chunk> check_options(const StudyCommand& command, Diagnostics& out) {
     if (command.output.empty() &&
         (command.resume || !command.chunk.empty() || !command.merge.empty()))
-        out.add("L0614", {}, "there is no file for the results", "say -o FILE.csv");
+        out.add(code::results_without_file, {}, "there is no file for the results",
+                "say -o FILE.csv");
     return command.chunk.empty() ? std::nullopt : parse_chunk(command.chunk, out);
 }
 
@@ -190,12 +192,14 @@ void prepare_traces(const StudyCommand& command, const Study& study, Diagnostics
     const std::string& folder = command.traces.folder;
     if (folder.empty()) return;
     if (!study.traced)
-        out.add("L0503", {study.file, 0, 0, 1},
+        out.add(code::no_trace_to_write, {study.file, 0, 0, 1},
                 fmt::format("'{}' has no 'trace:' to write to {}", study.program, folder),
                 "say under 'trace:' which task and signals to record");
     std::error_code failed;
     if (out.empty()) std::filesystem::create_directories(folder, failed);
-    if (failed) out.add("L0001", {}, fmt::format("cannot make '{}': {}", folder, failed.message()));
+    if (failed)
+        out.add(code::file_cannot_be_read, {},
+                fmt::format("cannot make '{}': {}", folder, failed.message()));
 }
 
 Exit execute(const StudyCommand& command) {

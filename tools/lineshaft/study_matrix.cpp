@@ -26,7 +26,7 @@ std::string value_text(const StudyRow& row) {
     return row.ok ? text : text + " FAILED";
 }
 
-/// Of the rows, in the order in which they come.
+/// What the rows have of it, each once, in the order in which they come.
 template <class Pick>
 auto distinct(const StudyReport& report, Pick pick) {
     std::vector<decltype(pick(report.rows.front()))> found;

@@ -25,7 +25,7 @@ constexpr const char* test_help =
     "tests: it sees those files of the folder that declare what it names, x.st first for\n"
     "test_x.st. The answer stands in the order of the files, however many run side by side. What\n"
     "is marked 'slow: true' is skipped, and named at the end.\n"
-    "programs/README.md says more.";
+    "lineshaft explain tests says more.";
 
 struct TestCommand {
     std::vector<std::string> paths, sources;

@@ -8,6 +8,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/fit/fit.hpp"
 #include "runtime/run/single_run.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/st/library/test_suite.hpp"
 #include "runtime/study/report.hpp"
@@ -56,7 +57,7 @@ bool can_be_tested(const fs::path& path) {
     if (!yaml && !is_structured_text(path)) return false;
     Diagnostics unread;
     const auto file = read_source(path.string(), unread);
-    const bool is_unreadable = !file && unread.list().front().code == "L0001";
+    const bool is_unreadable = !file && unread.list().front().code == code::file_cannot_be_read;
     if (!file) return is_unreadable || !yaml;  // whoever runs it tells why
     return yaml ? is_study(*file) || is_fit(*file) || is_program(*file) : st::is_test_file(file);
 }
@@ -155,7 +156,7 @@ SuiteEntry test_program(const std::string& path, const TestOptions& options) {
     auto loaded = load_program(path, {.settings = {}, .include_dirs = options.include_dirs},
                                standard_blocks(), out);
     if (loaded && loaded->program.expectations.empty())
-        out.warn("L0804", {loaded->program.file, 0, 0, 1},
+        out.warn(code::test_expects_nothing, {loaded->program.file, 0, 0, 1},
                  "the program expects nothing, so it always passes",
                  "say under 'expect:' what must hold");
     if (options.strict) out.be_strict();
@@ -247,7 +248,7 @@ std::optional<st::TestSuite> compile_tests(const TestFile& tests,
                                            const std::shared_ptr<const SourceFile>& file,
                                            Diagnostics& out) {
     if (!st::is_test_file(file))
-        out.add("L0904", {file, 0, 0, 1}, "there is no TEST in this file",
+        out.add(code::not_declared, {file, 0, 0, 1}, "there is no TEST in this file",
                 "write TEST 'text' ... END_TEST");
     if (!out.empty()) return {};
     return st::compile_tests(file, tests.sources->needed_by(file), standard_blocks(), out);

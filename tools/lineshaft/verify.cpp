@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runtime/csv/csv_reader.hpp"
+#include "runtime/source/codes.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {
@@ -15,7 +16,8 @@ struct VerifyCommand {
 };
 
 bool is_mistake_of_file(const Diagnostic& d) {
-    return d.code != "L0001" && d.code != "L0707" && d.code != "L0709";
+    return d.code != code::file_cannot_be_read && d.code != code::sidecar_not_understood &&
+           d.code != code::no_sidecar;
 }
 
 /// What is wrong with the trace goes to `out`: L0709 when there is no sidecar to go by.
@@ -27,16 +29,16 @@ std::optional<CsvTable> verify(const std::string& path, Diagnostics& out) {
     };
     const auto& told = table->metadata;
     if (!told || told->crc32.empty())
-        fail("L0709", "no sidecar tells what the trace was",
+        fail(code::no_sidecar, "no sidecar tells what the trace was",
              fmt::format("a trace is whole if it is as '{}' says", sidecar_path(path)));
     else if (!told->intact)
-        fail("L0709", "the sidecar has no checksum of itself",
+        fail(code::no_sidecar, "the sidecar has no checksum of itself",
              "record the trace again with this version of lineshaft");
     else if (!*told->intact)
-        fail("L0706", "its sidecar is not as it was recorded",
+        fail(code::csv_is_not_whole, "its sidecar is not as it was recorded",
              "the sidecar was changed: its units, types or hashes may be wrong");
     else if (table->crc32 != told->crc32)
-        fail("L0706",
+        fail(code::csv_is_not_whole,
              fmt::format("the CRC-32 of its bytes is {}, and was {}", table->crc32, told->crc32),
              "the file was changed after it had been recorded");
     return table;

@@ -151,7 +151,7 @@ class Ledger {
     }
     double left() const { return superimposed_.exists ? superimposed_.to - state().position : 0; }
 
-    /// Of what is superimposed from here on; an override of 0 stops it on its way.
+    /// What is superimposed begins here; an override of 0 stops it on its way.
     void begin_superimposed(const Request& c, double left) {
         const MotionState from = superimposed_.exists ? state() : MotionState{};
         Dynamics d = axis_->dynamics_of(c);

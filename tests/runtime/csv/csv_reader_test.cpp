@@ -124,7 +124,7 @@ TEST_CASE("what the writer wrote is read back bit by bit") {
         writer.rows(row, 1);
     }
     OutputSet files;
-    writer.finish(files, {});
+    writer.hand_over(files, csv_sidecar(writer.written(), {}, {}, {}));
     REQUIRE(files.commit());
     Diagnostics out;
     const auto table = read_csv(folder / "t.csv", out);

@@ -112,7 +112,7 @@ TEST_CASE("replay: a force wins, and the replayed value is there at its end", "[
                       .type = Type::integer,
                       .value = std::int64_t{50},
                       .name = {},
-                      .text = {}};
+                      .value_text = {}};
     CHECK(read_by_a_task({}, {force}) == Read{7, 50, 50, 50, 50, 50, 9, 9});
 }
 

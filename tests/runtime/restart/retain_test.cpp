@@ -73,7 +73,7 @@ Loaded load(const Folder& folder, std::vector<Setting> settings = {}) {
     return std::move(*loaded);
 }
 
-/// Of a run with the retain file of the folder.
+/// A run with the retain file of the folder.
 RunReport run_on(Loaded& loaded, const Folder& folder) {
     RunOptions options;
     options.retain_path = folder / "line.retain";

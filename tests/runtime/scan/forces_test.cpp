@@ -28,7 +28,7 @@ Force force_output(Bench& bench, const std::string& task, std::int64_t from, std
             .type = Type::integer,
             .value = value,
             .name = {},
-            .text = {}};
+            .value_text = {}};
 }
 
 Force force_flag(Bench& bench, const std::string& task, std::int64_t from, std::int64_t until) {
@@ -68,7 +68,7 @@ TEST_CASE("a forced input wins over its wire", "[force]") {
                              .type = Type::integer,
                              .value = std::int64_t{50},
                              .name = {},
-                             .text = {}}};
+                             .value_text = {}}};
     bench.run();
     std::vector<std::int64_t> read;
     for (const Event& e : bench.log)
@@ -84,7 +84,7 @@ TEST_CASE("a stimulus during a force counts after it", "[force]") {
                              .type = Type::integer,
                              .value = std::int64_t{9},
                              .name = {},
-                             .text = {}}};
+                             .value_text = {}}};
     bench.machine.stimuli = {{3 * ms, slot(bench.live("a").input), Type::integer, std::int64_t{4}}};
     bench.machine.duration = 6 * ms;
     bench.run();

@@ -121,7 +121,7 @@ TEST_CASE("what is forced and released between two steps is so in a run that kno
                          .type = Type::integer,
                          .value = value,
                          .name = "a.output",
-                         .text = "force a.output"};
+                         .value_text = std::to_string(value)};
         };
         for (Rig* rig : {&live, &again}) {
             Force planned = force(*rig, -1);
@@ -139,8 +139,8 @@ TEST_CASE("what is forced and released between two steps is so in a run that kno
                 forced.from = executive.force(force(live, value));
                 again.bench.machine.impose(forced);
             } else if (live.random() % 2 == 0) {
-                const std::int64_t at = executive.release(force(live, 0).live);
-                again.bench.machine.lift(force(again, 0).live, at);
+                const std::int64_t at = executive.lift_force(force(live, 0).live);
+                again.bench.machine.lift_force(force(again, 0).live, at);
             }
             time += static_cast<std::int64_t>(live.random() % (9 * ms));
         }

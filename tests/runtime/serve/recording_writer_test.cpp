@@ -131,7 +131,7 @@ TEST_CASE("whatever is recorded of any signal is played back") {
     }
     REQUIRE(played.forces.size() == forced.size());
     for (std::size_t i = 0; i < forced.size(); ++i) {
-        INFO(forced[i].text);
+        INFO(forced[i].text());
         CHECK(played.forces[i].from == forced[i].from);
         CHECK((played.forces[i].value == forced[i].value));
         CHECK(place(played, played.forces[i].live) == place(before, forced[i].live));

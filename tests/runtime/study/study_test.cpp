@@ -195,7 +195,7 @@ claims:
     CHECK(report.claims[0].ours == spread.ours);
     CHECK(report.rows[3].ours > 0);
     CHECK(report.rows[3].ours < report.rows[2].greatest - report.rows[2].least);
-    // Of the means only.
+    // The means alone count.
     CHECK(report.claims[1].ours ==
           Approx((std::abs(mean.ours - 10) + std::abs(report.rows[2].ours - 10)) / 20));
 }

@@ -44,7 +44,7 @@ TraceSetup setup() {
 /// Empty, or what went wrong.
 std::string finish(CsvWriter& writer, const TraceOrigin& origin = {}) {
     OutputSet files;
-    writer.finish(files, origin);
+    writer.hand_over(files, csv_sidecar(writer.written(), origin, {}, {}));
     files.commit();
     return files.error();
 }

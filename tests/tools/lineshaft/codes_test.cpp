@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -21,15 +22,18 @@ std::string contents(const std::filesystem::path& path) {
     return text.str();
 }
 
-/// Every code that stands in the sources below `folder`, the table itself left out.
+/// Every code that is named in the sources below `folder`, or stands there as it is.
 std::set<std::string> codes_below(const std::filesystem::path& folder) {
+    std::map<std::string, std::string> by_name;
+    for (const CodeText& text : diagnostic_codes()) by_name.emplace(text.name, text.code);
     std::set<std::string> codes;
+    static const std::regex code("\\bcode::([a-z_]+)|\"(L[0-9]{4})\"");
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-        if (!entry.is_regular_file() || entry.path().filename() == "codes.cpp") continue;
+        const std::string ending = entry.path().extension().string();
+        if (!entry.is_regular_file() || (ending != ".cpp" && ending != ".hpp")) continue;
         const std::string text = contents(entry.path());
-        static const std::regex code("\"(L[0-9]{4})\"");
         for (std::sregex_iterator it(text.begin(), text.end(), code), end; it != end; ++it)
-            codes.insert((*it)[1]);
+            codes.insert((*it)[1].matched ? by_name[(*it)[1]] : (*it)[2].str());
     }
     return codes;
 }
@@ -42,6 +46,7 @@ TEST_CASE("codes: the table is ascending and every entry says something") {
           codes.end());
     for (const CodeText& text : codes) {
         INFO(text.code);
+        CHECK(!text.name.empty());
         CHECK(!text.title.empty());
         CHECK(text.paragraph.size() > 100);
         CHECK(find_code(text.code) == &text);
