@@ -87,7 +87,7 @@ void fold_binary(Checking& c, Expression& e, const Constant& a, const Constant& 
 /// Made of constants, operators, conversions and standard functions alone.
 bool is_fixed(const Expression& e) {
     if (e.kind == E::call) {
-        const bool is_standard = e.standard && e.type && e.standard->rule != Rule::time;
+        const bool is_standard = e.standard && e.type && e.standard->is_pure;
         return is_standard && std::ranges::all_of(e.arguments, [](const Argument& a) {
                    return is_fixed(*a.value);
                });
