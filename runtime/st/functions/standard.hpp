@@ -31,65 +31,41 @@ enum class Typing : std::uint8_t {
     statement,  ///< no value: a statement of its own, check/rewrites.cpp
 };
 
-/// What an argument may be and what a result is, as signatures write it.
+/// What an argument may be and what a result is: as signatures write it, and what it stands for.
+// clang-format off
+#define LINESHAFT_ST_GENERIC_TYPES(TYPE)                                                           \
+    TYPE(nothing, "", "")                                                                          \
+    TYPE(any, "ANY", "any type")                                                                   \
+    TYPE(any_elementary, "ANY_ELEMENTARY", "a number, a bit string, a time, a date or a text")     \
+    TYPE(any_ordered, "ANY_ORDERED", "a number, a bit string, a time or a date")                   \
+    TYPE(any_magnitude, "ANY_MAGNITUDE", "a number, a time or a date")                             \
+    TYPE(any_num, "ANY_NUM", "an integer, a REAL or an LREAL")                                     \
+    TYPE(any_real, "ANY_REAL", "a REAL or an LREAL, which an integer becomes")                     \
+    TYPE(any_int, "ANY_INT", "SINT to LINT, USINT to ULINT")                                       \
+    TYPE(any_bit, "ANY_BIT", "BYTE, WORD, DWORD or LWORD; of AND, OR and XOR also BOOL")           \
+    TYPE(any_whole, "ANY_WHOLE", "an integer or a bit string")                                     \
+    TYPE(array, "ARRAY", "an array of any type")                                                   \
+    TYPE(timer, "TIMER", "an instance of TON, TOF, TP or TONR")                                    \
+    TYPE(boolean, "BOOL", "") TYPE(integer, "INT", "") TYPE(double_integer, "DINT", "")            \
+    TYPE(text, "STRING", "") TYPE(time, "TIME", "") TYPE(long_time, "LTIME", "")                   \
+    TYPE(date, "DATE", "") TYPE(long_date, "LDATE", "") TYPE(clock, "TOD", "")                     \
+    TYPE(long_clock, "LTOD", "") TYPE(moment, "DT", "") TYPE(long_moment, "LDT", "")
+// clang-format on
+
 enum class Generic : std::uint8_t {
-    nothing,
-    any,
-    any_elementary,
-    any_ordered,
-    any_magnitude,
-    any_num,
-    any_real,
-    any_int,
-    any_bit,
-    any_whole,
-    boolean,
-    integer,
-    double_integer,
-    text,
-    time,
-    long_time,
-    date,
-    long_date,
-    clock,
-    long_clock,
-    moment,
-    long_moment,
-    array,
-    timer,
+#define TYPE(name, written, doc) name,
+    LINESHAFT_ST_GENERIC_TYPES(TYPE)
+#undef TYPE
 };
 
 struct GenericType {
-    std::string_view name;
-    std::string_view doc;  ///< empty for a type of the language
+    std::string_view name, doc;  ///< the latter empty for a type of the language
 };
 
-/// Each Generic, in their order.
 inline constexpr GenericType generic_types[] = {
-    {"", ""},
-    {"ANY", "any type"},
-    {"ANY_ELEMENTARY", "a number, a bit string, a time, a date or a text"},
-    {"ANY_ORDERED", "a number, a bit string, a time or a date"},
-    {"ANY_MAGNITUDE", "a number, a time or a date"},
-    {"ANY_NUM", "an integer, a REAL or an LREAL"},
-    {"ANY_REAL", "a REAL or an LREAL, which an integer becomes"},
-    {"ANY_INT", "SINT to LINT, USINT to ULINT"},
-    {"ANY_BIT", "BYTE, WORD, DWORD or LWORD; of AND, OR and XOR also BOOL"},
-    {"ANY_WHOLE", "an integer or a bit string"},
-    {"BOOL", ""},
-    {"INT", ""},
-    {"DINT", ""},
-    {"STRING", ""},
-    {"TIME", ""},
-    {"LTIME", ""},
-    {"DATE", ""},
-    {"LDATE", ""},
-    {"TOD", ""},
-    {"LTOD", ""},
-    {"DT", ""},
-    {"LDT", ""},
-    {"ARRAY", "an array of any type"},
-    {"TIMER", "TON, TOF, TP, TONR or a timer of Siemens' IEC_TIMER"},
+#define TYPE(name, written, doc) {written, doc},
+    LINESHAFT_ST_GENERIC_TYPES(TYPE)
+#undef TYPE
 };
 
 constexpr std::string_view name_of(Generic type) {
