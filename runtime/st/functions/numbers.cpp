@@ -83,6 +83,7 @@ constexpr StandardFunction rows[] = {
     real("ATAN(IN: ANY_REAL): ANY_REAL", "the angle whose tangent is IN, -pi/2 to pi/2 [rad]", Op::atan),
     {"ATAN2(IN1, IN2: ANY_REAL): ANY_REAL", "the angle of the point x = IN2, y = IN1, -pi to pi [rad]",
      Typing::reals, emit_real, Op::atan2},
+    real("ATANH(IN: ANY_REAL): ANY_REAL", "the number whose hyperbolic tangent is IN, -1 to 1", Op::atanh),
     {"SQR(IN: ANY_REAL): ANY_REAL", "IN * IN", Typing::real, emit_square},
     {"FRAC(IN: ANY_REAL): ANY_REAL", "what is behind the point: IN - TRUNC(IN)", Typing::real, emit_fraction},
     {"EXPT(IN1, IN2: ANY_REAL): ANY_REAL", "IN1 to the power IN2", Word::power},
