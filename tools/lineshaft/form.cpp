@@ -149,9 +149,9 @@ constexpr std::string_view about_functions =
 
 void print_functions() {
     fmt::print("{}: {}\n", functions, wrapped(about_functions, functions.size() + 2));
-    for (const st::Subject& subject : st::function_subjects()) {
-        fmt::print("\n{}\n", subject.name);
-        for (const st::StandardFunction& f : subject.functions)
+    for (const st::Subject* subject : st::function_subjects) {
+        fmt::print("\n{}\n", subject->name);
+        for (const st::StandardFunction& f : subject->functions)
             fmt::print("  {:20} {}\n{:23}{}\n", f.name, f.signature.substr(f.name.size()), "",
                        wrapped(f.doc, 23));
     }
@@ -176,9 +176,9 @@ nlohmann::ordered_json to_json(const st::StandardFunction& f, std::string_view s
 void list_functions(bool json) {
     if (!json) return print_functions();
     auto list = nlohmann::ordered_json::array();
-    for (const st::Subject& subject : st::function_subjects())
-        for (const st::StandardFunction& f : subject.functions)
-            list.push_back(to_json(f, subject.name));
+    for (const st::Subject* subject : st::function_subjects)
+        for (const st::StandardFunction& f : subject->functions)
+            list.push_back(to_json(f, subject->name));
     fmt::print("{}\n", list.dump(2));
 }
 

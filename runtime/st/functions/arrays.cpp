@@ -17,8 +17,6 @@ constexpr StandardFunction arrays[] = {
 
 }  // namespace
 
-std::span<const StandardFunction> array_functions() {
-    return arrays;
-}
+constinit const Subject array_functions{"arrays", arrays};
 
 }  // namespace lineshaft::st

@@ -57,8 +57,6 @@ constexpr StandardFunction bit_strings[] = {
 
 }  // namespace
 
-std::span<const StandardFunction> bit_functions() {
-    return bit_strings;
-}
+constinit const Subject bit_functions{"bits", bit_strings};
 
 }  // namespace lineshaft::st

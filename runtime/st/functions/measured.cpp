@@ -42,8 +42,6 @@ constexpr StandardFunction measured[] = {
 
 }  // namespace
 
-std::span<const StandardFunction> measured_functions() {
-    return measured;
-}
+constinit const Subject measured_functions{"measured", measured};
 
 }  // namespace lineshaft::st

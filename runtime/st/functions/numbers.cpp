@@ -106,8 +106,6 @@ constexpr StandardFunction rows[] = {
 
 }  // namespace
 
-std::span<const StandardFunction> number_functions() {
-    return rows;
-}
+constinit const Subject number_functions{"numbers", rows};
 
 }  // namespace lineshaft::st

@@ -30,8 +30,6 @@ constexpr StandardFunction operators[] = {
 
 }  // namespace
 
-std::span<const StandardFunction> operator_functions() {
-    return operators;
-}
+constinit const Subject operator_functions{"operators", operators};
 
 }  // namespace lineshaft::st

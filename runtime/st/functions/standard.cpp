@@ -7,21 +7,11 @@
 
 namespace lineshaft::st {
 
-std::span<const Subject> function_subjects() {
-    static const Subject subjects[] = {
-        {"numbers", number_functions()},    {"bits", bit_functions()},
-        {"timers", timer_functions()},      {"operators", operator_functions()},
-        {"measured", measured_functions()}, {"times", time_functions()},
-        {"arrays", array_functions()},      {"texts", text_functions()},
-    };
-    return subjects;
-}
-
 std::span<const StandardFunction* const> standard_functions() {
     static const std::vector<const StandardFunction*> all = [] {
         std::vector<const StandardFunction*> rows;
-        for (const Subject& subject : function_subjects())
-            for (const StandardFunction& row : subject.functions) rows.push_back(&row);
+        for (const Subject* subject : function_subjects)
+            for (const StandardFunction& row : subject->functions) rows.push_back(&row);
         return rows;
     }();
     return all;

@@ -108,23 +108,17 @@ struct StandardFunction {
 
 inline constexpr int most_arguments = 64;
 
-/// The rows of each subject, a file each.
-std::span<const StandardFunction> number_functions();
-std::span<const StandardFunction> bit_functions();
-std::span<const StandardFunction> timer_functions();
-std::span<const StandardFunction> operator_functions();
-std::span<const StandardFunction> measured_functions();
-std::span<const StandardFunction> time_functions();
-std::span<const StandardFunction> array_functions();
-std::span<const StandardFunction> text_functions();
-
 struct Subject {
     std::string_view name;
     std::span<const StandardFunction> functions;
 };
 
-/// Messages offer names that are equally near in this order.
-std::span<const Subject> function_subjects();
+/// A file each. Messages offer names that are equally near in this order.
+extern const Subject number_functions, bit_functions, timer_functions, operator_functions,
+    measured_functions, time_functions, array_functions, text_functions;
+inline constexpr const Subject* function_subjects[] = {
+    &number_functions,   &bit_functions,  &timer_functions, &operator_functions,
+    &measured_functions, &time_functions, &array_functions, &text_functions};
 std::span<const StandardFunction* const> standard_functions();
 
 /// Null for another name.

@@ -119,8 +119,6 @@ constexpr StandardFunction texts[] = {
 
 }  // namespace
 
-std::span<const StandardFunction> text_functions() {
-    return texts;
-}
+constinit const Subject text_functions{"texts", texts};
 
 }  // namespace lineshaft::st

@@ -18,8 +18,6 @@ constexpr StandardFunction timers[] = {
 
 }  // namespace
 
-std::span<const StandardFunction> timer_functions() {
-    return timers;
-}
+constinit const Subject timer_functions{"timers", timers};
 
 }  // namespace lineshaft::st

@@ -50,8 +50,6 @@ constexpr StandardFunction times[] = {
 
 }  // namespace
 
-std::span<const StandardFunction> time_functions() {
-    return times;
-}
+constinit const Subject time_functions{"times", times};
 
 }  // namespace lineshaft::st
