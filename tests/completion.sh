@@ -28,6 +28,7 @@ offers --dot show --
 offers !--dot run --
 offers servo_drive blocks se
 offers trigger form tr
+offers functions form fu
 offers programs/03_ratio_change.yaml run programs/03
 offers programs/paper run programs/p
 offers !programs/README.md run programs/R

@@ -913,64 +913,51 @@ class CWriter {
     std::string standard(const Expression& e) {
         const StandardFunction& f = *e.standard;
         const Type& type = *e.type;
-        if (f.rule == Rule::text) return text_function(e);
+        if (f.result == Generic::text) return text_function(e);
         std::vector<std::string> a;
         for (const Argument& argument : e.arguments) a.push_back(this->argument(*argument.value));
-        switch (f.rule) {
-            case Rule::real:
-            case Rule::real_two:
-                return made(type, mathematical(f.name, a));
-            case Rule::square:
-                return made(type, fmt::format("{0} * {0}", a[0]));
-            case Rule::fraction:
-                return made(type, fmt::format("{0} - trunc({0})", a[0]));
-            case Rule::whole: {
-                const std::string name = f.name == "ROUND"   ? "rint"
-                                         : f.name == "TRUNC" ? "trunc"
-                                                             : small(f.name);
-                return rounded(type, fmt::format("{}({})", name, a[0]));
-            }
-            case Rule::absolute:
-                if (type.is_real()) return made(type, fmt::format("fabs({})", a[0]));
-                return made(type, fmt::format("{0} < 0 ? 0 - (u64){0} : (u64){0}", a[0]));
-            case Rule::limit:
-                return lesser(type, lesser(type, a[1], a[0], true), a[2], false);
-            case Rule::shift:
-                return shifted(f.name, type, a[0], a[1]);
-            case Rule::normalise: {
-                const std::string above = made(type, a[1] + " - " + a[0]),
-                                  range = made(type, a[2] + " - " + a[0]);
-                return made(type, above + " / " + range);
-            }
-            case Rule::scale: {
-                const std::string range = made(type, a[2] + " - " + a[0]);
-                return made(type, fmt::format("{} + {}", made(type, a[1] + " * " + range), a[0]));
-            }
-            case Rule::length:
-                return made(type, fmt::format("((const text*){})->length", a[0]));
-            case Rule::find:
-                return made(type, fmt::format("twin_find({}, {})", a[0], a[1]));
-            case Rule::finite:
-                return made(type, fmt::format("{0} - {0} == 0", a[0]));
-            case Rule::swap:
-                return made(type,
-                            fmt::format("__builtin_bswap64((u64){}) >> {}", a[0], 64 - type.bits));
-            case Rule::encode:
-                return made(type, fmt::format("{0} ? __builtin_ctzll({0}) : 0", a[0]));
-            case Rule::decode:
-                return made(type, fmt::format("1ull << ((u64){} & {})", a[0], type.bits - 1));
-            case Rule::time:
-                return made(type, "twin_now");
-            case Rule::statement: {
-                const std::string type_of = c_type(*e.arguments[0].value->type);
-                put("{{ {0}* t = {1}; const i64 pt = t->pt; memset(t, 0, sizeof *t); t->pt = pt; "
-                    "}}",
-                    type_of, a[0]);
-                return {};
-            }
-            default:
-                return chosen(e, f, a);
+        const std::string_view name = f.name;
+        if (name == "SQR") return made(type, fmt::format("{0} * {0}", a[0]));
+        if (name == "FRAC") return made(type, fmt::format("{0} - trunc({0})", a[0]));
+        if (name == "IS_VALID") return made(type, fmt::format("{0} - {0} == 0", a[0]));
+        if (f.typing == Typing::real && f.result == Generic::any_int) {
+            const std::string function = name == "ROUND"   ? "rint"
+                                         : name == "TRUNC" ? "trunc"
+                                                           : small(name);
+            return rounded(type, fmt::format("{}({})", function, a[0]));
         }
+        if (name == "NORM_X") {
+            const std::string above = made(type, a[1] + " - " + a[0]),
+                              range = made(type, a[2] + " - " + a[0]);
+            return made(type, above + " / " + range);
+        }
+        if (name == "SCALE_X") {
+            const std::string range = made(type, a[2] + " - " + a[0]);
+            return made(type, fmt::format("{} + {}", made(type, a[1] + " * " + range), a[0]));
+        }
+        if (f.typing == Typing::real || f.typing == Typing::reals)
+            return made(type, mathematical(name, a));
+        if (name == "ABS" && type.is_real()) return made(type, fmt::format("fabs({})", a[0]));
+        if (name == "ABS")
+            return made(type, fmt::format("{0} < 0 ? 0 - (u64){0} : (u64){0}", a[0]));
+        if (name == "LIMIT") return lesser(type, lesser(type, a[1], a[0], true), a[2], false);
+        if (f.typing == Typing::places) return shifted(name, type, a[0], a[1]);
+        if (name == "LEN") return made(type, fmt::format("((const text*){})->length", a[0]));
+        if (name == "FIND") return made(type, fmt::format("twin_find({}, {})", a[0], a[1]));
+        if (name == "SWAP")
+            return made(type,
+                        fmt::format("__builtin_bswap64((u64){}) >> {}", a[0], 64 - type.bits));
+        if (name == "ENCO") return made(type, fmt::format("{0} ? __builtin_ctzll({0}) : 0", a[0]));
+        if (name == "DECO")
+            return made(type, fmt::format("1ull << ((u64){} & {})", a[0], type.bits - 1));
+        if (f.typing == Typing::scan_time) return made(type, "twin_now");
+        if (f.typing == Typing::statement) {
+            const std::string type_of = c_type(*e.arguments[0].value->type);
+            put("{{ {0}* t = {1}; const i64 pt = t->pt; memset(t, 0, sizeof *t); t->pt = pt; }}",
+                type_of, a[0]);
+            return {};
+        }
+        return chosen(e, f, a);
     }
 
     std::string lesser(const Type& type, const std::string& a, const std::string& b,
@@ -983,11 +970,11 @@ class CWriter {
                        const std::vector<std::string>& a) {
         const Type& type = *e.type;
         const std::string c = c_type(type) + (type.is_scalar() ? "" : "*");
-        if (f.rule == Rule::move) return a[0];
-        if (f.rule == Rule::select)
+        if (f.name == "MOVE") return a[0];
+        if (f.name == "SEL")
             return made(c,
                         fmt::format("{} ? ({c}){} : ({c}){}", a[0], a[2], a[1], fmt::arg("c", c)));
-        if (f.rule == Rule::extremum) {
+        if (f.name == "MIN" || f.name == "MAX") {
             std::string so_far = a[0];
             for (std::size_t i = 1; i < a.size(); ++i)
                 so_far = lesser(type, so_far, a[i], f.name == "MAX");

@@ -5,6 +5,7 @@
 
 #include "runtime/program/schema.hpp"
 #include "runtime/source/diagnostic.hpp"
+#include "runtime/st/functions/standard.hpp"
 #include "tools/lineshaft/command.hpp"
 #include "tools/lineshaft/forms.hpp"
 
@@ -141,20 +142,71 @@ nlohmann::ordered_json to_json(const Form& form) {
     return out;
 }
 
+constexpr std::string_view functions = "functions";
+constexpr std::string_view about_functions =
+    "What Structured Text can call of IEC 61131-3 and of Siemens' SCL; beside them INT_TO_REAL and "
+    "its like convert, and LIMIT_INT and its like are functions of one type";
+
+void print_functions() {
+    fmt::print("{}: {}\n", functions, wrapped(about_functions, functions.size() + 2));
+    for (const st::Subject* subject : st::function_subjects) {
+        fmt::print("\n{}\n", subject->name);
+        for (const st::StandardFunction& f : subject->functions)
+            fmt::print("  {:20} {}\n{:23}{}\n", f.name, f.signature.substr(f.name.size()), "",
+                       wrapped(f.doc, 23));
+    }
+    fmt::print("\ntypes\n");
+    for (const st::GenericType& type : st::generic_types)
+        if (!type.doc.empty()) fmt::print("  {:20} {}\n", type.name, wrapped(type.doc, 23));
+}
+
+nlohmann::ordered_json to_json(const st::StandardFunction& f, std::string_view subject) {
+    auto parameters = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(f.least); ++i)
+        parameters.push_back(
+            {{"name", f.parameters[i].name}, {"type", st::name_of(f.parameters[i].type)}});
+    nlohmann::ordered_json out{{"name", f.name}, {"subject", subject}, {"parameters", parameters}};
+    if (f.most > f.least) out["most"] = f.most;
+    if (f.result != st::Generic::nothing) out["result"] = st::name_of(f.result);
+    out["pure"] = f.is_pure;
+    out["doc"] = f.doc;
+    return out;
+}
+
+void list_functions(bool json) {
+    if (!json) return print_functions();
+    auto list = nlohmann::ordered_json::array();
+    for (const st::Subject* subject : st::function_subjects)
+        for (const st::StandardFunction& f : subject->functions)
+            list.push_back(to_json(f, subject->name));
+    fmt::print("{}\n", list.dump(2));
+}
+
+void list_forms(const std::vector<const Form*>& forms, bool json) {
+    auto list = nlohmann::ordered_json::array();
+    for (const Form* form : forms) {
+        list.push_back(to_json(*form));
+        if (!json) fmt::print("{:16} {}\n", form->name, wrapped(form->doc, 17));
+    }
+    if (json)
+        fmt::print("{}\n", list.dump(2));
+    else
+        fmt::print("{:16} {}\n", functions, wrapped(about_functions, 17));
+}
+
 Exit execute(const std::string& name, bool json) {
     const std::vector<const Form*> forms = forms_in(files);
     if (name.empty()) {
-        auto list = nlohmann::ordered_json::array();
-        for (const Form* form : forms) {
-            list.push_back(to_json(*form));
-            if (!json) fmt::print("{:16} {}\n", form->name, wrapped(form->doc, 17));
-        }
-        if (json) fmt::print("{}\n", list.dump(2));
+        list_forms(forms, json);
+        return Exit::fine;
+    }
+    if (name == functions) {
+        list_functions(json);
         return Exit::fine;
     }
     const auto form = std::ranges::find(forms, name, &Form::name);
     if (form == forms.end()) {
-        std::vector<std::string> names;
+        std::vector<std::string> names{std::string(functions)};
         for (const Form* known : forms) names.emplace_back(known->name);
         spdlog::error("there is no form '{}'; {}", name, suggest(name, names));
         return Exit::wrong;
@@ -175,8 +227,10 @@ void add_form(CLI::App& app, Exit& result) {
     };
     auto command = std::make_shared<FormCommand>();
     CLI::App* sub = app.add_subcommand(
-        "form", "List the forms of programs, studies and fits, or the keys of one");
-    sub->add_option("name", command->name, "A form, such as task");
+        "form",
+        "List the forms of programs, studies and fits, or the keys of one; or the functions of "
+        "Structured Text");
+    sub->add_option("name", command->name, "A form, such as task, or functions");
     sub->add_flag("--json", command->json, "Print JSON for machines");
     sub->callback([command, &result] { result = execute(command->name, command->json); });
 }

@@ -61,7 +61,7 @@ Constant operate(Word op, const Constant& a, const Constant& b) {
 /// Made of constants, operators, conversions and standard functions alone.
 bool is_fixed(const Expression& e) {
     if (e.kind == E::call) {
-        const bool is_standard = e.standard && e.type && e.standard->rule != Rule::time;
+        const bool is_standard = e.standard && e.type && e.standard->is_pure;
         return is_standard && std::ranges::all_of(e.arguments, [](const Argument& a) {
                    return is_fixed(*a.value);
                });

@@ -125,7 +125,7 @@ bool rewrite(Checking& c, Statement*& s) {
         if (variable && variable->type) routine = variable->type->routine;
         const StandardFunction* standard = find_standard_function(callee.token.text);
         const bool is_known = variable || routine || callee.token.quoted || callee.token.local;
-        if (s->kind == S::call && standard && !is_known && standard->rule == Rule::statement) {
+        if (s->kind == S::call && standard && !is_known && standard->typing == Typing::statement) {
             call.standard = standard;
             check_special(c, s);
             return true;

@@ -54,24 +54,21 @@ Location calls_of(Writing& w, const Expression& instance) {
     return behind(at, type.kind == Kind::block ? std::uint32_t{error_slot} : type.slots - 1);
 }
 
-/// Whether what the statement asserts of two values holds.
-Slot relation(Writing& w, TestCall test, const Type& type, Slot a, Slot b) {
-    const bool real = type.is_real(), big = type.is_unsigned_64();
-    const Op less = real ? Op::lt_float : big ? Op::lt_unsigned : Op::lt_signed;
-    const Op at_most = real ? Op::le_float : big ? Op::le_unsigned : Op::le_signed;
+/// What the statement asserts of two values.
+Word relation_of(TestCall test) {
     switch (test) {
         case TestCall::assert_neq:
-            return w.emit(real ? Op::ne_float : Op::ne_word, none, a, b);
+            return Word::unequal;
         case TestCall::assert_gt:
-            return w.emit(less, none, b, a);
+            return Word::greater;
         case TestCall::assert_lt:
-            return w.emit(less, none, a, b);
+            return Word::less;
         case TestCall::assert_ge:
-            return w.emit(at_most, none, b, a);
+            return Word::greater_or_equal;
         case TestCall::assert_le:
-            return w.emit(at_most, none, a, b);
+            return Word::less_or_equal;
         default:
-            return w.emit(real ? Op::eq_float : Op::eq_word, none, a, b);
+            return Word::equal;
     }
 }
 
@@ -79,14 +76,13 @@ Compared compared(Writing& w, const Expression& e) {
     const Expression &first = *e.arguments[0].value, &second = *e.arguments[1].value;
     if (first.type->kind == Kind::text) {
         const Slot a = text_address(w, first), b = text_address(w, second);
-        return {
-            relation(w, e.test, int_type, w.emit(Op::text_compare, none, a, b), w.constant_slot(0)),
-            a, b};
+        const Slot order = w.emit(Op::text_compare, none, a, b);
+        return {compare(w, relation_of(e.test), int_type, order, w.constant_slot(0)), a, b};
     }
     const Slot a = value(w, first), b = value(w, second);
     const bool is_unsigned = first.type->is_unsigned_64() || second.type->is_unsigned_64();
     const Type& type = first.type->is_real() ? *first.type : is_unsigned ? ulint_type : lint_type;
-    return {relation(w, e.test, type, a, b), a, b};
+    return {compare(w, relation_of(e.test), type, a, b), a, b};
 }
 
 /// The stop keeps the values' slots, and what follows it that of the message.
@@ -141,10 +137,10 @@ void write_equal(Writing& w, const Expression& e, const Type& type, const Locati
     if (type.kind == Kind::text) {
         values.found = address_of(w, a), values.wanted = address_of(w, b);
         const Slot order = w.emit(Op::text_compare, none, values.found, values.wanted);
-        values.holds = relation(w, TestCall::assert_eq, int_type, order, w.constant_slot(0));
+        values.holds = compare(w, Word::equal, int_type, order, w.constant_slot(0));
     } else if (type.is_scalar()) {
         values.found = load(w, a), values.wanted = load(w, b);
-        values.holds = relation(w, TestCall::assert_eq, type, values.found, values.wanted);
+        values.holds = compare(w, Word::equal, type, values.found, values.wanted);
     } else {
         return;
     }

@@ -133,24 +133,34 @@ void take(Writing& w, const Location& frame, const Expression& e) {
     }
 }
 
+/// The frame that the callee runs on: where its instance is, or has been given.
+Location on_frame(Writing& w, Location frame) {
+    return frame.mode == Mode::indexed ? as_address(w, frame) : frame;
+}
+
+/// `number` is that of what is called.
+void put_call(Writing& w, Op near, Op far, const Location& frame, std::uint32_t number) {
+    if (frame.mode == Mode::slot)
+        w.put(near, frame.slot, number);
+    else
+        w.put(far, address_of(w, frame), number);
+}
+
+void give_and_call(Writing& w, const Location& frame, const Expression& e, const Routine& routine) {
+    give(w, frame, e, routine);
+    w.place = e.place;
+    put_call(w, Op::call, Op::call_at, frame, w.routine_number(routine));
+}
+
 }  // namespace
 
 Slot call(Writing& w, const Expression& e, Slot wanted) {
     if (!e.routine) return standard(w, e, wanted);
     const Location frame = call_routine(w, e);
     const Routine& routine = *e.routine;
-    const Type& type = *routine.result->type;
-    const std::uint32_t slots = slots_of(w, type);
-    if (routine.is_function()) {
-        const Slot from = frame.slot + routine.result->slot;
-        const Slot to = slots == 1 ? w.result(wanted) : w.new_temporary(slots);
-        if (slots == 1)
-            w.put(Op::move, to, from);
-        else
-            w.put(Op::copy, to, from, slots);
-        return to;
-    }
-    const Location from = part(w, method_base(w, e), *routine.result);
+    const std::uint32_t slots = slots_of(w, *routine.result->type);
+    const bool is_function = routine.is_function();
+    const Location from = part(w, is_function ? frame : method_base(w, e), *routine.result);
     const Slot to = slots == 1 ? w.result(wanted) : w.new_temporary(slots);
     if (slots == 1)
         store(w, {Mode::slot, to}, load(w, from, to));
@@ -162,14 +172,9 @@ Slot call(Writing& w, const Expression& e, Slot wanted) {
 Location call_routine(Writing& w, const Expression& e) {
     const Routine& routine = *e.routine;
     const bool is_function = routine.is_function();
-    Location frame = is_function ? Location{Mode::slot, Region::window} : method_base(w, e);
-    if (frame.mode == Mode::indexed) frame = as_address(w, frame);
-    give(w, frame, e, routine);
-    w.place = e.place;
-    if (frame.mode == Mode::slot)
-        w.put(Op::call, frame.slot, w.routine_number(routine));
-    else
-        w.put(Op::call_at, address_of(w, frame), w.routine_number(routine));
+    Location frame =
+        is_function ? Location{Mode::slot, Region::window} : on_frame(w, method_base(w, e));
+    give_and_call(w, frame, e, routine);
     if (is_function) w.windows = std::max(w.windows, routine.frame);
     const auto is_called_for = [](const Argument& a) {
         return (a.is_output || a.variable->section == Section::output) && has_call(*a.value);
@@ -185,16 +190,9 @@ Location call_routine(Writing& w, const Expression& e) {
 void call_instance(Writing& w, const Expression& e) {
     const Expression& callee = *e.operands[0];
     const Type& type = *callee.type;
-    Location frame = locate(w, callee);
-    if (frame.mode == Mode::indexed) frame = as_address(w, frame);
+    const Location frame = on_frame(w, locate(w, callee));
     if (type.kind == Kind::block) {
-        const Routine& routine = *type.routine;
-        give(w, frame, e, routine);
-        w.place = e.place;
-        if (frame.mode == Mode::slot)
-            w.put(Op::call, frame.slot, w.routine_number(routine));
-        else
-            w.put(Op::call_at, address_of(w, frame), w.routine_number(routine));
+        give_and_call(w, frame, e, *type.routine);
         return take(w, frame, e);
     }
     for (const Argument& argument : e.arguments)
@@ -209,10 +207,7 @@ void call_instance(Writing& w, const Expression& e) {
         w.jump(Op::jump, 0, 0, mocked);
         w.land(runs);
     }
-    if (frame.mode == Mode::slot)
-        w.put(Op::call_block, frame.slot, number);
-    else
-        w.put(Op::call_block_at, address_of(w, frame), number);
+    put_call(w, Op::call_block, Op::call_block_at, frame, number);
     w.land(mocked);
     take(w, frame, e);
 }

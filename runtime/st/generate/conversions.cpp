@@ -112,13 +112,8 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
 Slot convert(Writing& w, Slot slot, const Type& given_from, const Type& given_to, bool truncates,
              Slot wanted) {
     const Type &from = given_from.plain(), &to = given_to.plain();
-    if (given_to.is_subrange) {
-        const Slot whole = convert(w, slot, from, to, truncates, none);
-        w.put(Op::within, 0, whole,
-              w.table({given_to.lower,
-                       static_cast<std::uint64_t>(given_to.upper - given_to.lower) + 1, 1}));
-        return whole;
-    }
+    if (given_to.is_subrange)
+        return within(w, given_to, convert(w, slot, from, to, truncates, none));
     if (from.kind == Kind::enumeration && !from.counted) {
         slot = look_up(w, slot, from.numbers);
         return convert(w, slot, *from.base, to, truncates, wanted);

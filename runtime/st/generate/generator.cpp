@@ -15,10 +15,8 @@ using Kind = Type::Kind;
 
 void begin(Writing& w, Routine& routine) {
     w.routine = &routine;
-    if (routine.owner)
-        lay_out_method(w, routine);
-    else if (routine.is_function())
-        lay_out_function(w, routine);
+    if (routine.owner || routine.is_function())
+        lay_out_call(w, routine);
     else
         lay_out(w, routine);
     w.landed = w.next();

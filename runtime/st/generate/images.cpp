@@ -111,23 +111,14 @@ void fill_data_block(Writing& w, Writing::Image& image, const Global& global) {
 }
 
 void finish_images(Writing& w) {
-    std::unordered_map<const Type*, std::uint32_t> starts;
-    std::unordered_map<const Routine*, std::uint32_t> function_starts;
-    const auto appended = [&](const Writing::Image& image) {
-        const auto start = static_cast<std::uint32_t>(w.code.images.size());
-        w.code.images.insert(w.code.images.end(), image.begin(), image.end());
-        return start;
-    };
+    std::unordered_map<const Writing::Image*, std::uint32_t> starts;
     for (const Writing::ImageUse& use : w.image_uses) {
-        std::uint32_t& b = w.code.instructions[use.instruction].b;
-        if (use.type) {
-            if (!starts.contains(use.type)) starts[use.type] = appended(w.images[use.type]);
-            b += starts[use.type];
-        } else {
-            if (!function_starts.contains(use.function))
-                function_starts[use.function] = appended(w.function_images[use.function]);
-            b += function_starts[use.function];
-        }
+        const Writing::Image& image =
+            use.type ? w.images[use.type] : w.function_images[use.function];
+        const auto end = static_cast<std::uint32_t>(w.code.images.size());
+        const auto [start, added] = starts.emplace(&image, end);
+        if (added) w.code.images.insert(w.code.images.end(), image.begin(), image.end());
+        w.code.instructions[use.instruction].b += start->second;
     }
     w.code.images.push_back(0);  // an empty image begins in it, too
 }

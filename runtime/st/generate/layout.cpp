@@ -69,8 +69,10 @@ void lay_out(Writing& w, Routine& block) {
     for (const Variable& variable : block.variables) fill(w, image, variable.slot, variable);
 }
 
-void lay_out_function(Writing& w, Routine& routine) {
-    std::uint32_t at = 0;
+void lay_out_call(Writing& w, Routine& routine) {
+    Routine* block = routine.owner;
+    if (block) lay_out(w, *block);
+    std::uint32_t at = block ? block->frame : 0;
     const auto is_given = [](const Variable& v) {
         return v.section == Section::input || v.section == Section::in_out;
     };
@@ -78,25 +80,9 @@ void lay_out_function(Writing& w, Routine& routine) {
     routine.temps_begin = at;
     place_variables(w, routine, at, [&](const Variable& v) { return !is_given(v); });
     routine.variables_end = at;
-    Writing::Image& image = w.function_images[&routine];
-    image.assign(at, 0);
-    for (const Variable& variable : routine.variables) fill(w, image, variable.slot, variable);
-}
-
-void lay_out_method(Writing& w, Routine& method) {
-    Routine& block = *method.owner;
-    lay_out(w, block);
-    std::uint32_t at = block.frame;
-    const auto is_given = [](const Variable& v) {
-        return v.section == Section::input || v.section == Section::in_out;
-    };
-    place_variables(w, method, at, is_given);
-    method.temps_begin = at;
-    place_variables(w, method, at, [&](const Variable& v) { return !is_given(v); });
-    method.variables_end = at;
-    Writing::Image& image = w.images[block.type];
+    Writing::Image& image = block ? w.images[block->type] : w.function_images[&routine];
     image.resize(at, 0);
-    for (const Variable& variable : method.variables) fill(w, image, variable.slot, variable);
+    for (const Variable& variable : routine.variables) fill(w, image, variable.slot, variable);
 }
 
 }  // namespace lineshaft::st

@@ -10,9 +10,8 @@ std::uint32_t slots_of(Writing& w, const Type& type);
 
 /// Variables that live for one call only come last, to be initialised in one go.
 void lay_out(Writing& w, Routine& block);
-void lay_out_function(Writing& w, Routine& routine);
 
-/// A method's frame is a part of its block's.
-void lay_out_method(Writing& w, Routine& method);
+/// What is given to a function or a method comes first. A method's frame is a part of its block's.
+void lay_out_call(Writing& w, Routine& routine);
 
 }  // namespace lineshaft::st

@@ -41,21 +41,8 @@ void jump_unless(Writing& w, const Expression& condition, Jumps& to) {
     if (!compares) return w.jump(Op::jump_unless, 0, value(w, e), to);
     const Type& type = *e.operands[0]->type;
     Slot a = value_before(w, *e.operands[0], *e.operands[1]), b = value(w, *e.operands[1]);
-    const bool swapped = e.op == Word::greater || e.op == Word::greater_or_equal;
-    if (swapped) std::swap(a, b);
-    const bool equal = e.op == Word::equal || e.op == Word::unequal;
-    if (equal) {
-        const bool is_equal = e.op == Word::equal;
-        if (type.is_real())
-            return w.jump(is_equal ? Op::jump_unless_eq_float : Op::jump_unless_ne_float, a, b, to);
-        return w.jump(is_equal ? Op::jump_unless_eq_word : Op::jump_unless_ne_word, a, b, to);
-    }
-    const bool less = e.op == Word::less || e.op == Word::greater;
-    const Op op = type.is_real() ? (less ? Op::jump_unless_lt_float : Op::jump_unless_le_float)
-                  : type.is_unsigned_64()
-                      ? (less ? Op::jump_unless_lt_unsigned : Op::jump_unless_le_unsigned)
-                      : (less ? Op::jump_unless_lt_signed : Op::jump_unless_le_signed);
-    w.jump(op, a, b, to);
+    if (is_exchanged(e.op)) std::swap(a, b);
+    w.jump(after(comparison_op(e.op, type), 2), a, b, to);
 }
 
 void write_if(Writing& w, const Statement& s) {
@@ -238,26 +225,25 @@ void write_loop(Writing& w, const Statement& s) {
     w.loops.pop_back();
 }
 
+void write_call(Writing& w, const Expression& e) {
+    if (e.kind == Expression::Kind::constant) return;
+    if (e.test != TestCall::none) return write_test_statement(w, e);
+    const Type* callee = e.operands[0]->type;
+    if ((e.routine && e.routine->has_instances()) || (callee && callee->is_instance()))
+        return call_instance(w, e);
+    if (e.routine)
+        call_routine(w, e);
+    else
+        value(w, e);
+}
+
 void write_statement(Writing& w, const Statement& s) {
     w.place = s.place;
     switch (s.kind) {
         case S::assign:
             return write_assignment(w, s);
         case S::call:
-            if (s.value->kind == Expression::Kind::constant) return;
-            if (s.value->test != TestCall::none)
-                write_test_statement(w, *s.value);
-            else if (s.value->routine && s.value->routine->has_instances())
-                call_instance(w, *s.value);
-            else if (s.value->operands[0]->type && s.value->operands[0]->type->is_instance())
-                call_instance(w, *s.value);
-            else if (s.value->routine)
-                call_routine(w, *s.value);
-            else if (s.value->type->kind == Type::Kind::text)
-                text_address(w, *s.value);
-            else
-                value(w, *s.value);
-            return;
+            return write_call(w, *s.value);
         case S::if_:
             return write_if(w, s);
         case S::case_:

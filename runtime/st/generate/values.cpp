@@ -43,27 +43,14 @@ Slot unary(Writing& w, const Expression& e, Slot wanted) {
 }
 
 Slot comparison(Writing& w, const Expression& e, Slot wanted) {
-    const bool texts = e.operands[0]->type->kind == Kind::text;
-    const Type& type = texts ? lint_type : *e.operands[0]->type;
-    Slot a = none, b = none;
-    if (texts) {
-        const Slot left = text_address(w, *e.operands[0]), right = text_address(w, *e.operands[1]);
-        a = w.emit(Op::text_compare, none, left, right);
-        b = w.constant_slot(0);
-    } else {
-        a = value_before(w, *e.operands[0], *e.operands[1]), b = value(w, *e.operands[1]);
+    const Expression &left = *e.operands[0], &right = *e.operands[1];
+    if (left.type->kind == Kind::text) {
+        const Slot a = text_address(w, left), b = text_address(w, right);
+        const Slot order = w.emit(Op::text_compare, none, a, b);
+        return compare(w, e.op, lint_type, order, w.constant_slot(0), wanted);
     }
-    if (e.op == Word::greater || e.op == Word::greater_or_equal) std::swap(a, b);
-    if (e.op == Word::equal || e.op == Word::unequal) {
-        const bool is_equal = e.op == Word::equal;
-        if (type.is_real()) return w.emit(is_equal ? Op::eq_float : Op::ne_float, wanted, a, b);
-        return w.emit(is_equal ? Op::eq_word : Op::ne_word, wanted, a, b);
-    }
-    const bool less = e.op == Word::less || e.op == Word::greater;
-    if (type.is_real()) return w.emit(less ? Op::lt_float : Op::le_float, wanted, a, b);
-    if (type.is_unsigned_64())
-        return w.emit(less ? Op::lt_unsigned : Op::le_unsigned, wanted, a, b);
-    return w.emit(less ? Op::lt_signed : Op::le_signed, wanted, a, b);
+    const Slot a = value_before(w, left, right), b = value(w, right);
+    return compare(w, e.op, *left.type, a, b, wanted);
 }
 
 /// AND_THEN, OR_ELSE. Not into a variable, which the right side may read.
@@ -132,6 +119,22 @@ Slot character(Writing& w, const Expression& e, Slot wanted) {
 }
 
 }  // namespace
+
+Op comparison_op(Word relation, const Type& type) {
+    const auto pick = [&](Op real, Op of_unsigned, Op other) {
+        return type.is_real() ? real : type.is_unsigned_64() ? of_unsigned : other;
+    };
+    if (relation == Word::equal) return pick(Op::eq_float, Op::eq_word, Op::eq_word);
+    if (relation == Word::unequal) return pick(Op::ne_float, Op::ne_word, Op::ne_word);
+    if (relation == Word::less || relation == Word::greater)
+        return pick(Op::lt_float, Op::lt_unsigned, Op::lt_signed);
+    return pick(Op::le_float, Op::le_unsigned, Op::le_signed);
+}
+
+Slot compare(Writing& w, Word relation, const Type& type, Slot a, Slot b, Slot wanted) {
+    if (is_exchanged(relation)) std::swap(a, b);
+    return w.emit(comparison_op(relation, type), wanted, a, b);
+}
 
 Slot value(Writing& w, const Expression& e, Slot wanted) {
     switch (e.kind) {

@@ -11,6 +11,15 @@ void value_to(Writing& w, const Expression& e, Slot to);
 /// A value that stays what it is while `later` is computed: operands go from left to right.
 Slot value_before(Writing& w, const Expression& e, const Expression& later);
 
+/// The instruction that compares values of a type. There is none of `>` and `>=`: their operands
+/// are exchanged.
+Op comparison_op(Word relation, const Type& type);
+constexpr bool is_exchanged(Word relation) {
+    return relation == Word::greater || relation == Word::greater_or_equal;
+}
+/// Whether a relation of two values holds.
+Slot compare(Writing& w, Word relation, const Type& type, Slot a, Slot b, Slot wanted = none);
+
 /// The slot again; a number that is not of its type is a fault.
 Slot within(Writing& w, const Type& type, Slot slot);
 

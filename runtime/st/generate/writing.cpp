@@ -5,15 +5,6 @@
 
 namespace lineshaft::st {
 
-/// The families of integers stand in the order SINT, INT, DINT, LINT, USINT, UINT, UDINT, ULINT.
-Op of_type(Op first, const Type& type) {
-    constexpr int distance = static_cast<int>(Op::add_int) - static_cast<int>(Op::add_sint);
-    int width = 0;
-    while ((8 << width) < type.bits) ++width;
-    const int number = type.is_signed ? width : width + 4;
-    return static_cast<Op>(static_cast<int>(first) + number * distance);
-}
-
 void Writing::link() {
     const auto address = [&](std::uint64_t number) {
         return reinterpret_cast<std::uint64_t>(&code.instructions[number]);

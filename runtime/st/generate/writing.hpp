@@ -4,16 +4,15 @@
 #include <optional>
 #include <unordered_set>
 
+#include "runtime/st/functions/emission.hpp"
 #include "runtime/st/generate/generator.hpp"
 #include "runtime/st/types/elementary.hpp"
 
 namespace lineshaft::st {
 
-/// A slot as an operand. While a routine is being written its temporaries, constants and the frames
-/// of the functions that it calls are counted from 0 each; the end of the routine puts them behind
-/// its variables.
-using Slot = std::uint32_t;
-
+/// Of a Slot: while a routine is being written its temporaries, constants and the frames of the
+/// functions that it calls are counted from 0 each; the end of the routine puts them behind its
+/// variables.
 enum Region : std::uint32_t { temporary = 1U << 30, constant = 2U << 30, window = 3U << 30 };
 
 constexpr std::uint32_t region_mask = 3U << 30;
@@ -96,13 +95,5 @@ struct Writing {
     };
     std::vector<Loop> loops = {};
 };
-
-/// The opcode that stands so many lines behind.
-constexpr Op after(Op op, int by) {
-    return static_cast<Op>(static_cast<int>(op) + by);
-}
-
-/// An opcode of a family, for a type: `add_sint` and DINT give `add_dint`.
-Op of_type(Op first, const Type& type);
 
 }  // namespace lineshaft::st

@@ -1,0 +1,284 @@
+#include "runtime/st/check/standard_types.hpp"
+
+#include <algorithm>
+
+#include "runtime/st/check/constants.hpp"
+#include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/nodes.hpp"
+#include "runtime/st/functions/standard.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+/// Of a number without type and one with; one of them is real.
+const Type* mixed(const Type& a, const Type& b) {
+    if (a.is_any() && b.is_any()) return a.is_real() ? &a : &b;
+    const Type &any = a.is_any() ? a : b, &typed = a.is_any() ? b : a;
+    return any.is_real() ? common_type(typed, real_type) : &typed;
+}
+
+/// Of a bit string and an integer: that of the numbers.
+const Type* common_number(const Type& a, const Type& b) {
+    const auto number = [](const Type& type) -> const Type& {
+        return type.kind == Kind::bits ? integer_type(type.bits, false) : type;
+    };
+    const bool mixes =
+        (a.kind == Kind::bits && b.is_integer()) || (a.is_integer() && b.kind == Kind::bits);
+    return mixes ? common_type(number(a), number(b)) : nullptr;
+}
+
+const Type& real_for(const Type& type) {
+    return type.kind == Kind::real && type.bits == 32 ? real_type : lreal_type;
+}
+
+/// The first argument is not what the function takes.
+const Type* refuse(Checking& c, const Expression& call, const char* what, const Type& found,
+                   std::string help = {}) {
+    return c.fail("L0905", call.arguments[0].value->place,
+                  fmt::format("{} takes {}, not {}", call.standard->name, what, describe(found)),
+                  std::move(help));
+}
+
+/// Bounds of an array, and how many elements it has, are constants.
+const Type* check_bound(Checking& c, Expression& call) {
+    const StandardFunction& f = *call.standard;
+    const Type* array = call.arguments[0].value->type;
+    if (array->kind != Kind::array) return refuse(c, call, "an array", *array);
+    std::int64_t value = 1;
+    if (f.least == 1) {
+        for (const Type* inner = array; inner; inner = inner->has_inner ? inner->element : nullptr)
+            value *= inner->upper - inner->lower + 1;
+    } else {
+        const auto dimension = check_whole(c, call.arguments[1].value, lint_type);
+        if (!dimension) return nullptr;
+        Wide at = 1;
+        for (; at != *dimension && array->has_inner; ++at) array = array->element;
+        if (at != *dimension)
+            return c.fail("L0908", call.arguments[1].value->place,
+                          fmt::format("the array's dimensions are 1 to {}", static_cast<int>(at)));
+        value = f.name.front() == 'L' ? array->lower : array->upper;
+    }
+    become(call, dint_type, {.integer = value});
+    return &dint_type;
+}
+
+/// `ADD(a, b, c)` is `a + b + c`, `GT(a, b, c)` is `a > b AND b > c`.
+Expression* join(Checking& c, Expression& call, Word op) {
+    const auto joined = [&](Word word, Expression* left, Expression* right) {
+        Expression* made = make(c, E::binary, call);
+        made->op = word;
+        made->token.place = call.operands[0]->place;
+        made->operands[0] = left;
+        made->operands[1] = right;
+        return made;
+    };
+    const bool compares = op >= Word::less && op <= Word::unequal;
+    const auto& arguments = call.arguments;
+    Expression* all = joined(op, arguments[0].value, arguments[1].value);
+    for (std::size_t i = 2; i < arguments.size(); ++i) {
+        Expression *before = arguments[i - 1].value, *value = arguments[i].value;
+        if (compares && has_call(*before))
+            return c.fail("L0903", before->place, "a function between others is not supported here",
+                          "assign its value to a variable, and compare that");
+        Expression* again = make(c, before->kind, *before);
+        *again = *before;
+        all = compares ? joined(Word::and_, all, joined(op, again, value)) : joined(op, all, value);
+    }
+    return all;
+}
+
+/// SCALE_X of a REAL or LREAL; into an integer, which MIN and MAX are then, it rounds.
+const Type* check_scale(Checking& c, Expression& call, const Type* expected) {
+    auto& arguments = call.arguments;
+    const auto narrow = [](const Type& type) {
+        return type.is_any() || (type.kind == Kind::real ? type.bits == 32 : type.bits <= 16);
+    };
+    const bool is_narrow =
+        std::ranges::all_of(arguments, [&](const Argument& a) { return narrow(*a.value->type); });
+    const bool known = expected && (expected->kind == Kind::integer || expected->is_real());
+    const Type& real = is_narrow && (!known || narrow(*expected)) ? real_type : lreal_type;
+    const Type* limits = arguments[0].value->type;
+    const Type& result = known ? expected->plain() : limits->kind == Kind::integer ? *limits : real;
+    for (Argument& argument : arguments)
+        if (!coerce(c, argument.value, real)) return nullptr;
+    return convert_result(c, call, real, result.is_real() ? real : result);
+}
+
+const Type& given_type(const Expression& call, std::size_t argument) {
+    return *call.arguments[argument].value->type;
+}
+
+bool coerce_from(Checking& c, Expression& call, std::size_t first, const Type& type) {
+    bool good = true;
+    for (std::size_t i = first; i < call.arguments.size(); ++i)
+        good &= (type.kind == Kind::text && given_type(call, i).kind == type.kind) ||
+                coerce(c, call.arguments[i].value, type);
+    return good;
+}
+
+/// What values of both types have in common; null if there is nothing.
+const Type* common_of(const Type& a, const Type& b) {
+    const Type* common = &a;
+    if ((a.is_any() || b.is_any()) && a.is_real() != b.is_real())
+        common = mixed(a, b);
+    else if (a.is_any() && (!b.is_any() || b.is_real()))
+        common = &b;
+    else if (!b.is_any() && !same_type(a, b) && a.is_scalar())
+        common = common_type(a, b);
+    return common ? common : common_number(a, b);
+}
+
+/// The type that all arguments from `first` on have in common, which they become.
+const Type* unite_from(Checking& c, Expression& call, std::size_t first, const Type* expected) {
+    const Type* common = &given_type(call, first);
+    for (std::size_t i = first + 1; i < call.arguments.size() && common; ++i)
+        common = common_of(*common, given_type(call, i));
+    if (!common)
+        return c.fail("L0906", call.place,
+                      fmt::format("the arguments of {} have no common type", call.standard->name),
+                      "convert them");
+    const bool is_wanted = expected && (expected->is_number() || expected->is_bits());
+    if (common->is_any() && is_wanted) common = &expected->plain();
+    if (common->is_any()) common = common->is_real() ? &lreal_type : &dint_type;
+    return coerce_from(c, call, first, common->plain()) ? &common->plain() : nullptr;
+}
+
+const Type* check_real(Checking& c, Expression& call, const Type* expected) {
+    const Type& given = given_type(call, 0);
+    const Generic result = call.standard->result;
+    const bool is_integer = expected && expected->kind == Kind::integer;
+    const bool suits =
+        given.is_any() || (given.is_integer() && expected && widens(given, *expected));
+    const bool is_wanted = suits && expected && expected->kind == Kind::real;
+    const Type& type = is_wanted && result != Generic::any_int ? *expected : real_for(given);
+    if (!coerce_from(c, call, 0, type)) return nullptr;
+    if (result == Generic::any_int) return is_integer ? &expected->plain() : &dint_type;
+    return result == Generic::boolean ? &bool_type : &type;
+}
+
+const Type* check_reals(Checking& c, Expression& call, const Type* expected) {
+    const Type* type = unite_from(c, call, 0, expected);
+    if (!type) return nullptr;
+    const bool known = expected && expected->is_real() && !type->is_real();
+    const Type& result = known ? real_for(*expected) : real_for(*type);
+    const Type& real = known && widens(*type, result) ? result : real_for(*type);
+    return coerce_from(c, call, 0, real) ? convert_result(c, call, real, result) : nullptr;
+}
+
+const Type* check_common(Checking& c, Expression& call, const Type* expected) {
+    const Type* type = unite_from(c, call, 0, expected);
+    const Generic result = call.standard->result;
+    const bool suits = !type || result == Generic::any || type->is_number() || type->is_time() ||
+                       (result == Generic::any_ordered && type->kind == Kind::bits);
+    return suits ? type : refuse(c, call, "numbers", *type);
+}
+
+const Type* check_chosen(Checking& c, Expression& call, const Type* expected) {
+    Expression*& choice = call.arguments[0].value;
+    if (call.standard->parameters[0].type == Generic::boolean)
+        return coerce(c, choice, bool_type) ? unite_from(c, call, 1, expected) : nullptr;
+    become_number(c, choice);
+    if (choice->type->is_any() && !coerce(c, choice, lint_type)) return nullptr;
+    if (choice->type->kind != Kind::integer)
+        return c.fail("L0905", choice->place, "K of MUX is a whole number");
+    return unite_from(c, call, 1, expected);
+}
+
+constexpr const char* write_its_type = "write its type, as in WORD#16#FF";
+
+const Type* check_places(Checking& c, Expression& call, const Type* expected) {
+    Expression*& places = call.arguments[1].value;
+    become_number(c, places);
+    take_width(c, call.arguments[0].value, expected);
+    const Type &given = given_type(call, 0), &count = *places->type;
+    if (!count.is_integer() && count.kind != Kind::any_bits)
+        return c.fail("L0905", places->place, "the number of places is an integer");
+    if (!coerce(c, places, count.is_any() ? lint_type : count)) return nullptr;
+    if (given.kind == Kind::bits || given.kind == Kind::integer) return &given.plain();
+    return refuse(c, call, "a bit string", given, write_its_type);
+}
+
+const Type* check_bits(Checking& c, Expression& call, const Type* expected) {
+    const Generic result = call.standard->result;
+    if (result == Generic::any_bit) take_width(c, call.arguments[0].value, expected);
+    const Type& given = given_type(call, 0);
+    if (given.kind == Kind::any_bits && result == Generic::integer)
+        coerce(c, call.arguments[0].value, bits_type(64));
+    if (given_type(call, 0).kind != Kind::bits)
+        return refuse(c, call, "a bit string", given,
+                      result == Generic::boolean ? "" : write_its_type);
+    return result == Generic::boolean   ? &bool_type
+           : result == Generic::integer ? &int_type
+                                        : &given;
+}
+
+const Type* check_bit_number(Checking& c, Expression& call, const Type* expected) {
+    Expression*& number = call.arguments[0].value;
+    become_number(c, number);
+    if (number->type->is_any() && !coerce(c, number, lint_type)) return nullptr;
+    if (!number->type->is_integer()) return refuse(c, call, "a whole number", *number->type);
+    return expected && expected->kind == Kind::bits ? expected : &bits_type(32);
+}
+
+const Type* check_texts(Checking& c, Expression& call) {
+    const StandardFunction& f = *call.standard;
+    for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+        Expression*& value = call.arguments[i].value;
+        const bool is_text = f.parameter(i).type == Generic::text;
+        if (is_text && value->type->is_character) coerce(c, value, string_type);
+        if (!is_text) become_number(c, value);
+        const Type& type = *value->type;
+        if (is_text ? type.kind != Kind::text : !type.is_integer())
+            return c.fail("L0905", value->place,
+                          fmt::format("expected {}, found {}",
+                                      is_text ? "a STRING" : "a whole number", describe(type)));
+        if (type.is_any() && !coerce(c, value, lint_type)) return nullptr;
+    }
+    return f.result == Generic::text ? &string_type : &int_type;
+}
+
+const Type* check_capacity(Checking& c, Expression& call) {
+    const Type& given = given_type(call, 0);
+    if (given.kind != Kind::text)
+        return c.fail("L0905", call.arguments[0].value->place,
+                      fmt::format("expected a STRING, found {}", describe(given)));
+    if (!given.is_open) become(call, int_type, {.integer = given.length});
+    return &int_type;
+}
+
+/// The call becomes what it means.
+const Type* check_operation(Checking& c, Expression& call, const Type* expected) {
+    Expression* joined = join(c, call, call.standard->word);
+    const Type* type = joined ? check(c, *joined, expected) : nullptr;
+    if (joined) call = *joined;
+    return type;
+}
+
+}  // namespace
+
+const Type* standard_type_of(Checking& c, Expression& call, const Type* expected) {
+    // clang-format off
+    switch (call.standard->typing) {
+        case Typing::real: return check_real(c, call, expected);
+        case Typing::reals: return check_reals(c, call, expected);
+        case Typing::scaled: return check_scale(c, call, expected);
+        case Typing::own:
+        case Typing::common: return check_common(c, call, expected);
+        case Typing::chosen: return check_chosen(c, call, expected);
+        case Typing::places: return check_places(c, call, expected);
+        case Typing::bits: return check_bits(c, call, expected);
+        case Typing::bit_number: return check_bit_number(c, call, expected);
+        case Typing::texts: return check_texts(c, call);
+        case Typing::capacity: return check_capacity(c, call);
+        case Typing::bounds: return check_bound(c, call);
+        case Typing::scan_time: return &time_type;
+        case Typing::operation: return check_operation(c, call, expected);
+        case Typing::statement: break;
+    }
+    // clang-format on
+    return nullptr;
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,22 @@
+#include "runtime/st/functions/standard.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+// clang-format off
+constexpr StandardFunction arrays[] = {
+    {"LOWER_BOUND(ARR: ARRAY; DIM: ANY_INT): DINT", "the least index in dimension DIM, from 1 on",
+     Typing::bounds, nullptr},
+    {"UPPER_BOUND(ARR: ARRAY; DIM: ANY_INT): DINT", "the greatest index in dimension DIM, from 1 on",
+     Typing::bounds, nullptr},
+    {"CountOfElements(IN: ARRAY): DINT", "how many elements the array has, in all its dimensions",
+     Typing::bounds, nullptr},
+};
+// clang-format on
+
+}  // namespace
+
+constinit const Subject array_functions{"arrays", arrays};
+
+}  // namespace lineshaft::st

@@ -1,0 +1,62 @@
+#include "runtime/st/functions/standard.hpp"
+#include "runtime/st/types/elementary.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+/// What a signed integer becomes is that of its bits; only SHR keeps its sign.
+Slot emit_shift(Emission& e) {
+    const Op first = e.call.standard->op;
+    const Type& type = e.type();
+    int width = 0;
+    while ((8 << width) < type.bits) ++width;
+    const Op op = after(first, 4 * width);
+    const Slot a = e.kept(0), n = e.kept(1);
+    if (!type.is_signed) return e.result(op, a, n);
+    if (first == Op::shr_8) return e.result(Op::shr_signed, a, n);
+    const Slot pattern = e.emit(of_type(Op::wrap_sint, bits_type(type.bits)), a);
+    return e.result(of_type(Op::wrap_sint, type), e.emit(op, pattern, n));
+}
+
+Slot emit_swap(Emission& e) {
+    return e.result(Op::swap_bytes, e.kept(0), static_cast<Slot>(e.type().bits));
+}
+
+Slot emit_decode(Emission& e) {
+    const Slot last = e.constant(static_cast<std::uint64_t>(e.type().bits - 1));
+    const Slot place = e.emit(Op::and_bits, e.kept(0), last);
+    return e.result(Op::shl_64, e.constant(1), place);
+}
+
+Slot emit_encode(Emission& e) {
+    return e.result(Op::lowest_bit, e.kept(0));
+}
+
+consteval StandardFunction shift(std::string_view signature, std::string_view doc, Op op) {
+    return {signature, doc, Typing::places, emit_shift, op};
+}
+
+// clang-format off
+constexpr StandardFunction bit_strings[] = {
+    shift("SHL(IN: ANY_WHOLE; N: ANY_INT): ANY_WHOLE", "the bits N places to the left, filled with 0", Op::shl_8),
+    shift("SHR(IN: ANY_WHOLE; N: ANY_INT): ANY_WHOLE",
+          "the bits N places to the right, filled with 0, of a signed integer with its sign", Op::shr_8),
+    shift("ROL(IN: ANY_WHOLE; N: ANY_INT): ANY_WHOLE", "the bits N places to the left, in a circle", Op::rol_8),
+    shift("ROR(IN: ANY_WHOLE; N: ANY_INT): ANY_WHOLE", "the bits N places to the right, in a circle", Op::ror_8),
+    {"SWAP(IN: ANY_BIT): ANY_BIT", "the bytes in reverse order", Typing::bits, emit_swap},
+    {"DECO(IN: ANY_INT): ANY_BIT", "the bit of number IN, from 0 on, and no other", Typing::bit_number, emit_decode},
+    {"ENCO(IN: ANY_BIT): INT", "the number of the lowest bit that is set, from 0 on; of 0 it is 0",
+     Typing::bits, emit_encode},
+    {"SCATTER(IN: ANY_BIT; OUT: ARRAY)", "writes each bit of IN to an element of OUT, an array of BOOL",
+     Typing::statement, nullptr},
+    {"GATHER(IN: ARRAY; OUT: ANY_BIT)", "writes each element of IN, an array of BOOL, to a bit of OUT",
+     Typing::statement, nullptr},
+};
+// clang-format on
+
+}  // namespace
+
+constinit const Subject bit_functions{"bits", bit_strings};
+
+}  // namespace lineshaft::st

@@ -1,0 +1,111 @@
+#include "runtime/st/functions/standard.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+Slot emit_real(Emission& e) {
+    const Slot a = e.kept(0);
+    return e.rounded(e.call.standard->op, a, e.count() > 1 ? e.kept(1) : 0);
+}
+
+Slot emit_square(Emission& e) {
+    const Slot a = e.kept(0);
+    return e.result(e.of_real(Op::mul_real, Op::mul_lreal), a, a);
+}
+
+Slot emit_fraction(Emission& e) {
+    const Slot a = e.kept(0);
+    return e.result(Op::sub_lreal, a, e.emit(Op::truncate, a));
+}
+
+Slot emit_whole(Emission& e) {
+    const Slot whole = e.emit(e.call.standard->op, e.kept(0));
+    return e.result(of_type(Op::round_sint, e.type()), whole);
+}
+
+Slot emit_absolute(Emission& e) {
+    if (e.type().is_real()) return e.result(Op::abs_lreal, e.kept(0));
+    if (!e.type().is_signed) return e.kept(0);
+    return e.fitted(e.emit(Op::abs_signed, e.kept(0)));
+}
+
+Slot emit_extremum(Emission& e) {
+    const Op op = e.call.standard->op == Op::max_signed
+                      ? e.of_number(Op::max_lreal, Op::max_unsigned, Op::max_signed)
+                      : e.of_number(Op::min_lreal, Op::min_unsigned, Op::min_signed);
+    Slot so_far = e.kept(0);
+    for (std::size_t i = 1; i + 1 < e.count(); ++i) so_far = e.emit(op, so_far, e.value(i));
+    return e.result(op, so_far, e.value(e.count() - 1));
+}
+
+Slot emit_limit(Emission& e) {
+    const Slot mn = e.kept(0), in = e.kept(1), mx = e.kept(2);
+    const Slot at_least =
+        e.emit(e.of_number(Op::max_lreal, Op::max_unsigned, Op::max_signed), in, mn);
+    return e.result(e.of_number(Op::min_lreal, Op::min_unsigned, Op::min_signed), at_least, mx);
+}
+
+Slot emit_select(Emission& e) {
+    const Slot second = e.kept(0), first = e.several(1);
+    return e.result(Op::select, second, first);
+}
+
+Slot emit_multiplex(Emission& e) {
+    const Slot k = e.kept(0), first = e.several(1);
+    const std::uint64_t count = e.count() - 1;
+    const bool has_else = same_name(e.call.arguments.back().name.text, "inelse");
+    const Slot place =
+        has_else ? e.emit(Op::min_unsigned, k, e.constant(count - 1)) : e.index(k, count);
+    return e.result(Op::load_at, first, place);
+}
+
+consteval StandardFunction real(std::string_view signature, std::string_view doc, Op op) {
+    return {signature, doc, Typing::real, emit_real, op};
+}
+
+consteval StandardFunction whole(std::string_view signature, std::string_view doc, Op op) {
+    return {signature, doc, Typing::real, emit_whole, op};
+}
+
+// clang-format off
+constexpr StandardFunction rows[] = {
+    {"ABS(IN: ANY_MAGNITUDE): ANY_MAGNITUDE", "the number without its sign", Typing::own, emit_absolute},
+    real("SQRT(IN: ANY_REAL): ANY_REAL", "the square root; of what is below 0 not a number", Op::sqrt),
+    real("LN(IN: ANY_REAL): ANY_REAL", "the logarithm to the base e", Op::ln),
+    real("LOG(IN: ANY_REAL): ANY_REAL", "the logarithm to the base 10", Op::log10),
+    real("EXP(IN: ANY_REAL): ANY_REAL", "e to the power IN", Op::exp),
+    real("SIN(IN: ANY_REAL): ANY_REAL", "the sine of an angle [rad]", Op::sin),
+    real("COS(IN: ANY_REAL): ANY_REAL", "the cosine of an angle [rad]", Op::cos),
+    real("TAN(IN: ANY_REAL): ANY_REAL", "the tangent of an angle [rad]", Op::tan),
+    real("ASIN(IN: ANY_REAL): ANY_REAL", "the angle whose sine is IN, -pi/2 to pi/2 [rad]", Op::asin),
+    real("ACOS(IN: ANY_REAL): ANY_REAL", "the angle whose cosine is IN, 0 to pi [rad]", Op::acos),
+    real("ATAN(IN: ANY_REAL): ANY_REAL", "the angle whose tangent is IN, -pi/2 to pi/2 [rad]", Op::atan),
+    {"ATAN2(IN1, IN2: ANY_REAL): ANY_REAL", "the angle of the point x = IN2, y = IN1, -pi to pi [rad]",
+     Typing::reals, emit_real, Op::atan2},
+    real("ATANH(IN: ANY_REAL): ANY_REAL", "the number whose hyperbolic tangent is IN, -1 to 1", Op::atanh),
+    {"SQR(IN: ANY_REAL): ANY_REAL", "IN * IN", Typing::real, emit_square},
+    {"FRAC(IN: ANY_REAL): ANY_REAL", "what is behind the point: IN - TRUNC(IN)", Typing::real, emit_fraction},
+    {"EXPT(IN1, IN2: ANY_REAL): ANY_REAL", "IN1 to the power IN2", Word::power},
+    whole("TRUNC(IN: ANY_REAL): ANY_INT", "the whole number towards 0", Op::truncate),
+    whole("ROUND(IN: ANY_REAL): ANY_INT", "the nearest whole number; of two the even one", Op::round),
+    whole("FLOOR(IN: ANY_REAL): ANY_INT", "the greatest whole number that is not above IN", Op::floor),
+    whole("CEIL(IN: ANY_REAL): ANY_INT", "the least whole number that is not below IN", Op::ceil),
+    {"MIN(IN1, IN2, ...: ANY_ORDERED): ANY_ORDERED", "the least of its arguments",
+     Typing::common, emit_extremum, Op::min_signed},
+    {"MAX(IN1, IN2, ...: ANY_ORDERED): ANY_ORDERED", "the greatest of its arguments",
+     Typing::common, emit_extremum, Op::max_signed},
+    {"LIMIT(MN, IN, MX: ANY_ORDERED): ANY_ORDERED", "IN, but at least MN and at most MX",
+     Typing::common, emit_limit},
+    {"SEL(G: BOOL; IN0, IN1: ANY): ANY", "IN1 if G, else IN0", Typing::chosen, emit_select},
+    {"MUX(K: ANY_INT; IN0, ...: ANY): ANY",
+     "the argument of number K, from 0 on; of another number that of INELSE, or a fault",
+     Typing::chosen, emit_multiplex},
+};
+// clang-format on
+
+}  // namespace
+
+constinit const Subject number_functions{"numbers", rows};
+
+}  // namespace lineshaft::st

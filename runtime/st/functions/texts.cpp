@@ -1,0 +1,124 @@
+#include <vector>
+
+#include "runtime/st/functions/standard.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+/// A text that is put together from parts of others. What is given is computed before it begins.
+struct Parts {
+    explicit Parts(Emission& emission) : e(emission) {}
+
+    Slot sum(Slot a, Slot b) const { return e.emit(Op::add_lint, a, b); }
+    Slot difference(Slot a, Slot b) const { return e.emit(Op::sub_lint, a, b); }
+    void begin() { made = e.new_text(); }
+    void append(Slot from, Slot first, Slot count) const { e.append(made, from, first, count); }
+
+    Emission& e;
+    Slot zero = e.constant(0), one = e.constant(1), all = e.constant(1U << 30);
+    Slot in = e.text(0);
+    Slot made = 0;
+};
+
+Slot emit_concatenate(Emission& e) {
+    Parts parts(e);
+    std::vector<Slot> given{parts.in};
+    for (std::size_t i = 1; i < e.count(); ++i) given.push_back(e.text(i));
+    parts.begin();
+    for (const Slot text : given) parts.append(text, parts.zero, parts.all);
+    return parts.made;
+}
+
+Slot emit_left(Emission& e) {
+    Parts parts(e);
+    const Slot count = e.value(1);
+    parts.begin();
+    parts.append(parts.in, parts.zero, count);
+    return parts.made;
+}
+
+Slot emit_right(Emission& e) {
+    Parts parts(e);
+    const Slot count = e.value(1);
+    parts.begin();
+    const Slot length = e.emit(Op::text_length, parts.in);
+    parts.append(parts.in, parts.difference(length, count), count);
+    return parts.made;
+}
+
+Slot emit_middle(Emission& e) {
+    Parts parts(e);
+    const Slot count = e.value(1), place = e.value(2);
+    parts.begin();
+    parts.append(parts.in, parts.difference(place, parts.one), count);
+    return parts.made;
+}
+
+Slot emit_delete(Emission& e) {
+    Parts parts(e);
+    const Slot count = e.value(1), before = parts.difference(e.value(2), parts.one);
+    parts.begin();
+    parts.append(parts.in, parts.zero, before);
+    parts.append(parts.in, parts.sum(before, count), parts.all);
+    return parts.made;
+}
+
+Slot emit_replaced(Parts& parts, Slot other, Slot before, Slot count) {
+    parts.begin();
+    parts.append(parts.in, parts.zero, before);
+    parts.append(other, parts.zero, parts.all);
+    parts.append(parts.in, parts.sum(before, count), parts.all);
+    return parts.made;
+}
+
+Slot emit_insert(Emission& e) {
+    Parts parts(e);
+    const Slot other = e.text(1), before = e.value(2);
+    return emit_replaced(parts, other, before, parts.zero);
+}
+
+Slot emit_replace(Emission& e) {
+    Parts parts(e);
+    const Slot other = e.text(1), count = e.value(2);
+    return emit_replaced(parts, other, parts.difference(e.value(3), parts.one), count);
+}
+
+Slot emit_length(Emission& e) {
+    return e.result(Op::text_length, e.text(0));
+}
+
+Slot emit_find(Emission& e) {
+    const Slot in = e.text(0);
+    return e.result(Op::text_find, in, e.text(1));
+}
+
+Slot emit_capacity(Emission& e) {
+    return e.capacity(0);
+}
+
+// clang-format off
+/// Characters are counted from 1. A text that is made has at most 254.
+constexpr StandardFunction texts[] = {
+    {"LEN(IN: STRING): INT", "how many characters the text has", Typing::texts, emit_length},
+    {"MAX_LEN(IN: STRING): INT", "how many characters the variable can hold", Typing::capacity, emit_capacity},
+    {"FIND(IN1, IN2: STRING): INT", "where IN2 begins in IN1 for the first time, from 1 on; 0 if it does not",
+     Typing::texts, emit_find},
+    {"CONCAT(IN1, IN2, ...: STRING): STRING", "the texts one behind the other", Typing::texts, emit_concatenate},
+    {"LEFT(IN: STRING; L: ANY_INT): STRING", "the first L characters", Typing::texts, emit_left},
+    {"RIGHT(IN: STRING; L: ANY_INT): STRING", "the last L characters", Typing::texts, emit_right},
+    {"MID(IN: STRING; L, P: ANY_INT): STRING", "L characters from the one at P on", Typing::texts, emit_middle},
+    {"DELETE(IN: STRING; L, P: ANY_INT): STRING", "IN without L characters from the one at P on",
+     Typing::texts, emit_delete},
+    {"INSERT(IN1, IN2: STRING; P: ANY_INT): STRING", "IN1 with IN2 behind the character at P",
+     Typing::texts, emit_insert},
+    {"REPLACE(IN1, IN2: STRING; L, P: ANY_INT): STRING",
+     "IN1 with IN2 in place of L characters from the one at P on", Typing::texts, emit_replace},
+};
+// clang-format on
+
+}  // namespace
+
+constinit const Subject text_functions{"texts", texts};
+
+}  // namespace lineshaft::st

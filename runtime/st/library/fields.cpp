@@ -1,0 +1,259 @@
+#include "runtime/st/library/fields.hpp"
+
+#include <limits>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "runtime/st/types/elementary.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+using Kind = Type::Kind;
+
+/// Writes down the fields of one kind.
+class FieldWriter {
+  public:
+    FieldWriter(Library::Made& made, KindContext& kind) : made_(made), kind_(kind) {}
+
+    /// `objects` are the blocks of the program that it names.
+    void write_header(const Routine& routine, const std::set<int>& objects) {
+        const bool own = routine.names.contains("error") || routine.names.contains("error_id");
+        Field error;
+        error.name = own ? "fault" : "error";
+        error.doc = "the last scan ended with a fault";
+        error.direction = Direction::output;
+        error.type = lineshaft::Type::boolean;
+        error.offset = 8 * error_slot;
+        kind_.fields.push_back(error);
+        Field id = error;
+        id.name = own ? "fault_id" : "error_id";
+        id.doc = "the fault of the last scan";
+        id.type = lineshaft::Type::enumeration;
+        id.offset = 8 * error_id_slot;
+        id.names = fault_names;
+        kind_.fields.push_back(id);
+        for (std::uint32_t i = 0; i < made_.checked.globals.size(); ++i) {
+            const Global& global = made_.checked.globals[i];
+            if (global.object && !objects.contains(static_cast<int>(i))) continue;
+            Field reference;
+            reference.name = made_.names.emplace_back(fmt::format("\"{}\"", global.name));
+            reference.global = global.name;
+            reference.refers = global.object ? global.type->standard->name : global.name;
+            reference.doc = "the program's, by its name";
+            reference.direction = Direction::in_out;
+            reference.type = lineshaft::Type::integer;
+            reference.offset = 8 * std::size_t{globals_slot + i};
+            kind_.fields.push_back(reference);
+        }
+    }
+
+    void write(const Variable& variable, std::uint32_t at, const std::string& path,
+               Direction direction) {
+        if (variable.space != Space::frame || kind_.fields.size() >= Library::most_parts) return;
+        const std::size_t offset =
+            8 * std::size_t{at} +
+            (variable.is_byte ? variable.byte : 8 * std::size_t{variable.slot});
+        write(*variable.type, offset, path + std::string(variable.text), direction, variable);
+    }
+
+    /// VAR_IN_OUT: so that a program that has the block itself is told.
+    void write_reference(const Variable& variable) {
+        if (!variable.type) return;
+        Field reference;
+        reference.name = variable.text;
+        reference.refers = made_.names.emplace_back("VAR_IN_OUT " + describe(*variable.type));
+        reference.doc = made_.names.emplace_back(fmt::format(
+            "a variable ({}) of the block that calls this one; declare an instance in a "
+            "PROGRAM, call it there, and use that as a block",
+            describe(*variable.type)));
+        reference.direction = Direction::in_out;
+        reference.type = lineshaft::Type::integer;
+        reference.offset = 8 * std::size_t{variable.slot};
+        reference.required = true;
+        kind_.fields.push_back(reference);
+    }
+
+    /// Of a data block, whose variables are all its own.
+    void write_member(const Variable& member) {
+        write(*member.type, 8 * std::size_t{member.slot}, std::string(member.text),
+              Direction::local, member);
+    }
+
+    static Direction direction_of(const Variable& variable) {
+        if (variable.section == Section::input)
+            return variable.constant ? Direction::parameter : Direction::input;
+        if (variable.section == Section::in_out) return Direction::in_out;
+        return variable.section == Section::output ? Direction::output : Direction::local;
+    }
+
+  private:
+    void write(const Type& type, std::size_t offset, const std::string& name, Direction direction,
+               const Variable& variable) {
+        if (kind_.fields.size() >= Library::most_parts) return;
+        const auto slot = static_cast<std::uint32_t>(offset / 8);
+        switch (type.kind) {
+            case Kind::array:
+                write_elements(type, offset, name + "[", direction, variable);
+                return;
+            case Kind::structure:
+                for (const Variable* member : type.members)
+                    write(*member, slot, name + ".", direction);
+                return;
+            case Kind::standard:
+                for (const Variable* member : type.members)
+                    write(*member, slot, name + ".", inner(direction));
+                return;
+            case Kind::block:
+                for (const Variable& member : type.routine->variables)
+                    if (member.section != Section::temp)
+                        write(member, slot, name + ".", inner(direction));
+                return;
+            case Kind::text:
+                if (kind_.texts.size() < Library::most_parts)
+                    kind_.texts.push_back(made_.names.emplace_back(name));
+                return;
+            case Kind::handle:
+                write_handle(type, offset, name, direction);
+                return;
+            default:
+                write_scalar(type, offset, name, direction, variable);
+        }
+    }
+
+    /// One that a block keeps for itself is no field.
+    void write_handle(const Type& type, std::size_t offset, const std::string& name,
+                      Direction direction) {
+        if (direction != Direction::in_out && direction != Direction::input) return;
+        Field field;
+        field.name = made_.names.emplace_back(name);
+        field.refers = type.standard->name;
+        field.doc = type.standard->doc;
+        field.direction = Direction::in_out;
+        field.type = lineshaft::Type::integer;
+        field.offset = offset;
+        field.required = true;
+        kind_.fields.push_back(field);
+    }
+
+    /// `before` is `table[`, or of the next dimension `table[2,`.
+    void write_elements(const Type& array, std::size_t offset, const std::string& before,
+                        Direction direction, const Variable& variable) {
+        for (std::int64_t i = array.lower; i <= array.upper;
+             ++i, offset += 8 * element_slots(array)) {
+            if (kind_.fields.size() >= Library::most_parts) return;
+            const std::string name = before + std::to_string(i);
+            if (array.has_inner)
+                write_elements(*array.element, offset, name + ",", direction, variable);
+            else
+                write(*array.element, offset, name + "]", direction, variable);
+        }
+    }
+
+    /// Parts of an instance are not wired one by one.
+    static Direction inner(Direction direction) {
+        return direction == Direction::output ? direction : Direction::local;
+    }
+
+    void write_scalar(const Type& type, std::size_t offset, const std::string& name,
+                      Direction direction, const Variable& variable) {
+        Field field;
+        field.name = made_.names.emplace_back(name);
+        field.unit = type.is_time() ? std::string_view("ns") : std::string_view(variable.unit);
+        if (!variable.doc.empty())
+            field.doc = made_.names.emplace_back(text_of_comments(variable.doc));
+        field.direction = direction;
+        field.offset = offset;
+        field.type = type.kind == Kind::boolean       ? lineshaft::Type::boolean
+                     : type.is_real()                 ? lineshaft::Type::real
+                     : type.kind == Kind::enumeration ? lineshaft::Type::enumeration
+                                                      : lineshaft::Type::integer;
+        if (type.kind == Kind::enumeration)
+            field.names = made_.values.emplace_back(type.values.begin(), type.values.end());
+        const bool limited = (type.kind == Kind::integer || type.kind == Kind::bits) &&
+                             (type.bits < 64 || type.is_subrange);
+        if (limited) {
+            field.minimum = static_cast<double>(smallest(type));
+            field.maximum = static_cast<double>(largest(type));
+        } else if (type.is_real() && type.bits == 32) {
+            field.maximum = std::numeric_limits<float>::max();
+            field.minimum = -field.maximum;
+        } else if ((type.kind == Kind::integer || type.kind == Kind::bits) && smallest(type) == 0) {
+            field.minimum = 0;
+        }
+        const bool wired = direction == Direction::input;
+        if (wired && (limited || (type.is_real() && type.bits == 32)))
+            kind_.checks.push_back({static_cast<std::uint32_t>(offset / 8), &type});
+        kind_.fields.push_back(field);
+    }
+
+    Library::Made& made_;
+    KindContext& kind_;
+};
+
+/// The fields from `first` on are of a variable in VAR RETAIN, if it is one. Inputs come anew.
+void keep(KindContext& kind, std::size_t first, bool retain) {
+    for (; retain && first < kind.fields.size(); ++first)
+        if (kind.fields[first].direction >= Direction::output)
+            kind.retained.push_back(kind.fields[first].name);
+}
+
+/// Of all that `routine` runs, the blocks of the program that are named.
+void find_objects(const Routine& routine, std::set<const Routine*>& seen, std::set<int>& objects) {
+    if (!seen.insert(&routine).second) return;
+    objects.insert(routine.objects.begin(), routine.objects.end());
+    for (const Routine* called : routine.calls) find_objects(*called, seen, objects);
+}
+
+}  // namespace
+
+std::string text_of_comments(std::string_view written) {
+    constexpr std::string_view marks = "(*/) \t\r\n";
+    std::string text;
+    for (std::size_t begin = 0; begin < written.size();) {
+        const std::size_t end = std::min(written.find('\n', begin), written.size());
+        std::string_view line = written.substr(begin, end - begin);
+        begin = end + 1;
+        line.remove_prefix(std::min(line.find_first_not_of(marks), line.size()));
+        const bool is_closed =
+            line.ends_with("*)") || line.ends_with("*/") || line.ends_with("*/)");
+        const std::size_t last = line.find_last_not_of(is_closed ? marks : " \t\r");
+        line = line.substr(0, last == std::string_view::npos ? 0 : last + 1);
+        if (!text.empty() && !line.empty()) text += ' ';
+        text += line;
+    }
+    return text;
+}
+
+void write_fields(Library::Made& made, KindContext& kind, const Routine& routine) {
+    FieldWriter fields(made, kind);
+    std::set<const Routine*> seen;
+    std::set<int> objects;
+    find_objects(routine, seen, objects);
+    fields.write_header(routine, objects);
+    for (const Variable& variable : routine.variables) {
+        const std::size_t before = kind.fields.size();
+        fields.write(variable, 0, {}, FieldWriter::direction_of(variable));
+        keep(kind, before, variable.retain);
+        if (variable.space != Space::reference) continue;
+        kind.references.push_back(variable.slot);
+        fields.write_reference(variable);
+    }
+}
+
+void write_fields(Library::Made& made, KindContext& kind, const Global& global) {
+    FieldWriter fields(made, kind);
+    if (global.type->kind == Type::Kind::block) {
+        for (const Variable& variable : global.type->routine->variables)
+            if (variable.section != Section::temp) fields.write(variable, 0, {}, Direction::local);
+    }
+    for (const Variable* member : global.type->members) {
+        const std::size_t before = kind.fields.size();
+        fields.write_member(*member);
+        keep(kind, before, member->retain);
+    }
+}
+
+}  // namespace lineshaft::st

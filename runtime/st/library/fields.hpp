@@ -1,0 +1,16 @@
+#pragma once
+
+#include "runtime/st/library/kind.hpp"
+
+namespace lineshaft::st {
+
+/// The fields of a PROGRAM or a FUNCTION_BLOCK, and of them those that are kept, checked or given
+/// by a call.
+void write_fields(Library::Made& made, KindContext& kind, const Routine& routine);
+/// Those of a data block.
+void write_fields(Library::Made& made, KindContext& kind, const Global& global);
+
+/// What comments say, in one line.
+std::string text_of_comments(std::string_view written);
+
+}  // namespace lineshaft::st

@@ -1,0 +1,244 @@
+#include "runtime/st/library/kind.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "runtime/model/kept_state.hpp"
+#include "runtime/st/types/elementary.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+using Kind = Type::Kind;
+
+bool is_in_range(const KindContext::Check& check, std::byte* instance) {
+    std::byte* place = instance + 8 * std::size_t{check.slot};
+    if (check.type->is_real()) {
+        double value = 0;
+        std::memcpy(&value, place, sizeof value);
+        const double narrow = double{static_cast<float>(value)};
+        std::memcpy(place, &narrow, sizeof narrow);
+        return true;
+    }
+    std::int64_t value = 0;
+    std::memcpy(&value, place, sizeof value);
+    return value >= smallest(*check.type) && value <= largest(*check.type);
+}
+
+/// Before the first instruction.
+bool refuse(const KindContext& kind, std::byte* instance, Fault fault) {
+    const std::uint64_t header[] = {1, static_cast<std::uint64_t>(fault), kind.routine->entry, 0,
+                                    0};
+    std::memcpy(instance, header, sizeof header);
+    return true;
+}
+
+bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
+              const Context& context) {
+    for (const std::uint32_t slot : kind.references) {
+        std::uint64_t address = 0;
+        std::memcpy(&address, instance + 8 * std::size_t{slot}, sizeof address);
+        if (address == 0) return refuse(kind, instance, Fault::no_reference);
+    }
+    for (const KindContext::Check& check : kind.checks)
+        if (!is_in_range(check, instance)) return refuse(kind, instance, Fault::out_of_range);
+    Scan moment = now;
+    const auto& times = kind.options.times;
+    return execute(*kind.code, *kind.routine, instance, moment, context, kind.options.fuel,
+                   times ? times->data() : nullptr) != Fault::none;
+}
+
+bool scan_blocks(std::byte* first, std::size_t count, const Scan& now, const Context& context) {
+    const auto& kind = *static_cast<const KindContext*>(context.kind);
+    if (!kind.routine) return false;
+    bool error = false;
+    for (; count > 0; --count, first += kind.size) error |= scan_one(kind, first, now, context);
+    return error;
+}
+
+std::string why(const std::byte* block, const Context& context, const NameOf&) {
+    const FaultPlace found = fault_of(*static_cast<const KindContext*>(context.kind)->code, block);
+    std::string text =
+        fmt::format("at {}:{}:{}", found.mark.file->path, found.mark.line, found.mark.column);
+    for (std::size_t i = 0; i < found.calls.size(); ++i)
+        text += (i == 0 ? " in " : ", called by ") + found.calls[i];
+    return text;
+}
+
+void shift(std::byte* block, std::int64_t by, const void* context) {
+    for (const auto& part : static_cast<const KindContext*>(context)->with_moments)
+        part.kind->shift(block + part.offset, by, part.kind->context);
+}
+
+/// Each value that outlives a scan, and where: `value(type, slot)`.
+template <class Value>
+void visit(const Type& type, std::size_t slot, const Value& value) {
+    if (type.kind == Kind::array) {
+        for (std::int64_t i = type.lower; i <= type.upper; ++i, slot += element_slots(type))
+            visit(*type.element, slot, value);
+    } else if (type.kind == Kind::structure) {
+        for (const Variable* member : type.members)
+            visit(*member->type, slot + member->slot, value);
+    } else if (type.kind == Kind::block) {
+        for (const Variable& member : type.routine->variables) {
+            if (!member.type || member.section == Section::temp) continue;
+            if (member.space == Space::frame && !member.constant)
+                visit(*member.type, slot + member.slot, value);
+        }
+    } else {
+        value(type, slot);
+    }
+}
+
+std::size_t slots_of(const Type& type) {
+    return type.kind == Kind::text ? 1 + (type.length + 7U) / 8 : type.slots;
+}
+
+/// What a scan leaves to the next one, and the next call gives anew: temporaries, frames of
+/// functions and the addresses of VAR_IN_OUT, stays as in a new block.
+void take(std::byte* block, const std::byte* kept, const void* context) {
+    const auto& kind = *static_cast<const KindContext*>(context);
+    const auto copy = [&](std::size_t slot, std::size_t slots) {
+        std::memcpy(block + 8 * slot, kept + 8 * slot, 8 * slots);
+    };
+    if (kind.routine)
+        for (const std::size_t slot : {error_slot, error_id_slot, cut_slot}) copy(slot, 1);
+    visit(*kind.type, 0, [&](const Type& type, std::size_t slot) { copy(slot, slots_of(type)); });
+}
+
+bool is_handle(const Type& type, std::int64_t number, const Context& context) {
+    if (number < 0) return number == -1;
+    return number < context.blocks && context.types[number] == type.standard;
+}
+
+bool is_value(const Type& type, const std::byte* place, const KeptState& machine) {
+    const auto number = read<std::int64_t>(place);
+    switch (type.kind) {
+        case Kind::boolean:
+            return number == 0 || number == 1;
+        case Kind::enumeration:
+            return number >= 0 && number < std::ssize(type.values);
+        case Kind::integer:
+        case Kind::bits:
+            if (type.bits == 64 && !type.is_subrange) return true;
+            return number >= smallest(type) && number <= largest(type);
+        case Kind::real: {
+            const auto value = read<double>(place);
+            return type.bits == 64 || !std::isfinite(value) ||
+                   std::abs(value) <= double{std::numeric_limits<float>::max()};
+        }
+        case Kind::handle:
+            return is_handle(type, number, machine.context);
+        case Kind::text:
+            return number >= 0 && number <= std::int64_t{type.length};
+        case Kind::standard:
+            return lineshaft::is_valid(*type.standard, place, machine);
+        default:
+            return true;
+    }
+}
+
+/// Before each scan: a wire may have brought any number.
+bool is_checked(const KindContext& kind, std::size_t slot) {
+    return std::ranges::any_of(kind.checks, [&](const auto& check) { return check.slot == slot; });
+}
+
+bool is_valid(const std::byte* block, const KeptState& machine) {
+    const auto& kind = *static_cast<const KindContext*>(machine.context.kind);
+    bool good = true;
+    if (kind.routine)
+        good = read<std::uint64_t>(block + 8 * cut_slot) <= kind.code->places.size() &&
+               read<std::uint64_t>(block + 8 * error_slot) <= 1;
+    visit(*kind.type, 0, [&](const Type& type, std::size_t slot) {
+        good = good && (is_value(type, block + 8 * slot, machine) || is_checked(kind, slot));
+    });
+    return good;
+}
+
+template <class Do>
+void visit_standard(const Type& type, const Do& act) {
+    visit(type, 0, [&](const Type& inner, std::size_t slot) {
+        if (inner.kind == Kind::standard) act(*inner.standard, 8 * slot);
+    });
+}
+
+void add_links(std::vector<std::size_t>& places, const BlockType& block) {
+    const auto& kind = *static_cast<const KindContext*>(block.context);
+    visit_standard(*kind.type, [&](const BlockType& inner, std::size_t offset) {
+        const std::size_t before = places.size();
+        if (inner.add_links) inner.add_links(places, inner);
+        for (std::size_t i = before; i < places.size(); ++i) places[i] += offset;
+    });
+}
+
+void mend_links(std::byte* block, const KeptState& machine) {
+    const auto& kind = *static_cast<const KindContext*>(machine.context.kind);
+    visit_standard(*kind.type, [&](const BlockType& inner, std::size_t offset) {
+        if (inner.mend_links) inner.mend_links(block + offset, machine);
+    });
+}
+
+void make(std::byte* place, const void* context) {
+    const auto& kind = *static_cast<const KindContext*>(context);
+    if (kind.size > 0) std::memcpy(place, kind.image, kind.size);  // globals may be constants only
+}
+
+}  // namespace
+
+std::size_t element_slots(const Type& array) {
+    const Type& element = *array.element;
+    return element.kind == Kind::block ? element.routine->frame : element.slots;
+}
+
+void find_moments(KindContext& kind) {
+    visit_standard(*kind.type, [&](const BlockType& inner, std::size_t offset) {
+        if (inner.shift) kind.with_moments.push_back({offset, &inner});
+    });
+}
+
+BlockType block_type(const KindContext& kind, const std::shared_ptr<const Library::Made>& made) {
+    BlockType type;
+    type.name = kind.name;
+    type.doc = kind.doc;
+    type.fields = kind.fields;
+    type.size = kind.size;
+    type.alignment = alignof(std::uint64_t);
+    type.make = make;
+    type.scan_blocks = scan_blocks;
+    type.shift = shift;
+    type.valid = is_valid;
+    type.take = take;
+    type.add_links = add_links;
+    type.mend_links = mend_links;
+    type.why = why;
+    type.single = !kind.routine;
+    if (kind.routine && kind.options.times) type.time_taken = 8 * std::size_t{time_slot};
+    type.context = &kind;
+    type.owner = made;
+    return type;
+}
+
+std::string_view find_text(const BlockType& kind, std::string_view name) {
+    if (kind.scan_blocks != scan_blocks) return {};
+    const auto& texts = static_cast<const KindContext*>(kind.context)->texts;
+    const auto it = std::ranges::find_if(
+        texts, [&](std::string_view text) { return same_letters(text, name); });
+    return it == texts.end() ? std::string_view() : *it;
+}
+
+std::span<const std::string_view> retained(const BlockType& kind) {
+    if (kind.scan_blocks != scan_blocks) return {};
+    return static_cast<const KindContext*>(kind.context)->retained;
+}
+
+std::optional<Mark> cut_text(const BlockType& kind, const std::byte* instance) {
+    if (kind.scan_blocks != scan_blocks || kind.single) return {};
+    return cut_of(*static_cast<const KindContext*>(kind.context)->code, instance);
+}
+
+}  // namespace lineshaft::st

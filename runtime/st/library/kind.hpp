@@ -1,0 +1,48 @@
+#pragma once
+
+#include <deque>
+
+#include "runtime/st/library/compiled.hpp"
+
+namespace lineshaft::st {
+
+/// What the blocks of a kind share.
+struct KindContext {
+    const Code* code = nullptr;
+    const CodeRoutine* routine = nullptr;  ///< null: a data block
+    const std::uint64_t* image = nullptr;
+    std::size_t size = 0;
+    Options options;
+    std::string name, doc;
+    std::vector<Field> fields;
+    std::vector<std::string_view> texts;
+    std::vector<std::string_view> retained;  ///< names of those in VAR RETAIN
+    struct Check {
+        std::uint32_t slot;
+        const Type* type;
+    };
+    struct Part {
+        std::size_t offset;
+        const BlockType* kind;
+    };
+    std::vector<Part> with_moments;         ///< instances of the catalogue that remember when
+    const Type* type = nullptr;             ///< of the instances
+    std::vector<Check> checks;              ///< inputs narrower than what a wire brings
+    std::vector<std::uint32_t> references;  ///< slots of VAR_IN_OUT, which a call fills
+};
+
+/// All that the kinds of a library refer to.
+struct Library::Made : Compiled {
+    std::deque<KindContext> kinds;
+    std::deque<std::string> names;                     ///< of fields
+    std::deque<std::vector<std::string_view>> values;  ///< of enumerations
+};
+
+std::size_t element_slots(const Type& array);
+
+/// Notes which instances of the catalogue the kind's have in them.
+void find_moments(KindContext& kind);
+
+BlockType block_type(const KindContext& kind, const std::shared_ptr<const Library::Made>& made);
+
+}  // namespace lineshaft::st
