@@ -138,6 +138,7 @@ bool Axis::has_ended(std::int64_t now) const {
 }
 
 void Axis::look(const Context& context, std::int64_t now) {
+    if (doing == Doing::following_group) return;
     if (doing == Doing::following_axes)
         follow(context);
     else if (doing == Doing::following_profile)

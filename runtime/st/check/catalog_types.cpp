@@ -47,7 +47,9 @@ constexpr std::pair<std::string_view, std::string_view> handles[] = {
     {"to_synchronousaxis", "axis_ref"},
     {"axis_ref_sm3", "axis_ref"},
     {"axis_ref_virtual_sm3", "axis_ref"},
-    {"to_cam", "cam_ref"}};
+    {"to_cam", "cam_ref"},
+    {"axis_group_ref_sm3", "axes_group_ref"},
+    {"mc_path_ref", "path_ref"}};
 
 /// What the numbers mean that Siemens' MC_MOVEABSOLUTE and MC_MOVEVELOCITY have for a Direction,
 /// and MC_HOME for its Mode.

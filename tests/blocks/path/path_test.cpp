@@ -43,7 +43,13 @@ PathVector random_point(Random& random, std::size_t axes, double size) {
 struct RandomPath {
     std::vector<PathCurve> curves;
     std::vector<PathLimits> limits;
+    std::vector<PathJoint> joints;
 };
+
+PathJoint random_joint(Random& random, double size) {
+    if (random.share() < 0.2) return {random.share() < 0.5 ? 0 : random.decades(-2, 2), 0};
+    return {0, size * random.decades(-4, 0)};
+}
 
 /// Lines and arcs, some of them cut in two, so that there are smooth joints.
 RandomPath random_path(Random& random, std::size_t most) {
@@ -76,6 +82,8 @@ RandomPath random_path(Random& random, std::size_t most) {
         }
         out.curves.push_back(curve);
         out.limits.push_back(limits);
+        while (out.joints.size() < out.curves.size())
+            out.joints.push_back(random.share() < 0.5 ? PathJoint{} : random_joint(random, size));
         from = to;
     }
     return out;
@@ -124,7 +132,8 @@ std::string fault_of(std::uint64_t seed, std::size_t most) {
     const double commands = random.share() < 0.3 ? 0 : random.decades(-3, -1);
     for (long scan = 0; scan < 60'000; ++scan) {
         while (given < wanted.curves.size()) {
-            const PathFault fault = path.append(ring, wanted.curves[given], wanted.limits[given]);
+            const PathFault fault =
+                path.append(ring, wanted.curves[given], wanted.limits[given], wanted.joints[given]);
             if (fault == PathFault::full) break;
             if (fault != PathFault::none) return "append";
             ++given;

@@ -1,0 +1,54 @@
+#include "blocks/axis/axis.hpp"
+
+namespace lineshaft {
+
+bool is_taken_in_group(Command command) {
+    using enum Command;
+    return command == power_on || command == power_off || command == reset ||
+           command == abort_trigger;
+}
+
+MotionError Axis::cannot_follow() const {
+    if (state == AxisState::standstill) return MotionError::none;
+    const MotionError why = refusal();
+    return why == MotionError::wrong_state ? MotionError::axis_moves : why;
+}
+
+void Axis::begin_to_follow(const Moment& at) {
+    const MotionState from = total();
+    safe = {};
+    offset = 0;
+    clear_added();
+    hold(from, at);
+    doing = Doing::following_group;
+    state = AxisState::synchronized_motion;
+}
+
+void Axis::follow_group(const MotionState& set_point, const Moment& at) {
+    base = set_point;
+    if (scan_time != at.time) return;
+    if (software_limits && shown.exists != 0) show();
+    publish();
+}
+
+void Axis::end_following(const Context& context, const Moment& at) {
+    if (!follows_group()) return;
+    goal = base.position;
+    if (base.velocity != 0 || base.acceleration != 0)
+        return fail(context, at, MotionError::axis_left_path);
+    hold(base, at);
+    settle();
+}
+
+bool Axis::reset_by_group() {
+    if (state != AxisState::error_stop) return true;
+    if (doing != Doing::holding) return false;
+    leave_error();
+    return true;
+}
+
+bool Axis::may_be_between(double least, double greatest) const {
+    return !software_limits || bounds().contain({least, greatest});
+}
+
+}  // namespace lineshaft
