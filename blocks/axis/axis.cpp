@@ -107,6 +107,7 @@ void Axis::shift(std::int64_t by) {
         moment->time += by;
     shown.time += by;
     scan_time += by;
+    led_at += by;
 }
 
 void Axis::watch_drive(const Context& context, const Scan& now) {

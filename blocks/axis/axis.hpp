@@ -135,6 +135,7 @@ struct Axis {
     Shown shown;
     Safe safe;
     std::int64_t group = nowhere;  ///< place of the group (blocks/group/) that it is in
+    std::int64_t led_at = 0;       ///< when it had the last set-point of that [ns]
     std::int64_t withdrawn = 0;    ///< a job has left the queue that `active` may count on
     std::int64_t started = 0;
     std::int64_t task = 0, scan_index = 0;  ///< of the scan under way, to stamp what is told

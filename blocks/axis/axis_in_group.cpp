@@ -22,10 +22,12 @@ void Axis::begin_to_follow(const Moment& at) {
     hold(from, at);
     doing = Doing::following_group;
     state = AxisState::synchronized_motion;
+    led_at = at.time;
 }
 
 void Axis::follow_group(const MotionState& set_point, const Moment& at) {
     base = set_point;
+    led_at = at.time;
     if (scan_time != at.time) return;
     if (software_limits && shown.exists != 0) show();
     publish();

@@ -209,6 +209,47 @@ TEST_CASE("path: a corner is a stop, a line cut in two is not") {
     CHECK(path.append(ring, a, limits) == PathFault::not_joined);
 }
 
+TEST_CASE("path: a corner is passed in motion, also when it is put in under way") {
+    for (const bool late : {false, true}) {
+        std::vector<PathPiece> ring(8);
+        Path path;
+        PathCurve a, b;
+        REQUIRE(line_to({0, 0}, {10, 0}, a) == PathFault::none);
+        REQUIRE(line_to({10, 0}, {10, 10}, b) == PathFault::none);
+        const PathLimits limits = wide_limits({10, 100, 1000});
+        REQUIRE(path.append(ring, a, limits) == PathFault::none);
+        path.advance(ring, late ? 0.6 : 0);
+        REQUIRE(path.append(ring, b, limits, {0, 2}) == PathFault::none);
+        REQUIRE(path.count == 3);
+        CHECK(path.total == Approx(20).epsilon(1e-15));
+        double slowest = 10;
+        while (path.first < 2) {
+            const PathMotion m = path.advance(ring, 1e-3);
+            if (m.position[0] > 5) slowest = std::min(slowest, m.path.velocity);
+            CHECK(violation(m, limits).empty());
+        }
+        CHECK(slowest > 5);
+    }
+}
+
+TEST_CASE("path: a corner that cannot be braked for any more is a stop") {
+    std::vector<PathPiece> ring(8);
+    Path path;
+    PathCurve a, b;
+    REQUIRE(line_to({0, 0}, {10, 0}, a) == PathFault::none);
+    REQUIRE(line_to({10, 0}, {10, 10}, b) == PathFault::none);
+    const PathLimits limits = wide_limits({10, 100, 1000});
+    REQUIRE(path.append(ring, a, limits) == PathFault::none);
+    while (path.now(ring).position[0] < 9.5) path.advance(ring, 1e-3);
+    REQUIRE(path.append(ring, b, limits, {0, 2}) == PathFault::none);
+    while (!path.finished()) {
+        const PathMotion m = path.advance(ring, 1e-3);
+        CHECK((m.position[0] < 10 ? m.position[1] : 0) <= (path.count == 3 ? 2.0 : 0.0));
+        CHECK(violation(m, limits).empty());
+    }
+    CHECK(path.now(ring).position == PathVector{10, 10});
+}
+
 TEST_CASE("path: a copy of its bytes goes on alike") {
     Random random(7);
     const RandomPath wanted = random_path(random, 20);
