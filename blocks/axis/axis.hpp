@@ -190,8 +190,9 @@ struct Axis {
     void end_following(const Context& context, const Moment& at);
     /// Ends an error that is over; false while the axis still brakes.
     bool reset_by_group();
-    /// Whether the software limits hold these positions.
-    bool may_be_between(double least, double greatest) const;
+    /// Whether the software limits hold these positions, and MC_Power the directions.
+    MotionError cannot_run(double from, double to, double least, double greatest) const;
+    bool may_go(double way) const;
 
   private:
     /// Where a motion beneath begins.
@@ -332,7 +333,6 @@ struct Axis {
     MotionError write_parameter(const Context& context, std::int64_t number, double value);
     double* limit_of(std::int64_t number);
     void switch_power(const Context& context, const Moment& at, const Request& request);
-    bool may_go(double way) const;
     void keep_directions(const Context& context);
     void come_to_rest(const Context& context);
     void stop_again(const Context& context, const Moment& at, Job& job);

@@ -49,8 +49,11 @@ bool Axis::reset_by_group() {
     return true;
 }
 
-bool Axis::may_be_between(double least, double greatest) const {
-    return !software_limits || bounds().contain({least, greatest});
+MotionError Axis::cannot_run(double from, double to, double least, double greatest) const {
+    if (software_limits && !bounds().contain({least, greatest})) return MotionError::software_limit;
+    const bool forward = greatest > from || to > least, back = least < from || to < greatest;
+    return (forward && !may_go(1)) || (back && !may_go(-1)) ? MotionError::direction_not_enabled
+                                                            : MotionError::none;
 }
 
 }  // namespace lineshaft

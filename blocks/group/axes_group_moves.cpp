@@ -236,12 +236,16 @@ PathLimits AxesGroup::limits_of(const Context& context, const GroupRequest& requ
 }
 
 MotionError AxesGroup::stays_inside(const Context& context, const PathCurve& curve) const {
+    const PathVector from = curve.at(0).position;
     for (std::size_t i = 0; i < most_path_axes; ++i) {
         const Axis* const led = axis(context, i);
-        if (!led || !led->software_limits) continue;
+        if (!led || curve.share(i) == 0) continue;
         const PathCurve::Extent extent = curve.extent(i);
-        if (!led->may_be_between(extent.least + turned[i], extent.greatest + turned[i]))
-            return MotionError::software_limit;
+        const double by = turned[i];
+        if (const MotionError why = led->cannot_run(from[i] + by, curve.end[i] + by,
+                                                    extent.least + by, extent.greatest + by);
+            why != MotionError::none)
+            return why;
     }
     return MotionError::none;
 }

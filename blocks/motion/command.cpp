@@ -103,7 +103,7 @@ MotionError CommandBlock::check() const {
 
 double CommandBlock::covered(const Context& context, const Axis::Running Axis::*running) const {
     if (refusal != MotionError::none || axis == nowhere) return 0;
-    if (is_end(progress(context))) return job.told_value;
+    if (is_end(progress_of(job, context))) return job.told_value;
     const Axis::Running& at_work = context.seen_instance<Axis>(axis).*running;
     const bool is_own = at_work.place == context.place_of(job) && at_work.ticket == job.ticket;
     return is_own ? at_work.covered : 0;
