@@ -11,6 +11,11 @@
 #include "blocks/contour/contour_error.hpp"
 #include "blocks/contour/cross_coupling.hpp"
 #include "blocks/contour/path_rectangle.hpp"
+#include "blocks/group/group_administration.hpp"
+#include "blocks/group/group_moves.hpp"
+#include "blocks/group/group_reads.hpp"
+#include "blocks/group/group_valid.hpp"
+#include "blocks/group/path_table.hpp"
 #include "blocks/logic/arithmetic.hpp"
 #include "blocks/logic/bistable.hpp"
 #include "blocks/logic/boolean.hpp"
@@ -89,6 +94,28 @@ Catalog make_catalog() {
     blocks.add<ReadDigitalInput>();
     blocks.add<ReadDigitalOutput>();
     blocks.add<WriteDigitalOutput>();
+    blocks.add<AxesGroup>();
+    blocks.add<PathTable>();
+    blocks.add<AddAxisToGroup>();
+    blocks.add<RemoveAxisFromGroup>();
+    blocks.add<GroupEnable>();
+    blocks.add<GroupDisable>();
+    blocks.add<GroupReset>();
+    blocks.add<GroupStop>();
+    blocks.add<GroupHalt>();
+    blocks.add<GroupInterrupt>();
+    blocks.add<GroupContinue>();
+    blocks.add<GroupSetOverride>();
+    blocks.add<GroupReadStatus>();
+    blocks.add<GroupReadError>();
+    blocks.add<GroupReadActualPosition>();
+    blocks.add<MoveLinearAbsolute>();
+    blocks.add<MoveLinearRelative>();
+    blocks.add<MoveCircularAbsolute>();
+    blocks.add<MoveCircularRelative>();
+    blocks.add<MoveDirectAbsolute>();
+    blocks.add<MoveDirectRelative>();
+    blocks.add<MovePath>();
     blocks.add<CircleFit>();
     blocks.add<PathCircle>();
     blocks.add<PathMove>();

@@ -107,6 +107,7 @@ void Axis::shift(std::int64_t by) {
         moment->time += by;
     shown.time += by;
     scan_time += by;
+    led_at += by;
 }
 
 void Axis::watch_drive(const Context& context, const Scan& now) {
@@ -138,6 +139,7 @@ bool Axis::has_ended(std::int64_t now) const {
 }
 
 void Axis::look(const Context& context, std::int64_t now) {
+    if (doing == Doing::following_group) return;
     if (doing == Doing::following_axes)
         follow(context);
     else if (doing == Doing::following_profile)

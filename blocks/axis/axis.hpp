@@ -56,9 +56,6 @@ struct Axis {
 
         bool exists() const { return place != nowhere; }
     };
-    struct JobList {
-        std::int64_t first = nowhere, last = nowhere;
-    };
     /// What MC_SetOverride makes of velocities, accelerations both ways, and jerks.
     struct Factors {
         double velocity = 1, acceleration = 1, jerk = 1;
@@ -69,7 +66,8 @@ struct Axis {
         moving_to_point,
         following_velocity,
         following_axes,
-        following_profile
+        following_profile,
+        following_group,
     };
 
     /// The way that is left behind the end of `point_motion`, of the same job.
@@ -136,7 +134,9 @@ struct Axis {
     std::int64_t trigger_aborts = 0;
     Shown shown;
     Safe safe;
-    std::int64_t withdrawn = 0;  ///< a job has left the queue that `active` may count on
+    std::int64_t group = nowhere;  ///< place of the group (blocks/group/) that it is in
+    std::int64_t led_at = 0;       ///< when it had the last set-point of that [ns]
+    std::int64_t withdrawn = 0;    ///< a job has left the queue that `active` may count on
     std::int64_t started = 0;
     std::int64_t task = 0, scan_index = 0;  ///< of the scan under way, to stamp what is told
     std::int64_t scan_time = 0, scan_interval = 0;  ///< [ns]
@@ -176,6 +176,23 @@ struct Axis {
     /// Of the drive where there is one, else of the set-point: position and velocity.
     MotionState actual() const;
     MotionState total() const;  ///< as it is shown, but for the modulo
+
+    // axis_in_group.cpp: what a group makes of it.
+
+    /// Why it cannot follow its group from now on: it does not stand, or may not move.
+    MotionError cannot_follow() const;
+    void begin_to_follow(const Moment& at);
+    bool follows_group() const { return doing == Doing::following_group; }
+    /// The set-point of its group at the scan under way. It is shown then, wherever the axis stands
+    /// in the order of its task.
+    void follow_group(const MotionState& set_point, const Moment& at);
+    /// The path is over, or given up: what is in motion then brakes in ErrorStop.
+    void end_following(const Context& context, const Moment& at);
+    /// Ends an error that is over; false while the axis still brakes.
+    bool reset_by_group();
+    /// Whether the software limits hold these positions, and MC_Power the directions.
+    MotionError cannot_run(double from, double to, double least, double greatest) const;
+    bool may_go(double way) const;
 
   private:
     /// Where a motion beneath begins.
@@ -279,7 +296,6 @@ struct Axis {
 
     // axis_jobs.cpp: commands are taken up, told how far they are, and ended.
     void take_up(const Context& context, const Scan& now);
-    JobList due_jobs(const Context& context);
     void take(const Context& context, const Moment& at, Job& job);
     void carry_out(const Context& context, const Moment& at, Job& job);
     void change(const Context& context, const Moment& at, Running& running, const Job& job);
@@ -295,8 +311,6 @@ struct Axis {
               MotionError why = MotionError::none) const;
     void tell(Job& job, Progress how, MotionError why = MotionError::none) const;
     Job& front(const Context& context) const;
-    void link(const Context& context, Job& job, JobList& list, JobPlace in) const;
-    void unlink(const Context& context, Job& job, JobList& list) const;
     void settle();
     MotionError refusal() const;
 
@@ -319,7 +333,6 @@ struct Axis {
     MotionError write_parameter(const Context& context, std::int64_t number, double value);
     double* limit_of(std::int64_t number);
     void switch_power(const Context& context, const Moment& at, const Request& request);
-    bool may_go(double way) const;
     void keep_directions(const Context& context);
     void come_to_rest(const Context& context);
     void stop_again(const Context& context, const Moment& at, Job& job);
@@ -385,6 +398,9 @@ bool is_superimposed(Command command);
 /// Whether the axis follows others by it; whether it shifts the master that the axis follows.
 bool is_synchronous(Command command);
 bool is_phasing(Command command);
+
+/// Whether an axis takes it up while its group moves it.
+bool is_taken_in_group(Command command);
 
 /// Whether a table gives the motion over time.
 bool is_profile(Command command);

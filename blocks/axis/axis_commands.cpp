@@ -241,13 +241,14 @@ void Axis::hold(const MotionState& as, const Moment& at) {
 
 void Axis::brake(const Moment& at) {
     const MotionState from = total();
+    const Moment since = follows_group() ? Moment{led_at} : at;
     offset = lasting = 0;
     clear_added();
     leg.exists = paused = 0;
     safe.as_planned = 0;
     base = from;
     if (from.velocity == 0 && from.acceleration == 0) return hold(from, at);
-    velocity_motion.begin(from, 0, defaults(), at);
+    velocity_motion.begin(from, 0, defaults(), since);
     doing = Doing::following_velocity;
 }
 

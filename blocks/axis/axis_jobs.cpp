@@ -12,50 +12,12 @@ void Axis::send(const Context& context, const Scan& now, Job& job) {
     if (job.in != JobPlace::inbox) link(context, job, inbox, JobPlace::inbox);
 }
 
-void Axis::link(const Context& context, Job& job, JobList& list, JobPlace in) const {
-    const std::int64_t place = context.place_of(job);
-    job.in = in;
-    job.previous = list.last;
-    job.next = nowhere;
-    (list.first == nowhere ? list.first : context.at<Job>(list.last).next) = place;
-    list.last = place;
-}
-
-void Axis::unlink(const Context& context, Job& job, JobList& list) const {
-    const std::int64_t place = context.place_of(job);
-    std::int64_t at = list.first;
-    while (at != place && at != nowhere) at = context.at<Job>(at).next;
-    if (at == nowhere) return;
-    (job.previous == nowhere ? list.first : context.at<Job>(job.previous).next) = job.next;
-    (job.next == nowhere ? list.last : context.at<Job>(job.next).previous) = job.previous;
-    job.in = JobPlace::no_list;
-    job.previous = job.next = nowhere;
-}
-
 Job& Axis::front(const Context& context) const {
     return context.at<Job>(queue.first);
 }
 
-/// What has been published, in the order of the tasks, and of each in that of sending.
-Axis::JobList Axis::due_jobs(const Context& context) {
-    JobList due;
-    std::int64_t next = nowhere;
-    for (std::int64_t place = inbox.first; place != nowhere; place = next) {
-        Job& job = context.at<Job>(place);
-        next = job.next;
-        if (!context.is_published(job.task, job.scan)) continue;
-        unlink(context, job, inbox);
-        std::int64_t* link = &due.first;
-        while (*link != nowhere && context.at<Job>(*link).task <= job.task)
-            link = &context.at<Job>(*link).next;
-        job.next = *link;
-        *link = place;
-    }
-    return due;
-}
-
 void Axis::take_up(const Context& context, const Scan& now) {
-    std::int64_t next = due_jobs(context).first;
+    std::int64_t next = take_due(context, inbox).first;
     while (next != nowhere) {
         Job& job = context.at<Job>(next);
         next = job.next;
@@ -71,6 +33,8 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
             return change(context, at, *running, job);
     if (is_end(job.progress)) return;
     const Request& request = job.request;
+    if (follows_group() && !is_taken_in_group(request.command))
+        return tell(job, Progress::failed, MotionError::axis_in_group);
     if (state == AxisState::stopping && active.place == place && request.command == Command::stop)
         return stop_again(context, at, job);
     const bool waits =
@@ -231,13 +195,8 @@ void Axis::tell(const Context& context, const Running& running, Progress how,
 }
 
 void Axis::tell(Job& job, Progress how, MotionError why) const {
-    if (job.told_by != task || job.told_in != scan_index) job.before = job.progress;
-    job.progress = how;
-    if (how == Progress::reached) job.has_reached = 1;
-    job.error = why;
+    job.tell(how, why, task, scan_index);
     job.shortage = shortage;
-    job.told_by = task;
-    job.told_in = scan_index;
 }
 
 MotionError Axis::refusal() const {

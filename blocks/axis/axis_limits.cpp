@@ -132,6 +132,7 @@ bool Axis::finds_room(const MotionState& next) {
 /// What is shown is at each time a state from which the axis can stop inside its limits: with its
 /// defaults, or by going on as planned. One that is inside and goes on to an end stays so.
 bool Axis::is_safe(const MotionState& next) {
+    if (doing == Doing::following_group) return bounds().contain({next.position, next.position});
     if (safe.contains(next)) return true;
     const Bounds kept = bounds();
     const bool is_inside = kept.lowest == lowest_position && kept.highest == highest_position;

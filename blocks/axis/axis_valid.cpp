@@ -70,28 +70,12 @@ bool is_valid(const SyncMotion& sync, bool is_followed, const KeptState& machine
 
 bool is_valid(const Axis::Running& running, const KeptState& machine) {
     if (!running.exists()) return true;
-    return machine.is_link(running.place) && is_count(running.ticket) &&
+    return is_job(running.place, JobFor::axis, machine) && is_count(running.ticket) &&
            is_valid(running.request, machine);
 }
 
-/// Every job once, each knows where it is, and the last is the last.
-bool is_valid(const Axis::JobList& list, JobPlace in, std::set<std::int64_t>& seen,
-              const KeptState& machine) {
-    std::int64_t last = nowhere;
-    for (std::int64_t place = list.first; place != nowhere;) {
-        if (!machine.is_link(place) || !seen.insert(place).second) return false;
-        const Job& job = machine.context.at<Job>(place);
-        if (job.in != in || job.previous != last) return false;
-        last = place;
-        place = job.next;
-    }
-    return last == list.last;
-}
-
 bool lists_are_valid(const Axis& axis, const KeptState& machine) {
-    std::set<std::int64_t> seen;
-    return is_valid(axis.inbox, JobPlace::inbox, seen, machine) &&
-           is_valid(axis.queue, JobPlace::queue, seen, machine);
+    return lists_are_valid(axis.inbox, axis.queue, JobFor::axis, machine);
 }
 
 /// A slave makes up for the steps since its last scan: not for more than a task would leave out.
@@ -124,7 +108,7 @@ bool masters_are_valid(const Axis& axis, const KeptState& machine) {
 
 bool motions_are_valid(const Axis& axis, const KeptState& machine) {
     using Doing = Axis::Doing;
-    return is_one_of(axis.doing, Doing::following_profile) &&
+    return is_one_of(axis.doing, Doing::following_group) &&
            is_valid(axis.velocity_motion, machine) && is_valid(axis.point_motion, machine) &&
            is_valid(axis.added_motion, machine) &&
            is_valid(axis.profile_motion, axis.doing == Doing::following_profile, machine) &&
@@ -132,6 +116,49 @@ bool motions_are_valid(const Axis& axis, const KeptState& machine) {
 }
 
 }  // namespace
+
+bool is_job(std::int64_t place, JobFor whom, const KeptState& machine) {
+    return machine.is_link(place) && machine.context.at<JobState>(place).whom == whom;
+}
+
+bool lists_are_valid(const JobList& inbox, const JobList& queue, JobFor whom,
+                     const KeptState& machine) {
+    std::set<std::int64_t> seen;
+    const auto is_list = [&](const JobList& list, JobPlace in) {
+        std::int64_t last = nowhere;
+        for (std::int64_t place = list.first; place != nowhere;) {
+            if (!is_job(place, whom, machine) || !seen.insert(place).second) return false;
+            const JobState& job = machine.context.at<JobState>(place);
+            if (job.in != in || job.previous != last) return false;
+            last = place;
+            place = job.next;
+        }
+        return last == list.last;
+    };
+    return is_list(inbox, JobPlace::inbox) && is_list(queue, JobPlace::queue);
+}
+
+bool leads_to(const JobList& list, std::int64_t job, const KeptState& machine) {
+    std::int64_t place = list.first;
+    for (std::size_t n = 0; n <= machine.links->size() && machine.is_link(place); ++n) {
+        if (place == job) return true;
+        place = machine.context.at<JobState>(place).next;
+    }
+    return false;
+}
+
+bool is_valid(const JobState& job, JobFor whom, const KeptState& machine) {
+    return job.whom == whom && is_count(job.ticket) && machine.is_task(job.task) &&
+           is_one_of(job.in, JobPlace::queue) && is_one_of(job.progress, Progress::failed) &&
+           is_one_of(job.before, Progress::failed) &&
+           (job.told_by == nowhere || machine.is_task(job.told_by)) && is_valid(job.error) &&
+           (job.previous == nowhere || machine.is_link(job.previous)) &&
+           (job.next == nowhere || machine.is_link(job.next));
+}
+
+bool is_valid(MotionError error) {
+    return is_one_of(error, static_cast<MotionError>(std::size(motion_error_names) - 1));
+}
 
 bool is_valid(const Coupling& coupling, const KeptState& machine) {
     return is_valid(coupling.master, machine) && is_valid(coupling.second, machine) &&
@@ -154,13 +181,8 @@ bool is_valid(const Request& request, const KeptState& machine) {
 }
 
 bool is_valid(const Job& job, const KeptState& machine) {
-    return is_valid(job.request, machine) && is_count(job.ticket) && machine.is_task(job.task) &&
-           is_one_of(job.in, JobPlace::queue) && is_one_of(job.progress, Progress::failed) &&
-           is_one_of(job.before, Progress::failed) &&
-           (job.told_by == nowhere || machine.is_task(job.told_by)) &&
-           is_one_of(job.error, static_cast<MotionError>(std::size(motion_error_names) - 1)) &&
-           is_valid(job.shortage) && (job.previous == nowhere || machine.is_link(job.previous)) &&
-           (job.next == nowhere || machine.is_link(job.next));
+    return is_valid(job, JobFor::axis, machine) && is_valid(job.request, machine) &&
+           is_valid(job.shortage);
 }
 
 bool is_valid(const Axis& axis, const KeptState& machine) {
@@ -168,7 +190,7 @@ bool is_valid(const Axis& axis, const KeptState& machine) {
            is_valid(axis.added, machine) && is_valid(axis.phased, machine) &&
            is_valid(axis.overriding, machine) && machine.is_task(axis.task) &&
            is_count(axis.scan_index) && machine.is_moment(axis.scan_time) &&
-           machine.is_moment(axis.shown.time) && is_valid(axis.shortage) &&
+           machine.is_moment(axis.shown.time) && machine.is_moment(axis.led_at) && is_valid(axis.shortage) &&
            is_count(axis.scan_interval) && is_count(axis.renamed) &&
            is_count(axis.trigger_aborts) && masters_are_valid(axis, machine) &&
            steps_are_few(axis, machine) && (!machine.is_live || lists_are_valid(axis, machine));

@@ -15,5 +15,16 @@ bool is_valid(const ServoDrive& drive, const KeptState& machine);
 bool is_valid(const Coupling& coupling, const KeptState& machine);
 bool is_valid(const Request& request, const KeptState& machine);
 bool is_valid(const Job& job, const KeptState& machine);
+bool is_valid(MotionError error);
+
+/// Of what jobs for axes and for groups have in common.
+bool is_valid(const JobState& job, JobFor whom, const KeptState& machine);
+/// Whether a job stands there.
+bool is_job(std::int64_t place, JobFor whom, const KeptState& machine);
+/// Every job once, each knows where it is, and the last is the last.
+bool lists_are_valid(const JobList& inbox, const JobList& queue, JobFor whom,
+                     const KeptState& machine);
+/// Whether the list leads to the job, however it goes on: it may be damaged.
+bool leads_to(const JobList& list, std::int64_t job, const KeptState& machine);
 
 }  // namespace lineshaft

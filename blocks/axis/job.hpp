@@ -8,6 +8,7 @@
 #include "blocks/axis/axis_states.hpp"
 #include "blocks/axis/coupling.hpp"
 #include "blocks/axis/look_ahead.hpp"
+#include "runtime/model/scan.hpp"
 
 namespace lineshaft {
 
@@ -59,14 +60,53 @@ enum class MotionError : std::int64_t {
     direction_not_enabled,
     no_reference,
     other_unit,
+    axis_in_group,
+    no_group,
+    group_disabled,
+    group_stopping,
+    group_in_error,
+    too_few_axes,
+    already_in_group,
+    unit_of_group,
+    task_of_group,
+    axis_moves,
+    axis_left_path,
+    no_arc,
 };
 
-inline constexpr std::string_view motion_error_names[] = {
-    "none",           "no_axis",       "not_finite",        "limit_not_positive",    "out_of_range",
-    "axis_disabled",  "axis_stopping", "axis_homing",       "axis_in_error",         "wrong_state",
-    "software_limit", "no_master",     "master_loop",       "master_stands",         "sync_passed",
-    "sync_limits",    "no_cam",        "no_such_parameter", "direction_not_enabled", "no_reference",
-    "other_unit"};
+inline constexpr std::string_view motion_error_names[] = {"none",
+                                                          "no_axis",
+                                                          "not_finite",
+                                                          "limit_not_positive",
+                                                          "out_of_range",
+                                                          "axis_disabled",
+                                                          "axis_stopping",
+                                                          "axis_homing",
+                                                          "axis_in_error",
+                                                          "wrong_state",
+                                                          "software_limit",
+                                                          "no_master",
+                                                          "master_loop",
+                                                          "master_stands",
+                                                          "sync_passed",
+                                                          "sync_limits",
+                                                          "no_cam",
+                                                          "no_such_parameter",
+                                                          "direction_not_enabled",
+                                                          "no_reference",
+                                                          "other_unit",
+                                                          "axis_in_group",
+                                                          "no_group",
+                                                          "group_disabled",
+                                                          "group_stopping",
+                                                          "group_in_error",
+                                                          "too_few_axes",
+                                                          "already_in_group",
+                                                          "unit_of_group",
+                                                          "task_of_group",
+                                                          "axis_moves",
+                                                          "axis_left_path",
+                                                          "no_arc"};
 
 inline constexpr std::string_view motion_error_texts[] = {
     "",
@@ -90,7 +130,20 @@ inline constexpr std::string_view motion_error_texts[] = {
     "the axis has no parameter of that number",
     "MC_Power does not enable the direction of the way, with EnablePositive or EnableNegative",
     "a reference of the block names nothing",
-    "what the block refers to is in another unit than its axis"};
+    "what the block refers to is in another unit than its axis",
+    "the axis follows a group in motion, whose commands move it",
+    "the command refers to no group",
+    "the group is disabled, which MC_GroupEnable ends",
+    "MC_GroupStop holds the group until its Execute is false",
+    "the group is in GroupErrorStop, which MC_GroupReset ends",
+    "a group has two axes at least, which MC_AddAxisToGroup adds",
+    "the axis is in a group, or another axis is in that place of this one",
+    "an axis has another unit than its place in the group: the group's at IdentInGroup 1 to 3, deg "
+    "at 4 to 6",
+    "an axis is not in the task of its group",
+    "an axis of the group is in a motion of its own",
+    "an axis of the group has no power or an error, and has left the path",
+    "no arc leads through the points, or about the centre, to where it is to end"};
 static_assert(std::size(motion_error_texts) == std::size(motion_error_names));
 
 constexpr std::string_view text_of(MotionError error) {
@@ -144,12 +197,15 @@ inline constexpr std::int64_t nowhere = -1;
 /// The list of the axis that a job is in.
 enum class JobPlace : std::int64_t { no_list, inbox, queue };
 
-/// What a command has told its axis, and the axis the command; it stands in the command's memory,
-/// and the axis links it into its lists. Of both sides each sees what the other's task has
-/// published: `task` and `scan` say when the request was written, `told_by` and `told_in` when
-/// `progress` was.
-struct Job {
-    Request request;
+/// Whom a job is for: each has lists of its own.
+enum class JobFor : std::int64_t { axis, group };
+
+/// What is common to jobs for axes and for groups of them. A job is what a command has told its
+/// axis, and the axis the command; it stands in the command's memory, and the axis links it into
+/// its lists. Of both sides each sees what the other's task has published: `task` and `scan` say
+/// when the request was written, `told_by` and `told_in` when `progress` was.
+struct JobState {
+    JobFor whom = JobFor::axis;
     std::int64_t ticket = 0;                          ///< a number for each start of the command
     std::int64_t task = 0, scan = 0;                  ///< of the request
     std::int64_t previous = nowhere, next = nowhere;  ///< places of jobs in a list of the axis
@@ -159,9 +215,30 @@ struct Job {
         0;  ///< `progress` has been `reached`, though it may have ended since
     std::int64_t told_by = nowhere, told_in = 0;
     MotionError error = MotionError::none;  ///< of `failed`
-    Shortage shortage;                      ///< of sync_limits
-    double told_value = 0;                  ///< what the axis answers beside the progress
-    Ahead ahead;                            ///< in the queue
+
+    /// What becomes of it, by a scan of the task that carries it out.
+    void tell(Progress how, MotionError why, std::int64_t by_task, std::int64_t in_scan);
 };
+
+/// A job for an axis.
+struct Job : JobState {
+    Request request;
+    Shortage shortage;      ///< of sync_limits
+    double told_value = 0;  ///< what the axis answers beside the progress
+    Ahead ahead;            ///< in the queue
+};
+
+/// Jobs in a row, linked by their places in the machine's memory.
+struct JobList {
+    std::int64_t first = nowhere, last = nowhere;
+};
+
+/// Puts a job behind the last one of a list, or takes it out.
+void link(const Context& context, JobState& job, JobList& list, JobPlace in);
+void unlink(const Context& context, JobState& job, JobList& list);
+
+/// Takes out of an inbox what has been published, in the order of the tasks, and of each in that of
+/// sending. Of what is taken out `next` alone leads on.
+JobList take_due(const Context& context, JobList& inbox);
 
 }  // namespace lineshaft

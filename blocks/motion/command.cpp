@@ -15,21 +15,26 @@ void CommandBlock::send(const Scan& now, const Context& context) {
     if (rising_edge(execute, last_execute)) return start(now, context);
     updating = updating && continuous_update;
     if (!updating || refusal != MotionError::none) return;
-    const Progress now_at = progress(context);
+    const Progress now_at = progress_of(job, context);
     const bool at_work = now_at >= Progress::active && now_at <= Progress::reached;
     if (at_work && job.in == JobPlace::no_list && pins != job.request) update(now, context);
 }
 
-void CommandBlock::start(const Scan& now, const Context& context) {
+bool CommandState::begin(JobState& job, MotionError refused) {
     started = true;
     told = reached_shown = false;
-    updating = continuous_update;
-    refusal = check();
-    if (refusal != MotionError::none) return;
+    refusal = refused;
+    if (refusal != MotionError::none) return false;
     ++job.ticket;
     job.progress = job.before = Progress::sent;
     job.has_reached = 0;
     job.told_by = nowhere;
+    return true;
+}
+
+void CommandBlock::start(const Scan& now, const Context& context) {
+    updating = continuous_update;
+    if (!begin(job, check())) return;
     job.request = pins;
     context.instance<Axis>(axis).send(context, now, job);
 }
@@ -41,8 +46,8 @@ void CommandBlock::update(const Scan& now, const Context& context) {
     context.instance<Axis>(axis).send(context, now, job);
 }
 
-void CommandBlock::show(const Context& context) {
-    Progress now_at = progress(context);
+void CommandState::show(const JobState& job, const Context& context) {
+    Progress now_at = progress_of(job, context);
     const bool missed = now_at == Progress::aborted && job.has_reached != 0 && !reached_shown;
     if (missed) now_at = Progress::reached;
     const bool refused = refusal != MotionError::none;
@@ -57,6 +62,12 @@ void CommandBlock::show(const Context& context) {
     done = shown && !error && now_at == Progress::done;
     command_aborted = shown && !error && now_at == Progress::aborted;
     error_id = !error ? MotionError::none : refused ? refusal : job.error;
+}
+
+Progress progress_of(const JobState& job, const Context& context) {
+    if (job.told_by == nowhere) return Progress::sent;
+    const bool seen = job.told_by == context.task || context.is_published(job.told_by, job.told_in);
+    return seen ? job.progress : job.before;
 }
 
 std::string CommandBlock::why(const Context& context, const NameOf& name_of) const {
@@ -80,12 +91,6 @@ std::string CommandBlock::loop(const Context& context, const NameOf& name_of) co
     return text;
 }
 
-Progress CommandBlock::progress(const Context& context) const {
-    if (job.told_by == nowhere) return Progress::sent;
-    const bool seen = job.told_by == context.task || context.is_published(job.told_by, job.told_in);
-    return seen ? job.progress : job.before;
-}
-
 MotionError CommandBlock::check() const {
     if (axis == nowhere) return MotionError::no_axis;
     if (!pins.coupling.is_finite()) return MotionError::not_finite;
@@ -98,7 +103,7 @@ MotionError CommandBlock::check() const {
 
 double CommandBlock::covered(const Context& context, const Axis::Running Axis::*running) const {
     if (refusal != MotionError::none || axis == nowhere) return 0;
-    if (is_end(progress(context))) return job.told_value;
+    if (is_end(progress_of(job, context))) return job.told_value;
     const Axis::Running& at_work = context.seen_instance<Axis>(axis).*running;
     const bool is_own = at_work.place == context.place_of(job) && at_work.ticket == job.ticket;
     return is_own ? at_work.covered : 0;

@@ -13,17 +13,13 @@
 
 namespace lineshaft {
 
-/// What all command blocks with an Execute have in common: its edge, the pins, the job that goes to
-/// the axis, and the outputs by the rules of PLCopen Part 1 v2.0, 2.4.1: Busy, Done, CommandAborted
-/// and Error exclude each other; Busy comes with the edge; what ends it stays while Execute is
-/// true, one scan at least. A block that is started anew while it is at work shows the new job
-/// alone. What has been reached is shown for one scan at least, also where a buffered command has
-/// taken over since.
-struct CommandBlock {
-    std::int64_t axis = nowhere;
-    bool execute = false, continuous_update = false;
-    Request pins;
-
+/// Execute of a command, and its outputs by the rules of PLCopen Part 1 v2.0, 2.4.1: Busy, Done,
+/// CommandAborted and Error exclude each other; Busy comes with the edge; what ends it stays while
+/// Execute is true, one scan at least. A block that is started anew while it is at work shows the
+/// new job alone. What has been reached is shown for one scan at least, also where a buffered
+/// command has taken over since.
+struct CommandState {
+    bool execute = false;
     bool done = false, busy = false, active = false, command_aborted = false, error = false;
     bool reached = false;  ///< InVelocity, InGear, ...
     MotionError error_id = MotionError::none;
@@ -31,9 +27,25 @@ struct CommandBlock {
     bool last_execute = false;
     bool told = false;                        ///< the end has been shown
     bool reached_shown = false;               ///< `reached` has
-    bool updating = false;                    ///< ContinuousUpdate, from the edge on
     bool started = false;                     ///< at least once
-    MotionError refusal = MotionError::none;  ///< of the pins: the axis has not got them
+    MotionError refusal = MotionError::none;  ///< of the pins: the job has not been sent
+
+    /// What a start makes of it, with the refusal of the pins. True where the job is to be sent.
+    bool begin(JobState& job, MotionError refused);
+    /// Sets the outputs by what has been told of the job.
+    void show(const JobState& job, const Context& context);
+};
+
+/// How far the job is, as far as the task that carries it out has published it.
+Progress progress_of(const JobState& job, const Context& context);
+
+/// What all commands to an axis with an Execute have in common: its edge, the pins, the job that
+/// goes to the axis, and the outputs.
+struct CommandBlock : CommandState {
+    std::int64_t axis = nowhere;
+    bool continuous_update = false;
+    bool updating = false;  ///< ContinuousUpdate, from the edge on
+    Request pins;
     Job job;
 
     static constexpr auto linked_part = &CommandBlock::job;
@@ -44,8 +56,7 @@ struct CommandBlock {
     /// Sends the pins at a rising edge of Execute, and with ContinuousUpdate what has changed: from
     /// an edge at which it is true on, until it goes false or the command has ended (2.4.6).
     void send(const Scan& now, const Context& context);
-    /// Sets the outputs by what the axis has told.
-    void show(const Context& context);
+    void show(const Context& context) { CommandState::show(job, context); }
 
     /// Puts the pins into the job and the job into the axis' inbox: as a new one, or as a change.
     void start(const Scan& now, const Context& context);
@@ -55,8 +66,6 @@ struct CommandBlock {
     /// The way round of a master_loop: `'c' follows 'b', which follows 'a'`; or empty.
     std::string loop(const Context& context, const NameOf& name_of) const;
 
-    /// As far as the axis' task has published it.
-    Progress progress(const Context& context) const;
     MotionError check() const;
 
     /// Of what the axis does on top of its motion, or of its master: how far the command has come,

@@ -6,16 +6,6 @@ namespace lineshaft {
 
 namespace {
 
-/// Whether the list leads to the job, however it goes on: it may be that of a damaged axis.
-bool leads_to(std::int64_t first, std::int64_t job, const KeptState& machine) {
-    std::int64_t place = first;
-    for (std::size_t n = 0; n <= machine.links->size() && machine.is_link(place); ++n) {
-        if (place == job) return true;
-        place = machine.context.at<Job>(place).next;
-    }
-    return false;
-}
-
 /// In one list of one axis, or in none.
 bool is_where_it_says(const Job& job, const KeptState& machine) {
     const Context& context = machine.context;
@@ -24,21 +14,24 @@ bool is_where_it_says(const Job& job, const KeptState& machine) {
     for (std::int64_t n = 0; n < context.blocks; ++n) {
         if (!is_instance<Axis>(context, n)) continue;
         const Axis& axis = context.instance<Axis>(n);
-        lists += leads_to(axis.inbox.first, place, machine);
-        lists += leads_to(axis.queue.first, place, machine);
+        lists += leads_to(axis.inbox, place, machine);
+        lists += leads_to(axis.queue, place, machine);
     }
     return lists == (job.in == JobPlace::no_list ? 0 : 1);
 }
 
 }  // namespace
 
-bool is_valid(const CommandBlock& command, const KeptState& machine) {
+bool is_valid(const CommandState& command) {
     return are_booleans(command.last_execute, command.told, command.started, command.execute,
-                        command.continuous_update, command.done, command.busy, command.active,
-                        command.command_aborted, command.error, command.reached,
-                        command.reached_shown, command.updating) &&
-           is_one_of(command.refusal,
-                     static_cast<MotionError>(std::size(motion_error_names) - 1)) &&
+                        command.done, command.busy, command.active, command.command_aborted,
+                        command.error, command.reached, command.reached_shown) &&
+           is_valid(command.refusal);
+}
+
+bool is_valid(const CommandBlock& command, const KeptState& machine) {
+    return is_valid(static_cast<const CommandState&>(command)) &&
+           are_booleans(command.continuous_update, command.updating) &&
            is_valid(command.pins, machine) && is_valid(command.job, machine) &&
            (!machine.is_live || is_where_it_says(command.job, machine));
 }

@@ -14,6 +14,7 @@
 /// Which states that were kept commands can go on with.
 namespace lineshaft {
 
+bool is_valid(const CommandState& command);
 bool is_valid(const CommandBlock& command, const KeptState& machine);
 /// Leaves a list that it is not in: its axis was not retained.
 void mend(CommandBlock& command, const KeptState& machine);

@@ -126,7 +126,7 @@ std::span<const Field> GearInPos::fields() {
 
 void GearInPos::scan(const Scan& now, const Context& context) {
     run(now, context);
-    start_sync = busy && progress(context) >= Progress::approaching;
+    start_sync = busy && progress_of(job, context) >= Progress::approaching;
 }
 
 std::span<const Field> CamIn::fields() {
@@ -150,7 +150,7 @@ std::span<const Field> CamIn::fields() {
 
 void CamIn::scan(const Scan& now, const Context& context) {
     run(now, context);
-    const Progress at = progress(context);
+    const Progress at = progress_of(job, context);
     start_sync = busy && at >= Progress::approaching;
     const bool known = job.told_by != nowhere && (job.told_by == context.task ||
                                                   context.is_published(job.told_by, job.told_in));

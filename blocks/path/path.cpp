@@ -42,6 +42,56 @@ PathLimit tangential(const PathCurve& curve, const PathLimits& limits) {
     return least;
 }
 
+/// Greatest sizes of an axis' first three derivatives by s in a corner, or of the whole vector's;
+/// its limit.
+struct CornerBound {
+    double tangent = 0, bend = 0, twist = 0;
+    PathLimit limit;
+};
+
+/// Parts of a limit that the curvature alone may take, and the product of speed and acceleration.
+constexpr double of_acceleration = 0.6, of_jerk = 0.35;
+
+template <class Use>
+void for_bounds(const PathCurve& u, const PathCurve& w, double length, const PathLimits& limits,
+                const Use& use) {
+    const auto bound = [&](double tangent, double turn, const PathLimit& limit) {
+        if (tangent == 0) return;
+        use(CornerBound{tangent, 1.5 * turn / length, 6 * turn / (length * length), limit});
+    };
+    bound(1, bend_between(u, w), limits.path);
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        bound(std::max(std::abs(u.u[i]), std::abs(w.u[i])), std::abs(w.u[i] - u.u[i]),
+              limits.axes[i]);
+}
+
+/// The box of README.md, "Corners".
+PathLimit corner_cap(const PathCurve& before, const PathCurve& after, double length,
+                     const PathLimits& limits, const PathLimit& most) {
+    PathLimit cap = most;
+    for_bounds(before, after, length, limits, [&](const CornerBound& b) {
+        cap.velocity = std::min(cap.velocity, b.limit.velocity / b.tangent);
+        if (b.bend == 0) return;
+        cap.velocity =
+            std::min({cap.velocity, std::sqrt(of_acceleration * b.limit.acceleration / b.bend),
+                      Sleef_cinz_cbrtd1_u10purec(of_jerk * b.limit.jerk / b.twist)});
+    });
+    const double V = cap.velocity;
+    for_bounds(before, after, length, limits, [&](const CornerBound& b) {
+        const double left = b.limit.acceleration - b.bend * V * V;
+        cap.acceleration = std::min(cap.acceleration, left / b.tangent);
+        if (b.bend > 0)
+            cap.acceleration =
+                std::min(cap.acceleration, of_jerk * b.limit.jerk / (3 * b.bend * V));
+    });
+    const double A = cap.acceleration;
+    for_bounds(before, after, length, limits, [&](const CornerBound& b) {
+        const double left = b.limit.jerk - 3 * b.bend * V * A - b.twist * V * V * V;
+        cap.jerk = std::min(cap.jerk, left / b.tangent);
+    });
+    return cap;
+}
+
 /// The box of README.md, "Arcs".
 PathLimit cap_of(const PathCurve& curve, const PathLimits& limits) {
     const PathLimit axes = tangential(curve, limits);
@@ -140,14 +190,17 @@ double factor_of(const Path& path) {
     return path.halted ? 0 : std::min(path.override, 1.0);
 }
 
+/// The velocity at the end of the piece under way that was planned, where it is still allowed.
+double still_reached(const Path& path, const PathPiece& piece) {
+    return std::min(path.plan.end.velocity, piece.exit);
+}
+
 /// Plans the piece under way anew from now; where that cannot be, what was planned goes on.
 void plan_anew(Path& path, std::span<const PathPiece> ring) {
     const MotionState from = path.plan.at(path.time);
     MotionPlan anew;
-    if (!plan_piece(piece_at(ring, path.first), from, factor_of(path), path.plan.end.velocity,
-                    anew)) {
-        return;
-    }
+    const PathPiece& piece = piece_at(ring, path.first);
+    if (!plan_piece(piece, from, factor_of(path), still_reached(path, piece), anew)) return;
     path.plan = anew;
     path.time = 0;
     path.phase = 0;
@@ -162,6 +215,7 @@ void enter_next(Path& path, std::span<const PathPiece> ring) {
     ++path.first;
     path.plan = {};
     if (path.finished()) {
+        path.travelled = path.total;
         path.time = 0;
         return;
     }
@@ -198,10 +252,91 @@ void look_back(Path& path, std::span<PathPiece> ring) {
     path.stale = true;
 }
 
+/// After pieces in the ring have changed: all of them, and whether the one under way can still be
+/// run along from now.
+bool look_back_anew(Path& path, std::span<PathPiece> ring) {
+    for (std::uint64_t k = path.count - 1; k > path.first; --k) {
+        const PathPiece& next = piece_at(ring, k);
+        PathPiece& piece = piece_at(ring, k - 1);
+        piece.exit = std::min(piece.joint, entry_velocity(next, next.exit));
+    }
+    path.stale = true;
+    const PathPiece& piece = piece_at(ring, path.first);
+    const MotionState now = path.plan.at(path.time);
+    return way_to(now, still_reached(path, piece), piece.cap) <= piece.curve.length - now.position;
+}
+
+/// The lines are as straight on as rounding lets them.
+bool is_straight_on(const PathCurve& before, const PathCurve& after) {
+    constexpr double rounding = 1e-9;
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        if (std::abs(before.u[i] - after.u[i]) > rounding) return false;
+    return true;
+}
+
+/// How far from the vertex a corner between the last piece and a line can begin.
+double room_of_corner(const Path& path, const PathPiece& before, const PathCurve& line) {
+    constexpr double nearly = 0.99;
+    double room = before.curve.length;
+    if (path.first == path.count - 1) {
+        const MotionState now = path.plan.at(path.time);
+        room -= now.position + way_to(now, 0, before.cap);
+    }
+    return std::min(nearly * room, 0.5 * line.length);
+}
+
+/// Joins a line to the last one by a corner. False, and nothing has changed, where that cannot be.
+bool append_round(Path& path, std::span<PathPiece> ring, PathCurve line, const PathLimit& cap,
+                  const PathLimits& limits, double distance) {
+    if (path.finished() || path.count - path.first + 2 > ring.size()) return false;
+    PathPiece& last = piece_at(ring, path.count - 1);
+    const PathPiece before = last;
+    if (before.curve.kind != PathCurveKind::line || line.kind != PathCurveKind::line ||
+        is_straight_on(before.curve, line))
+        return false;
+    const double far = std::min(distance, room_of_corner(path, before, line));
+    if (!(far > 0)) return false;
+    const PathCurve corner = corner_between(before.curve, line, far);
+    const PathLimit round = corner_cap(before.curve, line, corner.length, limits, before.cap);
+    if (!good(round)) return false;
+    line.cut_start(far);
+    last.curve.cut_end(far);
+    if (!(last.curve.length > 0) || !(line.length > 0)) {
+        last = before;
+        return false;
+    }
+    last.joint = round.velocity;
+    piece_at(ring, path.count) = {corner, round, std::min(round.velocity, cap.velocity), 0};
+    piece_at(ring, path.count + 1) = {line, cap, 0, 0};
+    path.count += 2;
+    if (look_back_anew(path, ring)) {
+        path.total += last.curve.length - before.curve.length + corner.length + line.length;
+        return true;
+    }
+    path.count -= 2;
+    last = before;
+    look_back_anew(path, ring);
+    return false;
+}
+
 }  // namespace
 
-PathFault Path::append(std::span<PathPiece> ring, const PathCurve& curve,
-                       const PathLimits& limits) {
+double corner_distance_at(double velocity, const PathCurve& before, const PathCurve& after,
+                          const PathLimits& limits) {
+    double distance = 0;
+    for_bounds(before, after, 1, limits, [&](const CornerBound& b) {
+        const double square = velocity * velocity;
+        const double by_acceleration =
+            0.5 * b.bend * square / (of_acceleration * b.limit.acceleration);
+        const double by_jerk =
+            0.5 * std::sqrt(b.twist * square * velocity / (of_jerk * b.limit.jerk));
+        distance = std::max({distance, by_acceleration, by_jerk});
+    });
+    return distance;
+}
+
+PathFault Path::append(std::span<PathPiece> ring, const PathCurve& curve, const PathLimits& limits,
+                       const PathJoint& joint) {
     if (count - first >= ring.size()) return PathFault::full;
     if (!good(limits.path)) return PathFault::limit_not_positive;
     for (std::size_t i = 0; i < most_path_axes; ++i) {
@@ -212,8 +347,10 @@ PathFault Path::append(std::span<PathPiece> ring, const PathCurve& curve,
     if (count > first) {
         PathPiece& before = piece_at(ring, count - 1);
         if (!is_joined(before.curve, curve)) return PathFault::not_joined;
+        if (joint.distance > 0 && append_round(*this, ring, curve, cap, limits, joint.distance))
+            return PathFault::none;
         const bool smooth = is_smooth(before.curve, curve);
-        before.joint = smooth ? std::min(before.cap.velocity, cap.velocity) : 0;
+        before.joint = smooth ? std::min({before.cap.velocity, cap.velocity, joint.velocity}) : 0;
     }
     piece_at(ring, count) = {curve, cap, 0, 0};
     ++count;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "blocks/path/path_curve.hpp"
@@ -18,6 +19,12 @@ struct PathLimit {
 struct PathLimits {
     PathLimit path;
     std::array<PathLimit, most_path_axes> axes;
+};
+
+/// How the joint before a piece is passed.
+struct PathJoint {
+    double velocity = std::numeric_limits<double>::infinity();  ///< at most; 0: a stop [u/s]
+    double distance = 0;  ///< > 0: two lines are joined by a corner this far from the vertex [u]
 };
 
 /// One piece in the ring, with what is planned for it once: within it s', s'' and s''' keep to
@@ -57,8 +64,12 @@ struct Path {
     MotionPlan plan;          ///< along the piece under way, from its start on
     std::uint64_t phase = 0;  ///< of the plan, where the last instant was found
 
-    /// One piece more, with its limits.
-    PathFault append(std::span<PathPiece> ring, const PathCurve& curve, const PathLimits& limits);
+    /// One piece more, with its limits. A corner is as far from the vertex as `joint` says, or as
+    /// the lines leave room, half of the new one; where the path under way cannot be braked any
+    /// more before it begins, or there is no room in the ring, the vertex is a stop.
+    /// `joint.velocity` does not count where there is a corner.
+    PathFault append(std::span<PathPiece> ring, const PathCurve& curve, const PathLimits& limits,
+                     const PathJoint& joint = {});
 
     /// `factor` >= 0; 0 is a halt that ends with another factor.
     void set_override(double factor);
@@ -84,5 +95,9 @@ struct Path {
     /// What is left to its end [u].
     double remaining() const;
 };
+
+/// How far from the vertex a corner may begin that is passed with `velocity` [u/s].
+double corner_distance_at(double velocity, const PathCurve& before, const PathCurve& after,
+                          const PathLimits& limits);
 
 }  // namespace lineshaft

@@ -42,6 +42,16 @@ PathVector difference(const PathVector& a, const PathVector& b) {
     return combined(a, 1, b, -1);
 }
 
+/// The first three axes alone.
+PathVector in_space(PathVector a) {
+    for (std::size_t i = path_space; i < most_path_axes; ++i) a[i] = 0;
+    return a;
+}
+
+PathVector cross(const PathVector& a, const PathVector& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
 PathVector unit(const PathVector& a) {
     const double size = size_of(a);
     PathVector out = a;
@@ -80,15 +90,26 @@ PathPoint PathCurve::at(double s) const {
     if (kind == PathCurveKind::line) {
         out.position = combined(origin, 1, u, s);
         out.tangent = u;
+    } else if (kind == PathCurveKind::corner) {
+        const double t = s / length;
+        const PathVector turn = difference(w, u);
+        out.position =
+            combined(combined(origin, 1, u, s), 1, turn, length * (t * t * t * (1 - 0.5 * t)));
+        out.tangent = combined(u, 1, turn, t * t * (3 - 2 * t));
+        for (std::size_t i = 0; i < most_path_axes; ++i) {
+            out.bend[i] = turn[i] * (6 * t * (1 - t) / length);
+            out.twist[i] = turn[i] * ((6 - 12 * t) / (length * length));
+        }
     } else {
         const double sine = Sleef_cinz_sind1_u10purec(s / radius);
         const double cosine = Sleef_cinz_cosd1_u10purec(s / radius);
         const PathVector outwards = combined(u, cosine, w, sine);
-        out.position = combined(origin, 1, outwards, radius);
-        out.tangent = combined(w, cosine, u, -sine);
+        out.position = combined(combined(origin, 1, outwards, radius), 1, slope, s);
+        const PathVector along = combined(w, cosine, u, -sine);
+        out.tangent = combined(along, 1, slope, 1);
         for (std::size_t i = 0; i < most_path_axes; ++i) {
             out.bend[i] = -outwards[i] / radius;
-            out.twist[i] = -out.tangent[i] / (radius * radius);
+            out.twist[i] = -along[i] / (radius * radius);
         }
     }
     if (s >= length) out.position = end;
@@ -96,18 +117,49 @@ PathPoint PathCurve::at(double s) const {
 }
 
 double PathCurve::share(std::size_t axis) const {
-    return kind == PathCurveKind::line ? std::abs(u[axis]) : std::hypot(u[axis], w[axis]);
+    if (kind == PathCurveKind::line) return std::abs(u[axis]);
+    if (kind == PathCurveKind::corner) return std::fmax(std::abs(u[axis]), std::abs(w[axis]));
+    return slope[axis] != 0 ? std::abs(slope[axis]) : std::hypot(u[axis], w[axis]);
 }
 
-PathFault line_to(const PathVector& from, const PathVector& to, PathCurve& out) {
+PathCurve::Extent PathCurve::extent(std::size_t axis) const {
+    const double first = at(0).position[axis];
+    Extent out{std::fmin(first, end[axis]), std::fmax(first, end[axis])};
+    const double reach = kind == PathCurveKind::arc ? radius * std::hypot(u[axis], w[axis]) : 0;
+    if (reach == 0) return out;
+    const double turn = 2 * std::numbers::pi;
+    double top = Sleef_cinz_atan2d1_u10purec(w[axis], u[axis]);
+    if (top < 0) top += turn;
+    const double bottom = top < std::numbers::pi ? top + std::numbers::pi : top - std::numbers::pi;
+    if (top <= length / radius) out.greatest = origin[axis] + reach;
+    if (bottom <= length / radius) out.least = origin[axis] - reach;
+    return out;
+}
+
+void PathCurve::cut_end(double by) {
+    length -= by;
+    end = combined(origin, 1, u, length);
+}
+
+void PathCurve::cut_start(double by) {
+    length -= by;
+    origin = combined(origin, 1, u, by);
+}
+
+PathFault line_to(const PathVector& from, const PathVector& to, PathCurve& out,
+                  std::size_t counted) {
     if (!finite(from) || !finite(to)) return PathFault::not_finite;
     const PathVector way = difference(to, from);
+    PathVector measured = way;
+    for (std::size_t i = counted; i < most_path_axes; ++i) measured[i] = 0;
     PathCurve line;
-    line.length = size_of(way);
+    line.length = size_of(size_of(measured) > 0 ? measured : way);
     if (!std::isfinite(line.length)) return PathFault::not_finite;
     if (!(line.length > 0)) return PathFault::no_length;
     line.origin = from;
-    line.u = unit(way);
+    line.u = way;
+    for (double& x : line.u) x /= line.length;
+    if (!finite(line.u)) return PathFault::not_finite;
     line.end = to;
     out = line;
     return PathFault::none;
@@ -146,31 +198,91 @@ PathFault arc_through(const PathVector& from, const PathVector& border, const Pa
 }
 
 PathFault arc_about(const PathVector& from, const PathVector& centre, const PathVector& to,
-                    bool longer, PathCurve& out) {
+                    const PathVector& normal, PathCurve& out) {
     if (!finite(from) || !finite(centre) || !finite(to)) return PathFault::not_finite;
-    const PathVector begin = difference(from, centre), last = difference(to, centre);
-    PathCurve arc;
-    arc.radius = size_of(begin);
-    if (!std::isfinite(arc.radius) || !std::isfinite(size_of(last))) return PathFault::not_finite;
-    if (arc.radius == 0) return PathFault::no_arc;
-    if (std::abs(size_of(last) - arc.radius) > 1e-6 * arc.radius) return PathFault::no_arc;
-    const PathVector chord = difference(to, from);
-    if (size_of(chord) < least_sine * arc.radius) return PathFault::no_arc;
+    const PathVector n = unit(in_space(normal));
+    if (!finite(n)) return PathFault::no_arc;
+    const PathVector begin = in_space(difference(from, centre));
+    const PathVector last = in_space(difference(to, centre));
+    const double size = size_of(begin);
+    if (!std::isfinite(size) || !std::isfinite(size_of(last))) return PathFault::not_finite;
+    const double off = std::fmax(std::abs(product(begin, n)), std::abs(product(last, n)));
+    if (size == 0 || !(std::fmax(off, std::abs(size_of(last) - size)) <= least_sine * size))
+        return PathFault::no_arc;
+    const PathVector chord = in_space(difference(to, from));
+    const bool closed = size_of(chord) == 0;
+    if (!closed && size_of(chord) < least_sine * size) return PathFault::no_arc;
     // Moved to where both ends are equally far: what is given is rounded, and would be a jump.
     const PathVector middle = combined(from, 0.5, to, 0.5);
-    arc.origin = combined(middle, 1, upright(difference(centre, middle), unit(chord)), 1);
-    arc.radius = size_of(difference(from, arc.origin));
-    arc.u = unit(difference(from, arc.origin));
-    const PathVector across = upright(difference(to, arc.origin), arc.u);
-    if (size_of(across) < least_sine * arc.radius) return PathFault::no_arc;
-    arc.w = unit(across);
+    PathVector to_centre = in_space(difference(centre, middle));
+    if (!closed) to_centre = upright(to_centre, unit(chord));
+    PathCurve arc;
+    arc.origin = in_space(combined(middle, 1, to_centre, 1));
+    arc.radius = size_of(in_space(difference(from, arc.origin)));
+    arc.u = unit(in_space(difference(from, arc.origin)));
+    arc.w = unit(upright(cross(n, arc.u), arc.u));
+    // At a half of a circle the plane is that of the normal, else that of the ends.
+    const PathVector across = upright(in_space(difference(to, arc.origin)), arc.u);
+    if (size_of(across) >= least_sine * arc.radius)
+        arc.w = combined(unit(across), product(across, arc.w) < 0 ? -1 : 1, {}, 0);
     arc.end = to;
-    double angle = angle_of(difference(to, arc.origin), arc.u, arc.w);
-    if (longer) {
-        for (double& x : arc.w) x = -x;
-        angle = 2 * std::numbers::pi - angle;
+    const double angle = angle_of(in_space(difference(to, arc.origin)), arc.u, arc.w);
+    return finish_arc(arc, closed ? 2 * std::numbers::pi : angle, out);
+}
+
+PathFault arc_of_radius(const PathVector& from, const PathVector& to, const PathVector& normal,
+                        PathCurve& out) {
+    if (!finite(from) || !finite(to) || !finite(normal)) return PathFault::not_finite;
+    const PathVector chord = in_space(difference(to, from));
+    const double length = size_of(chord), radius = size_of(in_space(normal));
+    if (!(length > 0)) return PathFault::no_length;
+    const PathVector n = unit(in_space(normal)), e = unit(chord);
+    if (!finite(n) || std::abs(product(n, e)) > least_sine) return PathFault::no_arc;
+    const double half = 0.5 * length;
+    if (half > radius * (1 + least_sine)) return PathFault::no_arc;
+    const double height = half < radius ? std::sqrt((radius - half) * (radius + half)) : 0;
+    const PathVector middle = combined(from, 0.5, to, 0.5);
+    return arc_about(from, combined(middle, 1, cross(n, e), height), to, normal, out);
+}
+
+PathVector normal_upwards(const PathVector& from, const PathVector& centre, const PathVector& to) {
+    const PathVector a = in_space(difference(from, centre)), b = in_space(difference(to, centre));
+    const PathVector n = cross(a, b);
+    const double flat = least_sine * size_of(a) * size_of(b);
+    for (std::size_t i = path_space; i-- > 0;) {
+        if (size_of(n) > flat && std::abs(n[i]) > flat)
+            return combined(n, n[i] < 0 ? -1 : 1, {}, 0);
+        if (size_of(n) <= flat && a[i] == 0 && b[i] == 0) {
+            PathVector along{};
+            along[i] = 1;
+            return along;
+        }
     }
-    return finish_arc(arc, angle, out);
+    return {};
+}
+
+void let_follow(PathCurve& arc, const PathVector& from, const PathVector& to) {
+    for (std::size_t i = path_space; i < most_path_axes; ++i) {
+        arc.origin[i] = from[i];
+        arc.slope[i] = (to[i] - from[i]) / arc.length;
+        arc.u[i] = arc.w[i] = 0;
+        arc.end[i] = to[i];
+    }
+}
+
+PathCurve corner_between(const PathCurve& before, const PathCurve& after, double distance) {
+    PathCurve corner;
+    corner.kind = PathCurveKind::corner;
+    corner.length = 2 * distance;
+    corner.origin = combined(before.end, 1, before.u, -distance);
+    corner.u = before.u;
+    corner.w = after.u;
+    corner.end = combined(after.origin, 1, after.u, distance);
+    return corner;
+}
+
+double bend_between(const PathCurve& before, const PathCurve& after) {
+    return size_of(in_space(difference(after.u, before.u)));
 }
 
 }  // namespace lineshaft

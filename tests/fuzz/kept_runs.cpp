@@ -138,6 +138,7 @@ std::vector<std::unique_ptr<KeptRun>> kept_runs(const std::string& folder, bool 
         {"programs/10_flying_shear.yaml", 1500 * ms},
         {"programs/11_rotary_knife.yaml", 1500 * ms},
         {"programs/12_two_axes_together.yaml", 500 * ms},
+        {"programs/14_contour.yaml", 700 * ms},
         {"tests/cases/axis_takes_commands/program.yaml", 300 * ms},
         {"tests/cases/phasing_waits_for_the_one_before/program.yaml", 500 * ms},
         {"tests/cases/preemption_publishes_late/program.yaml", 3 * ms},

@@ -95,8 +95,13 @@ std::string example_number(const BlockType& type, const Fresh& fresh, std::strin
     return text.empty() ? std::string(number) : fmt::format("{} {}", number, text);
 }
 
+/// Kinds that an example may refer to: their own is called by example_name, an axis x.
+bool is_of_examples(std::string_view kind) {
+    return kind == "axis" || kind == "cam_table" || kind == "axes_group" || kind == "path_table";
+}
+
 std::string example_value(const BlockType& type, const Fresh& fresh, const Field& field) {
-    if (field.refers == "cam_table") return "my_cam_table";
+    if (is_reference(field) && field.refers != "axis") return example_name(field.refers);
     if (is_reference(field)) return lower(field.name).starts_with("master") ? "line" : "x";
     if (field.name == "CamTableID") return "my_cam_table_select.CamTableID";
     if (field.type == Type::boolean) return "inputs.go";
@@ -106,9 +111,9 @@ std::string example_value(const BlockType& type, const Fresh& fresh, const Field
 
 /// What the block is for, if it need not be said.
 bool is_telling(const BlockType& type, const Field& field) {
-    static constexpr std::string_view names[] = {"execute",  "enable",     "position",
-                                                 "distance", "phaseshift", "camtableid",
-                                                 "count",    "start_rate"};
+    static constexpr std::string_view names[] = {
+        "execute", "enable",     "position",  "distance",  "phaseshift", "camtableid",
+        "count",   "start_rate", "position1", "distance1", "endpoint1"};
     const bool is_velocity = field.name == "Velocity" && type.name == "MC_MoveVelocity";
     return is_velocity || std::ranges::find(names, lower(field.name)) != std::end(names);
 }
@@ -179,7 +184,7 @@ std::string block_example(const BlockType& type) {
         fmt::format("{}: {{type: {}, task: main", example_name(type.name), type.name);
     bool has_inputs = false;
     for (const Field& f : type.fields) {
-        if (is_reference(f) && f.refers != "axis" && f.refers != "cam_table") return {};
+        if (is_reference(f) && !is_of_examples(f.refers)) return {};
         has_inputs = has_inputs || f.direction == Direction::input;
         const bool is_asked = f.required || is_reference(f);
         const bool is_set = f.direction == Direction::input && is_telling(type, f);

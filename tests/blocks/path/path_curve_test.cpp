@@ -1,5 +1,6 @@
 #include "blocks/path/path_curve.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -41,12 +42,84 @@ TEST_CASE("path_curve: arcs through a border run through it, the short way or th
 
 TEST_CASE("path_curve: an arc about a rounded centre meets both ends") {
     PathCurve arc;
-    REQUIRE(arc_about({1, 0}, {1e-7, 0}, {0, 1}, true, arc) == PathFault::none);
+    const PathVector up{0, 0, 1}, down{0, 0, -1};
+    REQUIRE(arc_about({1, 0}, {1e-7, 0}, {0, 1}, down, arc) == PathFault::none);
     CHECK(arc.length == Approx(1.5 * std::numbers::pi).epsilon(1e-6));
     CHECK(arc.at(0).position[0] == Approx(1).epsilon(1e-15));
     CHECK(arc.at(std::nextafter(arc.length, 0)).position[1] == Approx(1).epsilon(1e-14));
-    CHECK(arc_about({1, 0}, {0.1, 0}, {0, 1}, true, arc) == PathFault::no_arc);
-    CHECK(arc_about({1, 0}, {0, 0}, {-1, 0}, true, arc) == PathFault::no_arc);
+    CHECK(arc_about({1, 0}, {0.1, 0}, {0, 1}, up, arc) == PathFault::no_arc);
+    CHECK(arc_about({1, 0}, {0, 0}, {0, 1}, {0, 1}, arc) == PathFault::no_arc);
+}
+
+TEST_CASE("path_curve: an arc about a centre is of any angle up to the whole circle") {
+    const PathVector centre{3, -1, 2}, normal{1, 2, -2};
+    const PathVector e{2 / std::sqrt(5), -1 / std::sqrt(5), 0};
+    const PathVector n{1.0 / 3, 2.0 / 3, -2.0 / 3};
+    const PathVector f{n[1] * e[2] - n[2] * e[1], n[2] * e[0] - n[0] * e[2],
+                       n[0] * e[1] - n[1] * e[0]};
+    const auto on = [&](double phi) {
+        PathVector x{};
+        for (std::size_t i = 0; i < 3; ++i)
+            x[i] = centre[i] + 4 * (e[i] * std::cos(phi) + f[i] * std::sin(phi));
+        return x;
+    };
+    for (const double angle : {0.3, 1.5, 3.1, std::numbers::pi, 3.2, 6.0, 2 * std::numbers::pi}) {
+        PathCurve arc;
+        const bool closed = angle > 6.1;
+        REQUIRE(arc_about(on(0), centre, closed ? on(0) : on(angle), normal, arc) ==
+                PathFault::none);
+        CHECK(arc.length == Approx(4 * angle).epsilon(1e-12));
+        for (std::size_t i = 0; i < 3; ++i) {
+            const PathCurve::Extent extent = arc.extent(i);
+            double least = 1e9, greatest = -1e9;
+            for (int k = 0; k <= 10'000; ++k) {
+                const double x = arc.at(arc.length * k / 10'000).position[i];
+                least = std::min(least, x), greatest = std::max(greatest, x);
+            }
+            CHECK(arc.at(2).position[i] == Approx(on(0.5)[i]).margin(angle > 0.5 ? 1e-12 : 10));
+            CHECK(extent.least == Approx(least).margin(1e-6));
+            CHECK(extent.greatest == Approx(greatest).margin(1e-6));
+        }
+    }
+}
+
+TEST_CASE("path_curve: axes behind the third follow in proportion to the way") {
+    PathCurve line, arc;
+    REQUIRE(line_to({0, 0, 0, 10}, {3, 4, 0, 20}, line, path_space) == PathFault::none);
+    CHECK(line.length == 5);
+    CHECK(line.at(2.5).position[3] == 15);
+    CHECK(line.share(3) == 2);
+    REQUIRE(arc_about({1, 0}, {0, 0}, {-1, 0}, {0, 0, 1}, arc) == PathFault::none);
+    let_follow(arc, {1, 0, 0, 0, 10}, {-1, 0, 0, 0, 30});
+    CHECK(arc.at(arc.length / 4).position[4] == Approx(15).epsilon(1e-15));
+    CHECK(arc.share(4) == Approx(20 / std::numbers::pi).epsilon(1e-15));
+    CHECK(arc.end[4] == 30);
+}
+
+TEST_CASE("path_curve: a corner passes at its distance and begins and ends without curvature") {
+    PathCurve before, after;
+    REQUIRE(line_to({0, 0}, {10, 0}, before) == PathFault::none);
+    REQUIRE(line_to({10, 0}, {10, 20}, after) == PathFault::none);
+    const PathCurve corner = corner_between(before, after, 2);
+    CHECK(corner.at(0).position == PathVector{8, 0});
+    CHECK(corner.at(corner.length).position == PathVector{10, 2});
+    CHECK(corner.at(0).tangent == PathVector{1, 0});
+    CHECK(corner.at(corner.length).tangent == PathVector{0, 1});
+    CHECK(corner.at(0).bend == PathVector{});
+    double nearest = 1e9;
+    for (int k = 0; k <= 1000; ++k) {
+        const PathVector x = corner.at(corner.length * k / 1000).position;
+        nearest = std::min(nearest, std::hypot(x[0] - 10, x[1]));
+    }
+    CHECK(nearest == Approx(3.0 / 16 * 2 * std::sqrt(2)).epsilon(1e-12));
+    CHECK(nearest == Approx(3.0 / 16 * 2 * bend_between(before, after)).epsilon(1e-12));
+    const double s = 0.3 * corner.length, h = 1e-4;
+    const PathPoint a = corner.at(s - h), b = corner.at(s), c = corner.at(s + h);
+    for (std::size_t i = 0; i < 2; ++i) {
+        CHECK(b.tangent[i] == Approx((c.position[i] - a.position[i]) / (2 * h)).margin(1e-7));
+        CHECK(b.bend[i] == Approx((c.tangent[i] - a.tangent[i]) / (2 * h)).margin(1e-7));
+        CHECK(b.twist[i] == Approx((c.bend[i] - a.bend[i]) / (2 * h)).margin(1e-7));
+    }
 }
 
 TEST_CASE("path_curve: derivatives are those of the position") {

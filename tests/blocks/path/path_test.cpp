@@ -43,7 +43,13 @@ PathVector random_point(Random& random, std::size_t axes, double size) {
 struct RandomPath {
     std::vector<PathCurve> curves;
     std::vector<PathLimits> limits;
+    std::vector<PathJoint> joints;
 };
+
+PathJoint random_joint(Random& random, double size) {
+    if (random.share() < 0.2) return {random.share() < 0.5 ? 0 : random.decades(-2, 2), 0};
+    return {0, size * random.decades(-4, 0)};
+}
 
 /// Lines and arcs, some of them cut in two, so that there are smooth joints.
 RandomPath random_path(Random& random, std::size_t most) {
@@ -76,6 +82,8 @@ RandomPath random_path(Random& random, std::size_t most) {
         }
         out.curves.push_back(curve);
         out.limits.push_back(limits);
+        while (out.joints.size() < out.curves.size())
+            out.joints.push_back(random.share() < 0.5 ? PathJoint{} : random_joint(random, size));
         from = to;
     }
     return out;
@@ -124,7 +132,8 @@ std::string fault_of(std::uint64_t seed, std::size_t most) {
     const double commands = random.share() < 0.3 ? 0 : random.decades(-3, -1);
     for (long scan = 0; scan < 60'000; ++scan) {
         while (given < wanted.curves.size()) {
-            const PathFault fault = path.append(ring, wanted.curves[given], wanted.limits[given]);
+            const PathFault fault =
+                path.append(ring, wanted.curves[given], wanted.limits[given], wanted.joints[given]);
             if (fault == PathFault::full) break;
             if (fault != PathFault::none) return "append";
             ++given;
@@ -198,6 +207,47 @@ TEST_CASE("path: a corner is a stop, a line cut in two is not") {
     CHECK(ring[0].exit == Approx(10).epsilon(1e-8));
     CHECK(ring[1].exit == 0);
     CHECK(path.append(ring, a, limits) == PathFault::not_joined);
+}
+
+TEST_CASE("path: a corner is passed in motion, also when it is put in under way") {
+    for (const bool late : {false, true}) {
+        std::vector<PathPiece> ring(8);
+        Path path;
+        PathCurve a, b;
+        REQUIRE(line_to({0, 0}, {10, 0}, a) == PathFault::none);
+        REQUIRE(line_to({10, 0}, {10, 10}, b) == PathFault::none);
+        const PathLimits limits = wide_limits({10, 100, 1000});
+        REQUIRE(path.append(ring, a, limits) == PathFault::none);
+        path.advance(ring, late ? 0.6 : 0);
+        REQUIRE(path.append(ring, b, limits, {0, 2}) == PathFault::none);
+        REQUIRE(path.count == 3);
+        CHECK(path.total == Approx(20).epsilon(1e-15));
+        double slowest = 10;
+        while (path.first < 2) {
+            const PathMotion m = path.advance(ring, 1e-3);
+            if (m.position[0] > 5) slowest = std::min(slowest, m.path.velocity);
+            CHECK(violation(m, limits).empty());
+        }
+        CHECK(slowest > 5);
+    }
+}
+
+TEST_CASE("path: a corner that cannot be braked for any more is a stop") {
+    std::vector<PathPiece> ring(8);
+    Path path;
+    PathCurve a, b;
+    REQUIRE(line_to({0, 0}, {10, 0}, a) == PathFault::none);
+    REQUIRE(line_to({10, 0}, {10, 10}, b) == PathFault::none);
+    const PathLimits limits = wide_limits({10, 100, 1000});
+    REQUIRE(path.append(ring, a, limits) == PathFault::none);
+    while (path.now(ring).position[0] < 9.5) path.advance(ring, 1e-3);
+    REQUIRE(path.append(ring, b, limits, {0, 2}) == PathFault::none);
+    while (!path.finished()) {
+        const PathMotion m = path.advance(ring, 1e-3);
+        CHECK((m.position[0] < 10 ? m.position[1] : 0) <= (path.count == 3 ? 2.0 : 0.0));
+        CHECK(violation(m, limits).empty());
+    }
+    CHECK(path.now(ring).position == PathVector{10, 10});
 }
 
 TEST_CASE("path: a copy of its bytes goes on alike") {

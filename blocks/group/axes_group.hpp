@@ -1,0 +1,131 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "blocks/axis/axis.hpp"
+#include "blocks/group/group_job.hpp"
+#include "blocks/group/group_states.hpp"
+#include "blocks/path/path.hpp"
+#include "runtime/model/catalog.hpp"
+#include "runtime/model/field.hpp"
+#include "runtime/model/scan.hpp"
+
+namespace lineshaft {
+
+/// Axes that move along one path (PLCopen Part 4 v1.0). Command blocks of any task tell it what to
+/// do, as they tell an axis; its axes are in its own task. See README.md.
+struct AxesGroup {
+    static constexpr std::size_t look_ahead = 64;  ///< pieces
+
+    AxisUnit unit = AxisUnit::mm;
+    double default_velocity = 100, default_acceleration = 1000, default_jerk = 5e4;
+
+    GroupState state = GroupState::disabled;
+    bool error = false;
+    MotionError error_id = MotionError::none;
+    double distance = 0, velocity = 0, acceleration = 0, jerk = 0;  ///< along the path
+
+    /// A command at work that is no move.
+    struct Holder {
+        std::int64_t place = nowhere;  ///< of its job, nowhere: none
+        std::int64_t ticket = 0;
+        GroupCommand command = GroupCommand::none;
+        std::int64_t holds = 0;     ///< Execute of MC_GroupStop
+        std::int64_t told_end = 0;  ///< it is done, and still holds the group
+
+        bool exists() const { return place != nowhere; }
+    };
+
+    std::array<std::int64_t, most_path_axes> axes{nowhere, nowhere, nowhere,
+                                                  nowhere, nowhere, nowhere};
+    JobList inbox, queue;
+    Holder holder;       ///< MC_GroupStop, MC_GroupHalt
+    Holder interrupter;  ///< MC_GroupInterrupt
+    Holder overriding;   ///< the MC_GroupSetOverride whose factor counts
+    Holder resetter;     ///< MC_GroupReset, until all stand
+    Path path;
+    std::array<PathPiece, look_ahead> ring{};
+    PathVector position{};         ///< set-point
+    PathVector end_point{};        ///< of the last piece in the path
+    PathVector turned{};           ///< of each axis' own position against the one it shows (modulo)
+    std::int64_t following = 0;    ///< the axes follow the path
+    std::int64_t braking = 0;      ///< to standstill, where the path is given up
+    std::int64_t interrupted = 0;  ///< until MC_GroupContinue
+    std::int64_t task = 0, scan_index = 0, time = 0;  ///< of the scan under way; [ns]
+    std::int64_t started = 0;
+
+    static constexpr std::string_view type = "axes_group";
+    static constexpr std::string_view doc = "axes that move along one path: see the MC_ blocks";
+    static constexpr std::string_view handle = "AXES_GROUP_REF";
+    static std::span<const Field> fields();
+    void scan(const Scan& now, const Context& context);
+    void shift(std::int64_t by) { time += by; }
+
+    std::string why(const Context&, const NameOf&) const { return std::string(text_of(error_id)); }
+
+    /// Of a command block: the job, or the end of its Execute, is put into the inbox.
+    void send(const Context& context, const Scan& now, GroupJob& job);
+
+    /// Of the axes, by the drives where they have some; 0 where there is none.
+    PathVector actual_position(const Context& context) const;
+    bool is_in_path() const { return following != 0 && !path.finished(); }
+
+  private:
+    // axes_group.cpp: time passes.
+    Axis* axis(const Context& context, std::size_t place) const;
+    void run(const Context& context, double dt);
+    void lead(const Context& context, const PathMotion& motion);
+    void look_at_axes(const Context& context);
+    void look_at_moves(const Context& context);
+    void come_to_stand(const Context& context);
+    void release(const Context& context);
+    void publish(const PathMotion& motion);
+    bool has_unlaid(const Context& context) const;
+
+    // axes_group_jobs.cpp: commands are taken up, told how far they are, and ended.
+    void take(const Context& context, GroupJob& job);
+    void take_move(const Context& context, GroupJob& job);
+    MotionError administer(const Context& context, GroupJob& job);
+    MotionError add_axis(const Context& context, const GroupRequest& request);
+    MotionError remove_axis(const Context& context, const GroupRequest& request);
+    MotionError enable();
+    void disable(const Context& context);
+    MotionError set_override(const Context& context, GroupJob& job);
+    void begin_interrupt(const Context& context, GroupJob& job);
+    MotionError go_on(const Context& context);
+    void hold(const Context& context, GroupJob& job);
+    void begin_reset(const Context& context, GroupJob& job);
+    void finish_reset(const Context& context);
+    void brake();
+    void fail(const Context& context, MotionError why);
+    void abort_all(const Context& context, Progress how, MotionError why = MotionError::none);
+    void end(const Context& context, Holder& ended, Progress how,
+             MotionError why = MotionError::none);
+    void tell(const Context& context, const Holder& told, Progress how,
+              MotionError why = MotionError::none) const;
+    void tell(GroupJob& job, Progress how, MotionError why = MotionError::none) const;
+    MotionError refusal() const;
+    std::size_t axis_count() const;
+
+    // axes_group_moves.cpp: moves are put into the path.
+    void lay(const Context& context);
+    MotionError lay(const Context& context, GroupJob& job);
+    MotionError lay_table(const Context& context, GroupJob& job);
+    MotionError check(const Context& context, const GroupRequest& request) const;
+    void find_axes(const Context& context);
+    MotionError begin_to_follow(const Context& context);
+    PathLimits limits_of(const Context& context, const GroupRequest& request) const;
+    MotionError stays_inside(const Context& context, const PathCurve& curve) const;
+    PathJoint joint_of(const GroupRequest& request, bool is_within, const PathCurve& curve,
+                       const PathLimits& limits) const;
+    MotionError append(const Context& context, const GroupRequest& request, const PathCurve& curve,
+                       bool is_within);
+    bool has_room() const { return path.count - path.first + 2 <= ring.size(); }
+};
+
+}  // namespace lineshaft

@@ -1,0 +1,232 @@
+#include <algorithm>
+
+#include "blocks/group/axes_group.hpp"
+
+namespace lineshaft {
+
+void AxesGroup::send(const Context& context, const Scan& now, GroupJob& job) {
+    job.task = context.task;
+    job.scan = now.index;
+    if (job.in == JobPlace::queue) unlink(context, job, queue);
+    if (job.in != JobPlace::inbox) link(context, job, inbox, JobPlace::inbox);
+}
+
+void AxesGroup::take(const Context& context, GroupJob& job) {
+    using enum GroupCommand;
+    const GroupRequest& request = job.request;
+    if (holder.place == context.place_of(job) && holder.ticket == job.ticket) {
+        holder.holds = request.option;
+        if (holder.told_end == 0 || holder.holds != 0) return;
+        holder = {};
+        state = GroupState::standby;
+        return;
+    }
+    if (is_end(job.progress)) return;
+    if (!next_state(request.command, state)) return tell(job, Progress::failed, refusal());
+    if (is_move(request.command)) return take_move(context, job);
+    if (request.command == stop || request.command == halt) return hold(context, job);
+    if (request.command == interrupt) return begin_interrupt(context, job);
+    if (request.command == reset) return begin_reset(context, job);
+    const MotionError why = administer(context, job);
+    tell(job, why == MotionError::none ? Progress::done : Progress::failed, why);
+}
+
+/// One that aborts begins where the group then stands on the path of before.
+void AxesGroup::take_move(const Context& context, GroupJob& job) {
+    if (const MotionError why = check(context, job.request); why != MotionError::none)
+        return tell(job, Progress::failed, why);
+    if (job.request.mode == BufferMode::aborting && following != 0) {
+        abort_all(context, Progress::aborted);
+        brake();
+    }
+    job.first_piece = job.end_piece = job.rows = job.is_laid = 0;
+    link(context, job, queue, JobPlace::queue);
+    tell(job, Progress::waiting);
+    state = GroupState::moving;
+}
+
+MotionError AxesGroup::administer(const Context& context, GroupJob& job) {
+    switch (job.request.command) {
+        case GroupCommand::add_axis:
+            return add_axis(context, job.request);
+        case GroupCommand::remove_axis:
+            return remove_axis(context, job.request);
+        case GroupCommand::enable:
+            return enable();
+        case GroupCommand::disable:
+            disable(context);
+            return MotionError::none;
+        case GroupCommand::go_on:
+            return go_on(context);
+        default:
+            return set_override(context, job);
+    }
+}
+
+MotionError AxesGroup::add_axis(const Context& context, const GroupRequest& request) {
+    if (request.place < 1 || request.place > static_cast<std::int64_t>(most_path_axes))
+        return MotionError::out_of_range;
+    if (following != 0) return MotionError::wrong_state;
+    const auto place = static_cast<std::size_t>(request.place - 1);
+    Axis& added = context.instance<Axis>(request.axis);
+    if (axes[place] == request.axis) return MotionError::none;
+    if (axes[place] != nowhere || added.group != nowhere) return MotionError::already_in_group;
+    if (added.unit != (place < path_space ? unit : AxisUnit::deg))
+        return MotionError::unit_of_group;
+    if (added.started == 0 || added.task != task) return MotionError::task_of_group;
+    axes[place] = request.axis;
+    added.group = context.place_of(*this);
+    return MotionError::none;
+}
+
+MotionError AxesGroup::remove_axis(const Context& context, const GroupRequest& request) {
+    if (request.place < 1 || request.place > static_cast<std::int64_t>(most_path_axes))
+        return MotionError::out_of_range;
+    if (following != 0) return MotionError::wrong_state;
+    const auto place = static_cast<std::size_t>(request.place - 1);
+    if (Axis* const removed = axis(context, place)) removed->group = nowhere;
+    axes[place] = nowhere;
+    if (axis_count() == 0 && state == GroupState::standby) state = GroupState::disabled;
+    return MotionError::none;
+}
+
+std::size_t AxesGroup::axis_count() const {
+    return axes.size() - static_cast<std::size_t>(std::ranges::count(axes, nowhere));
+}
+
+MotionError AxesGroup::enable() {
+    if (state != GroupState::disabled) return MotionError::none;
+    if (axis_count() < 2) return MotionError::too_few_axes;
+    state = GroupState::standby;
+    return MotionError::none;
+}
+
+/// In any state; what is in motion brakes on its path.
+void AxesGroup::disable(const Context& context) {
+    abort_all(context, Progress::aborted);
+    end(context, resetter, Progress::aborted);
+    if (following != 0) brake();
+    error = false;
+    error_id = MotionError::none;
+    state = GroupState::disabled;
+}
+
+MotionError AxesGroup::set_override(const Context& context, GroupJob& job) {
+    const GroupRequest& request = job.request;
+    if (!(request.velocity_factor >= 0) || request.acceleration_factor != 1 ||
+        request.jerk_factor != 1)
+        return MotionError::out_of_range;
+    end(context, overriding, Progress::aborted);
+    overriding = {context.place_of(job), job.ticket, request.command};
+    path.set_override(request.velocity_factor);
+    return MotionError::none;
+}
+
+/// The moves go on waiting.
+void AxesGroup::begin_interrupt(const Context& context, GroupJob& job) {
+    if (braking != 0 || interrupted != 0)
+        return tell(job, Progress::failed, MotionError::wrong_state);
+    path.halt();
+    interrupted = 1;
+    if (queue.first != nowhere) tell(context.at<GroupJob>(queue.first), Progress::waiting);
+    interrupter = {context.place_of(job), job.ticket, job.request.command};
+    tell(job, Progress::active);
+}
+
+MotionError AxesGroup::go_on(const Context& context) {
+    if (interrupted == 0) return MotionError::wrong_state;
+    end(context, interrupter, Progress::aborted);
+    interrupted = 0;
+    path.resume();
+    return MotionError::none;
+}
+
+/// MC_GroupStop and MC_GroupHalt.
+void AxesGroup::hold(const Context& context, GroupJob& job) {
+    const bool stops = job.request.command == GroupCommand::stop;
+    abort_all(context, Progress::aborted);
+    holder = {context.place_of(job), job.ticket, job.request.command,
+              stops ? job.request.option : 0};
+    state = *next_state(job.request.command, state);
+    tell(job, Progress::active);
+    if (following != 0)
+        brake();
+    else
+        come_to_stand(context);
+}
+
+void AxesGroup::begin_reset(const Context& context, GroupJob& job) {
+    if (state != GroupState::error_stop) return tell(job, Progress::done);
+    end(context, resetter, Progress::aborted);
+    resetter = {context.place_of(job), job.ticket, job.request.command};
+    tell(job, Progress::active);
+    if (following == 0) finish_reset(context);
+}
+
+/// As soon as all stand.
+void AxesGroup::finish_reset(const Context& context) {
+    bool all_stand = true;
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        if (Axis* const led = axis(context, i)) all_stand = led->reset_by_group() && all_stand;
+    if (!all_stand) return;
+    error = false;
+    error_id = MotionError::none;
+    state = GroupState::standby;
+    end(context, resetter, Progress::done);
+}
+
+void AxesGroup::brake() {
+    path.halt();
+    braking = 1;
+}
+
+void AxesGroup::fail(const Context& context, MotionError why) {
+    if (state == GroupState::error_stop) return;
+    abort_all(context, Progress::failed, why);
+    if (following != 0) brake();
+    error = true;
+    error_id = why;
+    state = GroupState::error_stop;
+}
+
+void AxesGroup::abort_all(const Context& context, Progress how, MotionError why) {
+    while (queue.first != nowhere) {
+        GroupJob& job = context.at<GroupJob>(queue.first);
+        unlink(context, job, queue);
+        tell(job, how, why);
+    }
+    end(context, holder, how, why);
+    end(context, interrupter, how, why);
+    interrupted = 0;
+}
+
+void AxesGroup::end(const Context& context, Holder& ended, Progress how, MotionError why) {
+    if (ended.exists() && ended.told_end == 0) tell(context, ended, how, why);
+    ended = {};
+}
+
+/// Nothing to a command that has been started anew.
+void AxesGroup::tell(const Context& context, const Holder& told, Progress how,
+                     MotionError why) const {
+    GroupJob& job = context.at<GroupJob>(told.place);
+    if (job.ticket == told.ticket) tell(job, how, why);
+}
+
+void AxesGroup::tell(GroupJob& job, Progress how, MotionError why) const {
+    job.tell(how, why, task, scan_index);
+}
+
+MotionError AxesGroup::refusal() const {
+    switch (state) {
+        case GroupState::disabled:
+            return MotionError::group_disabled;
+        case GroupState::stopping:
+            return MotionError::group_stopping;
+        case GroupState::error_stop:
+            return MotionError::group_in_error;
+        default:
+            return MotionError::wrong_state;
+    }
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,271 @@
+#include <algorithm>
+#include <cmath>
+#include <ranges>
+
+#include "blocks/group/axes_group.hpp"
+#include "blocks/group/path_table.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+bool is_relative(GroupCommand command) {
+    using enum GroupCommand;
+    return command == move_linear_relative || command == move_circular_relative ||
+           command == move_direct_relative;
+}
+
+PathVector sum(const PathVector& a, const PathVector& b, double factor = 1) {
+    PathVector out{};
+    for (std::size_t i = 0; i < most_path_axes; ++i) out[i] = a[i] + factor * b[i];
+    return out;
+}
+
+PathVector in_linear_axes(PathVector x) {
+    std::fill(x.begin() + path_space, x.end(), 0.0);
+    return x;
+}
+
+MotionError motion_error_of(PathFault fault) {
+    switch (fault) {
+        case PathFault::none:
+        case PathFault::no_length:
+            return MotionError::none;
+        case PathFault::no_arc:
+            return MotionError::no_arc;
+        case PathFault::limit_not_positive:
+            return MotionError::limit_not_positive;
+        default:
+            return MotionError::not_finite;
+    }
+}
+
+PathFault arc_of(const GroupRequest& request, const PathVector& from, const PathVector& to,
+                 PathCurve& out) {
+    const bool relative = is_relative(request.command);
+    const PathVector a = in_linear_axes(from), b = in_linear_axes(to);
+    const PathVector auxiliary =
+        in_linear_axes(relative ? sum(from, request.auxiliary) : request.auxiliary);
+    const double turn = request.choice == PathChoice::clockwise ? -1 : 1;
+    PathFault fault = PathFault::none;
+    if (request.circle == CircleMode::border)
+        fault = arc_through(a, auxiliary, b, out);
+    else if (request.circle == CircleMode::centre)
+        fault = arc_about(a, auxiliary, b, sum({}, normal_upwards(a, auxiliary, b), turn), out);
+    else
+        fault = arc_of_radius(a, b, sum({}, sum(auxiliary, a, -1), turn), out);
+    if (fault == PathFault::none) let_follow(out, from, to);
+    return fault;
+}
+
+PathFault curve_of(const GroupRequest& request, const PathVector& from, PathCurve& out) {
+    using enum GroupCommand;
+    const GroupCommand command = request.command;
+    const PathVector to = is_relative(command) ? sum(from, request.target) : request.target;
+    if (command == move_circular_absolute || command == move_circular_relative)
+        return arc_of(request, from, to, out);
+    const bool direct = command == move_direct_absolute || command == move_direct_relative;
+    return line_to(from, to, out, direct ? most_path_axes : path_space);
+}
+
+/// A row of a table as a move of its own.
+GroupRequest row_of(const GroupRequest& request, const PathTablePoint& point) {
+    GroupRequest row = request;
+    row.command = point.kind == PathPointKind::line ? GroupCommand::move_linear_absolute
+                                                    : GroupCommand::move_circular_absolute;
+    row.circle = CircleMode::border;
+    row.target = point.target();
+    row.auxiliary = point.auxiliary();
+    return row;
+}
+
+/// Rotary axes alone, or axes each for itself: the path has no limits then, only its axes.
+bool is_free(const GroupRequest& request, const PathCurve& curve) {
+    using enum GroupCommand;
+    if (request.command == move_direct_absolute || request.command == move_direct_relative)
+        return true;
+    return std::ranges::all_of(std::views::iota(std::size_t{0}, path_space),
+                               [&](std::size_t i) { return curve.share(i) == 0; });
+}
+
+}  // namespace
+
+/// Whatever the place where it will begin.
+MotionError AxesGroup::check(const Context& context, const GroupRequest& request) const {
+    const auto chosen = [](double asked, double otherwise) {
+        return asked < 0 ? otherwise : asked;
+    };
+    if (!(chosen(request.velocity, 1) > 0) || !(chosen(request.acceleration, 1) > 0) ||
+        !(chosen(request.deceleration, 1) > 0) || !(chosen(request.jerk, 1) > 0))
+        return MotionError::limit_not_positive;
+    if (!(request.corner_parameter >= 0)) return MotionError::out_of_range;
+    const auto has_axes = [&](const PathVector& x) {
+        for (std::size_t i = 0; i < most_path_axes; ++i)
+            if (axes[i] == nowhere && x[i] != 0) return false;
+        return true;
+    };
+    if (!has_axes(request.target)) return MotionError::out_of_range;
+    if (request.command != GroupCommand::move_path) return MotionError::none;
+    const PathTable& table = context.instance<PathTable>(request.table);
+    if (table.unit != unit) return MotionError::unit_of_group;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(table.table.size); ++i)
+        if (!has_axes(table.table.rows[i].target())) return MotionError::out_of_range;
+    return MotionError::none;
+}
+
+/// Puts what waits into the path, as far as there is room.
+void AxesGroup::lay(const Context& context) {
+    if (braking != 0) return;
+    for (std::int64_t place = queue.first; place != nowhere;) {
+        GroupJob& job = context.at<GroupJob>(place);
+        place = job.next;
+        if (job.is_laid != 0) continue;
+        if (following == 0) find_axes(context);
+        if (const MotionError why = lay(context, job); why != MotionError::none) {
+            unlink(context, job, queue);
+            tell(job, Progress::failed, why);
+        } else if (job.is_laid == 0) {
+            break;
+        }
+    }
+    look_at_moves(context);
+    if (following == 0 && queue.first == nowhere && state == GroupState::moving)
+        state = GroupState::standby;
+}
+
+MotionError AxesGroup::lay(const Context& context, GroupJob& job) {
+    if (job.request.command == GroupCommand::move_path) return lay_table(context, job);
+    if (!has_room()) return MotionError::none;
+    PathCurve curve;
+    const PathFault fault = curve_of(job.request, end_point, curve);
+    job.first_piece = job.end_piece = static_cast<std::int64_t>(path.count);
+    if (fault == PathFault::none) {
+        if (const MotionError why = append(context, job.request, curve, false);
+            why != MotionError::none)
+            return why;
+    } else if (const MotionError why = motion_error_of(fault); why != MotionError::none) {
+        return why;
+    }
+    job.end_piece = static_cast<std::int64_t>(path.count);
+    job.is_laid = 1;
+    return MotionError::none;
+}
+
+/// All of it is looked at before it begins.
+MotionError AxesGroup::lay_table(const Context& context, GroupJob& job) {
+    const PathTable::Points& points = context.instance<PathTable>(job.request.table).table;
+    PathCurve curve;
+    if (job.rows == 0) {
+        job.first_piece = static_cast<std::int64_t>(path.count);
+        PathVector from = end_point;
+        for (std::int64_t i = 0; i < points.size; ++i) {
+            const PathTablePoint& point = points.rows[static_cast<std::size_t>(i)];
+            const PathFault fault = curve_of(row_of(job.request, point), from, curve);
+            MotionError why = motion_error_of(fault);
+            if (fault == PathFault::none) why = stays_inside(context, curve);
+            if (why != MotionError::none) return why;
+            from = point.target();
+        }
+    }
+    for (; job.rows < points.size && has_room(); ++job.rows) {
+        const GroupRequest row =
+            row_of(job.request, points.rows[static_cast<std::size_t>(job.rows)]);
+        if (curve_of(row, end_point, curve) != PathFault::none) continue;
+        if (const MotionError why = append(context, row, curve, job.rows > 0);
+            why != MotionError::none)
+            return why;
+    }
+    job.end_piece = static_cast<std::int64_t>(path.count);
+    job.is_laid = job.rows == points.size ? 1 : 0;
+    return MotionError::none;
+}
+
+/// Where the path begins.
+void AxesGroup::find_axes(const Context& context) {
+    position = turned = {};
+    for (std::size_t i = 0; i < most_path_axes; ++i) {
+        const Axis* const led = axis(context, i);
+        if (!led) continue;
+        position[i] = led->position;
+        turned[i] = led->total().position - position[i];
+    }
+    end_point = position;
+}
+
+MotionError AxesGroup::begin_to_follow(const Context& context) {
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        if (const Axis* const led = axis(context, i))
+            if (const MotionError why = led->cannot_follow(); why != MotionError::none) return why;
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        if (Axis* const led = axis(context, i)) led->begin_to_follow({time});
+    following = 1;
+    return MotionError::none;
+}
+
+MotionError AxesGroup::append(const Context& context, const GroupRequest& request,
+                              const PathCurve& curve, bool is_within) {
+    if (const MotionError why = stays_inside(context, curve); why != MotionError::none) return why;
+    PathLimits limits = limits_of(context, request);
+    constexpr double none = 1e300;
+    if (is_free(request, curve)) limits.path = {none, none, none};
+    if (following == 0)
+        if (const MotionError why = begin_to_follow(context); why != MotionError::none) return why;
+    const PathFault fault =
+        path.append(ring, curve, limits, joint_of(request, is_within, curve, limits));
+    if (fault == PathFault::none) end_point = curve.end;
+    return motion_error_of(fault);
+}
+
+/// Of an axis the lesser of acceleration and deceleration counts for both ways, as of the path.
+PathLimits AxesGroup::limits_of(const Context& context, const GroupRequest& request) const {
+    const auto chosen = [](double asked, double otherwise) {
+        return asked < 0 ? otherwise : asked;
+    };
+    PathLimits limits;
+    const double both_ways = chosen(request.acceleration, default_acceleration);
+    limits.path = {chosen(request.velocity, default_velocity),
+                   std::min(both_ways, chosen(request.deceleration, both_ways)),
+                   chosen(request.jerk, default_jerk)};
+    for (std::size_t i = 0; i < most_path_axes; ++i) {
+        const Axis* const led = axis(context, i);
+        if (!led) continue;
+        const Dynamics d = led->defaults();
+        limits.axes[i] = {d.velocity, std::min(d.acceleration, d.deceleration), d.jerk};
+    }
+    return limits;
+}
+
+MotionError AxesGroup::stays_inside(const Context& context, const PathCurve& curve) const {
+    const PathVector from = curve.at(0).position;
+    for (std::size_t i = 0; i < most_path_axes; ++i) {
+        const Axis* const led = axis(context, i);
+        if (!led || curve.share(i) == 0) continue;
+        const PathCurve::Extent extent = curve.extent(i);
+        const double by = turned[i];
+        if (const MotionError why = led->cannot_run(from[i] + by, curve.end[i] + by,
+                                                    extent.least + by, extent.greatest + by);
+            why != MotionError::none)
+            return why;
+    }
+    return MotionError::none;
+}
+
+/// Between points of a table as between moves that are blended.
+PathJoint AxesGroup::joint_of(const GroupRequest& request, bool is_within, const PathCurve& curve,
+                              const PathLimits& limits) const {
+    if (path.finished()) return {};
+    PathJoint joint;
+    if (!is_within && request.mode <= BufferMode::buffered) joint.velocity = 0;
+    const PathCurve& before = ring[(path.count - 1) % ring.size()].curve;
+    const bool lines = before.kind == PathCurveKind::line && curve.kind == PathCurveKind::line;
+    if (!lines || joint.velocity == 0) return joint;
+    const double bend = bend_between(before, curve), parameter = request.corner_parameter;
+    if (request.corner == CornerMode::corner_distance) joint.distance = parameter;
+    if (request.corner == CornerMode::corner_deviation && bend > 0)
+        joint.distance = 16 * parameter / (3 * bend);
+    if (request.corner == CornerMode::start_velocity)
+        joint.distance = corner_distance_at(parameter, before, curve, limits);
+    return joint;
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "blocks/group/group_command.hpp"
+
+namespace lineshaft {
+
+/// MC_AddAxisToGroup.
+struct AddAxisToGroup : GroupCommandBlock {
+    std::int64_t axis = nowhere;
+
+    static constexpr std::string_view type = "MC_AddAxisToGroup";
+    static constexpr std::string_view doc = "puts an axis into a group";
+    static std::span<const Field> fields();
+    constexpr AddAxisToGroup() { pins.command = GroupCommand::add_axis; }
+    void scan(const Scan& now, const Context& context);
+};
+
+/// MC_GroupStop: holds the group in GroupStopping while Execute is true.
+struct GroupStop : GroupCommandBlock {
+    static constexpr std::string_view type = "MC_GroupStop";
+    static constexpr std::string_view doc =
+        "stops a group on its path, and holds it while Execute "
+        "is true";
+    static std::span<const Field> fields();
+    constexpr GroupStop() { pins.command = GroupCommand::stop; }
+    void scan(const Scan& now, const Context& context);
+};
+
+/// MC_GroupSetOverride: sent when Enable comes, and at each change of a factor while it is true.
+/// The factor stays when it falls. Of several the last one that spoke counts, and is Enabled alone.
+struct GroupSetOverride : GroupCommandBlock {
+    static constexpr std::string_view type = "MC_GroupSetOverride";
+    static constexpr std::string_view doc = "makes a group slower, also on the path under way";
+    static std::span<const Field> fields();
+    constexpr GroupSetOverride() { pins.command = GroupCommand::set_override; }
+    void scan(const Scan& now, const Context& context);
+};
+
+namespace group_kinds {
+
+std::span<const Field> remove_axis_fields();
+std::span<const Field> plain_fields();
+std::span<const Field> standing_fields();
+
+inline constexpr GroupCommandKind remove_axis{GroupCommand::remove_axis, "MC_RemoveAxisFromGroup",
+                                              "takes an axis out of a group", remove_axis_fields};
+inline constexpr GroupCommandKind enable{GroupCommand::enable, "MC_GroupEnable",
+                                         "lets a group take moves", plain_fields};
+inline constexpr GroupCommandKind disable{GroupCommand::disable, "MC_GroupDisable",
+                                          "lets a group take no moves any more", plain_fields};
+inline constexpr GroupCommandKind reset{GroupCommand::reset, "MC_GroupReset",
+                                        "ends the error of a group and of its axes", plain_fields};
+inline constexpr GroupCommandKind halt{GroupCommand::halt, "MC_GroupHalt",
+                                       "stops a group on its path", standing_fields};
+inline constexpr GroupCommandKind interrupt{GroupCommand::interrupt, "MC_GroupInterrupt",
+                                            "stops a group on its path, which it keeps",
+                                            standing_fields};
+inline constexpr GroupCommandKind go_on{GroupCommand::go_on, "MC_GroupContinue",
+                                        "lets an interrupted group go on", plain_fields};
+
+}  // namespace group_kinds
+
+using RemoveAxisFromGroup = PlainGroupCommand<group_kinds::remove_axis>;
+using GroupEnable = PlainGroupCommand<group_kinds::enable>;
+using GroupDisable = PlainGroupCommand<group_kinds::disable>;
+using GroupReset = PlainGroupCommand<group_kinds::reset>;
+using GroupHalt = PlainGroupCommand<group_kinds::halt>;
+using GroupInterrupt = PlainGroupCommand<group_kinds::interrupt>;
+using GroupContinue = PlainGroupCommand<group_kinds::go_on>;
+
+}  // namespace lineshaft

@@ -1,0 +1,105 @@
+#include "blocks/group/group_command.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "blocks/inputs.hpp"
+
+namespace lineshaft {
+
+void GroupCommandBlock::run(const Scan& now, const Context& context) {
+    if (rising_edge(execute, last_execute)) start(now, context);
+    show(job, context);
+}
+
+void GroupCommandBlock::start(const Scan& now, const Context& context) {
+    if (!begin(job, check())) return;
+    job.request = pins;
+    context.instance<AxesGroup>(group).send(context, now, job);
+}
+
+MotionError GroupCommandBlock::check() const {
+    if (group == nowhere) return MotionError::no_group;
+    for (const PathVector& vector : {pins.target, pins.auxiliary})
+        for (const double part : vector)
+            if (!all_finite(part)) return MotionError::not_finite;
+    return all_finite(pins.corner_parameter, pins.velocity, pins.acceleration, pins.deceleration,
+                      pins.jerk, pins.velocity_factor, pins.acceleration_factor, pins.jerk_factor)
+               ? MotionError::none
+               : MotionError::not_finite;
+}
+
+namespace group_pin {
+
+using B = GroupCommandBlock;
+
+Field group() {
+    return in_out("AxesGroup", &B::group, AxesGroup::type, "that is commanded")
+        .one_of(axis_unit_names);
+}
+
+std::vector<Field> coordinates(std::string_view name, PathVector GroupRequest::*member,
+                               std::size_t count, std::string_view doc) {
+    static constexpr std::string_view names[][most_path_axes] = {
+        {"Position1", "Position2", "Position3", "Position4", "Position5", "Position6"},
+        {"Distance1", "Distance2", "Distance3", "Distance4", "Distance5", "Distance6"},
+        {"AuxPoint1", "AuxPoint2", "AuxPoint3", "AuxPoint4", "AuxPoint5", "AuxPoint6"},
+        {"EndPoint1", "EndPoint2", "EndPoint3", "EndPoint4", "EndPoint5", "EndPoint6"}};
+    const auto& row =
+        *std::ranges::find_if(names, [&](const auto& n) { return n[0].starts_with(name); });
+    std::vector<Field> fields;
+    for (std::size_t i = 0; i < count; ++i) {
+        Field f;
+        f.name = row[i];
+        f.doc = doc;
+        f.unit = i < path_space ? "{AxesGroup}" : "deg";
+        f.direction = Direction::input;
+        f.offset = detail::offset_of(&B::pins) + detail::offset_of(member) + i * sizeof(double);
+        fields.push_back(f);
+    }
+    return fields;
+}
+
+std::vector<Field> dynamics() {
+    return {input("Velocity", &B::pins, &GroupRequest::velocity, "{AxesGroup}/s",
+                  "along the path, greatest; below 0: the group's own"),
+            input("Acceleration", &B::pins, &GroupRequest::acceleration, "{AxesGroup}/s^2",
+                  "limit along the path; below 0: the group's own"),
+            input("Deceleration", &B::pins, &GroupRequest::deceleration, "{AxesGroup}/s^2",
+                  "limit; the lesser of both counts both ways; below 0: as Acceleration"),
+            input("Jerk", &B::pins, &GroupRequest::jerk, "{AxesGroup}/s^3",
+                  "limit along the path; below 0: the group's own")};
+}
+
+std::vector<Field> blending() {
+    return {input("BufferMode", &B::pins, &GroupRequest::mode, "",
+                  "what becomes of the command at work")
+                .one_of(buffer_mode_names),
+            input("TransitionMode", &B::pins, &GroupRequest::corner, "",
+                  "how a corner between lines is rounded where moves are blended")
+                .one_of(corner_mode_names),
+            input("TransitionParameter", &B::pins, &GroupRequest::corner_parameter, "{AxesGroup}",
+                  "distance from the vertex, or greatest deviation; of mcTMStartVelocity the "
+                  "velocity there, as a number of the same unit a second")
+                .at_least(0)};
+}
+
+std::vector<Field> table(std::initializer_list<std::vector<Field>> inputs, std::string_view done) {
+    std::vector<Field> fields{group(),
+                              input("Execute", &B::execute, "", "rising edge: the command begins")};
+    for (const std::vector<Field>& more : inputs)
+        fields.insert(fields.end(), more.begin(), more.end());
+    fields.insert(
+        fields.end(),
+        {output("Done", &B::done, "", done),
+         output("Busy", &B::busy, "", "the command has not ended yet"),
+         output("Active", &B::active, "", "it controls the group"),
+         output("CommandAborted", &B::command_aborted, "", "another command has taken over"),
+         output("Error", &B::error, "", "the command is refused, or the group has failed"),
+         output("ErrorID", &B::error_id, "", "why").one_of(motion_error_names)});
+    return fields;
+}
+
+}  // namespace group_pin
+
+}  // namespace lineshaft

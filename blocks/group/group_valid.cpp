@@ -1,0 +1,121 @@
+#include "blocks/group/group_valid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "blocks/axis/axis_valid.hpp"
+#include "blocks/motion/motion_valid.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+template <class Block>
+bool is_block_or_none(std::int64_t number, const KeptState& machine) {
+    return number == nowhere || is_instance<Block>(machine.context, number);
+}
+
+bool is_valid(const GroupRequest& request, const KeptState& machine) {
+    return request.command >= GroupCommand::none &&
+           static_cast<std::size_t>(request.command) <= group_state_table().size() &&
+           is_one_of(request.mode, BufferMode::blending_high) &&
+           is_one_of(request.corner, CornerMode::corner_deviation) &&
+           is_one_of(request.circle, CircleMode::radius) &&
+           is_one_of(request.choice, PathChoice::counter_clockwise) &&
+           is_block_or_none<Axis>(request.axis, machine) &&
+           is_block_or_none<PathTable>(request.table, machine) &&
+           (request.command != GroupCommand::add_axis || request.axis != nowhere) &&
+           (request.command != GroupCommand::move_path || request.table != nowhere);
+}
+
+bool is_sent(const GroupJob& job) {
+    return job.ticket > 0;
+}
+
+/// Its pieces are of the path, and the rows of its table.
+bool is_valid(const GroupJob& job, const KeptState& machine) {
+    if (!is_valid(job, JobFor::group, machine) || !is_count(job.first_piece) ||
+        !is_count(job.end_piece) || !is_count(job.rows))
+        return false;
+    if (!is_sent(job)) return job.request == GroupRequest{};
+    if (!is_valid(job.request, machine)) return false;
+    if (job.request.command != GroupCommand::move_path) return true;
+    return job.rows <= machine.context.instance<PathTable>(job.request.table).table.size;
+}
+
+bool is_valid(const AxesGroup::Holder& holder, const KeptState& machine) {
+    return !holder.exists() ||
+           (is_job(holder.place, JobFor::group, machine) && is_count(holder.ticket) &&
+            holder.command > GroupCommand::none && holder.command <= GroupCommand::set_override);
+}
+
+bool is_valid(const MotionPlan& plan) {
+    return plan.count <= MotionPlan::most_phases && std::isfinite(plan.duration) &&
+           plan.duration >= 0;
+}
+
+bool is_valid(const PathPiece& piece) {
+    return is_one_of(piece.curve.kind, PathCurveKind::corner) && piece.curve.length > 0 &&
+           std::isfinite(piece.curve.length);
+}
+
+/// Pieces under way are in the ring.
+bool is_valid(const Path& path, const AxesGroup& group) {
+    constexpr std::uint64_t most = std::uint64_t{1} << 62;
+    if (path.count > most || path.first > path.count ||
+        path.count - path.first > group.ring.size() ||
+        !are_booleans(path.halted, path.stale, path.lost) || !is_valid(path.plan) ||
+        (path.phase > 0 && path.phase >= path.plan.count) || !std::isfinite(path.time) ||
+        path.time < 0)
+        return false;
+    for (std::uint64_t k = path.first; k < path.count; ++k)
+        if (!is_valid(group.ring[k % group.ring.size()])) return false;
+    return true;
+}
+
+bool lists_are_valid(const AxesGroup& group, const KeptState& machine) {
+    return lists_are_valid(group.inbox, group.queue, JobFor::group, machine);
+}
+
+/// In one list of one group, or in none.
+bool is_where_it_says(const GroupJob& job, const KeptState& machine) {
+    const Context& context = machine.context;
+    const std::int64_t place = context.place_of(job);
+    int lists = 0;
+    for (std::int64_t n = 0; n < context.blocks; ++n) {
+        if (!is_instance<AxesGroup>(context, n)) continue;
+        const AxesGroup& group = context.instance<AxesGroup>(n);
+        lists += leads_to(group.inbox, place, machine);
+        lists += leads_to(group.queue, place, machine);
+    }
+    return lists == (job.in == JobPlace::no_list ? 0 : 1);
+}
+
+}  // namespace
+
+bool is_valid(const AxesGroup& group, const KeptState& machine) {
+    for (const std::int64_t axis : group.axes)
+        if (!is_block_or_none<Axis>(axis, machine)) return false;
+    return is_valid(group.path, group) && is_valid(group.holder, machine) &&
+           is_valid(group.interrupter, machine) && is_valid(group.overriding, machine) &&
+           is_valid(group.resetter, machine) && machine.is_task(group.task) &&
+           is_count(group.scan_index) && machine.is_moment(group.time) &&
+           (!machine.is_live || lists_are_valid(group, machine));
+}
+
+void mend(AxesGroup& group, const KeptState& machine) {
+    if (!lists_are_valid(group, machine)) group.inbox = group.queue = {};
+}
+
+bool is_valid(const GroupCommandBlock& command, const KeptState& machine) {
+    return is_valid(static_cast<const CommandState&>(command)) && is_valid(command.job, machine) &&
+           (!machine.is_live || is_where_it_says(command.job, machine));
+}
+
+void mend(GroupCommandBlock& command, const KeptState& machine) {
+    if (is_where_it_says(command.job, machine)) return;
+    command.job.in = JobPlace::no_list;
+    command.job.previous = command.job.next = nowhere;
+}
+
+}  // namespace lineshaft

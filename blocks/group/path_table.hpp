@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "blocks/axis/axis_unit.hpp"
+#include "blocks/path/path_curve.hpp"
+#include "runtime/model/catalog.hpp"
+#include "runtime/model/field.hpp"
+#include "runtime/model/scan.hpp"
+
+namespace lineshaft {
+
+inline constexpr std::size_t most_path_points = 1024;
+
+/// How a point of a path_table is reached from the one before.
+enum class PathPointKind : std::int64_t { line, arc };
+
+inline constexpr std::string_view path_point_kind_names[] = {"line", "arc"};
+
+/// A row: the position of the first three axes, how it is reached, of an arc a point that it
+/// passes, and the position of the rotary axes.
+struct PathTablePoint {
+    std::array<double, path_space> position{};
+    PathPointKind kind = PathPointKind::line;
+    std::array<double, path_space> border{};
+    std::array<double, most_path_axes - path_space> rotary{};
+
+    PathVector target() const;
+    PathVector auxiliary() const;
+};
+
+/// The points of a path for MC_MovePath, in the program or in a CSV file.
+struct PathTable {
+    struct Points {
+        std::int64_t size = 0;
+        std::array<PathTablePoint, most_path_points> rows{};
+    };
+
+    AxisUnit unit = AxisUnit::mm;
+    Points table;
+
+    static constexpr std::string_view type = "path_table";
+    static constexpr std::string_view doc = "points of a path, by lines and arcs";
+    static constexpr std::string_view handle = "PATH_REF";
+    static std::span<const Field> fields();
+    static std::span<const TableField> tables();
+    void scan(const Scan&) {}
+
+    /// A number that is missing or infinite.
+    std::optional<TableFault> complete();
+};
+
+}  // namespace lineshaft
