@@ -5,9 +5,9 @@
 /// The rules of the grammar that others use, each read by a function that its rule stands above, in
 /// parse_*.cpp. A rule is written as in IEC 61131-3:2013, Annex A, and has its name there where it
 /// has one: 'IF' is a word or a sign, `?` at most once, `*` any number of times, `+` once or more,
-/// `|` one of both; `X of Y` is the rule X with Y for what it says so. Name, Unsigned_Int, Real,
-/// Text, Direct, Duration and Type_Prefix are tokens. What a function reads beside its rule is a
-/// mistake that it tells (recovery.hpp, mistakes.hpp); it gives a node back all the same.
+/// `|` one of both. Name, Quoted_Name, Unsigned_Int, Real, Text, Direct, Duration, Type_Prefix and
+/// Any_Token are tokens. A sentence below a rule narrows it. What a function reads beside its rule
+/// is a mistake that it tells (recovery.hpp, mistakes.hpp); it gives a node back all the same.
 namespace lineshaft::st {
 
 // parse_program_units.cpp

@@ -205,6 +205,22 @@ void refuse_base(Parsing& p) {
     while (!p.is(Word::end_of_file) && !p.is(Word::colon) && !p.is(Word::struct_)) p.take();
 }
 
+void refuse_any_length(Parsing& p) {
+    fail(p, "L0903", p.here().place, "arrays of any length are not supported",
+         "write its bounds: ARRAY[0..9] OF ...");
+}
+
+void refuse_reference(Parsing& p, const Token& word) {
+    fail(p, "L0903", word.place, "references are not supported", "pass the variable as VAR_IN_OUT");
+}
+
+bool refuse_union(Parsing& p) {
+    if (!p.is(Word::union_) || !p.is_name(1)) return false;
+    tell(p, "L0903", p.take().place, "unions are not supported",
+         "declare a STRUCT, and convert: DWORD_TO_REAL and its like keep the bits");
+    return true;
+}
+
 void refuse_namespace(Parsing& p, Token& name) {
     const Place first = name.place;
     while (p.is(Word::dot) && p.is_name(1)) p.take(), name = p.take();
@@ -246,6 +262,13 @@ void refuse_value(Parsing& p, const Expression& value) {
                          : "write 'name := value;', or a call 'name();'");
     else
         expected(p, ":=", "or '('");
+}
+
+bool refuse_negated_output(Parsing& p) {
+    if (!p.is(Word::not_) || !p.is_name(1) || p.next(2).word != Word::output) return false;
+    fail(p, "L0903", p.here().place, "NOT before an output is not supported",
+         "take the output, and write NOT where it is used");
+    return true;
 }
 
 bool refuse_semicolon(Parsing& p) {

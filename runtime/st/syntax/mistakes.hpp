@@ -37,6 +37,12 @@ void refuse_statement(Parsing& p);
 void refuse_reserved_name(Parsing& p);
 /// `TYPE t EXTENDS base : STRUCT`
 void refuse_base(Parsing& p);
+/// ARRAY[*]
+void refuse_any_length(Parsing& p);
+/// REFERENCE TO
+void refuse_reference(Parsing& p, const Token& word);
+/// UNION, whose members are read all the same. False: it is none.
+bool refuse_union(Parsing& p);
 /// `lib.T`: the name becomes what is behind the points.
 void refuse_namespace(Parsing& p, Token& name);
 
@@ -50,6 +56,8 @@ void refuse_assignment(Parsing& p);
 bool refuse_rung(Parsing& p);
 /// A value that is no call, a label, JMP.
 void refuse_value(Parsing& p, const Expression& value);
+/// `NOT q => a`. False: it is none.
+bool refuse_negated_output(Parsing& p);
 /// `t(IN := x; PT := y)`: takes the ';'. False: it is none.
 bool refuse_semicolon(Parsing& p);
 

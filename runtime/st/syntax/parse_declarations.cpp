@@ -39,8 +39,9 @@ void parse_sections(Parsing& p, Pou& pou, Word end) {
     }
 }
 
-/// Var_Section : ( 'VAR' | 'VAR_STAT' | 'VAR_INPUT' | 'VAR_OUTPUT' | 'VAR_IN_OUT' | 'VAR_TEMP'
-///               | 'VAR_GLOBAL' | 'VAR_EXTERNAL' ) Var_Modifier * Var_Decl * 'END_VAR' ';' ?
+/// Var_Section : Section_Word Var_Modifier * Var_Decl * 'END_VAR' ';' ?
+/// Section_Word : 'VAR' | 'VAR_STAT' | 'VAR_INPUT' | 'VAR_OUTPUT' | 'VAR_IN_OUT' | 'VAR_TEMP'
+///              | 'VAR_GLOBAL' | 'VAR_EXTERNAL'
 DeclarationBlock parse_section(Parsing& p, Section section) {
     const Token opener = p.take();
     DeclarationBlock block;

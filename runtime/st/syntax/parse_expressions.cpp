@@ -100,7 +100,8 @@ Expression* parse_in_parentheses(Parsing& p) {
 /// Primary_Expr : Unsigned_Int | Real | Text | Typed_Literal | In_Parentheses | Variable_Name
 ///              | Array_Init
 /// Variable_Name : ( 'THIS' '^' ? '.' ) ? Name
-///               | 'AND' | 'OR' | 'XOR' | 'MOD'   where a '(' follows
+///               | 'AND' | 'OR' | 'XOR' | 'MOD'
+/// AND and its like are names before a '('.
 /// The checker refuses an Array_Init here.
 Expression* parse_primary(Parsing& p) {
     const Level level(p);
@@ -184,9 +185,9 @@ Expression* parse_expression(Parsing& p) {
     return parse_binary(p, 1);
 }
 
-/// Variable_Access : Primary_Expr ( '(' Params of Expression ')' | '[' Params of Expression ']'
-///                                | '.' Member ) *
-/// An index has at least one.
+/// Variable_Access : Primary_Expr ( '(' Params ')' | '[' Subscripts ']' | '.' Member ) *
+/// Subscripts : Param_Assign ( ',' Param_Assign ) *
+/// Their values are expressions.
 Expression* parse_access(Parsing& p) {
     Expression* left = parse_primary(p);
     while (!p.panic) {

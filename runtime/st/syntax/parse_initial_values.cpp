@@ -6,7 +6,8 @@ namespace lineshaft::st {
 
 namespace {
 
-/// Array_Elem_Init : Unsigned_Int '(' Params of Init ')' | Expression
+/// Array_Elem_Init : Unsigned_Int '(' Params ')' | Expression
+/// What begins with an Unsigned_Int and a '(' is always the first.
 Expression* parse_element(Parsing& p) {
     if (!p.is(Word::integer) || p.next().word != Word::open) return parse_expression(p);
     const Level level(p);
@@ -18,13 +19,10 @@ Expression* parse_element(Parsing& p) {
 }
 
 /// Param_Assign : Name '=>' Value ? | ( Name ':=' ) ? Value
+/// Value : Expression | Init
 /// False: nothing more can be read.
 bool parse_argument(Parsing& p, Expression& to, Word end, Expression* (*parse_value)(Parsing&)) {
-    if (p.is(Word::not_) && p.is_name(1) && p.next(2).word == Word::output) {
-        fail(p, "L0903", p.here().place, "NOT before an output is not supported",
-             "take the output, and write NOT where it is used");
-        return false;
-    }
+    if (refuse_negated_output(p)) return false;
     Argument argument;
     if (p.at_argument_name()) {
         argument.name = p.take();
@@ -41,8 +39,10 @@ bool parse_argument(Parsing& p, Expression& to, Word end, Expression* (*parse_va
 }  // namespace
 
 /// Init : Array_Init | Struct_Init | Array_Elem_Init
-/// Array_Init : '[' Params of Init ']'
-/// Struct_Init : '(' Params of Init ')'
+/// Array_Init : '[' Params ']'
+/// Struct_Init : '(' Params ')'
+/// Their values are Init again. What begins with '[' is an Array_Init; what has parentheses without
+/// a name and a ',' is an Expression.
 Expression* parse_initial(Parsing& p) {
     const bool is_structure = p.at_structure();
     if (!is_structure && !p.is(Word::open_bracket)) return parse_element(p);
@@ -67,7 +67,7 @@ Expression* parse_initials(Parsing& p) {
     return list;
 }
 
-/// Params of Value : ( Param_Assign ( ',' Param_Assign ) * ) ?
+/// Params : ( Param_Assign ( ',' Param_Assign ) * ) ?
 void parse_arguments(Parsing& p, Expression& to, Word end, Expression* (*parse_value)(Parsing&)) {
     const Level level(p);
     if (!p.panic && !p.is(end)) {

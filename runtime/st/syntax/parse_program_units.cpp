@@ -9,8 +9,8 @@ namespace lineshaft::st {
 
 namespace {
 
-/// Config_Decl : 'CONFIGURATION' ( Var_Section of 'VAR_GLOBAL' | any token ) *
-///               'END_CONFIGURATION' ';' ?
+/// Config_Decl : 'CONFIGURATION' ( Var_Section | Any_Token ) * 'END_CONFIGURATION' ';' ?
+/// Its variables are VAR_GLOBAL.
 void parse_configuration(Parsing& p) {
     const Token opener = p.take();
     p.out.warn("L0903", opener.place.mark(), "the tasks of a CONFIGURATION are not taken",
@@ -35,8 +35,9 @@ bool at_attribute(const Cursor& p) {
            std::ranges::any_of(words, [&](std::string_view word) { return p.says(word); });
 }
 
-/// POU_Header : Attribute * ( 'NON_RETAIN' | 'RETAIN' ) ? ( Data_Type ';' ? ) ?
-/// Only a data block has a type here.
+/// POU_Header : Attribute * ( 'NON_RETAIN' | 'RETAIN' ) ? Data_Block_Type ?
+/// Data_Block_Type : ( Array_Spec | Struct_Decl | Type_Access ) ';' ?
+/// Only a DATA_BLOCK has a type here; a name is always that.
 void parse_header(Parsing& p, Pou& pou) {
     refuse_bases(p);
     parse_attributes(p);
@@ -50,8 +51,8 @@ void parse_header(Parsing& p, Pou& pou) {
     p.accept(Word::semicolon);
 }
 
-/// POU_Body : Stmt_List ( POU of 'METHOD' Stmt_List ) *
-/// Only a function block and a program have methods.
+/// POU_Body : Stmt_List ( POU Stmt_List ) *
+/// It is a METHOD, and only in a FUNCTION_BLOCK or a PROGRAM.
 void parse_body(Parsing& p, Pou& pou, Word end) {
     for (;;) {
         parse_statements(p, pou.body, end);
@@ -63,8 +64,9 @@ void parse_body(Parsing& p, Pou& pou, Word end) {
 
 }  // namespace
 
-/// Declaration : POU of any word but 'METHOD' | Data_Type_Decl | Var_Section of 'VAR_GLOBAL'
-///             | Config_Decl | Test
+/// Declaration : POU | Data_Type_Decl | Var_Section | Config_Decl | Test
+/// A METHOD stands within another unit; variables beside units are VAR_GLOBAL; a Test stands in a
+/// file of tests.
 void parse_declaration(Parsing& p) {
     if (p.is(Word::end_of_file)) return;
     if (find_pou(p.here().word) && !p.is(Word::method_))
@@ -85,9 +87,12 @@ void parse_declaration(Parsing& p) {
     p.take();
 }
 
-/// POU : ( 'PROGRAM' | 'ORGANIZATION_BLOCK' | 'FUNCTION_BLOCK' | 'FUNCTION' | 'DATA_BLOCK'
-///       | 'METHOD' ) Access_Spec * Name ( ':' Data_Type ) ? POU_Header Var_Section * 'BEGIN' ?
-///       POU_Body ( 'END_PROGRAM' | ... of the same word ) ';' ?
+/// POU : POU_Word Access_Spec * Name ( ':' Data_Type ) ? POU_Header Var_Sections 'BEGIN' ?
+///       POU_Body POU_End ';' ?
+/// POU_Word : 'PROGRAM' | 'ORGANIZATION_BLOCK' | 'FUNCTION_BLOCK' | 'FUNCTION' | 'DATA_BLOCK'
+///          | 'METHOD'
+/// POU_End : 'END_PROGRAM' | 'END_ORGANIZATION_BLOCK' | 'END_FUNCTION_BLOCK' | 'END_FUNCTION'
+///         | 'END_DATA_BLOCK' | 'END_METHOD'
 Pou* parse_pou(Parsing& p) {
     const PouWords& words = *find_pou(p.here().word);
     const std::string_view doc = comment_before(p, p.at, true);
@@ -125,8 +130,8 @@ bool accept_access(Parsing& p) {
 
 /// Attribute : 'VERSION' ':' Real
 ///           | ( 'VERSION' | 'TITLE' | 'AUTHOR' | 'FAMILY' | 'NAME' | 'KNOW_HOW_PROTECT'
-///             | 'READ_ONLY' | 'UNLINKED' ) any token up to the end of the line
-/// All but VERSION are names elsewhere, and begin their line here.
+///             | 'READ_ONLY' | 'UNLINKED' ) Any_Token *
+/// All but VERSION are names elsewhere, and begin their line here, to whose end it goes.
 void parse_attributes(Parsing& p) {
     while (at_attribute(p)) {
         const bool is_number = p.next().word == Word::colon && p.next(2).word == Word::real;

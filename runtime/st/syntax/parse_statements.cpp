@@ -50,7 +50,8 @@ void parse_latch(Parsing& p, Expression* target, Block& to) {
 }
 
 /// Simple_Stmt : Assign_Stmt | Latch_Stmt | Invocation
-/// Invocation : Variable_Access ';'   that ends with the ')' of a call
+/// Invocation : Variable_Access ';'
+/// It begins with a Name; an Invocation ends with the ')' of a call.
 void parse_simple(Parsing& p, Block& to) {
     if (refuse_rung(p)) return;
     if (!p.is_name()) return expected(p, "a statement");

@@ -23,9 +23,10 @@ Word end_of_test(Word opener) {
 
 }  // namespace
 
-/// Test : ( 'TEST' Title | 'SETUP' | 'TEARDOWN' ) Var_Section * Stmt_List
-///        ( 'END_TEST' | 'END_SETUP' | 'END_TEARDOWN' ) ';' ?
-/// Title : Text | Name in quotes
+/// Test : 'TEST' Title Test_Body 'END_TEST' ';' ?
+///      | 'SETUP' Test_Body 'END_SETUP' ';' ? | 'TEARDOWN' Test_Body 'END_TEARDOWN' ';' ?
+/// Test_Body : Var_Sections Stmt_List
+/// Title : Text | Quoted_Name
 /// What SETUP and TEARDOWN declare all tests see.
 void parse_test(Parsing& p) {
     const Token opener = p.take();

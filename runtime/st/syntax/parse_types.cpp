@@ -20,9 +20,7 @@ void parse_array(Parsing& p, TypeText& type) {
     type.kind = TypeText::Kind::array;
     expect(p, Word::open_bracket, "after ARRAY");
     do {
-        if (p.is(Word::times))
-            return fail(p, "L0903", p.here().place, "arrays of any length are not supported",
-                        "write its bounds: ARRAY[0..9] OF ...");
+        if (p.is(Word::times)) return refuse_any_length(p);
         parse_bounds(p, type);
     } while (p.accept(Word::comma));
     expect(p, Word::close_bracket, "after the bounds");
@@ -39,15 +37,8 @@ void parse_structure(Parsing& p, TypeText& type, const Token& opener, Word end) 
     close(p, end, opener);
 }
 
-/// A UNION is told, and read as a structure.
-void refuse_union(Parsing& p, TypeText& type) {
-    const Token opener = p.take();
-    tell(p, "L0903", opener.place, "unions are not supported",
-         "declare a STRUCT, and convert: DWORD_TO_REAL and its like keep the bits");
-    parse_structure(p, type, opener, Word::end_union_);
-}
-
-/// Enum_Spec : '(' Enum_Value ( ',' Enum_Value ) * ')' Name ?
+/// Enum_Spec : Enum_Values Name ?
+/// Enum_Values : '(' Enum_Value ( ',' Enum_Value ) * ')'
 /// Enum_Value : Name ( ':=' Expression ) ?
 /// The name is that of the numbers' type, where none stands before.
 void parse_enumeration(Parsing& p, TypeText& type) {
@@ -72,7 +63,7 @@ Expression* parse_length(Parsing& p) {
 
 /// Type_Access : ( '_' '.' ) ? Name
 ///             | 'STRING' Text_Length | 'WSTRING' Text_Length
-///             | Name Enum_Spec | Name '(' Subrange ')'
+///             | Name Enum_Values | Name '(' Subrange ')'
 void parse_named_type(Parsing& p, TypeText& type) {
     if (p.is(Word::pointer_) && p.next().word == Word::to_) refuse_unsupported(p);
     type.name = expect_name(p, "a type");
@@ -86,8 +77,7 @@ void parse_named_type(Parsing& p, TypeText& type) {
     } else if (same_name(type.name.text, "wstring") && has_length) {
         parse_length(p);
     } else if (same_name(type.name.text, "reference") && p.is(Word::to_)) {
-        fail(p, "L0903", type.name.place, "references are not supported",
-             "pass the variable as VAR_IN_OUT");
+        refuse_reference(p, type.name);
     } else if (p.is(Word::open)) {
         const Word behind = p.next(2).word;
         if (p.is_name(1) &&
@@ -131,8 +121,8 @@ TypeText* parse_type(Parsing& p) {
         parse_array(p, type);
     else if (p.accept(Word::struct_))
         parse_structure(p, type, first, Word::end_struct_);
-    else if (p.is(Word::union_) && p.is_name(1))
-        refuse_union(p, type);
+    else if (refuse_union(p))
+        parse_structure(p, type, first, Word::end_union_);
     else if (p.is(Word::open))
         parse_enumeration(p, type);
     else
