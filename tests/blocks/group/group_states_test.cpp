@@ -8,13 +8,15 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/source_folder.hpp"
+
 using namespace lineshaft;
 
 /// states.txt: a dot stays, a bar is refused. It was written from the state diagram of PLCopen Part
 /// 4 v1.0 and its notes as the manuals of CODESYS SoftMotion and TwinCAT have them; the text itself
 /// was not at hand.
 TEST_CASE("every command in every state of a group does what the standard says") {
-    std::ifstream in(LINESHAFT_SOURCE_DIR "/tests/blocks/group/states.txt");
+    std::ifstream in(test::in_source("tests/blocks/group/states.txt"));
     std::vector<std::vector<std::string>> rows;
     for (std::string line; std::getline(in, line);) {
         std::istringstream cells(line);
