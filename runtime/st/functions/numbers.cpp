@@ -69,7 +69,7 @@ consteval StandardFunction whole(std::string_view signature, std::string_view do
 }
 
 // clang-format off
-constexpr StandardFunction rows[] = {
+constexpr StandardFunction numbers[] = {
     {"ABS(IN: ANY_MAGNITUDE): ANY_MAGNITUDE", "the number without its sign", Typing::own, emit_absolute},
     real("SQRT(IN: ANY_REAL): ANY_REAL", "the square root; of what is below 0 not a number", Op::sqrt),
     real("LN(IN: ANY_REAL): ANY_REAL", "the logarithm to the base e", Op::ln),
@@ -106,6 +106,6 @@ constexpr StandardFunction rows[] = {
 
 }  // namespace
 
-constinit const Subject number_functions{"numbers", rows};
+constinit const Subject number_functions{"numbers", numbers};
 
 }  // namespace lineshaft::st

@@ -1,6 +1,5 @@
 #include "runtime/st/functions/standard.hpp"
 
-#include <algorithm>
 #include <vector>
 
 #include <fmt/format.h>
@@ -18,10 +17,13 @@ std::span<const StandardFunction* const> standard_functions() {
 }
 
 const StandardFunction* find_standard_function(std::string_view name) {
-    const auto all = standard_functions();
-    const auto it = std::ranges::find_if(
-        all, [&](const StandardFunction* f) { return same_name(f->name, name); });
-    return it == all.end() ? nullptr : *it;
+    static const NameMap<const StandardFunction*> by_name = [] {
+        NameMap<const StandardFunction*> made;
+        for (const StandardFunction* f : standard_functions()) made.emplace(f->name, f);
+        return made;
+    }();
+    const auto it = by_name.find(name);
+    return it == by_name.end() ? nullptr : it->second;
 }
 
 /// Those behind the row's last one are counted on from it: IN1, IN2, IN3.
