@@ -136,7 +136,7 @@ bool Axis::is_safe(const MotionState& next) {
     if (safe.contains(next)) return true;
     const Bounds kept = bounds();
     const bool is_inside = kept.lowest == lowest_position && kept.highest == highest_position;
-    const bool has_end = doing != Doing::holding || next.velocity == 0;
+    const bool has_end = doing != Doing::holding || base.velocity == 0;
     if (is_inside && has_end && goes_on_inside()) safe.as_planned = 1;
     if (safe.as_planned != 0 || finds_room(next)) return true;
     const double far = longest_stop(next, defaults());
