@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/st/check/conversions.hpp"
@@ -54,12 +55,12 @@ Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std:
     }
     if (argument.is_output && same_name(argument.name.text, "eno")) return &eno_of(c, routine);
     if (!named)
-        return c.fail("L0907", argument.value->place,
+        return c.fail(code::wrong_arguments, argument.value->place,
                       fmt::format("'{}' takes {} argument{}", routine.name, i, i == 1 ? "" : "s"));
     std::vector<std::string> names;
     for (const Variable& variable : routine.variables)
         if (is_parameter(variable) || inner) names.emplace_back(variable.text);
-    return c.fail("L0907", argument.name.place,
+    return c.fail(code::wrong_arguments, argument.name.place,
                   fmt::format("'{}' has no argument '{}'", routine.name, argument.name.text),
                   same_name(argument.name.text, "en")
                       ? "EN is for a call that is a statement, or whose value is assigned"
@@ -75,7 +76,7 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     const bool fits_sign = argument.is_output ? parameter.can_be_taken() : !is_output || is_set;
     if (argument.is_named() && !fits_sign) {
         check(c, value);
-        c.fail("L0907", argument.name.place,
+        c.fail(code::wrong_arguments, argument.name.place,
                fmt::format("'{}' is {} of the call", parameter.text,
                            is_output ? "an output" : "an input"),
                is_output ? "write '=>' and the variable that it goes to" : "write ':='");
@@ -94,7 +95,7 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     const bool is_place = is_variable(*value) || (argument.is_output && value->kind == E::bit);
     if (!is_place || (!is_read && !check_target(c, *value, "given here"))) {
         if (!is_place)
-            c.fail("L0907", value->place,
+            c.fail(code::wrong_arguments, value->place,
                    fmt::format("'{}' takes a variable, not a value", parameter.text),
                    "declare one and give it here");
         return;
@@ -105,7 +106,7 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
                                          ? texts && type->is_open
                                          : texts || (type->is_scalar() && widens(*type, *given)));
     if (!fits)
-        c.fail("L0905", value->place,
+        c.fail(code::type_does_not_fit, value->place,
                fmt::format("'{}' is {}, and {} is given", parameter.text, describe(*type),
                            describe(*given)),
                texts ? "a VAR_IN_OUT of type STRING, without a length, takes any" : "");
@@ -137,7 +138,7 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
             continue;
         }
         if (std::ranges::find(given, parameter) != given.end())
-            c.fail("L0907", argument.value->place,
+            c.fail(code::wrong_arguments, argument.value->place,
                    fmt::format("'{}' is given twice", parameter->text));
         given.push_back(parameter);
         check_argument(c, argument, *parameter);
@@ -152,7 +153,7 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
         const bool may_miss = c.is_in_test() && routine.has_instances();
         if (may_miss && variable.type) left_out.push_back(leave_out(c, call, variable));
         if (!may_miss)
-            c.fail("L0907", call.operands[0]->place,
+            c.fail(code::wrong_arguments, call.operands[0]->place,
                    fmt::format("'{}' is called without '{}'", routine.name, variable.text),
                    fmt::format("write {} := ...", variable.text));
     }
@@ -171,10 +172,10 @@ void ignore(Checking& c, const Type& type, Argument& argument, std::optional<dou
     if (!check(c, argument.value)) return;
     const Expression& value = *argument.value;
     if (!only || (is_constant(value) && as_real(value) == *only))
-        return c.warn("L0923", argument.name.place,
+        return c.warn(code::argument_not_taken, argument.name.place,
                       fmt::format("{} does not take '{}'", type.name, argument.name.text),
                       "a simulated axis does the same with and without");
-    c.fail("L0903", argument.name.place,
+    c.fail(code::not_supported, argument.name.place,
            fmt::format("'{}' of {} is not supported", argument.name.text, type.name),
            fmt::format("leave it out: it is as if it were {}", *only == 0 ? "FALSE" : "100"));
 }
@@ -199,14 +200,14 @@ void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
             continue;
         }
         if (!found && !argument.is_named()) {
-            c.fail("L0907", argument.value->place,
+            c.fail(code::wrong_arguments, argument.value->place,
                    fmt::format("{} takes {} arguments", type.name, names.size()),
                    fmt::format("they are {}", fmt::join(names, ", ")));
             break;
         }
         if (!found) {
             const std::string_view instead = instead_of_input(argument.name.text);
-            c.fail("L0907", argument.name.place,
+            c.fail(code::wrong_arguments, argument.name.place,
                    fmt::format("{} has no argument '{}'", type.name, argument.name.text),
                    instead.empty() ? suggest(argument.name.text, names) : std::string(instead));
             continue;
@@ -220,7 +221,7 @@ void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
         if (member->section != Section::in_out ||
             std::ranges::find(e->arguments, member, &Argument::variable) != e->arguments.end())
             continue;
-        c.fail("L0907", call.operands[0]->place,
+        c.fail(code::wrong_arguments, call.operands[0]->place,
                fmt::format("'{}' is called without '{}'", type.name, member->text),
                fmt::format("write {} := ...", member->text));
     }
@@ -228,7 +229,7 @@ void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
 
 const Type* check_instance_call(Checking& c, Expression*& e, const Type& type, bool as_statement) {
     if (!as_statement)
-        return c.fail("L0905", e->place, "the call of an instance has no value",
+        return c.fail(code::type_does_not_fit, e->place, "the call of an instance has no value",
                       "call it as a statement of its own, then take an output: name.Q");
     if (type.kind == Kind::block) {
         e->routine = type.routine;
@@ -250,7 +251,8 @@ const Type* check_routine_call(Checking& c, Expression*& e, Routine& routine, bo
     check_arguments(c, e, routine);
     if (routine.result) return routine.result->type;
     if (!as_statement)
-        return c.fail("L0905", e->place, fmt::format("'{}' has no result", routine.name),
+        return c.fail(code::type_does_not_fit, e->place,
+                      fmt::format("'{}' has no result", routine.name),
                       "call it as a statement of its own, and take an output with '=>'");
     return nullptr;
 }
@@ -278,7 +280,7 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
                 const bool outside =
                     !c.routine || (c.routine != of->routine && c.routine->owner != of->routine);
                 if (method.pou->is_private && outside && !c.is_in_test())
-                    return c.fail("L0907", callee.token.place,
+                    return c.fail(code::wrong_arguments, callee.token.place,
                                   fmt::format("'{}' is PRIVATE to {}", callee.token.text, of->name),
                                   "only its own block calls it");
                 return check_routine_call(c, e, method, as_statement);
@@ -301,7 +303,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
     const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
     if (type->is_instance()) return check_instance_call(c, e, *type, as_statement);
-    return c.fail("L0907", callee.place, fmt::format("{} cannot be called", describe(*type)),
+    return c.fail(code::wrong_arguments, callee.place,
+                  fmt::format("{} cannot be called", describe(*type)),
                   "functions, methods and instances of function blocks are called");
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -97,7 +98,8 @@ void fold(Checking& c, Expression*& e) {
     if (compared) return (void)(e = make_boolean(c, *e, *compared));
     const bool divides = e->op == Word::divided || e->op == Word::mod_;
     if (divides && !real && b.integer == 0)
-        return (void)(e->type = c.fail("L0908", right.place, "this divides by zero"));
+        return (void)(e->type =
+                          c.fail(code::value_out_of_range, right.place, "this divides by zero"));
     Constant result = operate(e->op, a, b);
     if (type.kind == Kind::time && real)
         result.integer = static_cast<Wide>(std::nearbyint(result.real));
@@ -105,7 +107,8 @@ void fold(Checking& c, Expression*& e) {
     if (!type.is_any() && !type.is_real()) result.integer = wrapped(type, result.integer);
     constexpr Wide most = Wide{1} << 64;
     if (type.is_any() && (result.integer >= most || result.integer <= -most))
-        return (void)(e->type = c.fail("L0908", e->place, "the result is out of range"));
+        return (void)(e->type =
+                          c.fail(code::value_out_of_range, e->place, "the result is out of range"));
     e = make_constant(c, *e, type, std::move(result));
 }
 
@@ -117,7 +120,7 @@ bool evaluate(Checking& c, Expression*& e) {
         return true;
     }
     e->type = c.fail(
-        "L0908", e->place,
+        code::value_out_of_range, e->place,
         fmt::format("this is the fault {}", fault_names[static_cast<std::size_t>(found.fault)]));
     return false;
 }
@@ -126,7 +129,8 @@ std::optional<Wide> check_whole(Checking& c, Expression*& e, const Type& type) {
     if (!check(c, e, &type)) return {};
     if (!evaluate(c, e)) {
         if (e->type)
-            c.fail("L0913", e->place, "a constant is due here", "declare it in VAR CONSTANT");
+            c.fail(code::not_a_constant, e->place, "a constant is due here",
+                   "declare it in VAR CONSTANT");
         return {};
     }
     if (!coerce(c, e, type)) return {};

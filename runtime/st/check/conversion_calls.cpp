@@ -1,5 +1,6 @@
 #include "runtime/st/check/conversion_calls.hpp"
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
@@ -46,7 +47,8 @@ const Type* check_bcd(Checking& c, Expression*& e, const Type* source, const Typ
     const auto is_digits = [](const Type& type) { return type.kind == Kind::bits; };
     const auto is_number = [](const Type& type) { return type.kind == Kind::integer; };
     if (e->arguments.size() != 1)
-        return c.fail("L0907", e->operands[0]->place, "a conversion takes 1 argument");
+        return c.fail(code::wrong_arguments, e->operands[0]->place,
+                      "a conversion takes 1 argument");
     Expression*& value = e->arguments[0].value;
     if (!check(c, value, source)) return nullptr;
     if (source && !coerce(c, value, *source)) return nullptr;
@@ -54,7 +56,8 @@ const Type* check_bcd(Checking& c, Expression*& e, const Type* source, const Typ
     const bool fits =
         to_bcd ? is_number(from) && is_digits(target) : is_digits(from) && is_number(target);
     if (!fits)
-        return c.fail("L0905", e->place, "BCD digits are those of a bit string, of an integer",
+        return c.fail(code::type_does_not_fit, e->place,
+                      "BCD digits are those of a bit string, of an integer",
                       "as in WORD_BCD_TO_UINT(x) and UINT_TO_BCD_WORD(x)");
     const Place place = e->place;
     e = make_converted(c, value, target);
@@ -113,21 +116,21 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
         return is_told ? std::optional<const Type*>(nullptr) : std::nullopt;
     if (read->to_bcd || read->from_bcd) return check_bcd(c, e, source, *target, read->to_bcd);
     if (e->arguments.size() != 1)
-        return c.fail("L0907", e->operands[0]->place,
+        return c.fail(code::wrong_arguments, e->operands[0]->place,
                       fmt::format("{} takes 1 argument", read->name));
     if (!check_operand(c, e->arguments[0].value, source)) return nullptr;
     Expression* value = e->arguments[0].value;
     const Type& from = *value->type;
     if (!is_conversion(from, *target))
         return c.fail(
-            "L0905", e->place,
+            code::type_does_not_fit, e->place,
             fmt::format("there is no conversion of {} to {}", describe(from), describe(*target)));
     if (same_type(from, *target) && from.is_character == target->is_character) {
         e = make_copy(c, *value);
         return target;
     }
     if (target->kind == Kind::enumeration && !target->counted)
-        return c.fail("L0903", e->place,
+        return c.fail(code::not_supported, e->place,
                       fmt::format("a conversion to {}, whose values have gaps, is not supported",
                                   target->name),
                       "write a CASE");

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/syntax/literals.hpp"
 
@@ -28,7 +29,8 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
     if (!e.place.dialect().dint_becomes_real || from.kind != Kind::integer || from.bits != 32 ||
         !is_single(to))
         return false;
-    c.warn("L0906", e.place, fmt::format("{} does not hold every {}", describe(to), from.name),
+    c.warn(code::conversion_may_lose, e.place,
+           fmt::format("{} does not hold every {}", describe(to), from.name),
            fmt::format("write {}_TO_{}(...) where it is meant", from.name, to.name));
     return true;
 }
@@ -43,7 +45,7 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to) {
     const bool exists = number >= 0 && number < static_cast<Wide>(to.of_number.size());
     const std::int64_t value = exists ? to.of_number[static_cast<std::size_t>(number)] : -1;
     if (value < 0) {
-        c.fail("L0908", e->place,
+        c.fail(code::value_out_of_range, e->place,
                fmt::format("{} has nothing for the number {}", to.name, to_string(number)),
                fmt::format("write one of its values, such as {}#{}", to.name, to.values.front()));
         return false;
@@ -56,7 +58,8 @@ bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
     const Type& from = *e.type;
     const bool of_literal = from.kind == Kind::any_real;
     if (of_literal && !to.is_real() && to.is_number()) {
-        c.fail("L0906", e.place, fmt::format("expected {}, found a real number", describe(to)),
+        c.fail(code::conversion_may_lose, e.place,
+               fmt::format("expected {}, found a real number", describe(to)),
                "write a whole number, or convert it: ROUND(...)");
         return false;
     }
@@ -66,7 +69,8 @@ bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
         const std::string source = from.is_any() ? "LINT"
                                    : counts      ? integer_type(from.bits, false).name
                                                  : from.plain().name;
-        c.fail("L0906", e.place, fmt::format("{} does not hold every {}", describe(to), from.name),
+        c.fail(code::conversion_may_lose, e.place,
+               fmt::format("{} does not hold every {}", describe(to), from.name),
                fmt::format("write {}_TO_{}(...) where it is meant", source, to.plain().name));
         return false;
     }
@@ -84,8 +88,8 @@ bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
         help = fmt::format("write TIME_TO_{}(...)", to.is_any() ? "LREAL" : to.plain().name);
     if (from.kind == Kind::enumeration && to.kind == Kind::integer)
         help = fmt::format("write TO_{}(...)", to.plain().name);
-    c.fail("L0905", e.place, fmt::format("expected {}, found {}", describe(to), describe(from)),
-           help);
+    c.fail(code::type_does_not_fit, e.place,
+           fmt::format("expected {}, found {}", describe(to), describe(from)), help);
     return false;
 }
 
@@ -97,7 +101,7 @@ bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
         double real = as_real(*e);
         if (to.kind == Kind::real && to.bits == 32) real = static_cast<float>(real);
         if (!std::isfinite(real)) {
-            c.fail("L0908", e->place,
+            c.fail(code::value_out_of_range, e->place,
                    fmt::format("'{}' is out of range for {}", e->place.text(), to.name));
             return false;
         }
@@ -115,7 +119,7 @@ bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
     const bool is_pattern = from.kind == Kind::any_bits && value < pattern && !to.is_subrange;
     if (!is_pattern && (value < smallest(to) || value > largest(to))) {
         c.fail(
-            "L0908", e->place,
+            code::value_out_of_range, e->place,
             fmt::format("{} is out of range for {}", to_string(value), describe(to)),
             fmt::format("it goes from {} to {}", to_string(smallest(to)), to_string(largest(to))));
         return false;
@@ -180,7 +184,7 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
     const Type& from = *e->type;
     if (from.kind == Kind::text && to.kind == Kind::text) {
         if (is_constant(*e) && e->constant.text.size() > to.length)
-            c.warn("L0908", e->place,
+            c.warn(code::value_out_of_range, e->place,
                    fmt::format("the text has {} bytes, and {} keeps {}", e->constant.text.size(),
                                describe(to), to.length),
                    "declare the STRING longer");
@@ -204,7 +208,7 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
     }
     if (to.is_subrange && same_type(from.plain(), to.plain())) {
         if (is_constant(*e) && (e->constant.integer < to.lower || e->constant.integer > to.upper)) {
-            c.fail("L0908", e->place,
+            c.fail(code::value_out_of_range, e->place,
                    fmt::format("{} is out of range for {}", to_string(e->constant.integer),
                                describe(to)));
             return false;
@@ -310,7 +314,7 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
     if (!common) {
         const bool numbers = a.is_number() && b.is_number();
         return c.fail(
-            numbers ? "L0906" : "L0905", e.token.place,
+            numbers ? code::conversion_may_lose : code::type_does_not_fit, e.token.place,
             fmt::format("{} does not go with {} and {}", shown(e.op), describe(a), describe(b)),
             numbers
                 ? fmt::format("convert one of them: {}_TO_{}(...)", a.plain().name, b.plain().name)

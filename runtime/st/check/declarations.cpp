@@ -1,5 +1,6 @@
 #include "runtime/st/check/declarations.hpp"
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/initial_values.hpp"
@@ -16,8 +17,8 @@ void check_unit(Checking& c, Variable& variable, const Declaration& declared) {
     if (declared.unit.empty()) return;
     variable.unit = declared.unit;
     if (!Unit::parse(variable.unit))
-        c.fail("L0304", declared.unit_place, fmt::format("'{}' is not a unit", declared.unit),
-               "lineshaft units lists them");
+        c.fail(code::unknown_unit, declared.unit_place,
+               fmt::format("'{}' is not a unit", declared.unit), "lineshaft units lists them");
 }
 
 /// All that stands in VAR_GLOBAL.
@@ -30,7 +31,7 @@ Type& global_variables(Checking& c) {
 /// A constant scalar takes no memory.
 void make_constant(Checking& c, Variable& variable) {
     if (variable.type && variable.type->is_instance())
-        c.fail("L0914", variable.name.place,
+        c.fail(code::wrong_place, variable.name.place,
                "an instance changes when it is called, so it is no constant",
                "declare it in VAR, without CONSTANT");
     if (!variable.type || !variable.type->is_scalar()) return;
@@ -38,7 +39,7 @@ void make_constant(Checking& c, Variable& variable) {
     if (!variable.initial) {
         variable.value = variable.type->initial;
         if (!variable.name.place.dialect().constants_have_values) return;
-        c.fail("L0913", variable.name.place,
+        c.fail(code::not_a_constant, variable.name.place,
                fmt::format("the constant '{}' has no value", variable.text),
                "write ':= value' behind its type");
         return;
@@ -68,7 +69,7 @@ void declare_result(Checking& c, Routine& routine) {
     const TypeText* text = routine.pou->result;
     if (!text || same_name(text->name.text, "void")) return;
     if (routine.has_instances()) {
-        c.fail("L0914", text->place, "only functions and methods have a result",
+        c.fail(code::wrong_place, text->place, "only functions and methods have a result",
                "declare a VAR_OUTPUT");
         return;
     }
@@ -88,7 +89,7 @@ void declare_edge(Checking& c, Routine& routine, Variable& variable, const Token
     const bool fits = variable.type && variable.type->kind == Kind::boolean &&
                       variable.section == Section::input && routine.has_instances();
     if (!fits) {
-        c.fail("L0914", edge.place,
+        c.fail(code::wrong_place, edge.place,
                fmt::format("{} is for a BOOL of VAR_INPUT of a function block or a program",
                            edge.text),
                "declare an instance of R_TRIG or F_TRIG, and call it");
@@ -117,14 +118,14 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
             variable->space = Space::reference;
         const auto [it, added] = routine.names.emplace(variable->text, variable);
         if (!added)
-            c.fail("L0909", declared->name.place,
+            c.fail(code::declared_twice, declared->name.place,
                    fmt::format("'{}' is declared twice", variable->text),
                    it->second->section == Section::result
                        ? "the function's own name is that of its result"
                        : fmt::format("first in line {}", it->second->name.place.mark().line));
         if (type && type->is_instance() && !routine.has_instances() && !routine.is_test() &&
             block.section != Section::in_out)
-            c.fail("L0914", declared->name.place,
+            c.fail(code::wrong_place, declared->name.place,
                    "a function keeps nothing from call to call, so it has no instances",
                    "pass the instance as VAR_IN_OUT");
         depend(c, type, declared->name.place);

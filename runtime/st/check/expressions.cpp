@@ -1,5 +1,6 @@
 #include "runtime/st/check/expressions.hpp"
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/literals.hpp"
 #include "runtime/st/check/names.hpp"
@@ -43,7 +44,7 @@ const Type* check(Checking& c, Expression*& e, const Type* expected) {
         case E::list:
         case E::repeated:
             return c.fail(
-                "L0905", e->place, "a list of values stands in a declaration only",
+                code::type_does_not_fit, e->place, "a list of values stands in a declaration only",
                 "declare a variable that begins with it, or assign the elements one by one");
         case E::converted:
             type = e->type;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/st/check/constants.hpp"
@@ -32,13 +33,13 @@ void check_data_block(Checking& c, const Global& global) {
     c.routine = &parts;
     for (Statement* s : global.pou->body) {
         if (s->kind != S::assign || s->op != Word::assign) {
-            c.fail("L0914", s->place, "a data block has no code",
+            c.fail(code::wrong_place, s->place, "a data block has no code",
                    "assign constants, and write statements in a block");
             continue;
         }
         const Type* type = check(c, s->target);
         if (!is_constant_place(c, *s->target))
-            c.fail("L0913", s->target->place, "the index is not a constant");
+            c.fail(code::not_a_constant, s->target->place, "the index is not a constant");
         if (type) check_initial(c, s->value, *type);
     }
     c.routine = nullptr;
@@ -65,7 +66,7 @@ void check_elements(Checking& c, Expression& list, const Type& array) {
         if (times && *times >= 0 && *times <= most_elements) count += *times * one;
     }
     if (count > room)
-        c.fail("L0908", list.place,
+        c.fail(code::value_out_of_range, list.place,
                fmt::format("{} values for {} elements", static_cast<std::int64_t>(count),
                            static_cast<std::int64_t>(room)),
                "leave some out, or make the array larger");
@@ -77,7 +78,7 @@ void check_members(Checking& c, Expression& list, const Type& type) {
         type.kind == Kind::structure && std::ranges::none_of(list.arguments, &Argument::is_named);
     if (by_place && list.arguments.size() > type.members.size())
         return (void)c.fail(
-            "L0908", list.place,
+            code::value_out_of_range, list.place,
             fmt::format("{} values for {} members", list.arguments.size(), type.members.size()),
             "leave some out");
     for (std::size_t i = 0; by_place && i < list.arguments.size(); ++i) {
@@ -88,7 +89,7 @@ void check_members(Checking& c, Expression& list, const Type& type) {
     for (Argument& argument : list.arguments) {
         if (by_place) break;
         if (argument.name.word == Word::end_of_file) {
-            c.fail("L0905", argument.value->place, "this value has no name",
+            c.fail(code::type_does_not_fit, argument.value->place, "this value has no name",
                    fmt::format("name the member of {}: (name := value)", describe(type)));
             continue;
         }
@@ -97,7 +98,7 @@ void check_members(Checking& c, Expression& list, const Type& type) {
         Variable* found = find_member(type, argument.name.text);
         argument.variable = found;
         if (!found) {
-            c.fail("L0904", argument.name.place,
+            c.fail(code::not_declared, argument.name.place,
                    fmt::format("{} has no '{}'", describe(type), argument.name.text),
                    suggest(argument.name.text, names));
         } else if (found->type) {
@@ -119,7 +120,7 @@ void check_initial_values(Checking& c) {
         c.routine = &routine;
         for (Variable& variable : routine.variables) {
             if (variable.initial && variable.section == Section::in_out)
-                c.fail("L0914", variable.name.place, "a VAR_IN_OUT has no initial value",
+                c.fail(code::wrong_place, variable.name.place, "a VAR_IN_OUT has no initial value",
                        "leave ':= ...' out; the caller gives the variable");
             check_one(variable);
         }
@@ -146,7 +147,8 @@ void check_initial(Checking& c, Expression*& value, const Type& type) {
         if (type.kind == Kind::array && !is_structure) return check_elements(c, *value, type);
         if ((type.kind == Kind::structure || type.is_instance()) && is_structure)
             return check_members(c, *value, type);
-        c.fail("L0905", value->place, fmt::format("this is not a value of {}", describe(type)),
+        c.fail(code::type_does_not_fit, value->place,
+               fmt::format("this is not a value of {}", describe(type)),
                type.kind == Kind::array ? "write its elements in brackets: [1, 2, 3]"
                : type.is_real()         ? "write a decimal point: 1.5"
                                         : "");
@@ -162,7 +164,7 @@ void check_initial(Checking& c, Expression*& value, const Type& type) {
     evaluate(c, value);
     if (!coerce(c, value, type)) return;
     if (!evaluate(c, value) && value->type)
-        c.fail("L0913", value->place, "an initial value is a constant",
+        c.fail(code::not_a_constant, value->place, "an initial value is a constant",
                "assign it in the body, behind IF NOT started");
 }
 

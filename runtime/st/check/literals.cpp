@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
@@ -18,13 +19,15 @@ const Type* check_number(Checking& c, Expression& e) {
     const std::string_view text = e.token.text;
     if (e.token.word == Word::real) {
         const auto value = read_real(text);
-        if (!value) return c.fail("L0908", e.place, fmt::format("'{}' is out of range", text));
+        if (!value)
+            return c.fail(code::value_out_of_range, e.place,
+                          fmt::format("'{}' is out of range", text));
         e.constant.real = *value;
         return &any_real_type;
     }
     const auto value = read_integer(text);
     if (!value)
-        return c.fail("L0908", e.place,
+        return c.fail(code::value_out_of_range, e.place,
                       fmt::format("'{}' is not a number of at most 64 bits", text),
                       "write 100, 1_000, 16#FF, 8#17 or 2#1010");
     e.constant.integer = *value;
@@ -34,7 +37,7 @@ const Type* check_number(Checking& c, Expression& e) {
 std::optional<Wide> read_dtl(Checking& c, const Expression& e) {
     const auto value = read_moment(e.token.text);
     if (!value)
-        c.fail("L0908", e.place, fmt::format("'{}' is not a DTL", e.place.text()),
+        c.fail(code::value_out_of_range, e.place, fmt::format("'{}' is not a DTL", e.place.text()),
                "write DTL#2020-02-29-12:30:15.25");
     return value;
 }
@@ -52,7 +55,7 @@ const Type* check_time(Checking& c, Expression*& slot) {
     if (const Type* type = find_prefix(prefix); type && type->is_date()) {
         const auto value = read_time(e.token.text, type->kind);
         if (!value)
-            return c.fail("L0908", e.place,
+            return c.fail(code::value_out_of_range, e.place,
                           fmt::format("'{}' is not a {}", e.place.text(), type->name),
                           "write D#2020-02-29, TOD#12:30:15.25 or DT#2020-02-29-12:30:15");
         e.constant.integer = *value;
@@ -61,7 +64,8 @@ const Type* check_time(Checking& c, Expression*& slot) {
     if (same_name(prefix, "dtl")) return check_dtl(c, slot);
     const auto value = read_duration(e.token.text);
     if (!value)
-        return c.fail("L0908", e.place, fmt::format("'{}' is not a time", e.place.text()),
+        return c.fail(code::value_out_of_range, e.place,
+                      fmt::format("'{}' is not a time", e.place.text()),
                       "write T#1h2m3.5s, with d, h, m, s, ms, us and ns in this order");
     e.constant.integer = *value;
     return &time_type;
@@ -70,10 +74,12 @@ const Type* check_time(Checking& c, Expression*& slot) {
 const Type* check_text(Checking& c, Expression& e) {
     const auto text = read_text(e.token.text);
     if (!text)
-        return c.fail("L0908", e.place, "'$' is not followed by one of its characters",
+        return c.fail(code::value_out_of_range, e.place,
+                      "'$' is not followed by one of its characters",
                       "write $$ for a '$', $' for a quote, $N for a new line, $0A for a byte");
     if (static_cast<Wide>(text->size()) > longest_text)
-        return c.fail("L0908", e.place, fmt::format("the text has {} bytes", text->size()),
+        return c.fail(code::value_out_of_range, e.place,
+                      fmt::format("the text has {} bytes", text->size()),
                       "a text has at most 32767 bytes");
     e.constant.text = *text;
     return &string_type;
@@ -102,7 +108,8 @@ const Type* check_typed(Checking& c, Expression*& e) {
     if (const NamedType* named = c.look_up(&Names::types, name)) type = named->type;
     if (!type) {
         if (resolve_name(c, name))
-            c.fail("L0904", name.place, fmt::format("'{}' is not a type of values", name.text),
+            c.fail(code::not_declared, name.place,
+                   fmt::format("'{}' is not a type of values", name.text),
                    "write a type, as in INT#5");
         return nullptr;
     }
@@ -110,7 +117,8 @@ const Type* check_typed(Checking& c, Expression*& e) {
         return check_value(c, e, *type, value->token);
     if (!check(c, value, type) || !coerce(c, value, *type)) return nullptr;
     if (!is_constant(*value))
-        return c.fail("L0913", value->place, fmt::format("a number is due after '{}#'", name.text));
+        return c.fail(code::not_a_constant, value->place,
+                      fmt::format("a number is due after '{}#'", name.text));
     e = make_constant(c, *e, *type, value->constant);
     return type;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/source/utf8.hpp"
@@ -19,12 +20,14 @@ const Type* unknown_name(Checking& c, const Expression& e) {
     const std::string_view name = e.token.text;
     if (const Routine* routine = c.find_routine(e.token)) {
         if (routine->type)
-            return c.fail("L0914", e.place, fmt::format("'{}' is a block, and has no value", name),
+            return c.fail(code::wrong_place, e.place,
+                          fmt::format("'{}' is a block, and has no value", name),
                           "declare an instance in VAR, and name that");
         return routine == c.routine
-                   ? c.fail("L0914", e.place, fmt::format("the function '{}' has no value", name),
+                   ? c.fail(code::wrong_place, e.place,
+                            fmt::format("the function '{}' has no value", name),
                             fmt::format("declare of which type: FUNCTION {} : INT", name))
-                   : c.fail("L0914", e.place, fmt::format("'{}' is a function", name),
+                   : c.fail(code::wrong_place, e.place, fmt::format("'{}' is a function", name),
                             fmt::format("call it: {}()", name));
     }
     return undeclared(c, e.token, e.place, visible_names(c));
@@ -53,9 +56,10 @@ bool is_new_name(Checking& c, Token name, NameMap<Place>& names, bool is_test) {
     const std::string help =
         fmt::format("first in {}{}", beside ? "line " : first.file->path + ":", first.line);
     if (is_test)
-        c.warn("L0909", name.place, "two TESTs have one name", help);
+        c.warn(code::declared_twice, name.place, "two TESTs have one name", help);
     else
-        c.fail("L0909", name.place, fmt::format("'{}' is declared twice", name.text), help);
+        c.fail(code::declared_twice, name.place, fmt::format("'{}' is declared twice", name.text),
+               help);
     return false;
 }
 
@@ -80,7 +84,7 @@ const Type* undeclared(Checking& c, const Token& name, Place place,
     const bool is_text =
         name.quoted && (!std::ranges::all_of(name.text, in_name) ||
                         (near.empty() && place.dialect().quotes_may_enclose_texts));
-    return c.fail("L0904", place, fmt::format("'{}' is not declared", name.text),
+    return c.fail(code::not_declared, place, fmt::format("'{}' is not declared", name.text),
                   is_text ? "a text stands in '...', a name in \"...\"" : suggest(name.text, near));
 }
 
@@ -112,7 +116,7 @@ const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, co
     const auto found = std::ranges::find_if(
         enumeration.values, [&](const std::string& known) { return same_name(known, name.text); });
     if (found == enumeration.values.end())
-        return c.fail("L0904", name.place,
+        return c.fail(code::not_declared, name.place,
                       fmt::format("{} has no value '{}'", enumeration.name, name.text),
                       suggest(name.text, enumeration.values));
     e = make_constant(c, *e, enumeration, {.integer = found - enumeration.values.begin()});
@@ -138,7 +142,7 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     }
     if (const NamedValue* value = token.local ? nullptr : c.look_up(&Names::values, token)) {
         if (value->ambiguous)
-            return c.fail("L0904", e->place,
+            return c.fail(code::not_declared, e->place,
                           fmt::format("'{}' is a value of several enumerations", token.text),
                           fmt::format("write {}#{}", value->type->name, token.text));
         e = make_constant(c, *e, *value->type, {.integer = static_cast<Wide>(value->index)});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
@@ -43,14 +44,15 @@ const Type* check_logic(Checking& c, Expression*& e) {
         const Type& type = *operand->type;
         if (type.kind == Kind::boolean || type.is_bits() || type.kind == Kind::any_integer)
             continue;
-        return c.fail("L0905", operand->place,
+        return c.fail(code::type_does_not_fit, operand->place,
                       fmt::format("{} does not go with {}", shown(e->op), describe(type)),
                       type.is_number() ? "compare it first, as in 'x <> 0', or convert it to a WORD"
                                        : "it takes BOOL and bit strings");
     }
     const bool lazy = e->op == Word::and_then_ || e->op == Word::or_else_;
     if (lazy && (a.kind != Kind::boolean || b.kind != Kind::boolean))
-        return c.fail("L0905", e->token.place, fmt::format("{} takes two BOOL", shown(e->op)));
+        return c.fail(code::type_does_not_fit, e->token.place,
+                      fmt::format("{} takes two BOOL", shown(e->op)));
     e->type = unite(c, *e);
     if (e->type) fold(c, e);
     return e->type;
@@ -69,13 +71,13 @@ const Type* check_comparison(Checking& c, Expression*& e) {
     if (a.kind == Kind::text && b.kind == Kind::text) return &bool_type;
     if (a.kind == Kind::text || b.kind == Kind::text)
         return c.fail(
-            "L0905", e->token.place,
+            code::type_does_not_fit, e->token.place,
             fmt::format("'{}' does not go with {} and {}", shown(e->op), describe(a), describe(b)),
             "a STRING is compared with a STRING");
     for (const Type* type : {&a, &b}) {
         const bool fits = type->is_scalar() && !(order && type->kind == Kind::enumeration);
         if (!fits)
-            return c.fail("L0905", e->token.place,
+            return c.fail(code::type_does_not_fit, e->token.place,
                           fmt::format("'{}' does not compare {}", shown(e->op), describe(*type)),
                           type->is_scalar()
                               ? "the values of an enumeration are equal or not; compare TO_INT(...)"
@@ -100,13 +102,13 @@ const Type* check_arithmetic(Checking& c, Expression*& e, const Type* expected) 
         if (type.kind == Kind::boolean) help = "convert it: BOOL_TO_INT(...)";
         if (type.kind == Kind::enumeration) help = "convert it: TO_INT(...)";
         if (type.kind == Kind::text) help = "join texts with CONCAT(...)";
-        return c.fail("L0905", operand->place,
+        return c.fail(code::type_does_not_fit, operand->place,
                       fmt::format("'{}' does not go with {}", shown(e->op), describe(type)), help);
     }
     e->type = unite(c, *e, expected);
     if (e->type && e->type->kind == Kind::any_bits) e->type = &any_integer_type;
     if (e->type && e->op == Word::mod_ && e->type->is_real())
-        return c.fail("L0905", e->token.place, "MOD takes whole numbers",
+        return c.fail(code::type_does_not_fit, e->token.place, "MOD takes whole numbers",
                       "write a - TRUNC(a / b) * b");
     if (e->type) fold(c, e);
     return e->type;
@@ -117,7 +119,7 @@ const Type* check_power(Checking& c, Expression*& e, const Type* expected) {
     for (Expression*& operand : e->operands) become_number(c, operand);
     for (Expression* operand : e->operands)
         if (!operand->type->is_number())
-            return c.fail("L0905", operand->place,
+            return c.fail(code::type_does_not_fit, operand->place,
                           fmt::format("'**' does not go with {}", describe(*operand->type)));
     const bool whole = is_constant(*left) && is_constant(*right) &&
                        left->type->kind == Kind::any_integer &&
@@ -129,7 +131,7 @@ const Type* check_power(Checking& c, Expression*& e, const Type* expected) {
             value = product(value, left->constant.integer);
         if (right->constant.integer <= 64 || left->constant.integer <= 1) {
             if (value >= most || value <= -most)
-                return c.fail("L0908", e->place, "the result is out of range");
+                return c.fail(code::value_out_of_range, e->place, "the result is out of range");
             e = make_constant(c, *e, any_integer_type, {.integer = value});
             return e->type;
         }
@@ -161,11 +163,11 @@ const Type* check_unary(Checking& c, Expression*& e, const Type* expected) {
                                           : type->is_integer() || type->is_real() ||
                                                 type->kind == Kind::time || type->is_bits();
     if (!fits)
-        return c.fail("L0905", e->place,
+        return c.fail(code::type_does_not_fit, e->place,
                       fmt::format("{} does not go with {}", shown(e->op), describe(*type)),
                       e->op == Word::not_ ? "NOT takes a BOOL or a bit string" : "");
     if (e->op == Word::not_ && type->kind == Kind::any_bits)
-        return c.fail("L0905", e->place, "the width of this number is not known",
+        return c.fail(code::type_does_not_fit, e->place, "the width of this number is not known",
                       "write its type: NOT WORD#16#FF");
     e->type = &type->plain();
     if (type->kind == Kind::any_bits) e->type = &any_integer_type;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "runtime/source/codes.hpp"
+
 namespace lineshaft::st {
 
 namespace {
@@ -19,7 +21,7 @@ void visit(Checking& c, Routine& routine, std::vector<const Routine*>& path) {
         std::string hops;
         for (auto it = std::ranges::find(path, &called); it != path.end(); ++it)
             hops += fmt::format("{} -> ", (*it)->name);
-        c.fail("L0911", routine.call_places[i],
+        c.fail(code::contains_itself, routine.call_places[i],
                fmt::format("'{}' calls itself: {}{}", called.name, hops, called.name),
                "a PLC has no stack that grows: write a loop");
     }
@@ -57,7 +59,7 @@ void warn_of_unused(Checking& c) {
         for (const Variable& variable : routine.variables)
             if (!variable.used && !routine.is_test() && !routine.pou->is_tests &&
                 (variable.section == Section::local || variable.section == Section::temp))
-                c.warn("L0921", variable.name.place,
+                c.warn(code::variable_never_used, variable.name.place,
                        fmt::format("'{}' is declared and never used", variable.text), "remove it");
 }
 

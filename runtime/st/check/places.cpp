@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/st/check/calls.hpp"
@@ -46,7 +47,7 @@ const Type* check_member(Checking& c, Expression*& e) {
             return found->type;
         }
         if (type->kind == Kind::block && (found->section == Section::temp || is_value))
-            return c.fail("L0904", e->token.place,
+            return c.fail(code::not_declared, e->token.place,
                           fmt::format("'{}' of {} is not seen from outside", name, type->name),
                           "make it a VAR_OUTPUT");
         found->used = true;
@@ -62,15 +63,16 @@ const Type* check_member(Checking& c, Expression*& e) {
         for (const Variable& variable : type->routine->variables) names.emplace_back(variable.text);
     for (const Variable* member : type->members) names.emplace_back(member->text);
     if (names.empty())
-        return c.fail("L0905", e->token.place, fmt::format("{} has no parts", describe(*type)),
+        return c.fail(code::type_does_not_fit, e->token.place,
+                      fmt::format("{} has no parts", describe(*type)),
                       "'.' takes a part of a structure or of an instance");
     if (type->is_object())
         for (const auto& [routine, part] : c.prelude.routines)
             if (routine.starts_with(std::string(type->standard->handle) + '.'))
                 names.emplace_back(routine.substr(type->standard->handle.size() + 1));
     std::ranges::sort(names);
-    return c.fail("L0904", e->token.place, fmt::format("{} has no '{}'", describe(*type), name),
-                  suggest(name, names));
+    return c.fail(code::not_declared, e->token.place,
+                  fmt::format("{} has no '{}'", describe(*type), name), suggest(name, names));
 }
 
 const Type* check_index(Checking& c, Expression& e) {
@@ -80,20 +82,20 @@ const Type* check_index(Checking& c, Expression& e) {
         if (!type) return nullptr;
         const bool of_text = type->kind == Kind::text;
         if (type->kind != Kind::array && !of_text)
-            return c.fail("L0905", argument.value->place,
+            return c.fail(code::type_does_not_fit, argument.value->place,
                           fmt::format("{} has no elements", describe(*type)),
                           e.arguments.size() > 1 ? "there are more indices than dimensions" : "");
         const Type* given = argument.value->type;
         if (!given) return nullptr;
         if (!given->is_integer() && !given->is_bits())
-            return c.fail("L0905", argument.value->place,
+            return c.fail(code::type_does_not_fit, argument.value->place,
                           fmt::format("an index is a whole number, not {}", describe(*given)));
         const Wide value = argument.value->constant.integer;
         if (is_constant(*argument.value)) {
             const Wide lower = of_text ? 1 : type->lower,
                        upper = of_text ? type->length : type->upper;
             if (value < lower || value > upper)
-                return c.fail("L0908", argument.value->place,
+                return c.fail(code::value_out_of_range, argument.value->place,
                               fmt::format("there is no element {}", to_string(value)),
                               fmt::format("the index goes from {} to {}", to_string(lower),
                                           to_string(upper)));
@@ -121,14 +123,16 @@ const Type* check_bit(Checking& c, Expression*& e) {
     }
     const auto number = read_integer(text);
     if (!number || bits == 0)
-        return c.fail("L0902", e->token.place, fmt::format("'{}' is not a bit", e->token.text),
+        return c.fail(code::something_else_expected, e->token.place,
+                      fmt::format("'{}' is not a bit", e->token.text),
                       "write .%X0 for a bit, .%B0 for a byte, .%W0 for a word");
     const bool whole = type->kind == Kind::bits || type->kind == Kind::integer;
     if (!whole)
-        return c.fail("L0905", e->token.place, fmt::format("{} has no bits", describe(*type)),
+        return c.fail(code::type_does_not_fit, e->token.place,
+                      fmt::format("{} has no bits", describe(*type)),
                       "bits are those of BYTE to LWORD and of integers");
     if ((*number + 1) * bits > type->bits)
-        return c.fail("L0908", e->token.place,
+        return c.fail(code::value_out_of_range, e->token.place,
                       fmt::format("{} has no part '{}'", describe(*type), e->token.text),
                       fmt::format("its {} are 0 to {}",
                                   bits == 1    ? "bits"
@@ -146,7 +150,8 @@ const Type* check_bit(Checking& c, Expression*& e) {
 
 bool check_target(Checking& c, Expression& target, std::string_view how) {
     const auto refuse = [&](std::string what, std::string help) {
-        c.fail("L0910", target.place, fmt::format("{} cannot be {}", what, how), std::move(help));
+        c.fail(code::cannot_be_assigned, target.place, fmt::format("{} cannot be {}", what, how),
+               std::move(help));
         return false;
     };
     if (target.kind == E::constant && target.variable)

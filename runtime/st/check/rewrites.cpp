@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -73,7 +74,7 @@ void rewrite_bits(Checking& c, Statement*& s, bool scatters) {
     const bool fits = bits->kind == Kind::bits && count == static_cast<std::size_t>(bits->bits) &&
                       (array || std::ranges::all_of(type->members, is_bool, &Variable::type));
     if (!fits || !is_place(*word) || !is_place(*flags)) {
-        c.fail("L0905", s->place,
+        c.fail(code::type_does_not_fit, s->place,
                fmt::format("{} does not go with {} and {}", name, describe(*bits), describe(*type)),
                "it takes a variable of BYTE to LWORD, and as many BOOL in an array or a structure");
         return;
@@ -93,7 +94,7 @@ void rewrite_bits(Checking& c, Statement*& s, bool scatters) {
 void check_timer(Checking& c, Expression*& timer, std::string_view function) {
     const Type* type = check(c, timer);
     if (!type || is_timer(*type)) return;
-    c.fail("L0905", timer->place,
+    c.fail(code::type_does_not_fit, timer->place,
            fmt::format("{} takes a timer, not {}", function, describe(*type)),
            "timers are instances of TON, TOF, TP and TONR");
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/conversion_calls.hpp"
 #include "runtime/st/check/conversions.hpp"
@@ -33,7 +34,7 @@ const Type* check_typed_function(Checking& c, Expression& call) {
     name.text = written;
     if (!result || result->kind == Kind::boolean || same_type(*result, type)) return result;
     if (widens(*result, type)) return convert_result(c, call, *result, type);
-    return c.fail("L0906", call.place,
+    return c.fail(code::conversion_may_lose, call.place,
                   fmt::format("{} takes {}, not {}", written, type.name, describe(*result)),
                   fmt::format("write {}", written.substr(0, end)));
 }
@@ -43,7 +44,7 @@ const Type* check_typed_function(Checking& c, Expression& call) {
 bool check_count(Checking& c, const Expression& call, const StandardFunction& f) {
     const int count = static_cast<int>(call.arguments.size());
     if (count >= f.least && count <= f.most) return true;
-    c.fail("L0907", call.operands[0]->place,
+    c.fail(code::wrong_arguments, call.operands[0]->place,
            fmt::format("{} takes {}{} argument{}", f.name, f.least,
                        f.most > f.least ? " or more" : "", f.most == 1 ? "" : "s"));
     return false;
@@ -70,7 +71,7 @@ bool order_arguments(Checking& c, Expression& call, const StandardFunction& f) {
                                 ? "given twice to"
                                 : nullptr;
         if (wrong) {
-            c.fail("L0907", named ? argument.name.place : argument.value->place,
+            c.fail(code::wrong_arguments, named ? argument.name.place : argument.value->place,
                    fmt::format("'{}' is {} {}", named ? argument.name.text : *it, wrong, f.name),
                    fmt::format("it takes {}", fmt::join(names, ", ")));
             return false;
@@ -87,20 +88,21 @@ const Type* check_standard_function(Checking& c, Expression& call, const Type* e
     call.standard = find_standard_function(name.text);
     const std::string_view instead = instead_of_function(name.text);
     if (!call.standard && !instead.empty() && !c.tree.lost.contains(name.text))
-        return c.fail("L0903", name.place,
+        return c.fail(code::not_supported, name.place,
                       fmt::format("the function {} is not supported", name.text),
                       std::string(instead));
     if (call.standard && call.standard->typing == Typing::statement)
-        return c.fail("L0905", call.place, fmt::format("{} has no value", name.text),
+        return c.fail(code::type_does_not_fit, call.place,
+                      fmt::format("{} has no value", name.text),
                       "write it as a statement of its own");
     for (Argument& argument : call.arguments)
         if (argument.is_output && call.standard)
-            return c.fail("L0907", argument.name.place,
+            return c.fail(code::wrong_arguments, argument.name.place,
                           "a standard function has no output but its value");
     if (!call.standard) {
         if (const auto converted = check_conversion(c, call, name.text)) return *converted;
         if (c.find_routine(name) || standard_type(c, name.text))
-            return c.fail("L0907", name.place,
+            return c.fail(code::wrong_arguments, name.place,
                           fmt::format("'{}' is a kind of block, not an instance", name.text),
                           "declare one in VAR, and call that");
         if (is_typed_function(name.text)) return check_typed_function(c, call);

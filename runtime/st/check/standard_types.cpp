@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
@@ -36,7 +37,7 @@ const Type& real_for(const Type& type) {
 /// The first argument is not what the function takes.
 const Type* refuse(Checking& c, const Expression& call, const char* what, const Type& found,
                    std::string help = {}) {
-    return c.fail("L0905", call.arguments[0].value->place,
+    return c.fail(code::type_does_not_fit, call.arguments[0].value->place,
                   fmt::format("{} takes {}, not {}", call.standard->name, what, describe(found)),
                   std::move(help));
 }
@@ -56,7 +57,7 @@ const Type* check_bound(Checking& c, Expression& call) {
         Wide at = 1;
         for (; at != *dimension && array->has_inner; ++at) array = array->element;
         if (at != *dimension)
-            return c.fail("L0908", call.arguments[1].value->place,
+            return c.fail(code::value_out_of_range, call.arguments[1].value->place,
                           fmt::format("the array's dimensions are 1 to {}", static_cast<int>(at)));
         value = f.name.front() == 'L' ? array->lower : array->upper;
     }
@@ -80,7 +81,8 @@ Expression* join(Checking& c, Expression& call, Word op) {
     for (std::size_t i = 2; i < arguments.size(); ++i) {
         Expression *before = arguments[i - 1].value, *value = arguments[i].value;
         if (compares && has_call(*before))
-            return c.fail("L0903", before->place, "a function between others is not supported here",
+            return c.fail(code::not_supported, before->place,
+                          "a function between others is not supported here",
                           "assign its value to a variable, and compare that");
         Expression* again = make(c, before->kind, *before);
         *again = *before;
@@ -136,7 +138,7 @@ const Type* unite_from(Checking& c, Expression& call, std::size_t first, const T
     for (std::size_t i = first + 1; i < call.arguments.size() && common; ++i)
         common = common_of(*common, given_type(call, i));
     if (!common)
-        return c.fail("L0906", call.place,
+        return c.fail(code::conversion_may_lose, call.place,
                       fmt::format("the arguments of {} have no common type", call.standard->name),
                       "convert them");
     const bool is_wanted = expected && (expected->is_number() || expected->is_bits());
@@ -182,7 +184,7 @@ const Type* check_chosen(Checking& c, Expression& call, const Type* expected) {
     become_number(c, choice);
     if (choice->type->is_any() && !coerce(c, choice, lint_type)) return nullptr;
     if (choice->type->kind != Kind::integer)
-        return c.fail("L0905", choice->place, "K of MUX is a whole number");
+        return c.fail(code::type_does_not_fit, choice->place, "K of MUX is a whole number");
     return unite_from(c, call, 1, expected);
 }
 
@@ -194,7 +196,7 @@ const Type* check_places(Checking& c, Expression& call, const Type* expected) {
     take_width(c, call.arguments[0].value, expected);
     const Type &given = given_type(call, 0), &count = *places->type;
     if (!count.is_integer() && count.kind != Kind::any_bits)
-        return c.fail("L0905", places->place, "the number of places is an integer");
+        return c.fail(code::type_does_not_fit, places->place, "the number of places is an integer");
     if (!coerce(c, places, count.is_any() ? lint_type : count)) return nullptr;
     if (given.kind == Kind::bits || given.kind == Kind::integer) return &given.plain();
     return refuse(c, call, "a bit string", given, write_its_type);
@@ -231,7 +233,7 @@ const Type* check_texts(Checking& c, Expression& call) {
         if (!is_text) become_number(c, value);
         const Type& type = *value->type;
         if (is_text ? type.kind != Kind::text : !type.is_integer())
-            return c.fail("L0905", value->place,
+            return c.fail(code::type_does_not_fit, value->place,
                           fmt::format("expected {}, found {}",
                                       is_text ? "a STRING" : "a whole number", describe(type)));
         if (type.is_any() && !coerce(c, value, lint_type)) return nullptr;
@@ -242,7 +244,7 @@ const Type* check_texts(Checking& c, Expression& call) {
 const Type* check_capacity(Checking& c, Expression& call) {
     const Type& given = given_type(call, 0);
     if (given.kind != Kind::text)
-        return c.fail("L0905", call.arguments[0].value->place,
+        return c.fail(code::type_does_not_fit, call.arguments[0].value->place,
                       fmt::format("expected a STRING, found {}", describe(given)));
     if (!given.is_open) become(call, int_type, {.integer = given.length});
     return &int_type;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
@@ -23,7 +24,7 @@ void check(Checking& c, Block& block) {
     for (std::size_t i = 0; i < block.size(); ++i) {
         check(c, block[i]);
         if (leaves(*block[i]) && i + 1 < block.size()) {
-            c.warn("L0922", block[i + 1]->place, "this is never reached",
+            c.warn(code::statement_never_reached, block[i + 1]->place, "this is never reached",
                    "the statement before it leaves");
         }
     }
@@ -41,7 +42,7 @@ void check_call(Checking& c, Statement& s) {
 void check_condition(Checking& c, Expression*& condition, std::string_view of) {
     const Type* type = check(c, condition, &bool_type);
     if (!type || type->kind == Kind::boolean) return;
-    c.fail("L0905", condition->place,
+    c.fail(code::type_does_not_fit, condition->place,
            fmt::format("the condition of {} is a BOOL, not {}", of, describe(*type)),
            type->is_number() || type->is_bits() ? "compare it, as in 'x <> 0'" : "");
 }
@@ -51,7 +52,7 @@ void check_case(Checking& c, Statement& s) {
     const bool fits =
         type && (type->kind == Kind::integer || type->is_bits() || type->kind == Kind::enumeration);
     if (type && !fits)
-        c.fail("L0905", s.value->place,
+        c.fail(code::type_does_not_fit, s.value->place,
                fmt::format("CASE selects by a whole number or an enumeration, not {}",
                            describe(*type)),
                "write IF and ELSIF");
@@ -63,13 +64,13 @@ void check_case(Checking& c, Statement& s) {
             const auto upper = to ? check_whole(c, to, *type) : lower;
             if (!lower || !upper) continue;
             if (*lower > *upper)
-                c.fail("L0908", from->place.to(to->place), "this range has no value",
-                       "the smaller one stands first");
+                c.fail(code::value_out_of_range, from->place.to(to->place),
+                       "this range has no value", "the smaller one stands first");
             const auto meets = [&, low = *lower, high = *upper](const auto& other) {
                 return low <= other.second && other.first <= high;
             };
             if (std::ranges::any_of(seen, meets))
-                c.fail("L0908", from->place,
+                c.fail(code::value_out_of_range, from->place,
                        fmt::format("'{}' stands twice in this CASE", from->place.text()),
                        "only the first one would count");
             seen.emplace_back(*lower, *upper);
@@ -82,7 +83,7 @@ void check_case(Checking& c, Statement& s) {
 void check_for(Checking& c, Statement& s) {
     const Type* type = check(c, s.target);
     if (type && type->kind != Kind::integer && type->kind != Kind::bits) {
-        c.fail("L0905", s.target->place,
+        c.fail(code::type_does_not_fit, s.target->place,
                fmt::format("FOR counts in an integer, not in {}", describe(*type)),
                type->is_real() ? "count in a DINT, and compute the value from it" : "");
         type = nullptr;
@@ -92,7 +93,7 @@ void check_for(Checking& c, Statement& s) {
             if (*part && check(c, *part, type))
                 coerce(c, *part, part == &s.value ? *type : type->plain());
     if (s.step && s.step->type && s.step->kind == E::constant && s.step->constant.integer == 0)
-        c.fail("L0908", s.step->place, "a loop with step 0 does not end");
+        c.fail(code::value_out_of_range, s.step->place, "a loop with step 0 does not end");
     ++c.loops;
     check(c, s.body);
     --c.loops;
@@ -137,7 +138,8 @@ void check(Checking& c, Statement*& slot) {
         case S::exit:
         case S::continue_:
             if (c.loops == 0)
-                c.fail("L0914", s.place, fmt::format("{} stands outside of a loop", s.place.text()),
+                c.fail(code::wrong_place, s.place,
+                       fmt::format("{} stands outside of a loop", s.place.text()),
                        "RETURN leaves the block");
             return;
         case S::return_:
@@ -161,7 +163,7 @@ void check_assignment(Checking& c, Statement*& s) {
     if (s->value->kind == E::list || !type || !check_target(c, *s->target) || !s->value->type)
         return;
     if (type->is_instance()) {
-        c.fail("L0910", s->place, "an instance is not assigned as a whole",
+        c.fail(code::cannot_be_assigned, s->place, "an instance is not assigned as a whole",
                "assign its inputs one by one");
         return;
     }

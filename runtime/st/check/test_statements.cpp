@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
@@ -40,7 +41,7 @@ void become_text(Checking& c, Expression*& e) {
 bool check_test_arguments(Checking& c, Expression& call, const TestStatement& known) {
     const auto values = static_cast<std::size_t>(known.values), count = call.arguments.size();
     const auto refuse = [&](Place place, std::string message, std::string help = {}) {
-        c.fail("L0907", place, std::move(message), std::move(help));
+        c.fail(code::wrong_arguments, place, std::move(message), std::move(help));
         return false;
     };
     if (count < values || count > values + (known.has_message ? 1 : 0))
@@ -58,7 +59,7 @@ bool check_test_arguments(Checking& c, Expression& call, const TestStatement& kn
     Expression*& message = call.arguments.back().value;
     const Type* type = check(c, message, &string_type);
     if (type && type->kind != Kind::text)
-        c.fail("L0905", message->place,
+        c.fail(code::type_does_not_fit, message->place,
                fmt::format("the message of {} is a STRING, not {}", known.name, describe(*type)));
     return type && type->kind == Kind::text;
 }
@@ -72,7 +73,7 @@ void check_single(Checking& c, Expression& call) {
     if (given->is_any() && !given->is_real()) coerce(c, value, lint_type);
     const Type& type = *value->type;
     if (is_time ? type.kind == Kind::time || type.kind == Kind::integer : is_whole(type)) return;
-    c.fail("L0905", value->place,
+    c.fail(code::type_does_not_fit, value->place,
            fmt::format("{} takes {}, not {}", info(call.test).name,
                        is_time ? "a TIME, or a whole number of ns" : "a BOOL", describe(*given)),
            is_time ? "write it as in T#20ms" : "");
@@ -85,12 +86,12 @@ void check_mocked(Checking& c, Expression& call) {
     if (instance.kind == E::name && !find_variable(c, instance.token)) {
         const Routine* routine = c.find_routine(instance.token);
         if (routine && routine->is_function())
-            c.fail("L0905", instance.place,
+            c.fail(code::type_does_not_fit, instance.place,
                    fmt::format("{} takes an instance of a function block, and '{}' is a function",
                                known.name, instance.token.text),
                    "MOCK_FUNCTION replaces a function; its calls are not counted");
         else if (routine || standard_type(c, instance.token.text))
-            c.fail("L0905", instance.place,
+            c.fail(code::type_does_not_fit, instance.place,
                    fmt::format("{} takes an instance, and '{}' is a kind of block", known.name,
                                instance.token.text),
                    "name the variable");
@@ -101,7 +102,7 @@ void check_mocked(Checking& c, Expression& call) {
     const Type* type = check(c, slot);
     if (!type) return;
     if (!is_place(*slot) || !type->is_instance())
-        c.fail("L0905", instance.place,
+        c.fail(code::type_does_not_fit, instance.place,
                fmt::format("{} takes an instance of a function block, not {}", known.name,
                            describe(*type)),
                "MOCK_FUNCTION replaces a function");
@@ -121,7 +122,7 @@ bool check_compared(Checking& c, Expression& call) {
     first = a->type, second = b->type;
     const bool parts = first->kind == Kind::array || first->kind == Kind::structure;
     const auto refuse = [&](std::string help) {
-        c.fail("L0905", call.place,
+        c.fail(code::type_does_not_fit, call.place,
                fmt::format("{} does not go with {} and {}", known.name, describe(*first),
                            describe(*second)),
                std::move(help));
@@ -158,7 +159,7 @@ bool check_distance(Checking& c, Expression& call) {
         const Type* type = check(c, value, like);
         if (!type) return false;
         if (!type->is_number() && type->kind != Kind::time) {
-            c.fail("L0905", value->place,
+            c.fail(code::type_does_not_fit, value->place,
                    fmt::format("ASSERT_NEAR takes numbers, not {}", describe(*type)));
             return false;
         }
@@ -196,7 +197,7 @@ void check_mock_function(Checking& c, Expression& call) {
     if (!named && c.tree.lost.contains(name.token.text)) return;
     if (!named || !named->is_function() || !named->result) {
         const bool standard = find_standard_function(name.token.text) != nullptr;
-        c.fail("L0904", name.place,
+        c.fail(code::not_declared, name.place,
                fmt::format("'{}' is not a FUNCTION of the sources that has a value",
                            name.place.text()),
                standard               ? "call it in a FUNCTION of your own, and replace that"
@@ -225,10 +226,12 @@ const Type* check_test_statement(Checking& c, Expression& call, bool as_statemen
     const TestStatement& known = info(which);
     const bool anywhere = which == TestCall::advance_time && c.has_tests;
     if (!anywhere && !c.is_in_test())
-        return c.fail("L0914", name.place, fmt::format("{} stands outside of a TEST", known.name),
+        return c.fail(code::wrong_place, name.place,
+                      fmt::format("{} stands outside of a TEST", known.name),
                       "only TEST, SETUP and TEARDOWN have it");
     if (!as_statement)
-        return c.fail("L0905", call.place, fmt::format("{} has no value", known.name),
+        return c.fail(code::type_does_not_fit, call.place,
+                      fmt::format("{} has no value", known.name),
                       "write it as a statement of its own");
     if (!check_test_arguments(c, call, known)) return nullptr;
     call.test = which;

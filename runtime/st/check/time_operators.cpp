@@ -1,5 +1,6 @@
 #include "runtime/st/check/time_operators.hpp"
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
@@ -21,7 +22,7 @@ const Type* check_date_arithmetic(Checking& c, Expression*& e) {
                        (a.kind == Kind::clock || a.kind == Kind::moment);
     if (!distance && !moves && !joins)
         return c.fail(
-            "L0905", e->token.place,
+            code::type_does_not_fit, e->token.place,
             fmt::format("'{}' does not go with {} and {}", shown(op), describe(a), describe(b)),
             "a TIME is added to a TOD or a DT, and two dates have a TIME between them");
     const bool within_day = moves && a.kind == Kind::clock;
@@ -52,7 +53,7 @@ const Type* check_time_arithmetic(Checking& c, Expression*& e) {
     const bool scales = !both && number->type->is_number() &&
                         (op == Word::times || (op == Word::divided && &number == &right));
     if (!(both && adds) && !scales)
-        return c.fail("L0905", e->token.place,
+        return c.fail(code::type_does_not_fit, e->token.place,
                       fmt::format("'{}' does not go with {} and {}", shown(op),
                                   describe(*left->type), describe(*right->type)),
                       "times are added and subtracted, and multiplied or divided by a number; "

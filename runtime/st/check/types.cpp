@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/st/check/catalog_types.hpp"
@@ -24,12 +25,12 @@ const Type* resolve_array(Checking& c, const TypeText& text) {
         if (!lower || !upper) return nullptr;
         const Wide count = *upper - *lower + 1;
         if (count < 1)
-            return c.fail("L0908", from->place.to(to->place), "the array has no element",
-                          "the first bound is the smaller one");
+            return c.fail(code::value_out_of_range, from->place.to(to->place),
+                          "the array has no element", "the first bound is the smaller one");
         total *= count;
         if (total > most_elements)
-            return c.fail("L0912", from->place.to(to->place), "the array is too large",
-                          "an array has at most 16777216 elements");
+            return c.fail(code::too_deep_or_large, from->place.to(to->place),
+                          "the array is too large", "an array has at most 16777216 elements");
         Type& array = c.make_type(Kind::array, {});
         array.lower = static_cast<std::int64_t>(*lower);
         array.upper = static_cast<std::int64_t>(*upper);
@@ -58,7 +59,7 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
     type.base = &int_type;
     if (text.name.word != Word::end_of_file) type.base = resolve_name(c, text.name);
     if (type.base && type.base->kind != Kind::integer && type.base->kind != Kind::bits)
-        return c.fail("L0903", text.place, "arguments behind a type are not supported",
+        return c.fail(code::not_supported, text.place, "arguments behind a type are not supported",
                       "write values behind ':=': (name := value)");
     NameMap<Place> names;
     std::int64_t number = 0;
@@ -78,13 +79,14 @@ const Type* resolve_subrange(Checking& c, const TypeText& text) {
     const Type* base = resolve_name(c, text.name);
     if (!base) return nullptr;
     if (base->kind != Kind::integer)
-        return c.fail("L0905", text.place, fmt::format("{} has no subranges", describe(*base)),
+        return c.fail(code::type_does_not_fit, text.place,
+                      fmt::format("{} has no subranges", describe(*base)),
                       "a subrange is one of an integer type");
     Expression *from = text.ranges.front().first, *to = text.ranges.front().second;
     const auto lower = check_whole(c, from, *base), upper = check_whole(c, to, *base);
     if (!lower || !upper) return nullptr;
     if (*lower > *upper)
-        return c.fail("L0908", text.place, "the subrange has no value",
+        return c.fail(code::value_out_of_range, text.place, "the subrange has no value",
                       "the first bound is the smaller one");
     Type& type = c.checked.types.emplace_back(*base);
     type.name = fmt::format("{}({}..{})", base->name, static_cast<std::int64_t>(*lower),
@@ -102,7 +104,8 @@ const Type* resolve_text(Checking& c, const TypeText& text) {
     const auto whole = check_whole(c, length, lint_type);
     if (!whole) return nullptr;
     if (*whole < 1 || *whole > longest_text)
-        return c.fail("L0908", length->place, "a STRING has between 1 and 32767 characters");
+        return c.fail(code::value_out_of_range, length->place,
+                      "a STRING has between 1 and 32767 characters");
     Type& type = c.make_type(Kind::text, fmt::format("STRING[{}]", static_cast<int>(*whole)));
     type.length = static_cast<std::uint32_t>(*whole);
     return &type;
@@ -134,14 +137,15 @@ const Type* resolve_name(Checking& c, const Token& name) {
     if (NamedType* type = c.look_up(&Names::types, name)) return resolve_declared(c, *type);
     if (const Routine* routine = c.find_routine(name)) {
         if (routine->type) return routine->type;
-        return c.fail("L0905", name.place, fmt::format("'{}' is a function, not a type", name.text),
+        return c.fail(code::type_does_not_fit, name.place,
+                      fmt::format("'{}' is a function, not a type", name.text),
                       "call it; only function blocks have instances");
     }
     if (const Type* type = standard_type(c, name.text)) return type;
     if (c.tree.lost.contains(name.text)) return nullptr;
     if (const std::string_view instead = instead_of_type(name.text); !instead.empty())
-        return c.fail("L0903", name.place, fmt::format("the type {} is not supported", name.text),
-                      std::string(instead));
+        return c.fail(code::not_supported, name.place,
+                      fmt::format("the type {} is not supported", name.text), std::string(instead));
     std::vector<std::string> names = {"BOOL", "INT",  "DINT",  "LINT", "UINT",  "UDINT",
                                       "WORD", "REAL", "LREAL", "TIME", "STRING"};
     for (const auto& [known, type] : c.users.types) names.emplace_back(known);
@@ -151,7 +155,7 @@ const Type* resolve_name(Checking& c, const Token& name) {
     std::ranges::sort(names);
     const auto near = nearest(name.text, names);
     return c.fail(
-        "L0904", name.place, fmt::format("'{}' is not a type", name.text),
+        code::not_declared, name.place, fmt::format("'{}' is not a type", name.text),
         near.empty() ? "declare it with TYPE, or as a FUNCTION_BLOCK" : suggest(name.text, near));
 }
 
@@ -159,7 +163,7 @@ const Type* resolve_declared(Checking& c, NamedType& named) {
     if (named.type) return named.type;
     const TypeDeclaration& declared = *named.declaration;
     if (named.visiting)
-        return c.fail("L0911", declared.name.place,
+        return c.fail(code::contains_itself, declared.name.place,
                       fmt::format("the type '{}' contains itself", declared.name.text),
                       "a value of it would have no end");
     named.visiting = true;

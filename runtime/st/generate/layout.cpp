@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/generate/images.hpp"
 
 namespace lineshaft::st {
@@ -17,8 +18,8 @@ constexpr std::uint64_t most_slots = 1U << 26;
 void check_size(Writing& w, std::uint64_t slots, Place place, std::string_view name) {
     if (slots <= most_slots) return;
     if (!place.source) return;
-    w.out.add("L0912", place.mark(), fmt::format("'{}' takes more than 512 MB", name),
-              "make its arrays smaller");
+    w.out.add(code::too_deep_or_large, place.mark(),
+              fmt::format("'{}' takes more than 512 MB", name), "make its arrays smaller");
 }
 
 void place_variables(Writing& w, Routine& routine, std::uint32_t& at, auto condition) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/source/habits.hpp"
 #include "runtime/source/letters.hpp"
@@ -197,7 +198,7 @@ class Lexer {
 
     void too_deep(Place where) {
         tokens_.mistakes.push_back(where.begin);
-        out_.add("L0912", where.mark(),
+        out_.add(code::too_deep_or_large, where.mark(),
                  fmt::format("comments are nested deeper than {} levels", deepest_comment),
                  "a comment in a comment needs an end of its own");
         at_ = text_.size();
@@ -404,7 +405,7 @@ class Lexer {
         const Place here = place(start_, at_);
         tokens_.mistakes.push_back(here.begin);
         if (const auto alike = find_look_alike(here.text()))
-            return out_.add("L0109", here.mark(),
+            return out_.add(code::look_alike_character, here.mark(),
                             fmt::format("{} stands where {} is meant", alike->name, alike->instead),
                             fmt::format("type {}", alike->instead));
         if (last_foreign_ == start_) {
@@ -436,7 +437,7 @@ class Lexer {
 
     void fail(Place where, std::string message, std::string help) {
         tokens_.mistakes.push_back(where.begin);
-        out_.add("L0901", where.mark(), std::move(message), std::move(help));
+        out_.add(code::character_of_no_word, where.mark(), std::move(message), std::move(help));
     }
 
     Tokens tokens_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/syntax/grammar.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/syntax/recovery.hpp"
@@ -101,9 +102,9 @@ bool refuse_unsupported(Parsing& p) {
     const auto* it = std::ranges::find(unsupported, p.here().word, &Unsupported::word);
     if (it == std::end(unsupported)) return false;
     if (p.is(Word::caret) && (p.next().word == Word::integer || p.next().word == Word::real))
-        fail(p, "L0902", p.here().place, "'^' is not a power", "write '**'");
+        fail(p, code::something_else_expected, p.here().place, "'^' is not a power", "write '**'");
     else
-        fail(p, "L0903", p.here().place, fmt::format("{} not supported", it->what),
+        fail(p, code::not_supported, p.here().place, fmt::format("{} not supported", it->what),
              std::string(it->instead));
     return true;
 }
@@ -143,7 +144,7 @@ void refuse_bases(Parsing& p) {
 }
 
 void refuse_chart(Parsing& p) {
-    tell(p, "L0903", p.here().place, "sequential function charts are not supported",
+    tell(p, code::not_supported, p.here().place, "sequential function charts are not supported",
          "write a CASE over the steps");
     while (!p.is(Word::end_of_file) && !ends_pou(p.here().word)) p.take();
 }
@@ -160,7 +161,8 @@ bool refuse_section(Parsing& p) {
         !(is_const || p.says("label")))
         return false;
     const std::string end = fmt::format("end_{}", p.here().text);
-    tell(p, "L0903", p.here().place, fmt::format("{} is not supported", p.here().place.text()),
+    tell(p, code::not_supported, p.here().place,
+         fmt::format("{} is not supported", p.here().place.text()),
          is_const ? "write VAR CONSTANT n : INT := 5; END_VAR, with the type of each"
                   : "write IF, CASE, EXIT or RETURN");
     while (!p.is(Word::end_of_file) && !is_end(p.here().word) && !p.says(end)) p.take();
@@ -170,53 +172,56 @@ bool refuse_section(Parsing& p) {
 }
 
 void refuse_static(Parsing& p, PouKind kind) {
-    fail(p, "L0903", p.here().place, fmt::format("{} is not supported here", p.here().place.text()),
+    fail(p, code::not_supported, p.here().place,
+         fmt::format("{} is not supported here", p.here().place.text()),
          kind == PouKind::function ? "what is to stay makes a FUNCTION_BLOCK"
                                    : "declare it in the VAR of the block");
 }
 
 void refuse_place(Parsing& p) {
     if (p.is_name())
-        return fail(p, "L0903", p.here().place, "overlays (AT) are not supported",
+        return fail(p, code::not_supported, p.here().place, "overlays (AT) are not supported",
                     fmt::format("leave AT out, and write {0}.%X3 or {0}.%B1, or SCATTER and GATHER",
                                 p.here().text));
-    fail(p, "L0903", p.here().place, "direct addresses are not supported",
+    fail(p, code::not_supported, p.here().place, "direct addresses are not supported",
          "leave AT out, and wire the variable in the program");
 }
 
 void refuse_statement(Parsing& p) {
-    fail(p, "L0902", p.here().place, fmt::format("expected END_VAR before {}", found(p)),
+    fail(p, code::something_else_expected, p.here().place,
+         fmt::format("expected END_VAR before {}", found(p)),
          "declarations look like 'name : INT := 1;', and statements follow END_VAR");
     p.unclosed_at = p.at;
     p.section_left = true;
 }
 
 void refuse_reserved_name(Parsing& p) {
-    tell(p, "L0902", p.here().place,
+    tell(p, code::something_else_expected, p.here().place,
          fmt::format("'{}' is a word of the language, not a name", p.here().text), another_name(p));
     p.is_spoiled = p.section_left = true;
     p.unclosed_at = p.at;
 }
 
 void refuse_base(Parsing& p) {
-    fail(p, "L0903", p.here().place, "inheritance is not supported",
+    fail(p, code::not_supported, p.here().place, "inheritance is not supported",
          "declare a member of the other type");
     p.panic = false;
     while (!p.is(Word::end_of_file) && !p.is(Word::colon) && !p.is(Word::struct_)) p.take();
 }
 
 void refuse_any_length(Parsing& p) {
-    fail(p, "L0903", p.here().place, "arrays of any length are not supported",
+    fail(p, code::not_supported, p.here().place, "arrays of any length are not supported",
          "write its bounds: ARRAY[0..9] OF ...");
 }
 
 void refuse_reference(Parsing& p, const Token& word) {
-    fail(p, "L0903", word.place, "references are not supported", "pass the variable as VAR_IN_OUT");
+    fail(p, code::not_supported, word.place, "references are not supported",
+         "pass the variable as VAR_IN_OUT");
 }
 
 bool refuse_union(Parsing& p) {
     if (!p.is(Word::union_) || !p.is_name(1)) return false;
-    tell(p, "L0903", p.take().place, "unions are not supported",
+    tell(p, code::not_supported, p.take().place, "unions are not supported",
          "declare a STRUCT, and convert: DWORD_TO_REAL and its like keep the bits");
     return true;
 }
@@ -224,26 +229,28 @@ bool refuse_union(Parsing& p) {
 void refuse_namespace(Parsing& p, Token& name) {
     const Place first = name.place;
     while (p.is(Word::dot) && p.is_name(1)) p.take(), name = p.take();
-    tell(p, "L0903", first.to(name.place), "namespaces are not supported",
+    tell(p, code::not_supported, first.to(name.place), "namespaces are not supported",
          fmt::format("write {}", name.text));
 }
 
 void refuse_comparison(Parsing& p) {
-    tell(p, "L0902", p.here().place, "'=' compares and does not assign", "write ':='");
+    tell(p, code::something_else_expected, p.here().place, "'=' compares and does not assign",
+         "write ':='");
     p.take();
     parse_expression(p);
     end_statement(p);
 }
 
 void refuse_assignment(Parsing& p) {
-    tell(p, "L0902", p.here().place, "':=' assigns and does not compare", "write '='");
+    tell(p, code::something_else_expected, p.here().place, "':=' assigns and does not compare",
+         "write '='");
     p.take();
     parse_expression(p);
 }
 
 bool refuse_rung(Parsing& p) {
     if (!p.says("rung") || !(p.is_name(1) || p.next().word == Word::prefix)) return false;
-    fail(p, "L0903", p.here().place, "networks in LAD and FBD are not supported",
+    fail(p, code::not_supported, p.here().place, "networks in LAD and FBD are not supported",
          "convert the network to SCL");
     while (!p.is(Word::end_network_) && !is_end(p.here().word) && !p.is(Word::end_of_file))
         p.take();
@@ -253,11 +260,13 @@ bool refuse_rung(Parsing& p) {
 
 void refuse_value(Parsing& p, const Expression& value) {
     if (p.is(Word::colon) && value.token.word == Word::name)
-        fail(p, "L0903", value.place, "labels are not supported", "write IF, CASE, EXIT or RETURN");
+        fail(p, code::not_supported, value.place, "labels are not supported",
+             "write IF, CASE, EXIT or RETURN");
     else if (p.is(Word::name) && same_name(value.token.text, "jmp"))
-        fail(p, "L0903", value.place, "JMP is not supported", "write IF, CASE, EXIT or RETURN");
+        fail(p, code::not_supported, value.place, "JMP is not supported",
+             "write IF, CASE, EXIT or RETURN");
     else if (p.is(Word::semicolon) || p.here().first_in_line)
-        fail(p, "L0902", value.place, "this does nothing",
+        fail(p, code::something_else_expected, value.place, "this does nothing",
              p.cases > 0 ? "a value of CASE has a ':' behind it, a call '()'"
                          : "write 'name := value;', or a call 'name();'");
     else
@@ -266,7 +275,7 @@ void refuse_value(Parsing& p, const Expression& value) {
 
 bool refuse_negated_output(Parsing& p) {
     if (!p.is(Word::not_) || !p.is_name(1) || p.next(2).word != Word::output) return false;
-    fail(p, "L0903", p.here().place, "NOT before an output is not supported",
+    fail(p, code::not_supported, p.here().place, "NOT before an output is not supported",
          "take the output, and write NOT where it is used");
     return true;
 }
@@ -278,7 +287,7 @@ bool refuse_semicolon(Parsing& p) {
     if (!is_wrong) return false;
     for (std::size_t i = 3; p.next(i).word != Word::close; ++i)  // else the call was not closed
         if (p.next(i).word == Word::end_of_file || p.next(i).first_in_line) return false;
-    tell(p, "L0902", p.here().place, "expected ')' or ',', found ';'",
+    tell(p, code::something_else_expected, p.here().place, "expected ')' or ',', found ';'",
          "arguments are joined by ','");
     p.take();
     return true;

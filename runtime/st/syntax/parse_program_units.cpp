@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/syntax/grammar.hpp"
 #include "runtime/st/syntax/mistakes.hpp"
 #include "runtime/st/syntax/recovery.hpp"
@@ -13,7 +14,8 @@ namespace {
 /// Its variables are VAR_GLOBAL.
 void parse_configuration(Parsing& p) {
     const Token opener = p.take();
-    p.out.warn("L0903", opener.place.mark(), "the tasks of a CONFIGURATION are not taken",
+    p.out.warn(code::not_supported, opener.place.mark(),
+               "the tasks of a CONFIGURATION are not taken",
                "write tasks into the program's YAML file");
     while (!p.is(Word::end_of_file) && !p.says("end_configuration"))
         if (p.is(Word::var_global_))
@@ -21,7 +23,7 @@ void parse_configuration(Parsing& p) {
         else
             p.take();
     if (p.is(Word::end_of_file))
-        tell(p, "L0902", opener.place, "the CONFIGURATION does not end",
+        tell(p, code::something_else_expected, opener.place, "the CONFIGURATION does not end",
              "it ends with END_CONFIGURATION");
     p.take();
     p.accept(Word::semicolon);
@@ -114,7 +116,8 @@ Pou* parse_pou(Parsing& p) {
     p.is_in_body = true;
     parse_body(p, pou, words.end);
     for (const Token& region : std::exchange(p.regions, {}))
-        tell(p, "L0902", region.place, "the REGION does not end", "it ends with END_REGION");
+        tell(p, code::something_else_expected, region.place, "the REGION does not end",
+             "it ends with END_REGION");
     close(p, words.end, opener);
     p.is_in_body = false;
     p.accept(Word::semicolon);

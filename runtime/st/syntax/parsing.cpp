@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/syntax/recovery.hpp"
 
 namespace lineshaft::st {
@@ -41,7 +42,8 @@ void Parsing::grow(Expression& to, const Expression& part) {
 }
 
 void Parsing::refuse_depth(Place place) {
-    fail(*this, "L0912", place, fmt::format("this is nested deeper than {} levels", most_levels),
+    fail(*this, code::too_deep_or_large, place,
+         fmt::format("this is nested deeper than {} levels", most_levels),
          "take it apart, into variables or functions");
     at = unclosed_at = tokens.size() - 1;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/mistakes.hpp"
 
@@ -81,7 +82,7 @@ void expected(Parsing& p, std::string_view what, std::string_view where) {
     p.panic = p.unclosed_at == p.at || follows_mistake(p);
     const char first = what.front();
     const bool is_word = (first >= 'A' && first <= 'Z') || (first >= 'a' && first <= 'z');
-    fail(p, "L0902", p.here().place,
+    fail(p, code::something_else_expected, p.here().place,
          fmt::format("expected {0}{1}{0}{2}{3}, found {4}", is_word ? "" : "'", what,
                      where.empty() ? "" : " ", where, found(p)),
          habit(p));
@@ -110,16 +111,18 @@ bool close(Parsing& p, Word end, const Token& opener) {
     p.unclosed_at = p.at;
     if (p.is(Word::end_of_file) && is_swallowed(p)) return false;
     if (!p.else_ifs.empty() && end == Word::end_if_) {
-        tell(p, "L0902", p.else_ifs.back(), "'ELSE IF' begins a second IF without an END_IF",
-             "write ELSIF");
+        tell(p, code::something_else_expected, p.else_ifs.back(),
+             "'ELSE IF' begins a second IF without an END_IF", "write ELSIF");
         return false;
     }
     if (closes_statement(p.here().word) && find_pou(opener.word)) {
-        tell(p, "L0902", p.here().place, fmt::format("{} ends nothing", found(p)),
+        tell(p, code::something_else_expected, p.here().place,
+             fmt::format("{} ends nothing", found(p)),
              "remove it, or look for another one above that is too many");
         return false;
     }
-    tell(p, "L0902", p.here().place, fmt::format("expected {} before {}", shown(end), found(p)),
+    tell(p, code::something_else_expected, p.here().place,
+         fmt::format("expected {} before {}", shown(end), found(p)),
          fmt::format("the {} in line {} does not end", shown(opener.word),
                      opener.place.mark().line));
     return false;
@@ -133,7 +136,8 @@ void end_statement(Parsing& p) {
     if (follows_mistake(p)) return;
     Place place = p.last().place;
     place.begin = place.end - 1;
-    tell(p, "L0902", place, "expected ';' after this", "put a ';' at the end of the statement");
+    tell(p, code::something_else_expected, place, "expected ';' after this",
+         "put a ';' at the end of the statement");
 }
 
 bool respell(Parsing& p, std::span<const Word> words) {
@@ -142,7 +146,7 @@ bool respell(Parsing& p, std::span<const Word> words) {
     for (const Word word : words) names.emplace_back(shown(word));
     const auto near = nearest(p.here().text, names);
     if (near.empty()) return false;
-    tell(p, "L0902", p.here().place,
+    tell(p, code::something_else_expected, p.here().place,
          fmt::format("'{}' is not a word of the language", p.here().text),
          fmt::format("write {}", near.front()));
     const auto index = std::ranges::find(names, near.front()) - names.begin();

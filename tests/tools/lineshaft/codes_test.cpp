@@ -22,7 +22,8 @@ std::string contents(const std::filesystem::path& path) {
     return text.str();
 }
 
-/// Every code that is named in the sources below `folder`, or stands there as it is.
+/// Every code that is named in the sources below `folder`; one that stands there as it is counts as
+/// unknown.
 std::set<std::string> codes_below(const std::filesystem::path& folder) {
     std::map<std::string, std::string> by_name;
     for (const CodeText& text : diagnostic_codes()) by_name.emplace(text.name, text.code);
@@ -33,7 +34,7 @@ std::set<std::string> codes_below(const std::filesystem::path& folder) {
         if (!entry.is_regular_file() || (ending != ".cpp" && ending != ".hpp")) continue;
         const std::string text = contents(entry.path());
         for (std::sregex_iterator it(text.begin(), text.end(), code), end; it != end; ++it)
-            codes.insert((*it)[1].matched ? by_name[(*it)[1]] : (*it)[2].str());
+            codes.insert((*it)[1].matched ? by_name[(*it)[1]] : "not named: " + (*it)[2].str());
     }
     return codes;
 }
