@@ -1,4 +1,5 @@
 #include "blocks/group/group_states.hpp"
+#include "tests/source_folder.hpp"
 
 #include <fstream>
 #include <iterator>
@@ -14,7 +15,7 @@ using namespace lineshaft;
 /// 4 v1.0 and its notes as the manuals of CODESYS SoftMotion and TwinCAT have them; the text itself
 /// was not at hand.
 TEST_CASE("every command in every state of a group does what the standard says") {
-    std::ifstream in(LINESHAFT_SOURCE_DIR "/tests/blocks/group/states.txt");
+    std::ifstream in(test::in_source("tests/blocks/group/states.txt"));
     std::vector<std::vector<std::string>> rows;
     for (std::string line; std::getline(in, line);) {
         std::istringstream cells(line);
