@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "blocks/group/axes_group.hpp"
 #include "blocks/group/path_table.hpp"
@@ -84,8 +83,9 @@ bool is_free(const GroupRequest& request, const PathCurve& curve) {
     using enum GroupCommand;
     if (request.command == move_direct_absolute || request.command == move_direct_relative)
         return true;
-    return std::ranges::all_of(std::views::iota(std::size_t{0}, path_space),
-                               [&](std::size_t i) { return curve.share(i) == 0; });
+    for (std::size_t i = 0; i < path_space; ++i)
+        if (curve.share(i) != 0) return false;
+    return true;
 }
 
 }  // namespace

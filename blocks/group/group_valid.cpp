@@ -23,8 +23,12 @@ bool is_valid(const GroupRequest& request, const KeptState& machine) {
            is_one_of(request.circle, CircleMode::radius) &&
            is_one_of(request.choice, PathChoice::counter_clockwise) &&
            is_block_or_none<Axis>(request.axis, machine) &&
-           is_block_or_none<PathTable>(request.table, machine) &&
-           (request.command != GroupCommand::add_axis || request.axis != nowhere) &&
+           is_block_or_none<PathTable>(request.table, machine);
+}
+
+/// What its command names.
+bool has_all(const GroupRequest& request) {
+    return (request.command != GroupCommand::add_axis || request.axis != nowhere) &&
            (request.command != GroupCommand::move_path || request.table != nowhere);
 }
 
@@ -38,7 +42,7 @@ bool is_valid(const GroupJob& job, const KeptState& machine) {
         !is_count(job.end_piece) || !is_count(job.rows))
         return false;
     if (!is_sent(job)) return job.request == GroupRequest{};
-    if (!is_valid(job.request, machine)) return false;
+    if (!is_valid(job.request, machine) || !has_all(job.request)) return false;
     if (job.request.command != GroupCommand::move_path) return true;
     return job.rows <= machine.context.instance<PathTable>(job.request.table).table.size;
 }
@@ -108,7 +112,8 @@ void mend(AxesGroup& group, const KeptState& machine) {
 }
 
 bool is_valid(const GroupCommandBlock& command, const KeptState& machine) {
-    return is_valid(static_cast<const CommandState&>(command)) && is_valid(command.job, machine) &&
+    return is_valid(static_cast<const CommandState&>(command)) && is_valid(command.pins, machine) &&
+           is_valid(command.job, machine) &&
            (!machine.is_live || is_where_it_says(command.job, machine));
 }
 

@@ -49,8 +49,9 @@ struct CornerBound {
     PathLimit limit;
 };
 
-/// Parts of a limit that the curvature alone may take, and the product of speed and acceleration.
-constexpr double of_acceleration = 0.6, of_jerk = 0.35;
+/// Parts of a limit that the curvature alone may take, and the product of speed and acceleration: a
+/// corner is passed at nearly one speed.
+constexpr double of_acceleration = 0.9, of_jerk = 0.8, of_jerk_by_both = 0.1;
 
 template <class Use>
 void for_bounds(const PathCurve& u, const PathCurve& w, double length, const PathLimits& limits,
@@ -82,7 +83,7 @@ PathLimit corner_cap(const PathCurve& before, const PathCurve& after, double len
         cap.acceleration = std::min(cap.acceleration, left / b.tangent);
         if (b.bend > 0)
             cap.acceleration =
-                std::min(cap.acceleration, of_jerk * b.limit.jerk / (3 * b.bend * V));
+                std::min(cap.acceleration, of_jerk_by_both * b.limit.jerk / (3 * b.bend * V));
     });
     const double A = cap.acceleration;
     for_bounds(before, after, length, limits, [&](const CornerBound& b) {

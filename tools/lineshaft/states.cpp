@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include "blocks/axis/axis_states.hpp"
+#include "blocks/group/group_states.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {
@@ -27,22 +28,39 @@ std::string_view answer(const StateRow& row, std::size_t state) {
     return waits ? "- (waits)" : "-";
 }
 
+void print_axis_states() {
+    fmt::print("{:26}", "");
+    for (const std::string_view state : axis_state_names) fmt::print(" {:19}", state);
+    fmt::print("\n");
+    for (const StateRow& row : state_table()) {
+        fmt::print("{:26}", row.name);
+        for (std::size_t state = 0; state < axis_state_count; ++state)
+            fmt::print(" {:19}", answer(row, state));
+        fmt::print("\n");
+    }
+    fmt::print("\n{}", notes);
+}
+
+void print_group_states() {
+    fmt::print("\nOf a group of axes (axes_group):\n\n{:26}", "");
+    for (const std::string_view state : group_state_names) fmt::print(" {:19}", state);
+    fmt::print("\n");
+    for (const GroupStateRow& row : group_state_table()) {
+        fmt::print("{:26}", row.name);
+        for (const auto& next : row.next)
+            fmt::print(" {:19}", next ? group_state_names[static_cast<std::size_t>(*next)] : "-");
+        fmt::print("\n");
+    }
+}
+
 }  // namespace
 
 void add_states(CLI::App& app, Exit&) {
     CLI::App* sub = app.add_subcommand(
-        "states", "Print what each command does to an axis, by the axis' state (PLCopen)");
+        "states", "Print what each command does to an axis or a group, by its state (PLCopen)");
     sub->callback([] {
-        fmt::print("{:26}", "");
-        for (const std::string_view state : axis_state_names) fmt::print(" {:19}", state);
-        fmt::print("\n");
-        for (const StateRow& row : state_table()) {
-            fmt::print("{:26}", row.name);
-            for (std::size_t state = 0; state < axis_state_count; ++state)
-                fmt::print(" {:19}", answer(row, state));
-            fmt::print("\n");
-        }
-        fmt::print("\n{}", notes);
+        print_axis_states();
+        print_group_states();
     });
 }
 

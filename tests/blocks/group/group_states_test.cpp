@@ -1,4 +1,5 @@
 #include "blocks/group/group_states.hpp"
+#include "tests/source_folder.hpp"
 
 #include <fstream>
 #include <iterator>

@@ -275,8 +275,8 @@ blocks:
 
 }  // namespace
 
-/// LINESHAFT_GROUPS makes it longer.
-TEST_CASE("random commands never lead the axes of a group out of their limits") {
+/// LINESHAFT_GROUPS makes it longer: tools/long.
+TEST_CASE("random groups never lead their axes out of their limits") {
     const char* wanted = std::getenv("LINESHAFT_GROUPS");
     const char* first = std::getenv("LINESHAFT_SEED");
     const std::uint64_t begin = first ? std::stoull(first) : 1;
