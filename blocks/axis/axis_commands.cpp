@@ -199,9 +199,10 @@ MotionError Axis::set_position(const Context& context, const Moment& at, const R
     const bool relative = request.option != 0;
     if (modulo && !relative && (request.position < 0 || request.position >= period))
         return MotionError::out_of_range;
-    const double here = total().position;
-    const double shown_here = modulo ? within_period(here, period) : here;
-    const double by = relative ? request.position : request.position - shown_here;
+    const bool waited = request.mode != BufferMode::aborting;  // for an end since the last scan
+    const double end = total().position;
+    const double here = !waited ? position : modulo ? within_period(end, period) : end;
+    const double by = relative ? request.position : request.position - here;
     ++renamed;
     offset += by;
     relocated += by;

@@ -58,6 +58,7 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
 
 /// An administrative command, whatever the axis is doing.
 void Axis::carry_out(const Context& context, const Moment& at, Job& job) {
+    safe = {};
     const MotionError why = administer(context, at, job.request);
     if (job.request.command == Command::set_override && why == MotionError::none) {
         end(context, overriding, Progress::aborted);

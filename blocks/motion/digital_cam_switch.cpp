@@ -43,8 +43,8 @@ void add_tracks(std::vector<Field>& fields) {
 
 /// In the order of time; on before off, as cams that touch are one.
 struct TrackChange {
-    std::int64_t time = 0;
-    bool on = false;
+    std::int64_t time;
+    bool on;
 
     bool operator<(const TrackChange& other) const {
         return time != other.time ? time < other.time : on && !other.on;
@@ -144,10 +144,11 @@ void DigitalCamSwitch::pass(std::int64_t number, const CamSwitches& table, const
     show(track, may_be_on && level > 0, now);
 }
 
+/// A time of 0 says that there has been none.
 void DigitalCamSwitch::shift(std::int64_t by) {
     motion.shift(by);
-    for (std::int64_t& time : on_times) time += by;
-    for (std::int64_t& time : off_times) time += by;
+    for (std::int64_t& time : on_times) time += time != 0 ? by : 0;
+    for (std::int64_t& time : off_times) time += time != 0 ? by : 0;
     for (SwitchedCam& cam : cams) cam.until += by;
 }
 

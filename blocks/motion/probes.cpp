@@ -80,7 +80,7 @@ void TouchProbe::record() {
 void TouchProbe::shift(std::int64_t by) {
     motion.shift(by);
     moment += by;
-    recorded_time += by;
+    if (recorded_time != 0) recorded_time += by;
 }
 
 void TouchProbe::show() {

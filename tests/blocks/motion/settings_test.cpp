@@ -153,16 +153,6 @@ TEST_CASE("MC_SetPosition gives the place another name, and moves nothing") {
     CHECK(bench.number("x.position") == Approx(end));
 }
 
-TEST_CASE("MC_SetPosition, absolute, names the place where the axis is in that scan") {
-    MotionBench bench(straight);
-    bench.set("velocity.Execute", true);
-    bench.step(400);
-    bench.set("position.Execute", true);
-    bench.step(2);
-    CHECK(bench.is("position.Done"));
-    CHECK(bench.number("x.position") == Approx(7).margin(1e-12));
-}
-
 namespace {
 
 constexpr const char* queued = R"(
