@@ -298,7 +298,7 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
                                  (find_standard_function(name) || !find_variable(c, callee.token));
         if (is_function && find_test_statement(name) != TestCall::none)
             return check_test_statement(c, *e, as_statement);
-        if (is_function) return check_standard_function(c, *e, expected);
+        if (is_function) return check_standard_function(c, e, expected);
     }
     const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;

@@ -144,11 +144,4 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     return target;
 }
 
-std::optional<const Type*> check_conversion(Checking& c, Expression& call, std::string_view name) {
-    Expression* checked = make_copy(c, call);
-    const auto type = check_conversion(c, checked, name);
-    if (type && *type) call = Expression(*checked);
-    return type;
-}
-
 }  // namespace lineshaft::st

@@ -8,7 +8,4 @@ namespace lineshaft::st {
 /// Empty if the name is none of one.
 std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::string_view name);
 
-// In place, for standard_calls.cpp.
-std::optional<const Type*> check_conversion(Checking& c, Expression& call, std::string_view name);
-
 }  // namespace lineshaft::st

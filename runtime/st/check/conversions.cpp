@@ -325,13 +325,9 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
     return coerce(c, left, *common) && coerce(c, right, *common) ? common : nullptr;
 }
 
-const Type* convert_result(Checking& c, Expression& call, const Type& from, const Type& to) {
-    if (&from == &to) return &to;
-    Expression* inner = make(c, call.kind, call);
-    *inner = call;
-    inner->type = &from;
-    convert(c, inner, to);
-    call = Expression(*inner);
+const Type* convert_result(Checking& c, Expression*& e, const Type& from, const Type& to) {
+    e->type = &from;
+    if (&from != &to) convert(c, e, to);
     return &to;
 }
 

@@ -33,7 +33,7 @@ bool make_concrete(Checking& c, Expression*& e, const Type& other);
 /// there is none, which was told, L0905 or L0906.
 const Type* unite(Checking& c, Expression& e, const Type* expected = nullptr);
 
-// In place, for standard_calls.cpp.
-const Type* convert_result(Checking& c, Expression& call, const Type& from, const Type& to);
+/// `e`, which is of type `from`, as a value of `to`.
+const Type* convert_result(Checking& c, Expression*& e, const Type& from, const Type& to);
 
 }  // namespace lineshaft::st

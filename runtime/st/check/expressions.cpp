@@ -4,7 +4,6 @@
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/literals.hpp"
 #include "runtime/st/check/names.hpp"
-#include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/operators.hpp"
 #include "runtime/st/check/places.hpp"
 
@@ -50,14 +49,6 @@ const Type* check(Checking& c, Expression*& e, const Type* expected) {
             type = e->type;
     }
     return e->type = type;
-}
-
-const Type* check(Checking& c, Expression& e, const Type* expected) {
-    if (e.type) return e.type;
-    Expression* checked = make_copy(c, e);
-    const Type* type = check(c, checked, expected);
-    e = Expression(*checked);
-    return type;
 }
 
 }  // namespace lineshaft::st

@@ -9,7 +9,4 @@ namespace lineshaft::st {
 /// does not convert. What `e` stands for is hung in its place: a constant for what is folded.
 const Type* check(Checking& c, Expression*& e, const Type* expected = nullptr);
 
-// In place, for standard_calls.cpp.
-const Type* check(Checking& c, Expression& e, const Type* expected = nullptr);
-
 }  // namespace lineshaft::st

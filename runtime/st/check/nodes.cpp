@@ -139,10 +139,4 @@ void take_type(Checking& c, Expression*& number, const Type& type, Constant valu
     number->constant = std::move(value);
 }
 
-void become(Expression& e, const Type& type, Constant value) {
-    e.kind = E::constant;
-    e.type = &type;
-    e.constant = std::move(value);
-}
-
 }  // namespace lineshaft::st

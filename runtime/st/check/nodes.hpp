@@ -58,7 +58,4 @@ Statement* make_sequence(Checking& c, Place place, Block statements);
 /// A number without a type of its own takes one: a literal is noted as one of it.
 void take_type(Checking& c, Expression*& number, const Type& type, Constant value);
 
-// In place, for standard_calls.cpp.
-void become(Expression& e, const Type& type, Constant value);
-
 }  // namespace lineshaft::st

@@ -100,9 +100,9 @@ void check_timer(Checking& c, Expression*& timer, std::string_view function) {
 }
 
 void check_special(Checking& c, Statement*& s) {
+    const StandardFunction& f = *s->value->standard;
+    if (!check_count(c, *s->value, f) || !order_arguments(c, s->value, f)) return;
     Expression& call = *s->value;
-    const StandardFunction& f = *call.standard;
-    if (!check_count(c, call, f) || !order_arguments(c, call, f)) return;
     call.type = &bool_type;  // which nothing takes
     if (f.least == 1) return check_timer(c, call.arguments[0].value, f.name);
     if (f.name == "SCATTER" || f.name == "GATHER") return rewrite_bits(c, s, f.name == "SCATTER");

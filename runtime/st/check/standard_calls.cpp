@@ -8,6 +8,7 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
+#include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/standard_types.hpp"
 #include "runtime/st/functions/standard.hpp"
 #include "runtime/st/vendors/instead.hpp"
@@ -24,17 +25,20 @@ bool is_typed_function(std::string_view name) {
     return standard && standard->typing != Typing::statement;
 }
 
-const Type* check_typed_function(Checking& c, Expression& call) {
-    Token& name = call.operands[0]->token;
-    const std::string_view written = name.text;
+const Type* check_typed_function(Checking& c, Expression*& e) {
+    const std::string_view written = e->operands[0]->token.text;
     const std::size_t end = written.rfind('_');
     const Type& type = *find_elementary(written.substr(end + 1));
-    name.text = written.substr(0, end);
+    Expression* callee = make_name(c, *e->operands[0], written.substr(0, end));
+    Expression* call = make_call(c, *e, callee, e->arguments);
     const Type* result = check_standard_function(c, call, &type);
-    name.text = written;
-    if (!result || result->kind == Kind::boolean || same_type(*result, type)) return result;
-    if (widens(*result, type)) return convert_result(c, call, *result, type);
-    return c.fail(code::conversion_may_lose, call.place,
+    if (!result) return nullptr;
+    const bool fits = result->kind == Kind::boolean || same_type(*result, type);
+    if (fits || widens(*result, type)) {
+        e = call;
+        return fits ? result : convert_result(c, e, *result, type);
+    }
+    return c.fail(code::conversion_may_lose, e->place,
                   fmt::format("{} takes {}, not {}", written, type.name, describe(*result)),
                   fmt::format("write {}", written.substr(0, end)));
 }
@@ -50,7 +54,8 @@ bool check_count(Checking& c, const Expression& call, const StandardFunction& f)
     return false;
 }
 
-bool order_arguments(Checking& c, Expression& call, const StandardFunction& f) {
+bool order_arguments(Checking& c, Expression*& e, const StandardFunction& f) {
+    const Expression& call = *e;
     if (std::ranges::none_of(call.arguments, &Argument::is_named)) return true;
     const int count = static_cast<int>(call.arguments.size());
     std::vector<Argument> sorted(call.arguments.size());
@@ -78,16 +83,18 @@ bool order_arguments(Checking& c, Expression& call, const StandardFunction& f) {
         }
         sorted[static_cast<std::size_t>(it - names.begin())] = argument;
     }
-    call.arguments = std::move(sorted);
+    e = make_with(c, call, std::move(sorted));
     return true;
 }
 
-const Type* check_standard_function(Checking& c, Expression& call, const Type* expected) {
+const Type* check_standard_function(Checking& c, Expression*& e, const Type* expected) {
+    Expression& call = *e;
     const Token& name = call.operands[0]->token;
     if (c.is_lost(name)) return nullptr;
     call.standard = find_standard_function(name.text);
-    const std::string_view instead = instead_of_function(name.text);
-    if (!call.standard && !instead.empty() && !c.tree.lost.contains(name.text))
+    const std::string_view instead =
+        call.standard ? std::string_view() : instead_of_function(name.text);
+    if (!instead.empty() && !c.tree.lost.contains(name.text))
         return c.fail(code::not_supported, name.place,
                       fmt::format("the function {} is not supported", name.text),
                       std::string(instead));
@@ -100,30 +107,29 @@ const Type* check_standard_function(Checking& c, Expression& call, const Type* e
             return c.fail(code::wrong_arguments, argument.name.place,
                           "a standard function has no output but its value");
     if (!call.standard) {
-        if (const auto converted = check_conversion(c, call, name.text)) return *converted;
+        if (const auto converted = check_conversion(c, e, name.text)) return *converted;
         if (c.find_routine(name) || standard_type(c, name.text))
             return c.fail(code::wrong_arguments, name.place,
                           fmt::format("'{}' is a kind of block, not an instance", name.text),
                           "declare one in VAR, and call that");
-        if (is_typed_function(name.text)) return check_typed_function(c, call);
+        if (is_typed_function(name.text)) return check_typed_function(c, e);
         std::vector<std::string> names = visible_names(c);
         for (const StandardFunction* f : standard_functions()) names.emplace_back(f->name);
         if (c.is_in_test())
             for (const TestStatement& known : test_statements) names.emplace_back(known.name);
-        for (Argument& argument : call.arguments) check(c, *argument.value);
+        for (Argument& argument : call.arguments) check(c, argument.value);
         return undeclared(c, name, name.place, names);
     }
     const StandardFunction& f = *call.standard;
-    if (!check_count(c, call, f) || !order_arguments(c, call, f)) return nullptr;
-    const int count = static_cast<int>(call.arguments.size());
+    if (!check_count(c, call, f) || !order_arguments(c, e, f)) return nullptr;
     const bool passes = f.typing == Typing::common || f.typing == Typing::chosen ||
                         (f.typing == Typing::scaled && expected && expected->is_real());
-    for (int i = 0; i < count; ++i)
-        check(c, *call.arguments[static_cast<std::size_t>(i)].value,
+    for (std::size_t i = 0; i < e->arguments.size(); ++i)
+        check(c, e->arguments[i].value,
               passes && !(f.typing == Typing::chosen && i == 0) ? expected : nullptr);
-    for (const Argument& argument : call.arguments)
+    for (const Argument& argument : e->arguments)
         if (!argument.value->type) return nullptr;
-    return standard_type_of(c, call, expected);
+    return standard_type_of(c, e, expected);
 }
 
 }  // namespace lineshaft::st

@@ -42,38 +42,37 @@ const Type* refuse(Checking& c, const Expression& call, const char* what, const 
                   std::move(help));
 }
 
-/// Bounds of an array, and how many elements it has, are constants.
-const Type* check_bound(Checking& c, Expression& call) {
-    const StandardFunction& f = *call.standard;
-    const Type* array = call.arguments[0].value->type;
-    if (array->kind != Kind::array) return refuse(c, call, "an array", *array);
-    std::int64_t value = 1;
-    if (f.least == 1) {
-        for (const Type* inner = array; inner; inner = inner->has_inner ? inner->element : nullptr)
-            value *= inner->upper - inner->lower + 1;
-    } else {
-        const auto dimension = check_whole(c, call.arguments[1].value, lint_type);
-        if (!dimension) return nullptr;
-        Wide at = 1;
-        for (; at != *dimension && array->has_inner; ++at) array = array->element;
-        if (at != *dimension)
-            return c.fail(code::value_out_of_range, call.arguments[1].value->place,
-                          fmt::format("the array's dimensions are 1 to {}", static_cast<int>(at)));
-        value = f.name.front() == 'L' ? array->lower : array->upper;
-    }
-    become(call, dint_type, {.integer = value});
+const Type* check_element_count(Checking& c, Expression*& e) {
+    const Type* array = e->arguments[0].value->type;
+    if (array->kind != Kind::array) return refuse(c, *e, "an array", *array);
+    std::int64_t count = 1;
+    for (; array; array = array->has_inner ? array->element : nullptr)
+        count *= array->upper - array->lower + 1;
+    e = make_constant(c, *e, dint_type, {.integer = count});
+    return &dint_type;
+}
+
+/// Of the dimension, which is a constant too.
+const Type* check_bound(Checking& c, Expression*& e) {
+    const Type* array = e->arguments[0].value->type;
+    if (array->kind != Kind::array) return refuse(c, *e, "an array", *array);
+    Expression*& wanted = e->arguments[1].value;
+    const auto dimension = check_whole(c, wanted, lint_type);
+    if (!dimension) return nullptr;
+    Wide at = 1;
+    for (; at != *dimension && array->has_inner; ++at) array = array->element;
+    if (at != *dimension)
+        return c.fail(code::value_out_of_range, wanted->place,
+                      fmt::format("the array's dimensions are 1 to {}", static_cast<int>(at)));
+    const bool is_lower = e->standard->typing == Typing::lower_bound;
+    e = make_constant(c, *e, dint_type, {.integer = is_lower ? array->lower : array->upper});
     return &dint_type;
 }
 
 /// `ADD(a, b, c)` is `a + b + c`, `GT(a, b, c)` is `a > b AND b > c`.
-Expression* join(Checking& c, Expression& call, Word op) {
+Expression* join(Checking& c, const Expression& call, Word op) {
     const auto joined = [&](Word word, Expression* left, Expression* right) {
-        Expression* made = make(c, E::binary, call);
-        made->op = word;
-        made->token.place = call.operands[0]->place;
-        made->operands[0] = left;
-        made->operands[1] = right;
-        return made;
+        return make_binary(c, call.place, call.operands[0]->place, word, left, right);
     };
     const bool compares = op >= Word::less && op <= Word::unequal;
     const auto& arguments = call.arguments;
@@ -84,16 +83,15 @@ Expression* join(Checking& c, Expression& call, Word op) {
             return c.fail(code::not_supported, before->place,
                           "a function between others is not supported here",
                           "assign its value to a variable, and compare that");
-        Expression* again = make(c, before->kind, *before);
-        *again = *before;
-        all = compares ? joined(Word::and_, all, joined(op, again, value)) : joined(op, all, value);
+        all = compares ? joined(Word::and_, all, joined(op, make_copy(c, *before), value))
+                       : joined(op, all, value);
     }
     return all;
 }
 
 /// SCALE_X of a REAL or LREAL; into an integer, which MIN and MAX are then, it rounds.
-const Type* check_scale(Checking& c, Expression& call, const Type* expected) {
-    auto& arguments = call.arguments;
+const Type* check_scale(Checking& c, Expression*& e, const Type* expected) {
+    auto& arguments = e->arguments;
     const auto narrow = [](const Type& type) {
         return type.is_any() || (type.kind == Kind::real ? type.bits == 32 : type.bits <= 16);
     };
@@ -105,7 +103,7 @@ const Type* check_scale(Checking& c, Expression& call, const Type* expected) {
     const Type& result = known ? expected->plain() : limits->kind == Kind::integer ? *limits : real;
     for (Argument& argument : arguments)
         if (!coerce(c, argument.value, real)) return nullptr;
-    return convert_result(c, call, real, result.is_real() ? real : result);
+    return convert_result(c, e, real, result.is_real() ? real : result);
 }
 
 const Type& given_type(const Expression& call, std::size_t argument) {
@@ -160,13 +158,14 @@ const Type* check_real(Checking& c, Expression& call, const Type* expected) {
     return result == Generic::boolean ? &bool_type : &type;
 }
 
-const Type* check_reals(Checking& c, Expression& call, const Type* expected) {
+const Type* check_reals(Checking& c, Expression*& e, const Type* expected) {
+    Expression& call = *e;
     const Type* type = unite_from(c, call, 0, expected);
     if (!type) return nullptr;
     const bool known = expected && expected->is_real() && !type->is_real();
     const Type& result = known ? real_for(*expected) : real_for(*type);
     const Type& real = known && widens(*type, result) ? result : real_for(*type);
-    return coerce_from(c, call, 0, real) ? convert_result(c, call, real, result) : nullptr;
+    return coerce_from(c, call, 0, real) ? convert_result(c, e, real, result) : nullptr;
 }
 
 const Type* check_common(Checking& c, Expression& call, const Type* expected) {
@@ -241,31 +240,31 @@ const Type* check_texts(Checking& c, Expression& call) {
     return f.result == Generic::text ? &string_type : &int_type;
 }
 
-const Type* check_capacity(Checking& c, Expression& call) {
-    const Type& given = given_type(call, 0);
+const Type* check_capacity(Checking& c, Expression*& e) {
+    const Type& given = given_type(*e, 0);
     if (given.kind != Kind::text)
-        return c.fail(code::type_does_not_fit, call.arguments[0].value->place,
+        return c.fail(code::type_does_not_fit, e->arguments[0].value->place,
                       fmt::format("expected a STRING, found {}", describe(given)));
-    if (!given.is_open) become(call, int_type, {.integer = given.length});
+    if (!given.is_open) e = make_constant(c, *e, int_type, {.integer = given.length});
     return &int_type;
 }
 
-/// The call becomes what it means.
-const Type* check_operation(Checking& c, Expression& call, const Type* expected) {
-    Expression* joined = join(c, call, call.standard->word);
-    const Type* type = joined ? check(c, *joined, expected) : nullptr;
-    if (joined) call = *joined;
-    return type;
+const Type* check_operation(Checking& c, Expression*& e, const Type* expected) {
+    Expression* joined = join(c, *e, e->standard->word);
+    if (!joined) return nullptr;
+    e = joined;
+    return check(c, e, expected);
 }
 
 }  // namespace
 
-const Type* standard_type_of(Checking& c, Expression& call, const Type* expected) {
+const Type* standard_type_of(Checking& c, Expression*& e, const Type* expected) {
+    Expression& call = *e;
     // clang-format off
     switch (call.standard->typing) {
         case Typing::real: return check_real(c, call, expected);
-        case Typing::reals: return check_reals(c, call, expected);
-        case Typing::scaled: return check_scale(c, call, expected);
+        case Typing::reals: return check_reals(c, e, expected);
+        case Typing::scaled: return check_scale(c, e, expected);
         case Typing::own:
         case Typing::common: return check_common(c, call, expected);
         case Typing::chosen: return check_chosen(c, call, expected);
@@ -273,10 +272,12 @@ const Type* standard_type_of(Checking& c, Expression& call, const Type* expected
         case Typing::bits: return check_bits(c, call, expected);
         case Typing::bit_number: return check_bit_number(c, call, expected);
         case Typing::texts: return check_texts(c, call);
-        case Typing::capacity: return check_capacity(c, call);
-        case Typing::bounds: return check_bound(c, call);
+        case Typing::capacity: return check_capacity(c, e);
+        case Typing::lower_bound:
+        case Typing::upper_bound: return check_bound(c, e);
+        case Typing::element_count: return check_element_count(c, e);
         case Typing::scan_time: return &time_type;
-        case Typing::operation: return check_operation(c, call, expected);
+        case Typing::operation: return check_operation(c, e, expected);
         case Typing::statement: break;
     }
     // clang-format on

@@ -7,11 +7,11 @@ namespace {
 // clang-format off
 constexpr StandardFunction arrays[] = {
     {"LOWER_BOUND(ARR: ARRAY; DIM: ANY_INT): DINT", "the least index in dimension DIM, from 1 on",
-     Typing::bounds, nullptr},
+     Typing::lower_bound, nullptr},
     {"UPPER_BOUND(ARR: ARRAY; DIM: ANY_INT): DINT", "the greatest index in dimension DIM, from 1 on",
-     Typing::bounds, nullptr},
+     Typing::upper_bound, nullptr},
     {"CountOfElements(IN: ARRAY): DINT", "how many elements the array has, in all its dimensions",
-     Typing::bounds, nullptr},
+     Typing::element_count, nullptr},
 };
 // clang-format on
 

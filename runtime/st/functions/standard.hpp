@@ -25,7 +25,9 @@ enum class Typing : std::uint8_t {
     bit_number,  ///< of a number: the bit string that is wanted, or a DWORD
     texts,       ///< of texts and whole numbers, as the parameters say
     capacity,    ///< of a text: a constant, or of one that is given what it holds
-    bounds,      ///< of an array: a constant
+    lower_bound,    ///< of an array and a dimension: a constant
+    upper_bound,
+    element_count,  ///< of an array: a constant
     scan_time,
     operation,  ///< those of the operator that the call is
     statement,  ///< no value: a statement of its own, check/rewrites.cpp
