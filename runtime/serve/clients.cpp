@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <tuple>
 
 #include <netdb.h>
 #include <netinet/in.h>
@@ -60,13 +61,18 @@ Client* Clients::next_to_go() {
         const auto of_its_machine = std::ranges::count_if(clients_, [&](const Client& other) {
             return !other.shut_ && other.peer == client.peer;
         });
-        return std::pair(-of_its_machine, +client.since_);
+        const bool waits_for_us = client.socket->is_readable(0);
+        return std::tuple(-of_its_machine, waits_for_us, +client.since_);
     };
     Client* next = nullptr;
-    for (Client& client : clients_)
-        if (!client.shut_ && !client.stays_ && !client.gone_ &&
-            (!next || rank(client) < rank(*next)))
-            next = &client;
+    std::tuple<std::ptrdiff_t, bool, std::int64_t> first;
+    for (Client& client : clients_) {
+        if (client.shut_ || client.stays_ || client.gone_) continue;
+        const auto its = rank(client);
+        if (next && its >= first) continue;
+        next = &client;
+        first = its;
+    }
     return next;
 }
 
