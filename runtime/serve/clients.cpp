@@ -30,8 +30,7 @@ void Clients::admit(std::unique_ptr<Socket> socket) {
     forget();
     const auto stay = static_cast<std::size_t>(
         std::ranges::count_if(clients_, [](const Client& client) { return !client.shut_; }));
-    const std::size_t most_threads = 2 * most_;
-    if ((stay >= most_ && !send_one_away()) || clients_.size() >= most_threads) return;
+    if ((stay >= most_ && !send_one_away()) || is_full()) return;
     try {
         Client& client = clients_.emplace_back(std::move(socket), world_.now());
         client.thread_ = world_.start([this, &client] {
@@ -117,10 +116,13 @@ Listener::~Listener() {
 }
 
 void Listener::work() {
-    constexpr int patience_ms = 100;
+    constexpr int patience_ms = 100, pause_us = 2'000;
     while (!ends_) {
         pollfd waiting{.fd = socket_, .events = POLLIN, .revents = 0};
-        if (::poll(&waiting, 1, patience_ms) > 0) admit();
+        if (clients_.is_full())
+            ::usleep(pause_us);
+        else if (::poll(&waiting, 1, patience_ms) > 0)
+            admit();
         clients_.forget();
     }
 }

@@ -48,6 +48,9 @@ class Clients {
     /// Sends it away at once when there can be no thread for it.
     void admit(std::unique_ptr<Socket> socket);
 
+    /// So many that were sent away have not gone yet that nobody can be admitted.
+    bool is_full() const { return clients_.size() >= 2 * most_; }
+
     /// Who gives way next does so now. False when nobody can.
     bool send_one_away();
 
