@@ -176,14 +176,15 @@ def owner(http_port, modbus_port, ends):
 
 def owner_beside(command, folder, seconds, realtime, is_crowded):
     """Lateness of the scans [us] and times of the owner's answers [s]."""
-    process, *ports = start(command, folder, seconds, realtime)
+    process, *ports = start(command, folder, 1000 * seconds, realtime)
     ends = threading.Event()
     others = multiprocessing.Process(target=crowd, args=(*ports, goes := multiprocessing.Event()))
     if is_crowded:
         others.start()
-    threading.Timer(seconds - 1, ends.set).start()
+    threading.Timer(seconds, ends.set).start()
     times = owner(*ports, ends)
     goes.set()
+    process.terminate()
     out, errors = process.communicate()
     assert process.returncode == 0, errors
     if is_crowded:
