@@ -253,7 +253,7 @@ def interrupted(lineshaft, arguments, folder, after):
     before = time_of(process)  # one that has ended is there until it is awaited
     os.kill(process.pid, signal.SIGINT)
     code, _, seconds = awaited(process)
-    wrong = [] if code in (0, 1, 2, 130) or (code == -signal.SIGINT and before < 0.05) else [f"^C: exit code {code}"]
+    wrong = [] if code in (0, 1, 2, 3, 130) or (code == -signal.SIGINT and before < 0.05) else [f"^C: exit code {code}"]
     rest = max(0, seconds - before - TICK)
     return wrong + ([f"^C: {rest:.2f} s"] if rest > MOST_SECONDS_AFTER else []), rest
 
@@ -278,8 +278,9 @@ class Harness:
             code, taken, seconds = awaited(started(self.lineshaft, arguments, self.folder, said))
             said.seek(0)
             answer = said.read(1 << 20)
-        wrong = [f"exit code {code}"] if code not in (0, 1, 2) else []
-        wrong += ["no message"] if code == 2 and b"error" not in answer else []
+        wrong = [f"exit code {code}"] if code not in (0, 1, 2, 3) else []
+        said = {2: b"error", 3: b"fault"}.get(code, b"")
+        wrong += [f"exit code {code} without a message"] if said not in answer else []
         size, readers = path.stat().st_size, max(1, arguments.count(file))
         allowed = readers * (20 * size + (64 << 20))
         if self.is_limited and taken > allowed:
