@@ -8,7 +8,6 @@
 #include <limits>
 #include <memory>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -26,6 +25,7 @@ namespace {
 
 constexpr std::size_t chunk = 1 << 20;  // bytes; also the longest line
 constexpr std::size_t most_mistakes = 20;
+constexpr double exact_up_to = 9007199254740992.0;  // 2^53
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 /// Cuts a file into lines, in constant memory.
@@ -91,11 +91,11 @@ bool Lines::next(std::string_view& line) {
     after_return_ = false;
     stop_ = begin_;
     bool found = find_end();
-    while (!found && !file_.is_ended() && error_ == 0) {
-        if (end_ - begin_ > chunk) error_ = EFBIG;
+    while (!found && !file_.is_ended() && error_ == 0 && end_ - begin_ <= chunk) {
         fill();
         found = find_end();
     }
+    if (error_ == 0 && stop_ - begin_ > chunk) error_ = EFBIG;
     if (error_ != 0 || (!found && begin_ == end_)) return false;
     ended_ = found;
     after_return_ = found && buffer_[stop_] == '\r';
@@ -116,6 +116,12 @@ const char* parse(const std::string& text, Number& value) {
     return nullptr;
 }
 
+/// Grows by half, so that the old values and the new ones together take at most 20 bytes each.
+void append(std::vector<double>& values, double value) {
+    if (values.size() == values.capacity()) values.reserve(values.size() + values.size() / 2 + 1);
+    values.push_back(value);
+}
+
 /// Whether a column of whole numbers may hold the value.
 bool fits(const CsvColumn& column, std::int64_t value) {
     if (column.type == Type::integer) return true;
@@ -133,7 +139,10 @@ class CsvReader {
   private:
     bool is_yaml();
     bool header();
-    void add_column(std::string_view cell);
+    void add_columns(const std::vector<std::string_view>& cells);
+    bool is_title(std::string_view cell);
+    CsvColumn column_of(std::string_view cell) const;
+    void check_names(const std::vector<std::string_view>& cells);
     void select();
     void rows();
     void blank_rows(std::size_t next);
@@ -158,8 +167,7 @@ class CsvReader {
     std::size_t blank_ = 0;   ///< lines up to it that may be the last
     std::size_t mistakes_ = 0;
     char separator_ = ',';
-    std::vector<CsvColumn*> order_;          ///< of the file's columns; null: not wanted
-    std::unordered_set<std::string> names_;  ///< and titles, of the columns so far
+    std::vector<CsvColumn*> order_;  ///< of the file's columns; null: not wanted
     std::unordered_map<std::string_view, const CsvMetadata::Column*> described_;  ///< by title
     std::shared_ptr<const SourceFile> shown_;  ///< the last line with a mistake, alone
     CsvTable table_;
@@ -225,26 +233,38 @@ bool CsvReader::header() {
     if (line_.find(',') == std::string_view::npos && line_.find(';') != std::string_view::npos)
         separator_ = ';';
     const char* const end = line_.data() + line_.size();
+    std::vector<std::string_view> cells;
     for (const char* at = line_.data(); !is_enough(); ++at) {
         const char* const stop = cell_end(at, end, separator_);
-        add_column({at, stop});
+        if (is_title({at, stop})) cells.emplace_back(at, stop);
         at = stop;
         if (at == end) break;
     }
+    if (!is_enough()) add_columns(cells);
     if (mistakes_ == 0) select();
     return mistakes_ == 0;
 }
 
-void CsvReader::add_column(std::string_view cell) {
+bool CsvReader::is_title(std::string_view cell) {
+    const std::string title = unquoted(cell);
+    double number = 0;
+    if (!title.empty() && parse(title, number)) return true;
+    fail(code::no_columns, cell,
+         title.empty() ? "a column has no name"
+                       : fmt::format("'{}' is not a name of a column", title),
+         "the first line names the columns");
+    return false;
+}
+
+void CsvReader::add_columns(const std::vector<std::string_view>& cells) {
+    table_.columns.reserve(cells.size());
+    for (const std::string_view cell : cells) table_.columns.push_back(column_of(cell));
+    check_names(cells);
+}
+
+CsvColumn CsvReader::column_of(std::string_view cell) const {
     CsvColumn column;
     column.title = column.name = unquoted(cell);
-    double number = 0;
-    if (column.title.empty() || !parse(column.title, number))
-        return fail(code::no_columns, cell,
-                    column.title.empty()
-                        ? "a column has no name"
-                        : fmt::format("'{}' is not a name of a column", column.title),
-                    "the first line names the columns");
     const std::size_t bracket = column.title.find(" [");
     if (bracket != std::string::npos && column.title.ends_with(']')) {
         column.unit = column.title.substr(bracket + 2, column.title.size() - bracket - 3);
@@ -257,21 +277,44 @@ void CsvReader::add_column(std::string_view cell) {
         column.type = known->type;
         column.names = known->values;
     }
-    const bool is_new = names_.insert(column.name).second;
-    if (!is_new || (column.title != column.name && !names_.insert(column.title).second))
-        fail(code::column_twice, cell, fmt::format("two columns are called '{}'", column.title));
-    table_.columns.push_back(std::move(column));
+    return column;
+}
+
+/// A column's name and its title are names of no other column. A set of them would take more
+/// memory than the columns.
+void CsvReader::check_names(const std::vector<std::string_view>& cells) {
+    std::vector<std::pair<std::string_view, std::size_t>> names;
+    names.reserve(cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const CsvColumn& column = table_.columns[i];
+        names.emplace_back(column.name, i);
+        if (column.title != column.name) names.emplace_back(column.title, i);
+    }
+    std::ranges::sort(names);
+    std::vector<std::size_t> again;
+    for (std::size_t i = 1; i < names.size(); ++i)
+        if (names[i].first == names[i - 1].first) again.push_back(names[i].second);
+    std::ranges::sort(again);
+    again.erase(std::unique(again.begin(), again.end()), again.end());
+    for (std::size_t i = 0; i < again.size() && !is_enough(); ++i)
+        fail(code::column_twice, cells[again[i]],
+             fmt::format("two columns are called '{}'", table_.columns[again[i]].title));
 }
 
 void CsvReader::select() {
-    std::vector<bool> wanted(table_.columns.size(), options_.columns.empty());
+    order_.reserve(table_.columns.size());
+    if (options_.columns.empty()) {
+        for (CsvColumn& column : table_.columns) order_.push_back(&column);
+        return;
+    }
+    std::vector<bool> wanted(table_.columns.size());
     for (const std::string& name : options_.columns)
         if (const CsvColumn* column = table_.require(name, out_))
             wanted[static_cast<std::size_t>(column - table_.columns.data())] = true;
         else
             ++mistakes_;
     std::vector<CsvColumn> kept;
-    kept.reserve(wanted.size());
+    kept.reserve(static_cast<std::size_t>(std::ranges::count(wanted, true)));
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         if (wanted[i]) kept.push_back(std::move(table_.columns[i]));
         order_.push_back(wanted[i] ? &kept.back() : nullptr);
@@ -338,7 +381,7 @@ const char* CsvReader::cell(CsvColumn& column, const char* at, const char* end) 
         double value = 0;
         const auto [stop, error] = std::from_chars(at, end, value);
         if (error == std::errc{} && (stop == end || *stop == separator_) && std::isfinite(value)) {
-            column.values.push_back(value);
+            append(column.values, value);
             return stop;
         }
     } else {
@@ -355,8 +398,9 @@ const char* CsvReader::cell(CsvColumn& column, const char* at, const char* end) 
 }
 
 void CsvReader::take(CsvColumn& column, std::int64_t value) {
-    column.values.push_back(static_cast<double>(value));
-    if (column.type == Type::integer) column.integers.push_back(value);
+    const auto rounded = static_cast<double>(value);
+    if (std::abs(rounded) >= exact_up_to) column.large.push_back({column.values.size(), value});
+    append(column.values, rounded);
 }
 
 /// Empty, quoted, between blanks, with a decimal comma or a plus; or wrong.
@@ -371,16 +415,15 @@ void CsvReader::odd_cell(CsvColumn& column, std::string_view cell) {
         if (!wrong && !std::isfinite(real)) wrong = "is not a number";
     } else if (!text.empty()) {
         wrong = parse(text, whole);
-        if (!wrong && !fits(column, whole)) wrong = "is not one of its values";
-        real = static_cast<double>(whole);
+        if (!wrong && fits(column, whole)) return take(column, whole);
+        if (!wrong) wrong = "is not one of its values";
     }
     if (wrong)
         fail(code::cell_is_no_number, cell,
              fmt::format("'{}' in column '{}' {}", text, column.title, wrong),
              column.type == Type::real ? "leave the cell empty where there is no value"
                                        : fmt::format("the column is {}", name_of(column.type)));
-    column.values.push_back(real);
-    if (column.type == Type::integer) column.integers.push_back(whole);
+    append(column.values, real);
 }
 
 void CsvReader::end_of_rows() {
@@ -403,7 +446,8 @@ void CsvReader::drop_last_row() {
     --table_.rows;
     for (CsvColumn& column : table_.columns) {
         column.values.resize(table_.rows);
-        if (column.type == Type::integer) column.integers.resize(table_.rows);
+        if (!column.large.empty() && column.large.back().row == table_.rows)
+            column.large.pop_back();
     }
 }
 
@@ -422,6 +466,12 @@ void CsvReader::fail(const char* code, std::string_view part, std::string messag
 }
 
 }  // namespace
+
+std::int64_t CsvColumn::integer(std::size_t row) const {
+    const auto it = std::ranges::lower_bound(large, row, {}, &Large::row);
+    if (it != large.end() && it->row == row) return it->value;
+    return is_missing(row) ? 0 : static_cast<std::int64_t>(values[row]);
+}
 
 const CsvColumn* CsvTable::find(std::string_view name) const {
     const auto it = std::ranges::find_if(

@@ -17,11 +17,19 @@ struct CsvColumn {
     std::string name;   ///< of the signal where the sidecar tells it, else the title without unit
     std::string title;  ///< as the header has it
     std::string unit;  ///< from the sidecar, or from a title `name [unit]`; empty: none, or unknown
-    Type type = Type::real;              ///< from the sidecar; without one all are real
-    std::vector<std::string> names;      ///< of an enumeration
-    std::vector<double> values;          ///< a row each; not a number where the cell is empty
-    std::vector<std::int64_t> integers;  ///< of type integer only: exact; 0 where empty
+    Type type = Type::real;          ///< from the sidecar; without one all are real
+    std::vector<std::string> names;  ///< of an enumeration
+    std::vector<double> values;      ///< a row each; not a number where the cell is empty
+
+    struct Large {
+        std::size_t row;
+        std::int64_t value;
+    };
+    std::vector<Large> large;  ///< integers from 2^53 on, which `values` rounds; by row
+
     bool is_missing(std::size_t row) const { return values[row] != values[row]; }
+    /// Exact; 0 where the cell is empty. Of type integer only.
+    std::int64_t integer(std::size_t row) const;
 };
 
 /// The columns that were asked for, in the order of the file.

@@ -176,7 +176,9 @@ void connect_forces(Connecting& to) {
 /// The recording's end is the run's, whatever the program says of it.
 void connect_recorded(Connecting& to) {
     if (!to.program.recording) return;
-    for (const RecordedPlan& plan : to.program.recording->entries) add_recorded(to, plan);
+    const auto& entries = to.program.recording->entries;
+    to.machine.stimuli.reserve(to.machine.stimuli.size() + entries.size());
+    for (const RecordedPlan& plan : entries) add_recorded(to, plan);
     std::ranges::stable_sort(to.machine.stimuli, {}, &Stimulus::at);
     to.machine.duration = never - 1;
     to.machine.end = to.program.recording->end();

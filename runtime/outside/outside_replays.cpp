@@ -33,7 +33,7 @@ std::optional<Value> cell(const CsvColumn& column, std::size_t row, const Field&
                           const Unit& from, const Unit& to) {
     const bool same_unit = from.text == to.text;
     if (input.type == Type::integer && column.type == Type::integer && same_unit)
-        return column.integers[row];
+        return column.integer(row);
     const double value = column.values[row];
     const auto among = [&](std::size_t count) {
         return value >= 0 && value < static_cast<double>(count);

@@ -2,11 +2,17 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
+#include "runtime/source/input_file.hpp"
+
 namespace lineshaft {
 
 namespace {
 
-constexpr YamlLimits recording_limits{.bytes = 256 << 20, .nodes = 20'000'000};
+constexpr YamlLimits recording_limits{.bytes = 256 << 20};
+/// Of one that is not written as `serve` does it.
+constexpr YamlLimits other_limits{.nodes = 1'000'000};
 
 // clang-format off: tables are laid out by hand
 
@@ -63,19 +69,62 @@ const Form& recording_form() {
 
 // clang-format on
 
+namespace {
+
+/// As it is written.
+bool is_entry_a_line(std::string_view lines) {
+    for (; !lines.empty(); lines.remove_prefix(lines.find('\n') + 1))
+        if (!lines.starts_with("- ")) return false;
+    return true;
+}
+
+/// Piece by piece: the nodes of a text take fifty times its memory, an entry a quarter of that.
+void read_lines(const std::string& path, std::string_view lines, int first_line, const Reader& read,
+                RecordingPlan& plan) {
+    constexpr std::size_t piece = 64 << 10;
+    constexpr std::string_view key = "entries:\n";
+    plan.entries.reserve(static_cast<std::size_t>(std::ranges::count(lines, '\n')));
+    while (!lines.empty()) {
+        if (interrupt_requested)
+            return read.diagnostics().add("L0001", {},
+                                          fmt::format("cannot read '{}': interrupted", path));
+        const std::string_view part =
+            lines.substr(0, lines.find('\n', std::min(piece, lines.size() - 1)) + 1);
+        const auto file = std::make_shared<SourceFile>(
+            SourceFile{path, std::string(key) + std::string(part), first_line - 1});
+        if (const auto root = parse_yaml(file, read.diagnostics(), recording_limits))
+            read_entries(read, *root->find("entries"), plan);
+        first_line += static_cast<int>(std::ranges::count(part, '\n'));
+        lines.remove_prefix(part.size());
+    }
+}
+
+}  // namespace
+
 std::optional<RecordingPlan> read_recording(const std::string& path, Diagnostics& out) {
     const auto whole = read_source(path, out, {}, recording_limits);
     if (!whole) return {};
-    SourceFile lines{whole->path, whole->text.substr(0, whole->text.rfind('\n') + 1)};
+    constexpr std::string_view key = "\nentries:\n";
+    const std::size_t before = out.count();
+    const std::string_view text(whole->text.data(), whole->text.rfind('\n') + 1);
+    const std::size_t at = text.find(key);
+    const std::size_t entries = at == text.npos ? text.size() : at + key.size();
+    const bool by_lines = is_entry_a_line(text.substr(entries));
+    SourceFile head{path, std::string(by_lines ? text.substr(0, entries) : text)};
     const Reader read(out);
-    const auto root =
-        parse_yaml(std::make_shared<SourceFile>(std::move(lines)), out, recording_limits);
+    const auto root = parse_yaml(std::make_shared<SourceFile>(std::move(head)), out, other_limits);
     if (!root || !check_kind(read, *root, "lineshaft_recording")) return {};
     RecordingPlan plan;
     if (!read_form(recording_form(), read, *root, plan)) return {};
+    if (by_lines) {
+        const auto line = 1 + static_cast<int>(std::ranges::count(text.substr(0, entries), '\n'));
+        read_lines(path, text.substr(entries), line, read, plan);
+    }
+    if (out.count() != before) return {};
     // What came behind the end did not count any more.
-    std::ranges::stable_sort(plan.entries, {},
-                             [](const RecordedPlan& e) { return std::pair(e.end, e.at); });
+    const auto order = [](const RecordedPlan& e) { return std::pair(e.end, e.at); };
+    if (!std::ranges::is_sorted(plan.entries, {}, order))
+        std::ranges::stable_sort(plan.entries, {}, order);
     return plan;
 }
 

@@ -118,6 +118,7 @@ class SingleRun {
     void look(std::int64_t time);
     bool writing_fails() const;
     void warn_of_cut_texts();
+    void conclude();
     void finish();
     void open_traces();
     bool has_trace() const {
@@ -142,32 +143,36 @@ class SingleRun {
     std::optional<Executive> executive_;
     std::vector<Observer*> observers_;
     std::atomic<bool> stop_ = false;
+    bool has_run_ = true;
 };
 
 RunReport SingleRun::run() {
     const auto start = std::chrono::steady_clock::now();
     if (begin()) {
         report_.result = step();
-        const bool broke_off = report_.result.outcome == Outcome::interrupted && writing_fails();
-        if (broke_off)
-            report_.result.message = "the run stopped at " + format_time(report_.result.time);
-        for (std::string& text : executive_->warnings())
-            report_.warnings.push_back(std::move(text));
-        if (errors_) errors_->tell(report_.warnings);
-        warn_of_cut_texts();
-        judge_.finish(report_.result);
-        if (!broke_off) report_.verdicts = judge_.verdicts();
-        for (const Expectation& e : judge_.expectations())
-            if (e.when != Expectation::When::at && e.when != Expectation::When::at_end &&
-                e.signal.task >= 0 &&
-                report_.result.scans[static_cast<std::size_t>(e.signal.task)] == 0)
-                report_.never_looked_at.push_back(e.text);
-        finish();
+        if (has_run_) conclude();
     }
     for (DeviceCall& device : machine_.devices) device.sink = nullptr;
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     report_.wall_seconds = wall.count();
     return std::move(report_);
+}
+
+void SingleRun::conclude() {
+    const bool broke_off = report_.result.outcome == Outcome::interrupted && writing_fails();
+    if (broke_off)
+        report_.result.message = "the run stopped at " + format_time(report_.result.time);
+    for (std::string& text : executive_->warnings()) report_.warnings.push_back(std::move(text));
+    if (errors_) errors_->tell(report_.warnings);
+    warn_of_cut_texts();
+    judge_.finish(report_.result);
+    if (!broke_off) report_.verdicts = judge_.verdicts();
+    for (const Expectation& e : judge_.expectations())
+        if (e.when != Expectation::When::at && e.when != Expectation::When::at_end &&
+            e.signal.task >= 0 &&
+            report_.result.scans[static_cast<std::size_t>(e.signal.task)] == 0)
+            report_.never_looked_at.push_back(e.text);
+    finish();
 }
 
 void SingleRun::warn_of_cut_texts() {
@@ -201,7 +206,7 @@ RunResult SingleRun::step() {
     executive_->look_out(&stop_, [this](std::int64_t time) { look(time); });
     executive_->begin();
     if (options_.drive)
-        options_.drive(*executive_, [this] { return checkpoint(executive_->time()); });
+        has_run_ = options_.drive(*executive_, [this] { return checkpoint(executive_->time()); });
     else
         executive_->run_until(machine_.end);
     return executive_->finish();

@@ -37,7 +37,8 @@ struct RunOptions {
     std::function<void(std::int64_t time)> progress;  ///< called now and then [ns]
     Observer* observer = nullptr;                     ///< sees the run, besides the trace
     /// Steps it, and may ask for a checkpoint between two steps; else it runs to its end at once.
-    std::function<void(Executive&, const std::function<std::string()>& checkpoint)> drive = {};
+    /// False: it could not begin, so that files of runs before stay as they are.
+    std::function<bool(Executive&, const std::function<std::string()>& checkpoint)> drive = {};
     Restart restart = Restart::warm;
     std::string retain_path = {};       ///< of retained values, read and written; empty: none
     std::string checkpoint_path = {};   ///< read by a hot restart

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <tuple>
 
 #include <netdb.h>
 #include <netinet/in.h>
@@ -29,8 +30,7 @@ void Clients::admit(std::unique_ptr<Socket> socket) {
     forget();
     const auto stay = static_cast<std::size_t>(
         std::ranges::count_if(clients_, [](const Client& client) { return !client.shut_; }));
-    const std::size_t most_threads = 2 * most_;
-    if ((stay >= most_ && !send_one_away()) || clients_.size() >= most_threads) return;
+    if ((stay >= most_ && !send_one_away()) || is_full()) return;
     try {
         Client& client = clients_.emplace_back(std::move(socket), world_.now());
         client.thread_ = world_.start([this, &client] {
@@ -60,13 +60,18 @@ Client* Clients::next_to_go() {
         const auto of_its_machine = std::ranges::count_if(clients_, [&](const Client& other) {
             return !other.shut_ && other.peer == client.peer;
         });
-        return std::pair(-of_its_machine, +client.since_);
+        const bool waits_for_us = client.socket->is_readable(0);
+        return std::tuple(-of_its_machine, waits_for_us, +client.since_);
     };
     Client* next = nullptr;
-    for (Client& client : clients_)
-        if (!client.shut_ && !client.stays_ && !client.gone_ &&
-            (!next || rank(client) < rank(*next)))
-            next = &client;
+    std::tuple<std::ptrdiff_t, bool, std::int64_t> first;
+    for (Client& client : clients_) {
+        if (client.shut_ || client.stays_ || client.gone_) continue;
+        const auto its = rank(client);
+        if (next && its >= first) continue;
+        next = &client;
+        first = its;
+    }
     return next;
 }
 
@@ -111,10 +116,13 @@ Listener::~Listener() {
 }
 
 void Listener::work() {
-    constexpr int patience_ms = 100;
+    constexpr int patience_ms = 100, pause_us = 2'000;
     while (!ends_) {
         pollfd waiting{.fd = socket_, .events = POLLIN, .revents = 0};
-        if (::poll(&waiting, 1, patience_ms) > 0) admit();
+        if (clients_.is_full())
+            ::usleep(pause_us);
+        else if (::poll(&waiting, 1, patience_ms) > 0)
+            admit();
         clients_.forget();
     }
 }

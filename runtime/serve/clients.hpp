@@ -32,7 +32,8 @@ class Client {
 
 /// The clients of a server, a thread each: one that is slow, or sends half a request, holds up
 /// nobody else. When there are too many, of those from the machine that has most the one gives way
-/// that has not asked for anything for the longest time. For one thread, which admits.
+/// that has not asked for anything for the longest time, and last of all one of which bytes have
+/// come that its thread has not read yet. For one thread, which admits.
 class Clients {
   public:
     using Answer = std::function<void(Client&)>;
@@ -46,6 +47,9 @@ class Clients {
 
     /// Sends it away at once when there can be no thread for it.
     void admit(std::unique_ptr<Socket> socket);
+
+    /// So many that were sent away have not gone yet that nobody can be admitted.
+    bool is_full() const { return clients_.size() >= 2 * most_; }
 
     /// Who gives way next does so now. False when nobody can.
     bool send_one_away();

@@ -43,6 +43,7 @@ bool Connection::is_allowed(char next) {
     if (next != '\r' && next != '\n') ++line_;
     if (next == '\n') {
         in_head_ = line_ > 0;
+        if (!in_head_) client_.has_asked(world_.now());
         line_ = 0;
         ++lines_;
     }

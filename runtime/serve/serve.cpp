@@ -111,6 +111,7 @@ ServeReport serve(Loaded& loaded, RunOptions how, const ServeOptions& options,
         http.end();
         report.pace = live.pace();
         end = live.time();
+        return closed.empty();
     };
     report.run = run(loaded, how);
     if (!closed.empty()) report.run.refused = closed;

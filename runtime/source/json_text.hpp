@@ -9,8 +9,12 @@
 
 namespace lineshaft {
 
-/// A JSON text of somebody else; null when it is none, or nested more than 64 deep, which would
-/// take a hundred bytes of memory for each of its own.
+/// What a JSON text may have: more would take too much memory for each of its bytes, and what a
+/// program of the greatest size keeps has less.
+constexpr std::size_t deepest_json = 64, most_json_values = 1 << 20;
+
+/// A JSON text of somebody else; null when it is none, nested too deep, or has too many values. Of
+/// keys that come twice the first is found.
 nlohmann::ordered_json parse_json(std::string_view text);
 
 /// The whole number at `key`, which must be within the limits; empty when it is not, or is none.

@@ -64,7 +64,7 @@ std::size_t YamlText::line_end(std::size_t offset) const {
 
 Mark YamlText::mark(std::size_t begin, std::size_t end) const {
     const std::size_t line = line_index(begin);
-    return {file_, static_cast<int>(line) + 1,
+    return {file_, static_cast<int>(line) + file_->first_line,
             static_cast<int>(characters(lines_[line], begin)) + 1,
             std::max(1, static_cast<int>(characters(begin, end)))};
 }

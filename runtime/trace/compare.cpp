@@ -27,13 +27,13 @@ double distance(std::int64_t a, std::int64_t b) {
 
 bool deviates(const CsvColumn& a, const CsvColumn& b, std::size_t row, double tolerance) {
     if (a.is_missing(row) || b.is_missing(row)) return a.is_missing(row) != b.is_missing(row);
-    if (a.type == Type::integer) return distance(a.integers[row], b.integers[row]) > tolerance;
+    if (a.type == Type::integer) return distance(a.integer(row), b.integer(row)) > tolerance;
     return std::abs(a.values[row] - b.values[row]) > tolerance;
 }
 
 double distance(const CsvColumn& a, const CsvColumn& b, std::size_t row) {
     if (a.is_missing(row) || b.is_missing(row)) return 0;
-    if (a.type == Type::integer) return distance(a.integers[row], b.integers[row]);
+    if (a.type == Type::integer) return distance(a.integer(row), b.integer(row));
     return std::abs(a.values[row] - b.values[row]);
 }
 

@@ -138,6 +138,22 @@ TEST_CASE("an interrupted run stops before its end, and its trace says so") {
                Catch::Contains(R"("lineshaft:stopped": "interrupted at 0 s")"));
 }
 
+TEST_CASE("what could not begin to be driven leaves the trace of the run before as it is") {
+    File file;
+    const std::string trace = file.folder / "t.csv";
+    RunOptions options{.trace_path = trace, .interrupt = {}, .progress = {}};
+    auto first = file.load();
+    REQUIRE(first);
+    run(*first, options);
+    const std::string before = read(trace), sidecar = read(trace + "-metadata.json");
+    auto second = file.load();
+    options.drive = [](Executive&, const auto&) { return false; };
+    const RunReport report = run(*second, options);
+    CHECK(report.traces.empty());
+    CHECK(read(trace) == before);
+    CHECK(read(trace + "-metadata.json") == sidecar);
+}
+
 TEST_CASE("a program with mistakes is not loaded") {
     File wrong("lineshaft: 1\ntasks: {main: {every: 1}}\nblocks: {}\nrun: {for: 1 s}\n");
     CHECK_FALSE(wrong.load());

@@ -1,6 +1,7 @@
 #include "runtime/serve/connection.hpp"
 
 #include <array>
+#include <atomic>
 #include <optional>
 #include <string>
 
@@ -56,4 +57,25 @@ TEST_CASE("a client that sends too much is still answered") {
     CHECK_FALSE(connection.begin());
     CHECK(connection.write("refused", 7) == 7);
     CHECK(::recv(ends.other, got.data(), got.size(), 0) == 7);
+}
+
+TEST_CASE("a client whose request has come and was not read yet does not give way to others") {
+    std::atomic<bool> ends = false;
+    std::array<std::array<int, 2>, 3> lines{};
+    for (auto& line : lines) REQUIRE(::socketpair(AF_UNIX, SOCK_STREAM, 0, line.data()) == 0);
+    constexpr std::size_t asks = 0, idle = 1, comes = 2;
+    REQUIRE(::send(lines[asks][0], "GET", 3, 0) == 3);
+    World& world = World::system();
+    {
+        Clients clients(world, 2, [&](Client&) {
+            while (!ends) world.sleep_until(world.now() + 1'000'000);  // busy elsewhere
+        });
+        for (auto& line : lines) clients.admit(system_socket(line[1]));
+        char byte = 0;
+        CHECK(::recv(lines[idle][0], &byte, 1, MSG_DONTWAIT) == 0);
+        for (const std::size_t stays : {asks, comes})
+            CHECK(::recv(lines[stays][0], &byte, 1, MSG_DONTWAIT) == -1);
+        ends = true;
+    }
+    for (auto& line : lines) ::close(line[0]);
 }

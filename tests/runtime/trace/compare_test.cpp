@@ -78,8 +78,10 @@ TEST_CASE("a missing value equals a missing one only") {
 TEST_CASE("whole numbers are compared exactly, whatever the tolerance of reals") {
     CsvTable a = table(times, {1, 2, 3}), b = a;
     a.columns[1].type = b.columns[1].type = Type::integer;
-    a.columns[1].integers = {1, 2, (std::int64_t{1} << 53) + 1};
-    b.columns[1].integers = {1, 2, std::int64_t{1} << 53};
+    constexpr std::int64_t large = std::int64_t{1} << 53;
+    a.columns[1].values[2] = b.columns[1].values[2] = static_cast<double>(large);
+    a.columns[1].large = {{2, large + 1}};
+    b.columns[1].large = {{2, large}};
     CHECK(compare(a, b, {.all = 1e9, .columns = {}}).first->row == 2);
 }
 
