@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/input_file.hpp"
 
 namespace lineshaft {
@@ -86,7 +87,7 @@ void read_lines(const std::string& path, std::string_view lines, int first_line,
     plan.entries.reserve(static_cast<std::size_t>(std::ranges::count(lines, '\n')));
     while (!lines.empty()) {
         if (interrupt_requested)
-            return read.diagnostics().add("L0001", {},
+            return read.diagnostics().add(code::file_cannot_be_read, {},
                                           fmt::format("cannot read '{}': interrupted", path));
         const std::string_view part =
             lines.substr(0, lines.find('\n', std::min(piece, lines.size() - 1)) + 1);
