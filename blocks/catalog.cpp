@@ -161,6 +161,11 @@ Catalog make_catalog() {
     blocks.add<LrealToTime>();
     blocks.add<Scale>();
     blocks.add<FilterPt1>();
+    for (const char* torque : {"MC_TorqueControl", "MC_ReadActualTorque"})
+        blocks.lack(torque,
+                    "an axis is led by its position here and has no torque: move it with "
+                    "MC_MoveVelocity within Acceleration and Jerk, or wire a servo_drive, whose "
+                    "mechanics have forces");
     return blocks;
 }
 

@@ -38,6 +38,12 @@ const BlockType* Catalog::find(std::string_view name) const {
     return it == types_.end() ? nullptr : &*it;
 }
 
+std::string_view Catalog::instead_of(std::string_view name) const {
+    const auto it = std::ranges::find_if(
+        lacking_, [&](const Lacking& kind) { return same_letters(kind.name, name); });
+    return it == lacking_.end() ? std::string_view{} : it->instead;
+}
+
 std::vector<std::string> Catalog::names() const {
     std::vector<std::string> names;
     for (const BlockType& t : types_) names.emplace_back(t.name);

@@ -177,7 +177,15 @@ class Catalog {
         return *this;
     }
 
+    /// A kind that others have and this catalogue does not, on purpose.
+    Catalog& lack(std::string_view name, std::string_view instead) {
+        lacking_.push_back({name, instead});
+        return *this;
+    }
+
     const BlockType* find(std::string_view name) const;
+    /// Of a kind that the catalogue lacks on purpose what to do instead; empty for any other.
+    std::string_view instead_of(std::string_view name) const;
     const std::vector<BlockType>& types() const { return types_; }
     std::vector<std::string> names() const;
 
@@ -309,7 +317,12 @@ class Catalog {
         return calls;
     }
 
+    struct Lacking {
+        std::string_view name, instead;
+    };
+
     std::vector<BlockType> types_;
+    std::vector<Lacking> lacking_;
 };
 
 }  // namespace lineshaft

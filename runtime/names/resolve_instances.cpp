@@ -37,8 +37,10 @@ void find_type(Resolving& to, const Node& name, Instance& block) {
     if (!to.net.kinds) return;
     auto names = to.catalog.names();
     std::ranges::copy(to.net.kinds->names(), std::back_inserter(names));
+    const std::string_view instead = to.catalog.instead_of(name.text);
     to.read.fail(code::unknown_block_type, name,
-                 fmt::format("there is no block type '{}'", name.text), suggest(name.text, names));
+                 fmt::format("there is no block type '{}'", name.text),
+                 instead.empty() ? suggest(name.text, names) : std::string(instead));
 }
 
 /// Data blocks have no entry in the program: they belong to the main task.

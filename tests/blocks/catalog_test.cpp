@@ -478,3 +478,12 @@ TEST_CASE("a block whose moments are shifted goes on in shifted time as before")
         }
     }
 }
+
+TEST_CASE("a kind that the catalogue lacks on purpose is known with what to do instead") {
+    const Catalog& blocks = standard_blocks();
+    for (const char* name : {"MC_TorqueControl", "mc_readactualtorque"}) {
+        CHECK(blocks.find(name) == nullptr);
+        CHECK(blocks.instead_of(name).find("servo_drive") != std::string_view::npos);
+    }
+    CHECK(blocks.instead_of("MC_MoveVelocity").empty());
+}

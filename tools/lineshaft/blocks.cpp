@@ -57,12 +57,16 @@ Exit describe(const Catalog& catalog, const std::vector<std::string>& words, boo
     const BlockType* type = words.size() == 1 ? catalog.find(words.front()) : nullptr;
     if (!type) {
         const Types types = found(catalog, words);
-        if (types.empty())
+        const std::string_view instead =
+            catalog.instead_of(fmt::format("{}", fmt::join(words, " ")));
+        if (!instead.empty())
+            spdlog::error("there is no block type '{}': {}", fmt::join(words, " "), instead);
+        else if (types.empty())
             spdlog::error("there is no block type '{0}', and none has to do with that; {1}",
                           fmt::join(words, " "), suggest(words.front(), catalog.names()));
         else
             list(types, json);
-        return types.empty() ? Exit::wrong : Exit::fine;
+        return types.empty() || !instead.empty() ? Exit::wrong : Exit::fine;
     }
     if (json)
         fmt::print("{}\n", block_json(*type).dump(2));

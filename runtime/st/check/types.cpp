@@ -143,7 +143,9 @@ const Type* resolve_name(Checking& c, const Token& name) {
     }
     if (const Type* type = standard_type(c, name.text)) return type;
     if (c.tree.lost.contains(name.text)) return nullptr;
-    if (const std::string_view instead = instead_of_type(name.text); !instead.empty())
+    std::string_view instead = instead_of_type(name.text);
+    if (instead.empty()) instead = c.catalog.instead_of(name.text);
+    if (!instead.empty())
         return c.fail(code::not_supported, name.place,
                       fmt::format("the type {} is not supported", name.text), std::string(instead));
     std::vector<std::string> names = {"BOOL", "INT",  "DINT",  "LINT", "UINT",  "UDINT",
