@@ -166,6 +166,18 @@ bool plan_within(const PathLimit& cap, double velocity, const MotionState& from,
            plan(limits, from, goal, out, {Entry::gentle, 1024}) == PlanResult::ok;
 }
 
+/// Where the velocity is to fall on a way that is too short for it, the plan would come back.
+bool turns_round(const MotionPlan& plan) {
+    for (std::size_t i = 0; i < plan.count; ++i) {
+        const MotionPlan::Phase& phase = plan.phases[i];
+        const MotionState& s = phase.start;
+        const double lowest =
+            s.jerk > 0 ? std::clamp(-s.acceleration / s.jerk, 0.0, phase.duration) : phase.duration;
+        if (s.after(lowest).velocity < -1e-9 * (1 + std::abs(s.velocity))) return true;
+    }
+    return false;
+}
+
 /// Whether what is commanded could be planned from `from`, with `known` as above.
 bool plan_piece(const PathPiece& piece, const MotionState& from, double factor, double known,
                 MotionPlan& out) {
@@ -183,7 +195,7 @@ bool plan_piece(const PathPiece& piece, const MotionState& from, double factor, 
     if (exit < 0) return false;
     const Goal goal{piece.curve.length, exit};
     const double V = std::max(factor * piece.cap.velocity, exit);
-    return (V > 0 && plan_within(piece.cap, V, from, goal, out)) ||
+    return (V > 0 && plan_within(piece.cap, V, from, goal, out) && !turns_round(out)) ||
            plan_within(piece.cap, piece.cap.velocity, from, goal, out);
 }
 

@@ -250,6 +250,34 @@ TEST_CASE("path: a corner that cannot be braked for any more is a stop") {
     CHECK(path.now(ring).position == PathVector{10, 10});
 }
 
+TEST_CASE("path: a halt that does not fit into a short piece between corners goes on in the next") {
+    std::vector<PathPiece> ring(16);
+    Path path;
+    PathLimits limits{{1e300, 1e300, 1e300}, {}};
+    limits.axes[0] = {80, 800, 2e4};
+    limits.axes[1] = {40, 600, 1e4};
+    limits.axes[3] = {120, 900, 3e4};
+    PathVector from{};
+    for (const PathVector& to :
+         {PathVector{0, 0, 0, 5}, {5, 5}, {10, 5}, {10, 15}, {11, 30}, {-4, 2}}) {
+        PathCurve line;
+        REQUIRE(line_to(from, to, line, path_space) == PathFault::none);
+        REQUIRE(path.append(ring, line, limits, {0, 40}) == PathFault::none);
+        limits.path = {60, 700, 9000};
+        from = to;
+    }
+    REQUIRE(path.count == 11);
+    double before = 0;
+    for (int scan = 0; !(path.halted && path.standing()); ++scan) {
+        if (scan == 195) path.halt();
+        const PathMotion m = path.advance(ring, 1e-3);
+        REQUIRE(m.path.velocity >= -1e-9);
+        REQUIRE(m.path.position >= before);
+        before = m.path.position;
+    }
+    CHECK(path.first > 4);
+}
+
 TEST_CASE("path: a copy of its bytes goes on alike") {
     Random random(7);
     const RandomPath wanted = random_path(random, 20);
