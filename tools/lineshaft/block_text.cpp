@@ -122,10 +122,12 @@ bool is_telling(const BlockType& type, const Field& field) {
 std::string example_rows(const BlockType& type, const Fresh& fresh, const TableField& table) {
     const std::size_t columns = table.needed > 0 ? table.needed : table.columns.size();
     std::string rows;
-    for (const char* number : {"0", "1"}) {
+    for (const double number : {0.0, 1.0}) {
         std::string row;
-        for (const Field& column : table.columns.first(columns))
-            row += (row.empty() ? "" : ", ") + example_number(type, fresh, column.unit, number);
+        for (const Field& column : table.columns.first(columns)) {
+            const std::string text = fmt::format("{}", std::max(number, column.minimum));
+            row += (row.empty() ? "" : ", ") + example_number(type, fresh, column.unit, text);
+        }
         rows += fmt::format("{}[{}]", rows.empty() ? "" : ", ", row);
     }
     return fmt::format(", {}: [{}]", table.name, rows);
