@@ -37,10 +37,13 @@ bool at_attribute(const Cursor& p) {
            std::ranges::any_of(words, [&](std::string_view word) { return p.says(word); });
 }
 
-/// POU_Header : Attribute * ( 'NON_RETAIN' | 'RETAIN' ) ? Data_Block_Type ?
+/// POU_Header : Using_Directive * Attribute * ( 'NON_RETAIN' | 'RETAIN' ) ? Data_Block_Type ?
 /// Data_Block_Type : ( Array_Spec | Struct_Decl | Type_Access ) ';' ?
 /// Only a DATA_BLOCK has a type here; a name is always that.
 void parse_header(Parsing& p, Pou& pou) {
+    const bool has_using = p.is(Word::using_) && p.is_name(1);
+    if (has_using) open_scope(p, pou.place.begin, p.scope ? p.scope->path : std::string_view());
+    while (p.is(Word::using_) && p.is_name(1)) parse_using(p);
     refuse_bases(p);
     parse_attributes(p);
     p.accept(Word::non_retain_) || p.accept(Word::retain_);
