@@ -70,14 +70,15 @@ void parse_body(Parsing& p, Pou& pou, Word end) {
 }  // namespace
 
 /// Declaration : POU | Data_Type_Decl | Var_Section | Config_Decl | Test
-/// A METHOD stands within another unit; variables beside units are VAR_GLOBAL; a Test stands in a
-/// file of tests.
+/// A METHOD stands within another unit; variables beside units are VAR_GLOBAL or VAR, which is the
+/// same there; a Test stands in a file of tests.
 void parse_declaration(Parsing& p) {
     if (p.is(Word::end_of_file)) return;
     if (find_pou(p.here().word) && !p.is(Word::method_))
         return p.tree.units.push_back(parse_pou(p));
     if (p.is(Word::type_)) return parse_type_declarations(p);
-    if (p.is(Word::var_global_)) return p.tree.globals.push_back(parse_section(p, Section::global));
+    if (p.is(Word::var_global_) || p.is(Word::var_))
+        return p.tree.globals.push_back(parse_section(p, Section::global));
     if (p.is(Word::configuration_)) return parse_configuration(p);
     if (refuse_whole(p)) return;
     if (p.is_name(1) && respell(p, declaration_words)) return parse_declaration(p);
