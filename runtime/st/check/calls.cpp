@@ -8,6 +8,7 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
+#include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/order.hpp"
 #include "runtime/st/check/places.hpp"
@@ -265,7 +266,10 @@ std::string_view standard_name(const Type& type, std::string_view name) {
 }
 
 const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Type* expected) {
+    if (const auto name = qualified_name(c, *e->operands[0]))
+        e = make_call(c, *e, make_name(c, *e->operands[0], name->text), e->arguments);
     const Expression& callee = *e->operands[0];
+    if (refuse_member_of_namespace(c, callee)) return nullptr;
     if (callee.kind == E::member) {
         const Type* of = check(c, e->operands[0]->operands[0]);
         if (!of) return nullptr;

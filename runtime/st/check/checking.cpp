@@ -12,13 +12,23 @@ void Checking::warn(const char* code, Place place, std::string message, std::str
     out.warn(code, place.mark(), std::move(message), std::move(help));
 }
 
+const Prefixes* Checking::prefixes_at(Place place) const {
+    const auto all = prefixes.find(place.source);
+    if (all == prefixes.end()) return nullptr;
+    const auto is_around = [&](const Prefixes& one) {
+        return one.scope->begin <= place.begin && place.begin < one.scope->end;
+    };
+    const auto innermost = std::find_if(all->second.rbegin(), all->second.rend(), is_around);
+    return innermost == all->second.rend() ? nullptr : &*innermost;
+}
+
 Routine* Checking::find_routine(const Token& name) {
     Routine** const found = look_up(&Names::routines, name);
     return found ? *found : nullptr;
 }
 
 bool Checking::is_lost(const Token& name) const {
-    const auto it = tree.lost.find(name.text);
+    const auto it = tree.lost.find(name.text.substr(name.text.rfind('.') + 1));
     return it != tree.lost.end() && it->second && !is_prelude(name);
 }
 

@@ -46,6 +46,13 @@ inline bool is_dtl(const Type& type) {
            std::ranges::any_of(type.members, is_prelude, &Variable::name);
 }
 
+/// What may be left out before names that stand in a scope.
+struct Prefixes {
+    const Scope* scope = nullptr;
+    std::vector<std::string_view> paths = {};  ///< of namespaces, from the innermost on
+    bool is_whole = true;                      ///< false: a USING is unknown, which was told
+};
+
 /// What check() knows while it works. The work is done by functions that take it first, in a file
 /// for each subject (README.md); what is here they all share. Put logic there, not here.
 ///
@@ -59,6 +66,9 @@ struct Checking {
     Checked checked = {};
 
     Names users = {}, prelude = {};
+    NameMap<bool> namespaces = {};  ///< `a`, `a.b`; false: there is none of that name, told once
+    std::unordered_map<const Source*, std::vector<Prefixes>> prefixes =
+        {};  ///< as the tree's scopes
     NameMap<Variable*> globals = {};
     NameMap<const Declaration*> constants = {};  ///< of VAR_GLOBAL, until all globals are declared
     std::unordered_set<const Declaration*> begun_constants = {};  ///< declared, or being so
@@ -80,11 +90,25 @@ struct Checking {
     template <class T>
     T* look_up(NameMap<T> Names::*map, const Token& name) {
         if (!is_prelude(name))
-            if (const auto it = (users.*map).find(name.text); it != (users.*map).end())
-                return &it->second;
+            if (T* found = find_inside_out(users.*map, name)) return found;
         const auto it = (prelude.*map).find(name.text);
         return it == (prelude.*map).end() ? nullptr : &it->second;
     }
+    /// In the namespaces around the name, in those that are used there, then beside all.
+    template <class T>
+    static T* find_in(NameMap<T>& map, std::string_view name) {
+        const auto it = map.find(name);
+        return it == map.end() ? nullptr : &it->second;
+    }
+    template <class T>
+    T* find_inside_out(NameMap<T>& map, const Token& name) {
+        if (const Prefixes* here = prefixes_at(name.place))
+            for (const std::string_view path : here->paths)
+                if (T* found = find_in(map, fmt::format("{}.{}", path, name.text))) return found;
+        return find_in(map, name.text);
+    }
+    /// Null: there is no namespace, and none is used.
+    const Prefixes* prefixes_at(Place place) const;
     Routine* find_routine(const Token& name);
     Names& names_beside(const Token& name) { return is_prelude(name) ? prelude : users; }
 

@@ -5,6 +5,7 @@
 #include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/initial_values.hpp"
 #include "runtime/st/check/names.hpp"
+#include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/objects.hpp"
 #include "runtime/st/check/order.hpp"
 #include "runtime/st/check/types.hpp"
@@ -139,17 +140,21 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
 }  // namespace
 
 void collect_names(Checking& c) {
-    for (const TypeDeclaration& declared : c.tree.types)
-        if (Names& names = c.names_beside(declared.name);
-            is_new_name(c, declared.name, names.places))
-            names.types.emplace(declared.name.text, NamedType{&declared});
+    collect_namespaces(c);
+    for (const TypeDeclaration& declared : c.tree.types) {
+        const Token name = name_with_namespace(c, declared.name);
+        Names& names = c.names_beside(name);
+        if (is_new_name(c, name, names.places))
+            names.types.emplace(name.text, NamedType{&declared});
+    }
     for (Pou* pou : c.tree.units) {
         c.has_tests |= pou->is_tests;
-        Names& all = c.names_beside(pou->name);
-        const bool added = is_new_name(c, pou->name, all.places);
+        const Token full_name = name_with_namespace(c, pou->name);
+        Names& all = c.names_beside(full_name);
+        const bool added = is_new_name(c, full_name, all.places);
         if (pou->kind == PouKind::data_block) continue;
-        Routine& routine = c.make_routine(*pou, std::string(pou->name.text));
-        if (added) all.routines.emplace(pou->name.text, &routine);
+        Routine& routine = c.make_routine(*pou, std::string(full_name.text));
+        if (added) all.routines.emplace(full_name.text, &routine);
         if (routine.is_function()) continue;
         routine.type = &c.make_type(Kind::block, routine.name);
         routine.type->routine = &routine;

@@ -7,6 +7,7 @@
 #include "runtime/source/units.hpp"
 #include "runtime/source/utf8.hpp"
 #include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/objects.hpp"
 #include "runtime/st/check/order.hpp"
@@ -77,6 +78,7 @@ std::vector<std::string> visible_names(Checking& c) {
 
 const Type* undeclared(Checking& c, const Token& name, Place place,
                        const std::vector<std::string>& names) {
+    if (may_be_elsewhere(c, place)) return nullptr;
     if (c.tree.lost.contains(name.text) || !c.undeclared[c.routine].insert(name.text).second)
         return nullptr;
     const auto near = nearest(name.text, names);
@@ -104,10 +106,11 @@ const Type* use(Checking& c, Expression*& e, Variable& variable) {
 
 const Type* enumeration_of(Checking& c, const Expression& member) {
     const Expression& of = *member.operands[0];
-    if (of.kind != E::name || of.token.local) return nullptr;
-    const Variable* variable = find_variable(c, of.token);
+    const auto name = of.kind == E::name ? of.token : qualified_name(c, of);
+    if (!name || name->local) return nullptr;
+    const Variable* variable = find_variable(c, *name);
     if (variable && !(variable->type && variable->type->is_scalar())) return nullptr;
-    const NamedType* named = c.look_up(&Names::types, of.token);
+    const NamedType* named = c.look_up(&Names::types, *name);
     const Type* type = named ? named->type : nullptr;
     return type && type->kind == Kind::enumeration ? type : nullptr;
 }

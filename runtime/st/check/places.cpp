@@ -10,6 +10,7 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
+#include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/objects.hpp"
 #include "runtime/st/syntax/literals.hpp"
@@ -28,10 +29,15 @@ Variable* find_member(const Type& type, std::string_view name) {
 }
 
 const Type* check_member(Checking& c, Expression*& e) {
+    if (const auto name = qualified_name(c, *e)) {
+        e = make_name(c, *e, name->text);
+        return check(c, e);
+    }
     if (const Type* enumeration = enumeration_of(c, *e))
         return check_value(c, e, *enumeration, e->token);
     if (is_object_of(c, *e))
         use_object(c, e->operands[0], *object_type(c, *standard_type(c, technology_object)));
+    if (refuse_member_of_namespace(c, *e)) return nullptr;
     const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
     if (Routine* part = find_part(c, *type, e->token.text)) return check_part(c, e, *part);

@@ -10,7 +10,9 @@
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/initial_values.hpp"
 #include "runtime/st/check/names.hpp"
+#include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/vendors/instead.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
@@ -141,13 +143,16 @@ const Type* resolve_name(Checking& c, const Token& name) {
                       fmt::format("'{}' is a function, not a type", name.text),
                       "call it; only function blocks have instances");
     }
-    if (const Type* type = standard_type(c, name.text)) return type;
-    if (c.tree.lost.contains(name.text)) return nullptr;
-    std::string_view instead = instead_of_type(name.text);
-    if (instead.empty()) instead = c.catalog.instead_of(name.text);
+    const std::string_view bare = without_library(name.text);
+    if (const Type* type = standard_type(c, bare)) return type;
+    if (c.tree.lost.contains(name.text) || may_be_elsewhere(c, name.place)) return nullptr;
+    std::string_view instead = instead_of_type(bare);
+    if (instead.empty()) instead = c.catalog.instead_of(bare);
     if (!instead.empty())
         return c.fail(code::not_supported, name.place,
                       fmt::format("the type {} is not supported", name.text), std::string(instead));
+    if (name.text.find('.') != name.text.npos && !name.quoted)
+        return refuse_qualified(c, name), nullptr;
     std::vector<std::string> names = {"BOOL", "INT",  "DINT",  "LINT", "UINT",  "UDINT",
                                       "WORD", "REAL", "LREAL", "TIME", "STRING"};
     for (const auto& [known, type] : c.users.types) names.emplace_back(known);
@@ -175,7 +180,7 @@ const Type* resolve_declared(Checking& c, NamedType& named) {
     const bool is_own = declared.type->kind != TypeText::Kind::name;
     if (is_own) {
         auto& own = const_cast<Type&>(*type);
-        own.name = std::string(declared.name.text);
+        own.name = std::string(name_with_namespace(c, declared.name).text);
         own.is_unnamed = false;
     }
     if (declared.initial) {
@@ -188,7 +193,10 @@ const Type* resolve_declared(Checking& c, NamedType& named) {
     }
     auto& values = c.names_beside(declared.name).values;
     for (std::size_t i = 0; i < type->values.size() && is_own; ++i) {
-        const auto [it, is_new] = values.emplace(type->values[i], NamedValue{type, i});
+        Token value = declared.name;
+        value.text = type->values[i];
+        value = name_with_namespace(c, value);
+        const auto [it, is_new] = values.emplace(value.text, NamedValue{type, i});
         if (!is_new) it->second.ambiguous = true;
     }
     if (declared.initial)

@@ -38,6 +38,12 @@ bool Cursor::at_label() const {
     return false;
 }
 
+bool Cursor::at_qualified_prefix() const {
+    std::size_t i = 0;
+    while (st::is_name(next(i).word) && next(i + 1).word == Word::dot) i += 2;
+    return i > 0 && next(i).word == Word::prefix;
+}
+
 bool Cursor::at_structure() const {
     if (!is(Word::open)) return false;
     if (next().word == Word::close || at_argument_name(1)) return true;

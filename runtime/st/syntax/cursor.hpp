@@ -40,6 +40,8 @@ struct Cursor : Tokens {
     bool at_test_statement() const;
     /// Names, numbers, ranges and commas, and then a colon; one that begins a line is meant.
     bool at_label() const;
+    /// `a.b.Colour#red`
+    bool at_qualified_prefix() const;
     /// `(x := 1)`, `(1, 2)`, `()`, and not `(1 + 2) * 3`.
     bool at_structure() const;
     /// `x :=`, `x =>`; a word may be one without quotes, as nothing else can be meant.

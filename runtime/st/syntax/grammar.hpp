@@ -10,6 +10,14 @@
 /// is a mistake that it tells (recovery.hpp, mistakes.hpp); it gives a node back all the same.
 namespace lineshaft::st {
 
+// parse_namespaces.cpp
+void parse_namespace_element(Parsing& p);
+void parse_using(Parsing& p);
+/// From `begin` on to the end of the unit that is read; at its outermost to that of the source.
+void open_scope(Parsing& p, std::uint32_t begin, std::string_view path);
+/// `a.b.c` as one name.
+Token parse_qualified_name(Parsing& p, std::string_view what);
+
 // parse_program_units.cpp
 void parse_declaration(Parsing& p);
 Pou* parse_pou(Parsing& p);

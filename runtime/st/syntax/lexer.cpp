@@ -252,7 +252,7 @@ class Lexer {
         skip_name();
         const std::string_view text = text_.substr(start_, at_ - start_);
         const bool after_dot = !tokens_.tokens.empty() && tokens_.tokens.back().word == Word::dot;
-        if (peek() == '#' && !after_dot) return read_prefix(text);
+        if (peek() == '#') return read_prefix(text);
         if (const auto word = read_letter_assign(text)) {
             ++at_;
             add(*word);

@@ -20,8 +20,6 @@ constexpr Unsupported unsupported[] = {
     {Word::abstract_, "abstract blocks are", "leave it out, and write the whole block"},
     {Word::class_, "classes are", "write a FUNCTION_BLOCK with METHODs"},
     {Word::interface_, "interfaces are", "write a FUNCTION_BLOCK with METHODs"},
-    {Word::namespace_, "namespaces are", "put the namespace before its blocks' names: Lib_Block"},
-    {Word::using_, "namespaces are", "leave it out, all sources see each other"},
     {Word::extends_, "inheritance is", "declare an instance of the other block and call it"},
     {Word::implements_, "interfaces are", "leave it out, and call the block by its own type"},
     {Word::property_, "properties are", "write a METHOD, or a VAR_OUTPUT"},
@@ -110,20 +108,19 @@ bool refuse_unsupported(Parsing& p) {
 }
 
 bool refuse_whole(Parsing& p) {
-    static constexpr Word words[] = {Word::class_,    Word::interface_, Word::namespace_,
-                                     Word::property_, Word::action_,    Word::using_};
+    static constexpr Word words[] = {Word::class_, Word::interface_, Word::property_,
+                                     Word::action_};
     if (std::ranges::find(words, p.here().word) == std::end(words)) return false;
     const std::string end = fmt::format("end_{}", p.here().text);
-    const bool is_using = p.is(Word::using_);
     const bool is_part = p.is(Word::property_) || p.is(Word::action_);
     refuse_unsupported(p);
     p.panic = false;
     const std::size_t first = p.at;
     const auto at_last = [&] {
-        return p.is(Word::end_of_file) || (is_using && p.is(Word::semicolon)) || p.says(end);
+        return p.is(Word::end_of_file) || p.is(Word::end_namespace_) || p.says(end);
     };
     while (!at_last() && !(is_part && p.at != first && at_next_part(p))) p.take();
-    if (at_last()) p.take();
+    if (p.says(end)) p.take();
     p.accept(Word::semicolon);
     return true;
 }
@@ -224,13 +221,6 @@ bool refuse_union(Parsing& p) {
     tell(p, code::not_supported, p.take().place, "unions are not supported",
          "declare a STRUCT, and convert: DWORD_TO_REAL and its like keep the bits");
     return true;
-}
-
-void refuse_namespace(Parsing& p, Token& name) {
-    const Place first = name.place;
-    while (p.is(Word::dot) && p.is_name(1)) p.take(), name = p.take();
-    tell(p, code::not_supported, first.to(name.place), "namespaces are not supported",
-         fmt::format("write {}", name.text));
 }
 
 void refuse_comparison(Parsing& p) {

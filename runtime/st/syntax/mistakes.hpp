@@ -14,7 +14,7 @@ bool refuse_unsupported(Parsing& p);
 
 // Beside blocks and within them. False: it is none.
 
-/// CLASS, INTERFACE, NAMESPACE, PROPERTY, ACTION, USING: up to its END_... or the ';' behind it.
+/// CLASS, INTERFACE, PROPERTY, ACTION: up to its END_...
 bool refuse_whole(Parsing& p);
 /// `FUNCTION_BLOCK ABSTRACT x`
 bool refuse_modifier(Parsing& p);
@@ -43,8 +43,6 @@ void refuse_any_length(Parsing& p);
 void refuse_reference(Parsing& p, const Token& word);
 /// UNION, whose members are read all the same. False: it is none.
 bool refuse_union(Parsing& p);
-/// `lib.T`: the name becomes what is behind the points.
-void refuse_namespace(Parsing& p, Token& name);
 
 // In statements and expressions.
 

@@ -73,9 +73,22 @@ Expression* parse_signed_primary(Parsing& p) {
     return made;
 }
 
-/// Typed_Literal : Type_Prefix '#' ( Duration | Signed_Primary )
+/// Type_Name : ( Name '.' ) * Type_Prefix
+Token parse_type_name(Parsing& p) {
+    if (p.is(Word::prefix)) return p.take();
+    const Token first = p.here();
+    std::string text;
+    for (; !p.is(Word::prefix); p.take()) text += p.is(Word::dot) ? "." : p.here().text;
+    text += p.here().text;
+    Token name = p.take();
+    name.place = first.place.to(name.place);
+    name.text = p.tree.names.emplace_back(std::move(text));
+    return name;
+}
+
+/// Typed_Literal : Type_Name '#' ( Duration | Signed_Primary )
 Expression* parse_typed_literal(Parsing& p) {
-    const Token prefix = p.take();
+    const Token prefix = parse_type_name(p);
     if (p.is(Word::duration)) {
         Expression* time = p.make(Expression::Kind::constant, p.take());
         time->place = prefix.place.to(time->place);
@@ -120,6 +133,7 @@ Expression* parse_primary(Parsing& p) {
             default:
                 skip_this(p);
                 if (p.is(Word::super_) && p.next().word == Word::caret) break;
+                if (p.at_qualified_prefix()) return parse_typed_literal(p);
                 if (p.is_name() || at_operator_call(p))
                     return p.make(Expression::Kind::name, p.take());
         }

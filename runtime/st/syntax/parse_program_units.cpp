@@ -37,10 +37,13 @@ bool at_attribute(const Cursor& p) {
            std::ranges::any_of(words, [&](std::string_view word) { return p.says(word); });
 }
 
-/// POU_Header : Attribute * ( 'NON_RETAIN' | 'RETAIN' ) ? Data_Block_Type ?
+/// POU_Header : Using_Directive * Attribute * ( 'NON_RETAIN' | 'RETAIN' ) ? Data_Block_Type ?
 /// Data_Block_Type : ( Array_Spec | Struct_Decl | Type_Access ) ';' ?
 /// Only a DATA_BLOCK has a type here; a name is always that.
 void parse_header(Parsing& p, Pou& pou) {
+    const bool has_using = p.is(Word::using_) && p.is_name(1);
+    if (has_using) open_scope(p, pou.place.begin, p.scope ? p.scope->path : std::string_view());
+    while (p.is(Word::using_) && p.is_name(1)) parse_using(p);
     refuse_bases(p);
     parse_attributes(p);
     p.accept(Word::non_retain_) || p.accept(Word::retain_);
@@ -67,14 +70,15 @@ void parse_body(Parsing& p, Pou& pou, Word end) {
 }  // namespace
 
 /// Declaration : POU | Data_Type_Decl | Var_Section | Config_Decl | Test
-/// A METHOD stands within another unit; variables beside units are VAR_GLOBAL; a Test stands in a
-/// file of tests.
+/// A METHOD stands within another unit; variables beside units are VAR_GLOBAL or VAR, which is the
+/// same there; a Test stands in a file of tests.
 void parse_declaration(Parsing& p) {
     if (p.is(Word::end_of_file)) return;
     if (find_pou(p.here().word) && !p.is(Word::method_))
         return p.tree.units.push_back(parse_pou(p));
     if (p.is(Word::type_)) return parse_type_declarations(p);
-    if (p.is(Word::var_global_)) return p.tree.globals.push_back(parse_section(p, Section::global));
+    if (p.is(Word::var_global_) || p.is(Word::var_))
+        return p.tree.globals.push_back(parse_section(p, Section::global));
     if (p.is(Word::configuration_)) return parse_configuration(p);
     if (refuse_whole(p)) return;
     if (p.is_name(1) && respell(p, declaration_words)) return parse_declaration(p);

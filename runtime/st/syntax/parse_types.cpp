@@ -61,15 +61,14 @@ Expression* parse_length(Parsing& p) {
     return length;
 }
 
-/// Type_Access : ( '_' '.' ) ? Name
+/// Type_Access : ( '_' '.' ) ? Qualified_Name
 ///             | 'STRING' Text_Length | 'WSTRING' Text_Length
 ///             | Name Enum_Values | Name '(' Subrange ')'
 void parse_named_type(Parsing& p, TypeText& type) {
     if (p.is(Word::pointer_) && p.next().word == Word::to_) refuse_unsupported(p);
-    type.name = expect_name(p, "a type");
-    if (type.name.text == "_" && p.accept(Word::dot)) type.name = expect_name(p, "a type");
+    if (p.here().text == "_" && p.next().word == Word::dot) p.at += 2;
+    type.name = parse_qualified_name(p, "a type");
     if (p.panic) return;
-    if (p.is(Word::dot) && p.is_name(1)) refuse_namespace(p, type.name);
     const bool has_length = p.is(Word::open_bracket) || p.is(Word::open);
     if (same_name(type.name.text, "string") && has_length) {
         type.kind = TypeText::Kind::text;
@@ -92,10 +91,11 @@ void parse_named_type(Parsing& p, TypeText& type) {
 
 }  // namespace
 
-/// Data_Type_Decl : 'TYPE' ( Type_Decl ( ';' Type_Decl ) * ';' ? ) ? 'END_TYPE' ';' ?
+/// Data_Type_Decl : 'TYPE' Access_Spec * ( Type_Decl ( ';' Type_Decl ) * ';' ? ) ? 'END_TYPE' ';' ?
 /// Type_Decl : Name Attribute * ( ':' Data_Type | Struct_Decl ) ( ':=' Init ) ?
 void parse_type_declarations(Parsing& p) {
     const Token opener = p.take();
+    while (accept_access(p)) continue;
     while (!is_end(p.here().word) && !p.is(Word::end_of_file) && !p.at_pou()) {
         TypeDeclaration declared;
         declared.name = expect_name(p, "the name of a type");

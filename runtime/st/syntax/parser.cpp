@@ -5,11 +5,11 @@
 
 namespace lineshaft::st {
 
-/// Source : Declaration *
+/// Source : Namespace_Element *
 void parse(Tokens tokens, Tree& tree, Diagnostics& out) {
     tree.sources.push_back(tokens.source);
     Parsing p{Cursor{std::move(tokens)}, tree, out};
-    do lose_if_wrong(p, parse_declaration);
+    do parse_namespace_element(p);
     while (!p.is(Word::end_of_file));
     if (p.fixture) tree.units.push_back(p.fixture);
 }

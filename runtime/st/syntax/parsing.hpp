@@ -9,6 +9,7 @@ namespace lineshaft::st {
 struct Parsing : Cursor {
     Tree& tree;
     Diagnostics& out;
+    Scope* scope = nullptr;            ///< that is open; null: none
     Pou* fixture = nullptr;            ///< that the tests are methods of
     std::vector<Token> regions = {};   ///< that are open
     int cases = 0;                     ///< that are open, before their ELSE

@@ -190,8 +190,10 @@ void skip_line(Parsing& p) {
 
 void skip_to_declaration(Parsing& p) {
     p.panic = false;
+    const auto begins_line = [&](Word word) { return p.is(word) && p.here().first_in_line; };
     while (!p.is(Word::end_of_file) && !p.at_pou() && !p.is(Word::var_global_) && !p.at_test() &&
-           !(p.is(Word::type_) && p.here().first_in_line))
+           !p.is(Word::end_namespace_) && !begins_line(Word::type_) &&
+           !begins_line(Word::namespace_))
         p.take();
 }
 

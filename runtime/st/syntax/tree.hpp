@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <memory_resource>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -193,6 +194,15 @@ struct TypeDeclaration {
     bool is_lost = false;  ///< not understood
 };
 
+/// Part of a source where names may be written without the namespace that they are in: a namespace,
+/// or what a USING is for.
+struct Scope {
+    const Scope* outer = nullptr;
+    std::uint32_t begin = 0, end = 0;  ///< bytes of the source
+    std::string_view path = {};        ///< of the namespace, with those around it: `a.b`
+    std::vector<Token> usings = {};    ///< namespaces, `a.b`
+};
+
 /// Owns all nodes, so that they need no owners among themselves.
 struct Tree {
     std::vector<std::shared_ptr<const Source>> sources;  ///< that all places refer to
@@ -202,6 +212,10 @@ struct Tree {
     std::pmr::deque<TypeText> type_texts{&memory};
     std::pmr::deque<Declaration> declarations{&memory};
     std::pmr::deque<Pou> pous{&memory};
+
+    std::unordered_map<const Source*, std::deque<Scope>>
+        scopes;                     ///< those within others behind them
+    std::deque<std::string> names;  ///< that no source has as they are
 
     std::vector<TypeDeclaration> types;  ///< in the order of the sources, as all lists
     std::vector<Pou*> units;             ///< all but methods

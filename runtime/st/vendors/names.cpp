@@ -48,6 +48,9 @@ constexpr Renamed parts[] = {{"reset", "r"},
                              {"enable_positive", "enablepositive"},
                              {"enable_negative", "enablenegative"}};
 
+constexpr std::string_view libraries[] = {"standard",  "standard64",   "tc2_standard", "tc2_mc2",
+                                          "sm3_basic", "sm3_robotics", "plcopen"};
+
 constexpr AddedInput added_inputs[] = {
     {"StartMode"},    {"StopMode"},    {"Restart"},    {"PositionControlled"},
     {"bRegulatorOn"}, {"bDriveStart"}, {"Current", 0}, {"AbortAcceleration", 0},
@@ -68,6 +71,15 @@ std::string_view standard_part_name(std::string_view name) {
     const auto* it = std::ranges::find_if(
         parts, [&](const Renamed& renamed) { return same_name(renamed.theirs, name); });
     return it == std::end(parts) ? std::string_view() : it->standard;
+}
+
+std::string_view without_library(std::string_view name) {
+    const std::size_t point = name.find('.');
+    if (point == name.npos) return name;
+    const auto is_first = [&](std::string_view known) {
+        return same_name(known, name.substr(0, point));
+    };
+    return std::ranges::any_of(libraries, is_first) ? name.substr(point + 1) : name;
 }
 
 const AddedInput* find_added_input(std::string_view name) {

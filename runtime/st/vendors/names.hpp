@@ -15,6 +15,10 @@ std::string_view standard_type_name(std::string_view name);
 /// Empty for any other name.
 std::string_view standard_part_name(std::string_view name);
 
+/// `TON` of `Standard.TON`, where the first is a library of CODESYS or Beckhoff whose names are
+/// here without it; else the name as it is.
+std::string_view without_library(std::string_view name);
+
 /// What Siemens' programs name by `"Axis_1"` without declaring it.
 inline constexpr std::string_view technology_object = "axis_ref";
 

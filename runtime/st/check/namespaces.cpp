@@ -1,0 +1,153 @@
+#include "runtime/st/check/namespaces.hpp"
+
+#include <algorithm>
+
+#include "runtime/source/codes.hpp"
+#include "runtime/st/check/names.hpp"
+#include "runtime/st/vendors/names.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+std::string_view before_last_point(std::string_view name) {
+    const std::size_t point = name.rfind('.');
+    return point == name.npos ? std::string_view() : name.substr(0, point);
+}
+
+bool is_namespace(const Checking& c, std::string_view path) {
+    const auto it = c.namespaces.find(path);
+    return it != c.namespaces.end() && it->second;
+}
+
+/// The path of the namespace that `name` means there; empty: none.
+std::string find_namespace(const Checking& c, Place place, std::string_view name) {
+    if (const Prefixes* here = c.prefixes_at(place))
+        for (const std::string_view path : here->paths)
+            if (std::string inner = fmt::format("{}.{}", path, name); is_namespace(c, inner))
+                return inner;
+    return is_namespace(c, name) ? std::string(name) : std::string();
+}
+
+std::vector<std::string> known_namespaces(const Checking& c) {
+    std::vector<std::string> names;
+    for (const auto& [path, is_known] : c.namespaces)
+        if (is_known) names.emplace_back(path);
+    std::ranges::sort(names);
+    return names;
+}
+
+void refuse_namespace(Checking& c, Place place, std::string_view path) {
+    if (!c.namespaces.emplace(c.checked.names.emplace_back(path), false).second) return;
+    const std::string near = suggest(path, known_namespaces(c));
+    c.fail(code::not_declared, place, fmt::format("there is no namespace '{}'", path),
+           near.empty() ? "give the sources that declare it, too" : near);
+}
+
+/// `a.b.x`; empty: there is more to it than names.
+std::string joined(const Expression& e) {
+    if (e.kind == E::name) return e.token.local ? std::string() : std::string(e.token.text);
+    if (e.kind != E::member) return {};
+    const std::string before = joined(*e.operands[0]);
+    return before.empty() ? before : fmt::format("{}.{}", before, e.token.text);
+}
+
+/// Its first name, where that may be one of a namespace.
+const Expression* root_of(Checking& c, const Expression& member) {
+    const Expression* root = &member;
+    while (root->kind == E::member) root = root->operands[0];
+    const bool is_free = root->kind == E::name && !root->token.local && !root->token.quoted &&
+                         !root->type && !find_variable(c, root->token);
+    return is_free ? root : nullptr;
+}
+
+}  // namespace
+
+void collect_namespaces(Checking& c) {
+    for (const auto& [source, scopes] : c.tree.scopes)
+        for (const Scope& scope : scopes)
+            for (std::string_view path = scope.path; !path.empty(); path = before_last_point(path))
+                c.namespaces.emplace(path, true);
+    for (const auto& source : c.tree.sources) {
+        const auto scopes = c.tree.scopes.find(source.get());
+        if (scopes == c.tree.scopes.end()) continue;
+        auto& all = c.prefixes[source.get()];
+        for (const Scope& scope : scopes->second) {
+            Prefixes& made = all.emplace_back(Prefixes{&scope});
+            for (const Scope* s = &scope; s; s = s->outer) {
+                const std::string_view outer = s->outer ? s->outer->path : std::string_view();
+                for (std::string_view p = s->path; p.size() > outer.size();
+                     p = before_last_point(p))
+                    made.paths.push_back(p);
+                for (const Token& used : s->usings) {
+                    if (is_namespace(c, used.text))
+                        made.paths.push_back(used.text);
+                    else
+                        refuse_namespace(c, used.place, used.text), made.is_whole = false;
+                }
+            }
+        }
+    }
+}
+
+Token name_with_namespace(Checking& c, Token declared) {
+    const Prefixes* here = c.prefixes_at(declared.place);
+    if (here && !here->scope->path.empty())
+        declared.text =
+            c.checked.names.emplace_back(fmt::format("{}.{}", here->scope->path, declared.text));
+    return declared;
+}
+
+std::optional<Token> qualified_name(Checking& c, const Expression& member) {
+    if (member.kind != E::member || !root_of(c, member)) return {};
+    const std::string text = joined(member);
+    if (text.empty()) return {};
+    Token name = member.token;
+    name.place = member.place;
+    name.text = text;
+    const bool is_known = find_variable(c, name) || c.look_up(&Names::types, name) ||
+                          c.look_up(&Names::values, name) || c.find_routine(name);
+    if (!is_known) {
+        const std::string_view rest = without_library(text);
+        if (rest == text) return {};
+        name.text = rest;
+    }
+    name.text = c.checked.names.emplace_back(name.text);
+    return name;
+}
+
+void refuse_qualified(Checking& c, const Token& name) {
+    const std::string_view before = before_last_point(name.text);
+    const std::string path = find_namespace(c, name.place, before);
+    if (path.empty()) return refuse_namespace(c, name.place, before);
+    const std::string start = path + '.';
+    std::vector<std::string> names;
+    const auto add = [&](std::string_view full) {
+        if (full.starts_with(start)) names.emplace_back(full.substr(start.size()));
+    };
+    for (const auto& [full, place] : c.users.places) add(full);
+    std::ranges::sort(names);
+    const std::string_view last = name.text.substr(before.size() + 1);
+    if (c.tree.lost.contains(last)) return;
+    c.fail(code::not_declared, name.place,
+           fmt::format("the namespace '{}' has no '{}'", path, last), suggest(last, names));
+}
+
+bool refuse_member_of_namespace(Checking& c, const Expression& member) {
+    if (member.kind != E::member || !root_of(c, member)) return false;
+    Token name = member.token;
+    const std::string text = joined(member);
+    name.text = text;
+    name.place = member.place;
+    const std::string path(before_last_point(text));
+    if (path.empty() || find_namespace(c, name.place, path).empty()) return false;
+    refuse_qualified(c, name);
+    return true;
+}
+
+bool may_be_elsewhere(const Checking& c, Place place) {
+    const Prefixes* here = c.prefixes_at(place);
+    return here && !here->is_whole;
+}
+
+}  // namespace lineshaft::st

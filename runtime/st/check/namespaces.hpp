@@ -1,0 +1,25 @@
+#pragma once
+
+#include "runtime/st/check/checking.hpp"
+
+namespace lineshaft::st {
+
+/// Which namespaces there are, and what each scope sees of them. A USING of another is told.
+void collect_namespaces(Checking& c);
+
+/// What is declared as `T` in the namespace `a.b` is `a.b.T`.
+Token name_with_namespace(Checking& c, Token declared);
+
+/// `a.b.x` as one name where `a` is no variable, and `a.b.x` is declared in a namespace, stands in
+/// a list of globals or is of a library. Nothing: the points take parts.
+std::optional<Token> qualified_name(Checking& c, const Expression& member);
+
+/// Tells that a namespace is unknown, or has no such name, unless that was told.
+void refuse_qualified(Checking& c, const Token& name);
+/// Of a member: the same, where what is before its last point is a namespace. False: it is none.
+bool refuse_member_of_namespace(Checking& c, const Expression& member);
+
+/// What stands there may be of a namespace that is unknown.
+bool may_be_elsewhere(const Checking& c, Place place);
+
+}  // namespace lineshaft::st
