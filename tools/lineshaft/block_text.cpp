@@ -97,7 +97,10 @@ std::string example_number(const BlockType& type, const Fresh& fresh, std::strin
 
 /// Kinds that an example may refer to: their own is called by example_name, an axis x.
 bool is_of_examples(std::string_view kind) {
-    return kind == "axis" || kind == "cam_table" || kind == "axes_group" || kind == "path_table";
+    static constexpr std::string_view kinds[] = {"axis",           "cam_table",    "axes_group",
+                                                 "path_table",     "cam_switches", "digital_inputs",
+                                                 "digital_outputs"};
+    return std::ranges::find(kinds, kind) != std::end(kinds);
 }
 
 std::string example_value(const BlockType& type, const Fresh& fresh, const Field& field) {
