@@ -145,7 +145,7 @@ struct Axis {
     static constexpr std::string_view doc = "axis that takes commands: see the MC_ blocks";
     static constexpr std::string_view handle = "AXIS_REF";
     static const std::string_view structured_text;
-    static constexpr bool sets_parameters = true;  ///< by MC_WriteParameter
+    static bool sets_parameter(const Field& field);  ///< by MC_WriteParameter
     static std::span<const Field> fields();
     std::optional<Misfit> misfit(const IsConstant& is_constant) const;
     void scan(const Scan& now, const Context& context);

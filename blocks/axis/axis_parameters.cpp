@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "blocks/axis/axis.hpp"
@@ -26,6 +27,15 @@ double* Axis::limit_of(std::int64_t number) {
         default:
             return nullptr;
     }
+}
+
+bool Axis::sets_parameter(const Field& field) {
+    Axis axis;
+    const std::byte* const first = reinterpret_cast<const std::byte*>(&axis);
+    const auto is_at = [&](const void* place) { return place == first + field.offset; };
+    constexpr std::int64_t numbers[] = {2, 3, 9, 13, 15, 17};
+    return is_at(&axis.software_limits) ||
+           std::ranges::any_of(numbers, [&](std::int64_t n) { return is_at(axis.limit_of(n)); });
 }
 
 std::optional<double> Axis::read_parameter(std::int64_t number) const {

@@ -186,12 +186,12 @@ bool is_valid(const Job& job, const KeptState& machine) {
 }
 
 bool is_valid(const Axis& axis, const KeptState& machine) {
-    return motions_are_valid(axis, machine) && is_valid(axis.active, machine) &&
+    return !axis.misfit({}) && motions_are_valid(axis, machine) && is_valid(axis.active, machine) &&
            is_valid(axis.added, machine) && is_valid(axis.phased, machine) &&
            is_valid(axis.overriding, machine) && machine.is_task(axis.task) &&
            is_count(axis.scan_index) && machine.is_moment(axis.scan_time) &&
-           machine.is_moment(axis.shown.time) && machine.is_moment(axis.led_at) && is_valid(axis.shortage) &&
-           is_count(axis.scan_interval) && is_count(axis.renamed) &&
+           machine.is_moment(axis.shown.time) && machine.is_moment(axis.led_at) &&
+           is_valid(axis.shortage) && is_count(axis.scan_interval) && is_count(axis.renamed) &&
            is_count(axis.trigger_aborts) && masters_are_valid(axis, machine) &&
            steps_are_few(axis, machine) && (!machine.is_live || lists_are_valid(axis, machine));
 }

@@ -63,8 +63,10 @@ bool KeptMemory::is_unchanged(std::size_t number) const {
     };
     for (const Field& field : block.type->fields) {
         const bool is_parameter = field.direction == Direction::parameter;
-        if ((is_parameter && !block.type->sets_parameters) || field.direction == Direction::in_out)
+        const bool may_be_set = block.type->sets_parameter && block.type->sets_parameter(field);
+        if ((is_parameter && !may_be_set) || field.direction == Direction::in_out)
             if (!same(field.offset, size_of(field.type))) return false;
+        if (may_be_set && !field.admits(load(field.type, block.live + field.offset))) return false;
     }
     return std::ranges::all_of(block.type->tables, [&](const TableField& table) {
         return same(table.size_offset, sizeof(std::int64_t)) &&

@@ -70,7 +70,8 @@ struct BlockType {
     /// A block that was retained when others were not forgets what it was linked with, where that
     /// is not linked with it. Or null.
     void (*mend_links)(std::byte* block, const KeptState& machine) = nullptr;
-    bool sets_parameters = false;  ///< its own, while it runs
+    /// Whether it may give itself that parameter another value while it runs; or null: none.
+    bool (*sets_parameter)(const Field& field) = nullptr;
     /// Where its last error came from, for people; empty: nobody can say. Or null.
     std::string (*why)(const std::byte* block, const Context& context,
                        const NameOf& name_of) = nullptr;
@@ -147,9 +148,6 @@ class Catalog {
         std::string_view structured_text;
         if constexpr (requires { Block::structured_text; })
             structured_text = Block::structured_text;
-        constexpr bool sets_parameters = requires {
-            Block::sets_parameters;
-        };
         return add({.name = Block::type,
                     .doc = Block::doc,
                     .fields = Block::fields(),
@@ -166,7 +164,7 @@ class Catalog {
                     .valid = valid_state<Block>(),
                     .add_links = add_links<Block>(),
                     .mend_links = mend_links<Block>(),
-                    .sets_parameters = sets_parameters,
+                    .sets_parameter = sets_parameter<Block>(),
                     .why = why<Block>(),
                     .handle = handle,
                     .structured_text = structured_text});
@@ -223,6 +221,13 @@ class Catalog {
             return [](const std::byte* block, const KeptState& machine) {
                 return is_valid(*std::launder(reinterpret_cast<const Block*>(block)), machine);
             };
+        return nullptr;
+    }
+
+    template <class Block>
+    static constexpr auto sets_parameter() -> decltype(BlockType::sets_parameter) {
+        if constexpr (requires(const Field& field) { Block::sets_parameter(field); })
+            return &Block::sets_parameter;
         return nullptr;
     }
 

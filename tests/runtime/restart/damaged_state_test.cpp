@@ -1,12 +1,19 @@
 #include <array>
+#include <cmath>
 #include <cstdlib>
+#include <new>
 #include <random>
 
 #include <catch2/catch.hpp>
 
+#include "blocks/axis/axis.hpp"
+#include "blocks/catalog.hpp"
+#include "runtime/machine/kept_memory.hpp"
+#include "runtime/run/link.hpp"
 #include "tests/folder.hpp"
 #include "tests/fuzz/kept_runs.hpp"
 
+using namespace lineshaft;
 using namespace lineshaft::test;
 
 namespace {
@@ -68,4 +75,41 @@ TEST_CASE("a run begins with what it retained, and is safe with any that is dama
             CHECK((other == run->retained() || !run->begin(other, false)));
         }
     }
+}
+
+TEST_CASE("a machine goes on with parameters of an axis that a command can have set, no others") {
+    constexpr const char* text =
+        "lineshaft: 1\ntasks: {main: {every: 1 ms}}\nblocks:\n  x: {type: axis, task: main, "
+        "software_limits: true, lowest_position: -1 m, highest_position: 1 m}\nrun: {for: 1 s}\n";
+    Diagnostics out;
+    Program program =
+        read_program(std::make_shared<SourceFile>(SourceFile{"p.yaml", text}), {}, out);
+    Linked linked = link(program, standard_blocks(), out);
+    INFO(out.render());
+    REQUIRE(out.empty());
+    Machine& machine = linked.machine;
+    const KeptMemory memory(machine, 0);
+    REQUIRE(memory.damaged() == "");
+    Axis& axis = *std::launder(reinterpret_cast<Axis*>(machine.blocks[0].live));
+    const auto is_taken = [&](const auto& change) {
+        const Axis before = axis;
+        change();
+        const bool taken = memory.damaged().empty();
+        axis = before;
+        return taken;
+    };
+    CHECK(is_taken([&] { axis.default_velocity = 7; }));
+    CHECK(is_taken([&] { axis.default_jerk = 0; }));
+    CHECK(is_taken([&] { axis.software_limits = false; }));
+    CHECK(is_taken([&] { axis.lowest_position = 0; }));
+    for (const double wrong : {-1.0, 0.0, std::nan("")})
+        CHECK_FALSE(is_taken([&] { axis.default_velocity = wrong; }));
+    CHECK_FALSE(is_taken([&] { axis.default_deceleration = -1; }));
+    CHECK_FALSE(is_taken([&] { axis.lowest_position = 2000; }));
+    CHECK_FALSE(is_taken([&] { axis.highest_position = std::nan(""); }));
+    CHECK_FALSE(is_taken([&] { axis.modulo = true; }));
+    CHECK_FALSE(is_taken([&] { axis.period = 360; }));
+    CHECK_FALSE(is_taken([&] { axis.has_drive = true; }));
+    CHECK_FALSE(is_taken([&] { axis.unit = AxisUnit::deg; }));
+    CHECK_FALSE(is_taken([&] { axis.transition_quantum = 1; }));
 }
