@@ -141,7 +141,9 @@ Judged judge(const Approach& a) {
         if (follows && coupled) {
             if (std::abs(now.velocity) > a.V * more + slack)
                 breaks("the velocity", now.velocity, a.V);
-            const double A = std::max(a.A, a.D);
+            // A greater one that its own dynamics have left it falls by the whole jerk.
+            const double inherited = std::abs(last.acceleration) - a.J * 1e-3;
+            const double A = std::max({a.A, a.D, inherited});
             if (std::abs(now.acceleration) > A * more + slack)
                 breaks("the acceleration", now.acceleration, A);
             if (std::abs(jerk) > a.J * more + slack) breaks("the mean jerk", jerk, a.J);
