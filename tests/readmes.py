@@ -14,7 +14,8 @@ import re
 import sys
 
 source = pathlib.Path(sys.argv[1]).resolve()
-beside = {"README.md", "CMakeLists.txt", "CMakePresets.json", "LICENSE", "build", "node_modules", "__pycache__", "corpus"}
+made = {pathlib.PurePath(line.strip("/")).name for line in (source / ".gitignore").read_text(encoding="utf-8").split()}
+beside = {"README.md", "CMakeLists.txt", "CMakePresets.json", "LICENSE", "corpus"} | made
 code = {".cpp", ".hpp", ".c", ".h", ".py", ".js", ".mjs"}
 wrong = []
 
