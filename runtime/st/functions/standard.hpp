@@ -14,18 +14,18 @@ namespace lineshaft::st {
 /// How the types of a call's arguments and of its result are found: a function of
 /// check/standard_types.cpp for each.
 enum class Typing : std::uint8_t {
-    real,        ///< of one number: REAL or LREAL as it is, or as the result's row says
-    reals,       ///< of several numbers: REAL or LREAL as what they have in common
-    scaled,      ///< SCALE_X: a number as it is wanted, or as its first argument is
-    own,         ///< of one argument: its type
-    common,      ///< what all arguments have in common, or what is wanted
-    chosen,      ///< what all arguments but the first have in common, or what is wanted
-    places,      ///< bits and a number of places: the type of the bits
-    bits,        ///< of a bit string
-    bit_number,  ///< of a number: the bit string that is wanted, or a DWORD
-    texts,       ///< of texts and whole numbers, as the parameters say
-    capacity,    ///< of a text: a constant, or of one that is given what it holds
-    lower_bound,    ///< of an array and a dimension: a constant
+    real,         ///< of one number: REAL or LREAL as it is, or as the result's row says
+    reals,        ///< of several numbers: REAL or LREAL as what they have in common
+    scaled,       ///< SCALE_X: a number as it is wanted, or as its first argument is
+    own,          ///< of one argument: its type
+    common,       ///< what all arguments have in common, or what is wanted
+    chosen,       ///< what all arguments but the first have in common, or what is wanted
+    places,       ///< bits and a number of places: the type of the bits
+    bits,         ///< of a bit string
+    bit_number,   ///< of a number: the bit string that is wanted, or a DWORD
+    texts,        ///< of texts and whole numbers, as the parameters say
+    capacity,     ///< of a text: a constant, or of one that is given what it holds
+    lower_bound,  ///< of an array and a dimension: a constant
     upper_bound,
     element_count,  ///< of an array: a constant
     scan_time,

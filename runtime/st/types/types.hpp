@@ -138,8 +138,8 @@ struct Routine {
     NameMap<Variable*> names = {};
     NameMap<Routine*> methods = {};
     Variable* result = nullptr;
-    Type* type = nullptr;   ///< of its instances, of a block
-    Block body = {};  ///< as checked: what its statements stand for
+    Type* type = nullptr;  ///< of its instances, of a block
+    Block body = {};       ///< as checked: what its statements stand for
     std::vector<Routine*> calls = {};
     std::vector<Place> call_places = {};
     std::vector<int> objects = {};  ///< globals that are blocks of the program, and that it names

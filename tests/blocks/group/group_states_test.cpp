@@ -1,5 +1,4 @@
 #include "blocks/group/group_states.hpp"
-#include "tests/source_folder.hpp"
 
 #include <fstream>
 #include <iterator>
