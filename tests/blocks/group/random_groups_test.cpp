@@ -9,7 +9,7 @@
 
 #include "blocks/group/axes_group.hpp"
 #include "runtime/model/random.hpp"
-#include "tests/blocks/motion/bench.hpp"
+#include "tests/blocks/motion/sequences.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::test;
@@ -20,14 +20,6 @@ namespace {
 /// lose their power. No axis leaves its limits in any scan; in the end the group moves once more.
 class RandomGroup {
   public:
-    /// A pin is set before an instant.
-    struct Event {
-        std::int64_t at = 0;  ///< [ms]
-        std::size_t pin = 0;
-        double value = 0;
-    };
-    using Events = std::vector<Event>;
-
     static constexpr std::int64_t length = 600, patience = 20'000;  ///< [ms]
 
     RandomGroup() : bench_(program()) {
@@ -65,20 +57,6 @@ class RandomGroup {
         return fmt::format("it does not end: group in {}, {} mm along",
                            group_state_names[static_cast<std::size_t>(group.state)],
                            group.distance);
-    }
-
-    Events shrunk(Events events) {
-        for (std::size_t size = events.size() / 2; size > 0; size /= 2)
-            for (std::size_t i = 0; i + size <= events.size();) {
-                Events less = events;
-                const auto first = less.begin() + static_cast<std::ptrdiff_t>(i);
-                less.erase(first, first + static_cast<std::ptrdiff_t>(size));
-                if (run(less).empty())
-                    i += size;
-                else
-                    events = std::move(less);
-            }
-        return events;
     }
 
     std::string text(const Events& events) const {
@@ -283,9 +261,10 @@ TEST_CASE("random groups never lead their axes out of their limits") {
     const std::uint64_t count = wanted ? std::stoull(wanted) : 100;
     RandomGroup group;
     for (std::uint64_t seed = begin; seed < begin + count; ++seed) {
-        const RandomGroup::Events events = group.draw(seed);
+        const Events events = group.draw(seed);
         if (group.run(events).empty()) continue;
-        const RandomGroup::Events less = group.shrunk(events);
+        const Events less =
+            shrunk(events, [&](const Events& some) { return !group.run(some).empty(); });
         FAIL(fmt::format("seed {}: {}\n{}", seed, group.run(less), group.text(less)));
     }
 }

@@ -9,7 +9,7 @@
 #include "blocks/axis/cam_table.hpp"
 #include "blocks/inputs.hpp"
 #include "runtime/model/random.hpp"
-#include "tests/blocks/motion/bench.hpp"
+#include "tests/blocks/motion/sequences.hpp"
 #include "tests/blocks/scanning.hpp"
 
 using namespace lineshaft;
@@ -21,14 +21,6 @@ namespace {
 /// of different intervals; each with commands whose pins change at random.
 class LimitedAxes {
   public:
-    /// A pin is set before an instant.
-    struct Event {
-        std::int64_t at = 0;  ///< [ms]
-        std::size_t pin = 0;
-        double value = 0;
-    };
-    using Events = std::vector<Event>;
-
     static constexpr double lowest = -20, highest = 60;  ///< [mm], at first
     static constexpr std::int64_t length = 400;          ///< of a program [ms]
     static constexpr std::int64_t patience = 50'000;     ///< until all have come in [ms]
@@ -74,20 +66,6 @@ class LimitedAxes {
                 fmt::format(" {} at {} with {} in {}", w.name, w.axis->position, w.axis->velocity,
                             axis_state_names[static_cast<std::size_t>(w.axis->state)]);
         return text;
-    }
-
-    Events shrunk(Events events) {
-        for (std::size_t size = events.size() / 2; size > 0; size /= 2)
-            for (std::size_t i = 0; i + size <= events.size();) {
-                Events less = events;
-                const auto first = less.begin() + static_cast<std::ptrdiff_t>(i);
-                less.erase(first, first + static_cast<std::ptrdiff_t>(size));
-                if (run(less).empty())
-                    i += size;
-                else
-                    events = std::move(less);
-            }
-        return events;
     }
 
     std::string text(const Events& events) const {
@@ -374,9 +352,10 @@ TEST_CASE("random programs never lead an axis out of its software limits") {
     const std::uint64_t count = wanted ? std::stoull(wanted) : 300;
     LimitedAxes axes;
     for (std::uint64_t seed = begin; seed < begin + count; ++seed) {
-        const LimitedAxes::Events events = axes.draw(seed);
+        const Events events = axes.draw(seed);
         if (axes.run(events).empty()) continue;
-        const LimitedAxes::Events less = axes.shrunk(events);
+        const Events less =
+            shrunk(events, [&](const Events& some) { return !axes.run(some).empty(); });
         FAIL(fmt::format("seed {}: {}\n{}", seed, axes.run(less), axes.text(less)));
     }
 }

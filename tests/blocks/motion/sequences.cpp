@@ -86,16 +86,16 @@ std::string Sequences::run(const Events& events) {
     return "it does not end";
 }
 
-Events Sequences::shrunk(Events events) {
+Events shrunk(Events events, const std::function<bool(const Events&)>& goes_wrong) {
     for (std::size_t size = events.size() / 2; size > 0; size /= 2)
         for (std::size_t i = 0; i + size <= events.size();) {
             Events less = events;
             const auto first = less.begin() + static_cast<std::ptrdiff_t>(i);
             less.erase(first, first + static_cast<std::ptrdiff_t>(size));
-            if (run(less).empty())
-                i += size;
-            else
+            if (goes_wrong(less))
                 events = std::move(less);
+            else
+                i += size;
         }
     return events;
 }
@@ -158,7 +158,8 @@ void check_sequences(Sequences& sequences, std::int64_t count, std::string_view 
     for (std::int64_t seed = 1; seed <= count; ++seed) {
         const Events events = sequences.draw(static_cast<std::uint64_t>(seed));
         if (sequences.run(events).empty()) continue;
-        const Events less = sequences.shrunk(events);
+        const Events less =
+            shrunk(events, [&](const Events& some) { return !sequences.run(some).empty(); });
         FAIL(fmt::format("{}, seed {}: {}\n{}", what, seed, sequences.run(less),
                          sequences.text(less)));
     }

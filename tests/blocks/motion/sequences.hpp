@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,6 +18,9 @@ struct Event {
     double value = 0;
 };
 using Events = std::vector<Event>;
+
+/// What is left of events that go wrong when none can be left out any more.
+Events shrunk(Events events, const std::function<bool(const Events&)>& goes_wrong);
 
 /// A command block of each axis, and the pins that are set at random.
 struct CommandDraw {
@@ -44,8 +48,6 @@ class Sequences {
     Events draw(std::uint64_t seed) const;
     /// What goes wrong; empty for nothing.
     std::string run(const Events& events);
-    /// What is left of events that go wrong when none can be left out any more.
-    Events shrunk(Events events);
     std::string text(const Events& events) const;
 
   protected:
