@@ -3,8 +3,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <map>
+#include <ranges>
+#include <string_view>
 #include <system_error>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include <netdb.h>
 #include <netinet/in.h>
@@ -56,23 +61,25 @@ bool Clients::send_one_away() {
 }
 
 Client* Clients::next_to_go() {
-    const auto rank = [&](const Client& client) {
-        const auto of_its_machine = std::ranges::count_if(clients_, [&](const Client& other) {
-            return !other.shut_ && other.peer == client.peer;
-        });
-        const bool waits_for_us = client.socket->is_readable(0);
-        return std::tuple(-of_its_machine, waits_for_us, +client.since_);
-    };
-    Client* next = nullptr;
-    std::tuple<std::ptrdiff_t, bool, std::int64_t> first;
-    for (Client& client : clients_) {
-        if (client.shut_ || client.stays_ || client.gone_) continue;
-        const auto its = rank(client);
-        if (next && its >= first) continue;
-        next = &client;
-        first = its;
-    }
-    return next;
+    std::map<std::string_view, std::size_t> of_machine;
+    for (const Client& client : clients_)
+        if (!client.shut_) ++of_machine[client.peer];
+    std::vector<std::tuple<std::size_t, std::int64_t, Client*>> in_turn;
+    for (Client& client : clients_)
+        if (!client.shut_ && !client.stays_ && !client.gone_)
+            in_turn.emplace_back(clients_.size() - of_machine[client.peer], +client.since_,
+                                 &client);
+    if (in_turn.empty()) return nullptr;
+    std::ranges::stable_sort(in_turn, {}, [](const auto& each) {
+        return std::pair(std::get<0>(each), std::get<1>(each));
+    });
+    const auto of_the_most = in_turn | std::views::take_while([&](const auto& each) {
+                                 return std::get<0>(each) == std::get<0>(in_turn.front());
+                             });
+    const auto next = std::ranges::find_if(of_the_most, [](const auto& each) {
+        return !std::get<Client*>(each)->socket->is_readable(0);
+    });
+    return std::get<Client*>(next == of_the_most.end() ? in_turn.front() : *next);
 }
 
 void Clients::forget() {
@@ -85,7 +92,6 @@ void Clients::forget() {
 }
 
 Listener::Listener(Clients& clients, const std::string& host, int port) : clients_(clients) {
-    constexpr int most_that_wait = 128;
     addrinfo hints{};
     hints.ai_flags = AI_PASSIVE | AI_NUMERICHOST | AI_NUMERICSERV;
     hints.ai_socktype = SOCK_STREAM;
@@ -98,7 +104,7 @@ Listener::Listener(Clients& clients, const std::string& host, int port) : client
     socket_ = ::socket(found->ai_family, found->ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (socket_ < 0 || ::setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0 ||
         ::bind(socket_, found->ai_addr, found->ai_addrlen) != 0 ||
-        ::listen(socket_, most_that_wait) != 0)
+        ::listen(socket_, SOMAXCONN) != 0)
         error_ = std::strerror(errno);
     ::freeaddrinfo(found);
     if (!error_.empty()) return;
