@@ -106,10 +106,12 @@ struct Judged {
     std::string broken;  ///< what did not hold, and when; empty: nothing
 };
 
-/// How far a slave goes that brakes, and then runs up to the speed of the law.
-double least_way(const MotionState& s, double speed, const Approach& a) {
+/// How far a slave goes that brakes, and then runs up to the speed of the law. While the master
+/// changes its own, a piece of constant jerk from a state without acceleration ends a timed motion.
+double least_way(const MotionState& s, double speed, const MotionState& master, const Approach& a) {
     const Dynamics d{a.V, std::min(a.A, a.D), std::min(a.A, a.D), a.J};
-    return stopping_position(s, d) - s.position + ramp_way(0, speed, d);
+    const double most = master.acceleration == 0 ? 0 : std::abs(a.ratio) * a.master_a;
+    return stopping_position(s, d) - s.position + ramp_way(0, speed, d) + speed * most / a.J;
 }
 
 Judged judge(const Approach& a) {
@@ -162,7 +164,9 @@ Judged judge(const Approach& a) {
             breaks("the step", step, mean);
         if (follows && !asked_back && now.velocity < -slack)
             breaks("the velocity backwards", now.velocity, 0);
-        if (follows) asked_back |= a.rise - now.position < least_way(now, greatest, a);
+        if (follows)
+            asked_back |=
+                a.rise - now.position < least_way(now, greatest, bench.axis("m").total(), a);
         last = now;
         coupled = follows;
         if (bench.is("go.InSync"))
