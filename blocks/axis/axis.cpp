@@ -178,7 +178,7 @@ void Axis::end_motion(const Context& context) {
     if (state == AxisState::stopping) return end_stop(context, at);
     if (!active.exists()) return settle();
     if (of_profile && base.velocity != lasting * factors.velocity) return replan(context, at);
-    if (state == AxisState::homing && active.request.option == homing_on_signal) return;
+    if (state == AxisState::homing && active.request.homing == HomingMode::on_signal) return;
     if (state == AxisState::continuous_motion && active.request.command != Command::gear_out &&
         active.request.command != Command::cam_out)
         tell(context, active, Progress::reached);
@@ -203,7 +203,7 @@ void Axis::end_done(const Context& context) {
 void Axis::end_stop(const Context& context, const Moment& at) {
     tell(context, active, Progress::done);
     active.told_end = 1;
-    if (active.request.option == 0) end_hold(context, at);
+    if (active.request.holds == 0) end_hold(context, at);
 }
 
 /// What waits for Done AND NOT Execute of MC_Stop begins.

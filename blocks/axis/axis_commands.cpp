@@ -91,10 +91,10 @@ MotionError Axis::administer(const Context& context, const Moment& at, const Req
             ++trigger_aborts;
             return MotionError::none;
         case Command::write_bool_parameter:
-            if (!is_bool_parameter(request.option)) return MotionError::no_such_parameter;
-            return write_parameter(context, request.option, request.position);
+            if (!is_bool_parameter(request.parameter)) return MotionError::no_such_parameter;
+            return write_parameter(context, request.parameter, request.position);
         case Command::write_parameter:
-            return write_parameter(context, request.option, request.position);
+            return write_parameter(context, request.parameter, request.position);
         case Command::none:
         case Command::home:
         case Command::stop:
@@ -127,8 +127,8 @@ MotionError Axis::administer(const Context& context, const Moment& at, const Req
 void Axis::switch_power(const Context& context, const Moment& at, const Request& request) {
     const bool on = request.command == Command::power_on;
     powered = on ? 1 : 0;
-    enables_positive = (request.option & power_positive) != 0 ? 1 : 0;
-    enables_negative = (request.option & power_negative) != 0 ? 1 : 0;
+    enables_positive = request.enables_positive;
+    enables_negative = request.enables_negative;
     if (state == AxisState::error_stop) return;
     if (!on) {
         brake(at);
@@ -196,7 +196,7 @@ void Axis::leave_error() {
 }
 
 MotionError Axis::set_position(const Context& context, const Moment& at, const Request& request) {
-    const bool relative = request.option != 0;
+    const bool relative = request.relative != 0;
     if (modulo && !relative && (request.position < 0 || request.position >= period))
         return MotionError::out_of_range;
     const bool waited = request.mode != BufferMode::aborting;  // for an end since the last scan
@@ -459,12 +459,13 @@ double Axis::modulo_target(const Request& request, const Start& from) const {
 MotionError Axis::plan_homing(const Request& request, const Moment& at, Start& from) {
     if (modulo && (request.position < 0 || request.position >= period))
         return MotionError::out_of_range;
-    if (request.option == homing_to_position)
+    if (request.homing == HomingMode::to_position)
         return plan_point(request, target_of(request, from), at, from);
     Request search = request;
-    search.command = request.option == homing_on_signal ? Command::move_velocity : Command::stop;
+    search.command =
+        request.homing == HomingMode::on_signal ? Command::move_velocity : Command::stop;
     search.velocity = asked_of(request).velocity;
-    if (request.option == homing_on_signal) return plan_velocity(search, at, from);
+    if (request.homing == HomingMode::on_signal) return plan_velocity(search, at, from);
     Start known = from;
     known.state.position = request.position;
     const MotionError why = plan_velocity(search, at, known);

@@ -72,7 +72,7 @@ void Axis::change(const Context& context, const Moment& at, Running& running, co
     const Request before = running.request;
     running.request = job.request;
     if (job.request.command == Command::stop) {
-        if (running.told_end == 0 || job.request.option != 0) return;
+        if (running.told_end == 0 || job.request.holds != 0) return;
         return end_hold(context, at);
     }
     if (&running == &phased) return begin_phasing(context, context.at<Job>(running.place));

@@ -242,7 +242,7 @@ bool Axis::may_wait(const Context& context, const Request& request) const {
     there.state.position = there.origin = goal + added_goal;
     const auto go_on = [&](const Request& next) {
         const bool has_target = is_absolute(next.command) &&
-                                (next.command != home || next.option == homing_to_position);
+                                (next.command != home || next.homing == HomingMode::to_position);
         const bool is_relative = next.command == move_relative || next.command == move_additive ||
                                  next.command == move_continuous_relative;
         is_known = has_target || (is_relative && is_known);

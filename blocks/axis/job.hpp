@@ -153,12 +153,8 @@ constexpr std::string_view text_of(MotionError error) {
 /// The same, of sync_limits with the limit and by how much it is short, in the unit of the axis.
 std::string text_of(MotionError error, const Shortage& shortage, std::string_view unit);
 
-/// `option` of MC_Power: the directions that it enables, a bit each.
-inline constexpr std::int64_t power_positive = 1, power_negative = 2;
-
-/// `option` of MC_Home.
-inline constexpr std::int64_t homing_direct = 0, homing_to_position = 1, homing_on_signal = 2,
-                              homing_signalled = 3;
+/// Of MC_Home. `signalled`: it was `on_signal`, and the signal has come.
+enum class HomingMode : std::int64_t { direct, to_position, on_signal, signalled };
 
 /// What a command asks of its axis, in the axis' unit. Dynamics below 0 are the axis' own.
 struct Request {
@@ -169,7 +165,11 @@ struct Request {
     double velocity = -1;     ///< [u/s]
     double end_velocity = 0;  ///< of a continuous move [u/s]
     double acceleration = -1, deceleration = -1, jerk = -1;
-    std::int64_t option = 0;  ///< what else a command has: Execute of MC_Stop, Mode, a number
+    std::int64_t enables_positive = 0, enables_negative = 0;  ///< of MC_Power
+    std::int64_t holds = 0;                                   ///< Execute of MC_Stop
+    std::int64_t relative = 0;                                ///< of MC_SetPosition
+    std::int64_t parameter = 0;  ///< number, of MC_WriteParameter and MC_WriteBoolParameter
+    HomingMode homing = HomingMode::direct;
     double velocity_factor = 1, acceleration_factor = 1, jerk_factor = 1;  ///< MC_SetOverride
     Coupling coupling;
 

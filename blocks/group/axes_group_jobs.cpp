@@ -15,7 +15,7 @@ void AxesGroup::take(const Context& context, GroupJob& job) {
     using enum GroupCommand;
     const GroupRequest& request = job.request;
     if (holder.place == context.place_of(job) && holder.ticket == job.ticket) {
-        holder.holds = request.option;
+        holder.holds = request.holds;
         if (holder.told_end == 0 || holder.holds != 0) return;
         holder = {};
         state = GroupState::standby;
@@ -146,7 +146,7 @@ void AxesGroup::hold(const Context& context, GroupJob& job) {
     const bool stops = job.request.command == GroupCommand::stop;
     abort_all(context, Progress::aborted);
     holder = {context.place_of(job), job.ticket, job.request.command,
-              stops ? job.request.option : 0};
+              stops ? job.request.holds : 0};
     state = *next_state(job.request.command, state);
     tell(job, Progress::active);
     if (following != 0)

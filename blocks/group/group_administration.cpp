@@ -31,7 +31,7 @@ std::span<const Field> GroupStop::fields() {
 }
 
 void GroupStop::scan(const Scan& now, const Context& context) {
-    pins.option = execute ? 1 : 0;
+    pins.holds = execute ? 1 : 0;
     const bool released = last_execute && !execute && refusal == MotionError::none;
     run(now, context);
     if (!released) return;

@@ -19,14 +19,14 @@ std::span<const Field> SetPosition::fields() {
 }
 
 void SetPosition::scan(const Scan& now, const Context& context) {
-    pins.option = relative ? 1 : 0;
+    pins.relative = relative ? 1 : 0;
     run(now, context);
 }
 
 std::span<const Field> WriteParameter::fields() {
     using B = WriteParameter;
     static const auto table = pin::table(
-        {input("ParameterNumber", &B::pins, &Request::option, "",
+        {input("ParameterNumber", &B::pins, &Request::parameter, "",
                "1..17, see blocks/motion/README.md"),
          input("Value", &B::pins, &Request::position, "", "in the unit of the axis, and seconds"),
          pin::execution_mode()},
@@ -37,7 +37,7 @@ std::span<const Field> WriteParameter::fields() {
 std::span<const Field> WriteBoolParameter::fields() {
     using B = WriteBoolParameter;
     static const auto table =
-        pin::table({input("ParameterNumber", &B::pins, &Request::option, "",
+        pin::table({input("ParameterNumber", &B::pins, &Request::parameter, "",
                           "4 or 5: software limits, both at once"),
                     input("Value", &B::value, "", "on"), pin::execution_mode()},
                    pin::done("the parameter is set"));
@@ -98,13 +98,13 @@ void Home::scan(const Scan& now, const Context& context) {
 }
 
 void Home::look(const Scan& now, const Context& context) {
-    pins.option = static_cast<std::int64_t>(mode);
+    pins.homing = mode;
     if (execute && !last_execute) signalled = false;
     run(now, context);
     const bool rises = rising_edge(signal, last_signal);
-    if (!active || signalled || !rises || mode != Mode::on_signal) return;
+    if (!active || signalled || !rises || mode != HomingMode::on_signal) return;
     signalled = true;
-    pins.option = homing_signalled;
+    pins.homing = HomingMode::signalled;
     update(now, context);
 }
 

@@ -54,8 +54,7 @@ struct SetOverride : CommandBlock {
 /// stops. A Signal that is true from the beginning must fall first. A buffered one waits for what
 /// is at work, as far as that leaves the axis standing, and ends what is superimposed.
 struct Home : CommandBlock {
-    enum class Mode : std::int64_t { direct, to_position, on_signal };
-    Mode mode = Mode::direct;
+    HomingMode mode = HomingMode::direct;
     bool signal = false, last_signal = false, signalled = false;
 
     static constexpr std::string_view type = "MC_Home";

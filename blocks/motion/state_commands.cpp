@@ -17,12 +17,13 @@ std::span<const Field> Power::fields() {
 }
 
 void Power::scan(const Scan& now, const Context& context) {
-    const std::int64_t directions =
-        (enable_positive ? power_positive : 0) + (enable_negative ? power_negative : 0);
-    const bool changed = !started || execute != last_execute || directions != pins.option;
-    pins.option = directions;
-    last_execute = execute;
+    const bool changed = !started || execute != last_execute ||
+                         enable_positive != (pins.enables_positive != 0) ||
+                         enable_negative != (pins.enables_negative != 0);
+    pins.enables_positive = enable_positive ? 1 : 0;
+    pins.enables_negative = enable_negative ? 1 : 0;
     pins.command = execute ? Command::power_on : Command::power_off;
+    last_execute = execute;
     if (changed) start(now, context);
     error = refusal != MotionError::none;
     error_id = refusal;
@@ -37,7 +38,7 @@ std::span<const Field> Stop::fields() {
 }
 
 void Stop::scan(const Scan& now, const Context& context) {
-    pins.option = execute ? 1 : 0;
+    pins.holds = execute ? 1 : 0;
     const bool released = last_execute && !execute && refusal == MotionError::none;
     run(now, context);
     if (released) update(now, context);
