@@ -1,5 +1,6 @@
-/// Random programs in Structured Text, run by the machine and as C by the compiler at -O0 and -O3:
-/// the same bits of every variable after every scan, the same faults.
+/// Random programs in Structured Text, run as native code, by the machine, and as C by the compiler
+/// at -O0 and -O3: the same bits of every variable after every scan, the same faults; of native
+/// code and the machine the same whole memory.
 ///
 /// usage: twin PROGRAMS [SEED]
 ///        twin FILE         one program from a file: what the C is, and what differs
@@ -56,7 +57,7 @@ struct Program {
     const Routine* main = nullptr;
     std::vector<Part> parts;
     std::vector<Words> inputs;  ///< of each scan
-    std::optional<Library> library;
+    std::optional<Library> library, interpreted;
     std::string refused;
 };
 
@@ -79,6 +80,7 @@ std::unique_ptr<Program> prepare(std::string text, std::uint64_t seed) {
     Diagnostics out;
     try {
         p.library = compile({p.source}, catalog(), out);
+        p.interpreted = compile({p.source}, catalog(), out, {.native = false});
         p.refused = out.render();
     } catch (const std::logic_error& error) {
         p.refused = error.what();
@@ -111,13 +113,16 @@ std::size_t kind_of(const Library& library, std::string_view name) {
 /// Runs on the machine, with what its values and faults are after each scan.
 class Machine {
   public:
-    explicit Machine(const Program& program)
+    Machine(const Program& program, const Library& library)
         : program_(program),
-          instances_(*program.library),
-          main_(instances_.memory(kind_of(*program.library, program.main->name))) {
+          library_(library),
+          instances_(library),
+          main_(instances_.memory(kind_of(library, program.main->name))) {
         for (const Global& global : program.checked.globals)
-            globals_.push_back(instances_.memory(kind_of(*program.library, global.name)));
+            globals_.push_back(instances_.memory(kind_of(library, global.name)));
     }
+
+    const Instances& instances() const { return instances_; }
 
     /// 0, or 1,000,000 times the fault plus its line.
     std::int64_t scan(int number) {
@@ -126,9 +131,8 @@ class Machine {
             if (v.section == Section::input && v.space == Space::frame)
                 std::memcpy(main_ + 8 * std::size_t{v.slot}, &program_.inputs[number][input++], 8);
         instances_.scan(number * interval, interval);
-        const auto& kind =
-            program_.library->kinds()[kind_of(*program_.library, program_.main->name)];
-        const FaultPlace fault = program_.library->fault(kind, main_);
+        const auto& kind = library_.kinds()[kind_of(library_, program_.main->name)];
+        const FaultPlace fault = library_.fault(kind, main_);
         return fault.fault == Fault::none
                    ? 0
                    : static_cast<std::int64_t>(fault.fault) * 1'000'000 + fault.mark.line;
@@ -161,6 +165,7 @@ class Machine {
     }
 
     const Program& program_;
+    const Library& library_;
     Instances instances_;
     std::byte* main_;
     std::vector<std::byte*> globals_;
@@ -254,7 +259,7 @@ class Twins {
   private:
     std::string difference(const Program& program, const Compiled& compiled, std::size_t number,
                            std::string_view level) {
-        Machine machine(program);
+        Machine machine(program, *program.library), interpreter(program, *program.interpreted);
         const TwinCalls& twin = compiled.twin(number);
         twin.begin();
         Words ours, theirs;
@@ -265,6 +270,9 @@ class Twins {
                                c_fault = twin.scan(program.inputs[i].data());
             ++scanned;
             faults += fault != 0;
+            if (interpreter.scan(i) != fault || !machine.instances().is_guarded() ||
+                machine.instances().memory() != interpreter.instances().memory())
+                return fmt::format("scan {}: memory differs where native code is off", i);
             machine.dump(ours, starts);
             theirs.assign(ours.size() + 64 * program.parts.size() + 64, 0);
             theirs.resize(static_cast<std::size_t>(twin.dump(theirs.data()) - theirs.data()));

@@ -11,6 +11,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/source/codes.hpp"
+#include "runtime/st/code/native/native.hpp"
 
 namespace lineshaft {
 
@@ -59,6 +60,8 @@ void CommonOptions::add_to(CLI::App& command) {
     command.add_option("--include-dir", include_dirs, "Allow files below this folder, too")
         ->type_name("DIR");
     command.add_flag("--json", json, "Print one JSON object for machines");
+    command.add_flag_callback("--no-native", st::switch_native_off,
+                              "Interpret Structured Text: slower, and the same in all else");
     command.add_flag("--quiet", quiet, "Print results only, and nothing where a file takes them");
 }
 

@@ -68,6 +68,8 @@ enum HeaderSlot : std::uint32_t {
     globals_slot = counts_slot + op_classes,
 };
 
+struct Native;
+
 /// What all the sources together are compiled to.
 struct Code {
     std::vector<Instruction> instructions;
@@ -80,6 +82,7 @@ struct Code {
     std::uint32_t globals = 0;
     std::vector<CoverPoint> points;                      ///< only with coverage
     std::unique_ptr<std::atomic<std::uint64_t>[]> hits;  ///< of each of them
+    std::shared_ptr<const Native> native;                ///< null: the machine interprets it
 
     /// Of a jump's address; none of this code if it is not one.
     std::uint64_t place_of(std::uint64_t address) const {

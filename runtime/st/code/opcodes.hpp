@@ -142,7 +142,7 @@
     OP(text_of_float, text, "rr--", write_number(target(U(a)), static_cast<float>(R(b))))            \
     OP(integer_of_text, text, "wr--", put(a, number_of_text<std::uint64_t>(target(U(b)))))            \
     OP(real_of_text, text, "wr--", put(a, number_of_text<double>(target(U(b)))))                     \
-    OP(text_of_truth, text, "rr--", write_text(target(U(a)), U(b) != 0 ? "TRUE" : "FALSE"))          \
+    OP(text_of_truth, text, "rr--", write_truth(target(U(a)), U(b) != 0))                          \
     OP(text_of_time, text, "rrn-", write_time(target(U(a)), c, I(b)))                               \
     OP(truth_of_text, text, "wr--", put(a, truth_of_text(target(U(b)))))                             \
     OP(time_of_text, text, "wrn-", put(a, time_of_text(c, target(U(b)))))                            \

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/st/code/native/native.hpp"
 #include "runtime/st/library/coverage.hpp"
 #include "runtime/st/library/evaluate.hpp"
 #include "runtime/st/prelude/standard_source.hpp"
@@ -48,6 +49,10 @@ bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOption
     if (is_covered())
         code.hits = std::make_unique<std::atomic<std::uint64_t>[]>(code.points.size());
     return true;
+}
+
+void make_native(Code& code, const Options& options) {
+    if (options.native && !options.times) code.native = native_code(code);
 }
 
 FaultPlace fault_of(const Code& code, const std::byte* instance) {

@@ -23,6 +23,9 @@ struct Compiled {
 bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOptions options = {},
              const SourceFile* tests = nullptr);
 
+/// Makes the processor's code of it, where the options want that and nothing is counted.
+void make_native(Code& code, const Options& options);
+
 /// Where the last execution on an instance ended with a fault.
 FaultPlace fault_of(const Code& code, const std::byte* instance);
 

@@ -48,6 +48,7 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     const CodeOptions code_options{.overflow_faults = options.overflow_faults,
                                    .counted = options.times.has_value()};
     if (!compile(*made, standard, out, code_options)) return {};
+    make_native(made->generated.code, options);
     std::unordered_map<const Routine*, const CodeRoutine*> codes;
     const CodeRoutine* code = made->generated.code.routines.data();
     for (const Routine* routine : made->checked.order) codes.emplace(routine, code++);

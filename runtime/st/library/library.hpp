@@ -17,6 +17,7 @@ struct Options {
         10'000'000;  ///< passes of loops and calls that one scan of a block may take
     std::optional<InstructionTimes> times = {};  ///< see `Library::counts`
     bool overflow_faults = false;  ///< an integer beyond its type is a fault: it does not wrap
+    bool native = true;  ///< as the processor's code, where that is possible; see native_code()
 
     bool operator==(const Options&) const = default;
 };

@@ -187,6 +187,7 @@ std::optional<TestSuite> compile_tests(
     made->sources = sources;
     made->sources.push_back(file);
     if (!compile(*made, standard, out, {}, file.get())) return {};
+    make_native(made->generated.code, options);
     const CodeRoutine* code = made->generated.code.routines.data();
     for (const Routine* routine : made->checked.order) made->add(*routine, *code++);
     for (const Assertion& assertion : made->generated.assertions)

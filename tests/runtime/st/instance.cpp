@@ -1,6 +1,9 @@
 #include "tests/runtime/st/instance.hpp"
 
+#include <algorithm>
+#include <array>
 #include <fstream>
+#include <span>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -21,10 +24,18 @@ std::shared_ptr<const SourceFile> source(std::string text) {
     return std::make_shared<const SourceFile>(SourceFile{"job.st", std::move(text)});
 }
 
+namespace {
+
+constexpr std::array<std::uint64_t, 4> guard{0x5afe5afe5afe5afe, 1, ~0ULL, 0x0123456789abcdef};
+
+}  // namespace
+
 Instances::Instances(const Library& library) : library_(library) {
     for (const BlockType& kind : library.kinds()) {
-        memory_.emplace_back(kind.size / 8);
-        places_.push_back(reinterpret_cast<std::byte*>(memory_.back().data()));
+        memory_.emplace_back(guard.size() + kind.size / 8 + guard.size());
+        std::ranges::copy(guard, memory_.back().begin());
+        std::ranges::copy(guard, memory_.back().end() - std::ssize(guard));
+        places_.push_back(reinterpret_cast<std::byte*>(memory_.back().data() + guard.size()));
         kind.construct(places_.back());
     }
     for (std::size_t i = 0; i < places_.size(); ++i)
@@ -44,6 +55,13 @@ void Instances::scan(std::int64_t time, std::int64_t interval) {
         if (is_program(kind) || !has_program)
             kind.scan_blocks(places_[i], 1, now, {kind.context, places_.data()});
     }
+}
+
+bool Instances::is_guarded() const {
+    return std::ranges::all_of(memory_, [](const std::vector<std::uint64_t>& memory) {
+        return std::ranges::equal(guard, std::span(memory).first(guard.size())) &&
+               std::ranges::equal(guard, std::span(memory).last(guard.size()));
+    });
 }
 
 std::vector<std::string> Instances::faults() const {

@@ -24,6 +24,10 @@ class Instances {
 
     /// Of the first kind that has a field of that name; enumerations by their names.
     std::string text(const std::string& field) const;
+    /// Whether nothing was written before or behind an instance.
+    bool is_guarded() const;
+    /// The whole memory of all, the words that guard each included.
+    const std::vector<std::vector<std::uint64_t>>& memory() const { return memory_; }
     std::byte* memory(std::size_t kind) { return places_[kind]; }
 
   private:

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "runtime/st/code/machine.hpp"
+
+namespace lineshaft::st {
+
+namespace meaning {
+struct Frames;
+}
+
+/// How an instruction is entered: with the first slot of the frame that it works on, and how many
+/// passes of loops and calls are left.
+using NativeEntry = Fault (*)(std::byte* base, meaning::Frames& frames, std::int64_t fuel);
+
+/// The code of a library as the processor's, made of stencils: of each instruction the code of its
+/// line, its operands filled in. It is never writable and executable at the same time.
+struct Native {
+    const std::byte* first = nullptr;   ///< of the memory that has it
+    std::size_t size = 0;               ///< of that memory [bytes]
+    std::vector<std::uint32_t> places;  ///< of each instruction, from `first` on
+
+    Native() = default;
+    ~Native();
+    Native(const Native&) = delete;
+    Native& operator=(const Native&) = delete;
+
+    NativeEntry entry(std::uint64_t instruction) const {
+        return reinterpret_cast<NativeEntry>(const_cast<std::byte*>(first) +
+                                             places.data()[instruction]);
+    }
+};
+
+/// Of code that is verified, and stays where it is. Null where there is no such code: on another
+/// processor, for an operand that does not fit its hole, or where the system refuses memory that
+/// is executed, which `is_refused` tells from then on.
+std::shared_ptr<const Native> native_code(const Code& code);
+bool is_native_refused();
+
+/// From now on this process interprets all that it compiles, as if there were no native code.
+void switch_native_off();
+
+/// The end of a scan at the instruction before `behind`. The stencils end with it.
+extern "C" [[gnu::cold]] Fault native_end(std::byte* base, meaning::Frames& frames,
+                                          std::uint64_t behind, Fault fault);
+
+}  // namespace lineshaft::st
