@@ -71,7 +71,7 @@ if unknown or unused or not grammar:
 # What the sentences below the rules say: what a rule is within another.
 def within(rule, inside):
     rows = {
-        "Source": {"Section_Word": "'VAR_GLOBAL'", "Declaration": "POU | Data_Type_Decl | Var_Section | Config_Decl",
+        "Source": {"Var_Sections": "Var_Section *", "Section_Word": "'VAR_GLOBAL'", "Declaration": "POU | Action_Decl | Data_Type_Decl | Var_Section | Config_Decl",
                    "Stmt": "';' | Region | ( IF_Stmt | Case_Stmt | For_Stmt | While_Stmt | Repeat_Stmt ) ';' ? | "
                            "Jump_Stmt | Simple_Stmt",
                    "Variable_Name": "( 'THIS' '^' ? '.' ) ? Name", "Value": "Expression",
@@ -95,7 +95,7 @@ def within(rule, inside):
         has_methods = word in ("'FUNCTION_BLOCK'", "'PROGRAM'")
         rows["POU"] = {"POU_Word": word, "POU_End": "'END_" + word[1:],
                        "Section_Word": "'VAR' | 'VAR_INPUT' | 'VAR_TEMP'",
-                       "POU_Body": "Stmt_List ( POU Stmt_List ) *" if has_methods else "Stmt_List"}
+                       "POU_Body": "Stmt_List ( ( POU | Action_Decl ) Stmt_List ) *" if has_methods else "Stmt_List"}
         rows["POU"]["POU_Header"] = "Attribute * ( 'NON_RETAIN' | 'RETAIN' ) ?" + \
             (" Data_Block_Type" if word == "'DATA_BLOCK'" else "")
     return {**inside, **{name: choice_of(split(text)) for name, text in rows.get(rule, {}).items()}}

@@ -359,6 +359,7 @@ class CWriter {
                 return put("goto next{};", loops_.back());
             case S::return_:
                 return put("goto leave;");
+            case S::action:
             case S::sequence:
                 return write(s.body);
         }

@@ -101,6 +101,13 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
                    "declare one and give it here");
         return;
     }
+    if (argument.is_negated && (type->kind != Kind::boolean || given->kind != Kind::boolean)) {
+        c.fail(code::type_does_not_fit, argument.name.place,
+               fmt::format("NOT takes a BOOL to a BOOL, not {} to {}", describe(*type),
+                           describe(*given)),
+               "take the output as it is");
+        return;
+    }
     const bool texts = given->kind == Kind::text && type->kind == Kind::text;
     const bool fits =
         same_type(*given, *type) || (parameter.section == Section::in_out

@@ -33,6 +33,7 @@ using Evaluate = Evaluated (*)(Expression&);
 ///   L0913  not a constant                  L0914  a statement in a wrong place
 ///   L0921  warning: never used             L0922  warning: never reached
 ///   L0923  warning: an argument not taken
+///   L0924  warning: a block assigns its own input
 Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out);
 
 }  // namespace lineshaft::st

@@ -70,9 +70,15 @@ struct Checking {
     std::unordered_map<const Source*, std::vector<Prefixes>> prefixes =
         {};  ///< as the tree's scopes
     NameMap<Variable*> globals = {};
-    NameMap<const Declaration*> constants = {};  ///< of VAR_GLOBAL, until all globals are declared
+    /// One of VAR_GLOBAL CONSTANT, and where it stands.
+    struct GlobalConstant {
+        const DeclarationBlock* block;
+        const Declaration* declared;
+    };
+    NameMap<GlobalConstant> constants = {};  ///< until all globals are declared
     std::unordered_set<const Declaration*> begun_constants = {};  ///< declared, or being so
     int hops = 0;  ///< from constant to constant that is declared later
+    std::unordered_set<const Pou*> assigned_inputs = {};  ///< blocks that were warned of it
     NameMap<const Type*> catalog_types = {};
     bool has_tests = false;
     Type* mocks = nullptr;  ///< of the global that has what MOCK_FUNCTION says

@@ -3,6 +3,8 @@
 #include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/st/check/catalog_types.hpp"
+#include "runtime/st/check/constants.hpp"
+#include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/initial_values.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
@@ -29,6 +31,18 @@ Type& global_variables(Checking& c) {
     return const_cast<Type&>(*c.checked.globals.front().type);
 }
 
+/// `n := 5` of CONST, which has no type but that of its value.
+const Type* make_untyped_constant(Checking& c, Variable& variable) {
+    const Type* type = check(c, variable.initial);
+    if (type && !evaluate(c, variable.initial))
+        type = c.fail(code::not_a_constant, variable.initial->place,
+                      "the value of a CONST is a constant");
+    if (!type) return nullptr;
+    variable.space = Space::constant;
+    variable.value = variable.initial->constant;
+    return variable.type = type;
+}
+
 /// A constant scalar takes no memory.
 void make_constant(Checking& c, Variable& variable) {
     if (variable.type && variable.type->is_instance())
@@ -49,20 +63,31 @@ void make_constant(Checking& c, Variable& variable) {
     if (variable.initial->kind == E::constant) variable.value = variable.initial->constant;
 }
 
-Variable* declare_global(Checking& c, const Declaration& declared, bool constant, bool retain) {
+/// `list.x`, as a variable of a list is named from anywhere.
+std::string_view name_in_list(Checking& c, const DeclarationBlock& block,
+                              const Declaration& declared) {
+    return c.checked.names.emplace_back(fmt::format("{}.{}", block.list, declared.name.text));
+}
+
+Variable* declare_global(Checking& c, const DeclarationBlock& block, const Declaration& declared) {
     Type& all = global_variables(c);
     const Type* type = resolve(c, *declared.type);
-    if (!is_new_name(c, declared.name, c.users.places)) return nullptr;
+    const std::string_view in_list = name_in_list(c, block, declared);
+    Token name = declared.name;
+    if (block.is_qualified_only) name.text = in_list;
+    if (!is_new_name(c, name, c.users.places)) return nullptr;
     Variable* variable = add(c, c.checked.variables, declared, type);
+    c.globals.emplace(in_list, variable);
     if (type && type->kind == Kind::handle) return declare_object(c, *variable);
+    variable->text = name.text;
     variable->section = Section::global;
-    variable->constant = constant;
-    variable->retain = retain;
+    variable->constant = block.constant;
+    variable->retain = block.retain;
     variable->space = Space::global;
     variable->global = 0;
-    if (constant) make_constant(c, *variable);
+    if (block.constant) make_constant(c, *variable);
     if (variable->space != Space::constant) all.members.push_back(variable);
-    c.globals.emplace(declared.name.text, variable);
+    if (!block.is_qualified_only) c.globals.emplace(declared.name.text, variable);
     return variable;
 }
 
@@ -108,7 +133,7 @@ void declare_edge(Checking& c, Routine& routine, Variable& variable, const Token
 
 void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
     for (const Declaration* declared : block.declarations) {
-        const Type* type = resolve(c, *declared->type);
+        const Type* type = declared->type ? resolve(c, *declared->type) : nullptr;
         if (block.section == Section::in_out && type == &string_type) type = &open_string_type;
         Variable* variable = add(c, routine.variables, *declared, type);
         variable->section = block.section;
@@ -131,7 +156,10 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
                    "pass the instance as VAR_IN_OUT");
         depend(c, type, declared->name.place);
         if (routine.pou->is_tests || routine.is_test()) make_object(c, *variable);
-        if (block.constant && block.section != Section::input) make_constant(c, *variable);
+        if (!declared->type)
+            make_untyped_constant(c, *variable);
+        else if (block.constant && block.section != Section::input)
+            make_constant(c, *variable);
         if (declared->edge.word != Word::end_of_file)
             declare_edge(c, routine, *variable, declared->edge);
     }
@@ -172,7 +200,11 @@ void collect_names(Checking& c) {
     }
     for (const DeclarationBlock& block : c.tree.globals)
         for (const Declaration* declared : block.declarations)
-            if (block.constant) c.constants.emplace(declared->name.text, declared);
+            if (block.constant) {
+                const Checking::GlobalConstant constant{&block, declared};
+                c.constants.emplace(name_in_list(c, block, *declared), constant);
+                if (!block.is_qualified_only) c.constants.emplace(declared->name.text, constant);
+            }
     for (const TypeDeclaration& declared : c.tree.types)
         if (NamedType* type = c.look_up(&Names::types, declared.name)) resolve_declared(c, *type);
 }
@@ -193,10 +225,11 @@ Variable* declare_early(Checking& c, std::string_view name) {
     constexpr int most_hops = 200;
     const auto it = c.constants.find(name);
     if (it == c.constants.end() || c.hops == most_hops ||
-        !c.begun_constants.insert(it->second).second)
+        !c.begun_constants.insert(it->second.declared).second)
         return nullptr;
     ++c.hops;
-    Variable* variable = declare_global(c, *it->second, true, false);
+    const auto [block, declared] = it->second;
+    Variable* variable = declare_global(c, *block, *declared);
     --c.hops;
     return variable;
 }
@@ -205,7 +238,7 @@ void declare_globals(Checking& c) {
     for (const DeclarationBlock& block : c.tree.globals)
         for (const Declaration* declared : block.declarations)
             if (!block.constant || c.begun_constants.insert(declared).second)
-                declare_global(c, *declared, block.constant, block.retain);
+                declare_global(c, block, *declared);
     c.constants.clear();
     for (Pou* pou : c.tree.units) {
         if (pou->kind != PouKind::data_block) continue;

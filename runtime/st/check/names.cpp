@@ -7,6 +7,7 @@
 #include "runtime/source/units.hpp"
 #include "runtime/source/utf8.hpp"
 #include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/objects.hpp"
@@ -153,6 +154,12 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     }
     if (same_name(token.text, "eno") && c.routine && c.routine->pou->kind != PouKind::data_block)
         return use(c, e, eno_of(c, *c.routine));
+    const bool may_be_text = expected && expected->kind == Kind::text && token.quoted &&
+                             e->place.dialect().quotes_may_enclose_texts;
+    if (may_be_text) {
+        e = make_text(c, *e);
+        return check(c, e, expected);
+    }
     if (expected && expected->kind == Kind::handle && !token.local &&
         (token.quoted || !c.is_in_test()))
         return use_object(c, e, *object_type(c, *expected));

@@ -45,6 +45,12 @@ Expression* make_boolean(Checking& c, const Expression& like, bool value) {
     return make_constant(c, like, bool_type, {.integer = value});
 }
 
+Expression* make_text(Checking& c, const Expression& quoted) {
+    Token token = quoted.token;
+    token.word = Word::text;
+    return keep(c, {.token = token, .place = quoted.place});
+}
+
 Expression* make_name(Checking& c, const Expression& like, std::string_view text) {
     return keep(c, {.kind = E::name, .token = with_text(like.token, text), .place = like.place});
 }

@@ -21,6 +21,8 @@ Expression* make_copy(Checking& c, const Expression& e);
 /// A value, where `like` stands.
 Expression* make_constant(Checking& c, const Expression& like, const Type& type, Constant value);
 Expression* make_boolean(Checking& c, const Expression& like, bool value);
+/// `"..."`, which is no name, as the text that it encloses.
+Expression* make_text(Checking& c, const Expression& quoted);
 /// `text`, where `like` stands.
 Expression* make_name(Checking& c, const Expression& like, std::string_view text);
 /// `of.text`

@@ -179,9 +179,11 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
         return refuse(fmt::format("the constant '{}'", variable->text), "remove CONSTANT");
     const bool is_copy = variable->of && (variable->of->kind == PouKind::function ||
                                           variable->of->kind == PouKind::method);
-    if (own && variable->section == Section::input && !is_copy)
-        return refuse(fmt::format("the input '{}'", variable->text),
-                      "copy it to a variable of VAR, or make it a VAR_IN_OUT");
+    if (own && variable->section == Section::input && !is_copy && variable->of &&
+        c.assigned_inputs.insert(variable->of).second)
+        c.warn(code::input_assigned, target.place,
+               fmt::format("the input '{}' is {} in its own block", variable->text, how),
+               "it keeps that until a caller gives it again: copy it to a variable of VAR");
     if (own) return true;
     const Type* of = target.operands[0]->type;
     const bool is_named = target.operands[0]->variable || target.operands[0]->kind == E::converted;

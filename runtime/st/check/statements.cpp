@@ -39,6 +39,34 @@ void check_call(Checking& c, Statement& s) {
     make_concrete(c, s.value, *type);
 }
 
+/// The action that a name alone means; null: there is none.
+const Routine* find_action(Checking& c, Expression& name) {
+    const auto is_action = [](const Routine* r) { return r && r->pou->is_action; };
+    const auto of_block = [&](const Routine& block) -> const Routine* {
+        const auto it = block.methods.find(name.token.text);
+        return it != block.methods.end() && is_action(it->second) ? it->second : nullptr;
+    };
+    if (name.kind == E::member) {
+        const Type* of = check(c, name.operands[0]);
+        return of && of->kind == Kind::block ? of_block(*of->routine) : nullptr;
+    }
+    for (const Routine* r = c.routine; r; r = r->owner)
+        if (const Routine* found = of_block(*r)) return found;
+    const Routine* beside = c.find_routine(name.token);
+    return is_action(beside) ? beside : nullptr;
+}
+
+void check_action(Checking& c, Statement*& s) {
+    Expression* name = s->value;
+    if (!find_action(c, *name)) {
+        if (name->kind == E::member && !name->operands[0]->type) return;
+        return (void)c.fail(code::something_else_expected, s->place, "this does nothing",
+                            "write 'name := value;', or a call 'name();'");
+    }
+    s = make_call_statement(c, make_call(c, *name, name, {}));
+    check(c, s);
+}
+
 void check_condition(Checking& c, Expression*& condition, std::string_view of) {
     const Type* type = check(c, condition, &bool_type);
     if (!type || type->kind == Kind::boolean) return;
@@ -118,6 +146,8 @@ void check(Checking& c, Statement*& slot) {
             return check_assignment(c, slot);
         case S::call:
             return check_call(c, s);
+        case S::action:
+            return check_action(c, slot);
         case S::if_:
             for (Branch& branch : s.branches) {
                 check_condition(c, branch.condition, "IF");

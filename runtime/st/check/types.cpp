@@ -59,7 +59,8 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
     Type& type = c.make_type(Kind::enumeration, "enumeration");
     type.slots = 1;
     type.base = &int_type;
-    if (text.name.word != Word::end_of_file) type.base = resolve_name(c, text.name);
+    const bool has_base = text.name.word != Word::end_of_file;
+    if (has_base) type.base = resolve_name(c, text.name);
     if (type.base && type.base->kind != Kind::integer && type.base->kind != Kind::bits)
         return c.fail(code::not_supported, text.place, "arguments behind a type are not supported",
                       "write values behind ':=': (name := value)");
@@ -67,8 +68,15 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
     std::int64_t number = 0;
     for (const Argument& value : text.values) {
         if (Expression* given = value.value)
-            if (const auto whole = check_whole(c, given, type.base ? *type.base : int_type))
+            if (const auto whole = check_whole(c, given,
+                                               !has_base   ? lint_type
+                                               : type.base ? *type.base
+                                                           : int_type))
                 number = static_cast<std::int64_t>(*whole);
+        const auto fits = [&](const Type& in) {
+            return number >= smallest(in) && number <= largest(in);
+        };
+        if (!has_base && !fits(*type.base)) type.base = fits(dint_type) ? &dint_type : &lint_type;
         if (!is_new_name(c, value.name, names)) continue;
         type.counted &= number == static_cast<std::int64_t>(type.values.size());
         type.values.emplace_back(value.name.text);

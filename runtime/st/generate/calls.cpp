@@ -118,8 +118,13 @@ void take(Writing& w, const Location& frame, const Expression& e) {
         if (!is_taken || is_set(argument)) continue;
         const Location from = part(w, frame, variable);
         const Type &given = *variable.type, &wanted = *argument.value->type;
+        const auto taken = [&] {
+            const Slot slot = load(w, from);
+            return argument.is_negated ? w.emit(Op::not_bool, none, slot)
+                                       : convert(w, slot, given, wanted, false, none);
+        };
         if (argument.value->kind == E::bit) {
-            store_bits(w, *argument.value, convert(w, load(w, from), given, wanted, false, none));
+            store_bits(w, *argument.value, taken());
             continue;
         }
         const Location to = locate(w, *argument.value);
@@ -129,7 +134,7 @@ void take(Writing& w, const Location& frame, const Expression& e) {
         else if (!given.is_scalar())
             copy(w, to, from, slots_of(w, given));
         else
-            store(w, to, convert(w, load(w, from), given, wanted, false, none));
+            store(w, to, taken());
     }
 }
 

@@ -259,6 +259,7 @@ void write_statement(Writing& w, const Statement& s) {
             return w.jump(Op::jump, 0, 0, w.loops.back().nexts);
         case S::return_:
             return w.put(Op::leave);
+        case S::action:  // a call by now
         case S::sequence:
             w.cover_branch(s, 0);
             return write_block(w, s.body);

@@ -62,6 +62,10 @@ bool Cursor::at_argument_name(std::size_t ahead) const {
            (behind == Word::assign || behind == Word::output);
 }
 
+bool Cursor::at_negated_output() const {
+    return is(Word::not_) && is_name(1) && next(2).word == Word::output;
+}
+
 bool Cursor::at_chart() const {
     if (!is(Word::name) || !here().first_in_line || !is_name(1)) return false;
     return says("transition") ||

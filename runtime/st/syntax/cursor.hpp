@@ -46,6 +46,10 @@ struct Cursor : Tokens {
     bool at_structure() const;
     /// `x :=`, `x =>`; a word may be one without quotes, as nothing else can be meant.
     bool at_argument_name(std::size_t ahead = 0) const;
+    /// `ACTION a`
+    bool at_action() const { return is(Word::action_) && is_name(1); }
+    /// `NOT q => x`
+    bool at_negated_output() const;
     /// `INITIAL_STEP s:`, `STEP s:`, `TRANSITION FROM s TO t` of a sequential function chart.
     bool at_chart() const;
 };

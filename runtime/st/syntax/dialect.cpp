@@ -1,5 +1,8 @@
 #include "runtime/st/syntax/dialect.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "runtime/source/letters.hpp"
 
 namespace lineshaft::st {
@@ -14,6 +17,16 @@ const Dialect iec = {.sign_precedes_power = true,
                      .numbers_stand_for_names = false,
                      .texts_of_integers_have_signs = false};
 
+const Dialect codesys = {.sign_precedes_power = true,
+                         .constants_have_values = false,
+                         .quotes_may_enclose_texts = true,
+                         .named_inputs_may_be_left_out = true,
+                         .sets_variables_of_instances = false,
+                         .real_results_reckon_as_real = false,
+                         .dint_becomes_real = true,
+                         .numbers_stand_for_names = false,
+                         .texts_of_integers_have_signs = false};
+
 const Dialect scl = {.sign_precedes_power = false,
                      .constants_have_values = false,
                      .quotes_may_enclose_texts = false,
@@ -25,7 +38,18 @@ const Dialect scl = {.sign_precedes_power = false,
                      .texts_of_integers_have_signs = true};
 
 const Dialect& dialect_of(std::string_view path) {
-    return lower(path).ends_with(".st") ? iec : scl;
+    struct Ending {
+        std::string_view ending;
+        const Dialect& dialect;
+    };
+    static constexpr Ending endings[] = {
+        {".st", iec},        {".typ", iec},       {".var", iec},
+        {".fun", iec},       {".exp", codesys},   {".tcpou", codesys},
+        {".tcdut", codesys}, {".tcgvl", codesys}, {".tcio", codesys}};
+    const std::string name = lower(path);
+    const auto* it = std::ranges::find_if(
+        endings, [&](const Ending& known) { return name.ends_with(known.ending); });
+    return it == std::end(endings) ? scl : it->dialect;
 }
 
 }  // namespace lineshaft::st

@@ -18,10 +18,11 @@ struct Dialect {
     bool texts_of_integers_have_signs;  ///< INT_TO_STRING(5) is '+5', else '5'
 };
 
-/// IEC 61131-3:2013, and the SCL of Siemens' TIA Portal.
-extern const Dialect iec, scl;
+/// IEC 61131-3:2013, CODESYS and Beckhoff's TwinCAT, and the SCL of Siemens' TIA Portal.
+extern const Dialect iec, codesys, scl;
 
-/// By the ending of a file's name: that of the standard has `.st`.
+/// By the ending of a file's name: `.st` and B&R's `.typ`, `.var` and `.fun` are the standard's,
+/// `.EXP` and TwinCAT's `.TcPOU` and its like CODESYS, all others SCL.
 const Dialect& dialect_of(std::string_view path);
 
 }  // namespace lineshaft::st

@@ -10,6 +10,7 @@
 #include "runtime/source/habits.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
+#include "runtime/st/syntax/conditions.hpp"
 
 namespace lineshaft::st {
 
@@ -95,6 +96,8 @@ class Lexer {
             fail_as_binary(place(zero, zero + 1));
         tokens_.tokens.reserve(text_.size() / 4 + 1);
         for (skip_blanks(); at_ < text_.size(); skip_blanks()) read_token();
+        for (const Place& open : choices_)
+            fail(open, "the {IF} does not end", "it ends with {END_IF}");
         start_ = at_ = text_.size();
         add(Word::end_of_file);
         return std::move(tokens_);
@@ -212,6 +215,39 @@ class Lexer {
             fail(place(begin, begin + 1), "the pragma does not end", "it ends with '}'");
         tokens_.pragmas.push_back(
             {tokens_.tokens.size(), new_line_, place(begin, std::min(at_ + 1, text_.size()))});
+        obey(tokens_.pragmas.back().place);
+    }
+
+    /// `{IF defined (x)}`, `{define x}`: a part whose condition does not hold is left out.
+    void obey(Place pragma) {
+        const std::string_view text = pragma.text();
+        note_definition(text, defined_);
+        if (says_pragma(text, "if")) {
+            choices_.push_back(pragma);
+            if (!holds(text, defined_)) skip_part(true);
+        } else if (says_pragma(text, "elsif") || says_pragma(text, "else")) {
+            if (!choices_.empty()) skip_part(false);
+        } else if (says_pragma(text, "end_if") && !choices_.empty()) {
+            choices_.pop_back();
+        }
+    }
+
+    /// Stops at the last character of the pragma that ends the part.
+    void skip_part(bool may_choose) {
+        std::size_t inner = 0;
+        for (++at_; at_ < text_.size(); ++at_) {
+            if (text_[at_] != '{') continue;
+            const std::size_t end = std::min(text_.find('}', at_), text_.size() - 1);
+            const std::string_view pragma = text_.substr(at_, end + 1 - at_);
+            at_ = end;
+            const bool ends = says_pragma(pragma, "end_if");
+            if (ends && inner == 0) return choices_.pop_back();
+            inner += says_pragma(pragma, "if");
+            inner -= ends;
+            const bool chosen = says_pragma(pragma, "else") ||
+                                (says_pragma(pragma, "elsif") && holds(pragma, defined_));
+            if (may_choose && inner == 0 && chosen) return;
+        }
     }
 
     /// Of what is quoted in a pragma from `begin` on; 0 if nothing is. It may go over lines, where
@@ -360,7 +396,9 @@ class Lexer {
         if (local) ++at_;
         if (peek() == '"') {
             const std::size_t begin = ++at_;
-            skip_while([](char c) { return c != '"' && c != '\n'; });
+            const bool may_be_text = tokens_.source->dialect.quotes_may_enclose_texts;
+            while (peek() != '"' && peek() != '\n' && at_ < text_.size())
+                at_ += may_be_text && at("$\"") ? 2 : 1;
             const std::string_view text = text_.substr(begin, at_ - begin);
             if (peek() == '"')
                 ++at_;
@@ -446,6 +484,8 @@ class Lexer {
     std::size_t at_ = 0, start_ = 0;
     std::size_t last_foreign_ = std::string_view::npos;  ///< end of the last character of no token
     bool new_line_ = true;
+    std::vector<Place> choices_;  ///< each `{IF}` that is open
+    NameSet defined_;             ///< by `{define}`
 };
 
 }  // namespace

@@ -23,7 +23,6 @@ constexpr Unsupported unsupported[] = {
     {Word::extends_, "inheritance is", "declare an instance of the other block and call it"},
     {Word::implements_, "interfaces are", "leave it out, and call the block by its own type"},
     {Word::property_, "properties are", "write a METHOD, or a VAR_OUTPUT"},
-    {Word::action_, "actions are", "write a METHOD"},
     {Word::super_, "inheritance is", "declare an instance of the other block and call it"},
     {Word::goto_, "GOTO is", "write IF, CASE, EXIT or RETURN"},
     {Word::ref_to_, "references are", "pass the variable as VAR_IN_OUT"},
@@ -108,11 +107,10 @@ bool refuse_unsupported(Parsing& p) {
 }
 
 bool refuse_whole(Parsing& p) {
-    static constexpr Word words[] = {Word::class_, Word::interface_, Word::property_,
-                                     Word::action_};
+    static constexpr Word words[] = {Word::class_, Word::interface_, Word::property_};
     if (std::ranges::find(words, p.here().word) == std::end(words)) return false;
     const std::string end = fmt::format("end_{}", p.here().text);
-    const bool is_part = p.is(Word::property_) || p.is(Word::action_);
+    const bool is_part = p.is(Word::property_);
     refuse_unsupported(p);
     p.panic = false;
     const std::size_t first = p.at;
@@ -147,23 +145,9 @@ void refuse_chart(Parsing& p) {
 }
 
 bool refuse_section(Parsing& p) {
-    if (p.is(Word::var_access_)) {
-        refuse_unsupported(p);
-        skip_past(p, Word::end_var_);
-        p.accept(Word::semicolon);
-        return true;
-    }
-    const bool is_const = p.says("const");
-    if (!p.is(Word::name) || !p.here().first_in_line || !p.is_name(1) ||
-        !(is_const || p.says("label")))
-        return false;
-    const std::string end = fmt::format("end_{}", p.here().text);
-    tell(p, code::not_supported, p.here().place,
-         fmt::format("{} is not supported", p.here().place.text()),
-         is_const ? "write VAR CONSTANT n : INT := 5; END_VAR, with the type of each"
-                  : "write IF, CASE, EXIT or RETURN");
-    while (!p.is(Word::end_of_file) && !is_end(p.here().word) && !p.says(end)) p.take();
-    if (p.is(Word::name)) p.take();
+    if (!p.is(Word::var_access_)) return false;
+    refuse_unsupported(p);
+    skip_past(p, Word::end_var_);
     p.accept(Word::semicolon);
     return true;
 }
@@ -261,13 +245,6 @@ void refuse_value(Parsing& p, const Expression& value) {
                          : "write 'name := value;', or a call 'name();'");
     else
         expected(p, ":=", "or '('");
-}
-
-bool refuse_negated_output(Parsing& p) {
-    if (!p.is(Word::not_) || !p.is_name(1) || p.next(2).word != Word::output) return false;
-    fail(p, code::not_supported, p.here().place, "NOT before an output is not supported",
-         "take the output, and write NOT where it is used");
-    return true;
 }
 
 bool refuse_semicolon(Parsing& p) {

@@ -14,7 +14,7 @@ bool refuse_unsupported(Parsing& p);
 
 // Beside blocks and within them. False: it is none.
 
-/// CLASS, INTERFACE, PROPERTY, ACTION: up to its END_...
+/// CLASS, INTERFACE, PROPERTY: up to its END_...
 bool refuse_whole(Parsing& p);
 /// `FUNCTION_BLOCK ABSTRACT x`
 bool refuse_modifier(Parsing& p);
@@ -25,7 +25,7 @@ void refuse_chart(Parsing& p);
 
 // In declarations.
 
-/// VAR_ACCESS; `CONST n := 5; END_CONST` and LABEL of Siemens' older SCL. False: it is none.
+/// VAR_ACCESS. False: it is none.
 bool refuse_section(Parsing& p);
 /// VAR_INST, and VAR_STAT where nothing stays.
 void refuse_static(Parsing& p, PouKind kind);
@@ -54,8 +54,6 @@ void refuse_assignment(Parsing& p);
 bool refuse_rung(Parsing& p);
 /// A value that is no call, a label, JMP.
 void refuse_value(Parsing& p, const Expression& value);
-/// `NOT q => a`. False: it is none.
-bool refuse_negated_output(Parsing& p);
 /// `t(IN := x; PT := y)`: takes the ';'. False: it is none.
 bool refuse_semicolon(Parsing& p);
 

@@ -1,3 +1,4 @@
+#include "runtime/source/codes.hpp"
 #include "runtime/st/syntax/grammar.hpp"
 #include "runtime/st/syntax/mistakes.hpp"
 #include "runtime/st/syntax/recovery.hpp"
@@ -22,11 +23,56 @@ bool accept_modifier(Parsing& p, DeclarationBlock& block) {
     return p.accept(Word::non_retain_) || accept_access(p);
 }
 
+/// It begins its line, as `CONST` and `LABEL` are names elsewhere.
+bool at_older_section(const Cursor& p, std::string_view word) {
+    return p.is(Word::name) && p.here().first_in_line && p.says(word) && p.is_name(1);
+}
+
+/// Const_Section : 'CONST' ( Name ':=' Expression ';' ) * 'END_CONST' ';' ?
+/// Siemens' older SCL has it: each constant is as its value is, without a type of its own.
+DeclarationBlock parse_constants(Parsing& p) {
+    const Token opener = p.take();
+    DeclarationBlock block;
+    block.constant = true;
+    while (!p.panic && p.is_name() && !p.says("end_const")) {
+        const Token name = p.take();
+        if (!p.accept(Word::assign)) expected(p, ":=", "after the name");
+        Expression* value = parse_expression(p);
+        if (!p.panic) end_statement(p);
+        if (p.panic) skip_declaration(p);
+        block.declarations.push_back(
+            &p.tree.declarations.emplace_back(Declaration{.name = name, .initial = value}));
+    }
+    if (p.says("end_const"))
+        p.take();
+    else
+        tell(p, code::something_else_expected, opener.place, "the CONST does not end",
+             "it ends with END_CONST");
+    p.accept(Word::semicolon);
+    return block;
+}
+
+/// Label_Section : 'LABEL' Name ( ',' Name ) * ';' 'END_LABEL' ';' ?
+/// What they are for is told where one is used.
+void parse_labels(Parsing& p) {
+    while (!p.is(Word::end_of_file) && !is_end(p.here().word) && !p.says("end_label")) p.take();
+    if (p.says("end_label")) p.take();
+    p.accept(Word::semicolon);
+}
+
 }  // namespace
 
-/// Var_Sections : Var_Section *
+/// Var_Sections : ( Var_Section | Const_Section | Label_Section ) *
 void parse_sections(Parsing& p, Pou& pou, Word end) {
     while (!p.is(end) && !p.is(Word::end_of_file)) {
+        if (at_older_section(p, "const")) {
+            pou.blocks.push_back(parse_constants(p));
+            continue;
+        }
+        if (at_older_section(p, "label")) {
+            parse_labels(p);
+            continue;
+        }
         const bool is_inst = p.is(Word::name) && p.here().first_in_line && p.says("var_inst");
         if (refuse_section(p)) continue;
         const bool is_list = p.next(2).word == Word::colon || p.next(2).word == Word::comma;

@@ -18,16 +18,17 @@ Expression* parse_element(Parsing& p) {
     return repeated;
 }
 
-/// Param_Assign : Name '=>' Value ? | ( Name ':=' ) ? Value
+/// Param_Assign : Name ( ':=' | '=>' ) | 'NOT' ? Name '=>' Value | ( Name ':=' ) ? Value
 /// Value : Expression | Init
-/// False: nothing more can be read.
+/// What is named without a value is left out. False: nothing more can be read.
 bool parse_argument(Parsing& p, Expression& to, Word end, Expression* (*parse_value)(Parsing&)) {
-    if (refuse_negated_output(p)) return false;
     Argument argument;
+    argument.is_negated = p.at_negated_output();
+    if (argument.is_negated) p.take();
     if (p.at_argument_name()) {
         argument.name = p.take();
         argument.is_output = p.take().word == Word::output;
-        if (argument.is_output && (p.is(Word::comma) || p.is(end))) return true;
+        if (p.is(Word::comma) || p.is(end)) return true;
     }
     argument.value = parse_value(p);
     if (p.panic) return false;

@@ -56,20 +56,70 @@ void parse_header(Parsing& p, Pou& pou) {
     p.accept(Word::semicolon);
 }
 
-/// POU_Body : Stmt_List ( POU Stmt_List ) *
-/// It is a METHOD, and only in a FUNCTION_BLOCK or a PROGRAM.
+bool may_have_parts(const Pou& pou) {
+    return pou.kind == PouKind::function_block || pou.kind == PouKind::program;
+}
+
+/// Action_Decl : 'ACTION' Name ':' ? Stmt_List 'END_ACTION' ';' ?
+Pou* parse_action(Parsing& p, PouKind kind) {
+    const Token opener = p.take();
+    Pou& action = p.tree.pous.emplace_back();
+    action.kind = kind;
+    action.is_action = true;
+    action.name = expect_name(p, "the name of the ACTION");
+    action.place = opener.place.to(action.name.place);
+    p.accept(Word::colon);
+    const bool is_in_body = std::exchange(p.is_in_body, true);
+    parse_statements(p, action.body, Word::end_action_);
+    close(p, Word::end_action_, opener);
+    p.is_in_body = is_in_body;
+    p.accept(Word::semicolon);
+    return &action;
+}
+
+/// It is of the block before it in its file; without one it sees what all see, as B&R has it.
+void parse_action_beside(Parsing& p) {
+    const bool has_unit = !p.tree.units.empty() && may_have_parts(*p.tree.units.back()) &&
+                          p.tree.units.back()->place.source == p.source.get();
+    if (has_unit)
+        p.tree.units.back()->methods.push_back(parse_action(p, PouKind::method));
+    else
+        p.tree.units.push_back(parse_action(p, PouKind::function));
+}
+
+/// POU_Body : Stmt_List ( ( POU | Action_Decl ) Stmt_List ) *
+/// It is a METHOD, and only in a FUNCTION_BLOCK or a PROGRAM; an Action_Decl, too.
 void parse_body(Parsing& p, Pou& pou, Word end) {
     for (;;) {
         parse_statements(p, pou.body, end);
-        if (!p.is(Word::method_)) return;
-        if (pou.kind != PouKind::function_block && pou.kind != PouKind::program) return;
-        pou.methods.push_back(parse_pou(p));
+        if (!may_have_parts(pou)) return;
+        if (p.is(Word::method_))
+            pou.methods.push_back(parse_pou(p));
+        else if (p.at_action())
+            pou.methods.push_back(parse_action(p, PouKind::method));
+        else
+            return;
     }
+}
+
+/// The name that a list of VAR_GLOBAL has, which its file gives it.
+std::string_view name_of_list(const Source& source) {
+    std::string_view name = source.file->path;
+    name.remove_prefix(name.find_last_of("/\\") + 1);
+    return name.substr(0, name.rfind('.'));
+}
+
+void parse_globals(Parsing& p) {
+    const bool is_qualified_only = has_attribute(p, p.at, "qualified_only");
+    DeclarationBlock block = parse_section(p, Section::global);
+    block.list = name_of_list(*p.source);
+    block.is_qualified_only = is_qualified_only;
+    p.tree.globals.push_back(std::move(block));
 }
 
 }  // namespace
 
-/// Declaration : POU | Data_Type_Decl | Var_Section | Config_Decl | Test
+/// Declaration : POU | Action_Decl | Data_Type_Decl | Var_Section | Config_Decl | Test
 /// A METHOD stands within another unit; variables beside units are VAR_GLOBAL or VAR, which is the
 /// same there; a Test stands in a file of tests.
 void parse_declaration(Parsing& p) {
@@ -77,9 +127,9 @@ void parse_declaration(Parsing& p) {
     if (find_pou(p.here().word) && !p.is(Word::method_))
         return p.tree.units.push_back(parse_pou(p));
     if (p.is(Word::type_)) return parse_type_declarations(p);
-    if (p.is(Word::var_global_) || p.is(Word::var_))
-        return p.tree.globals.push_back(parse_section(p, Section::global));
+    if (p.is(Word::var_global_) || p.is(Word::var_)) return parse_globals(p);
     if (p.is(Word::configuration_)) return parse_configuration(p);
+    if (p.at_action()) return parse_action_beside(p);
     if (refuse_whole(p)) return;
     if (p.is_name(1) && respell(p, declaration_words)) return parse_declaration(p);
     const bool is_tests = p.source->kind == SourceKind::tests;

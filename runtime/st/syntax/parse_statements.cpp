@@ -49,9 +49,21 @@ void parse_latch(Parsing& p, Expression* target, Block& to) {
     end_statement(p);
 }
 
+/// A value alone names an action, `a;`, or is a mistake.
+void parse_value_alone(Parsing& p, Expression* value, Block& to) {
+    const bool is_name =
+        value->kind == Expression::Kind::name || value->kind == Expression::Kind::member;
+    if (!is_name || !p.is(Word::semicolon)) return refuse_value(p, *value);
+    Statement* statement = p.make(Statement::Kind::action, value->token);
+    statement->place = value->place;
+    statement->value = value;
+    to.push_back(statement);
+    p.take();
+}
+
 /// Simple_Stmt : Assign_Stmt | Latch_Stmt | Invocation
 /// Invocation : Variable_Access ';'
-/// It begins with a Name; an Invocation ends with the ')' of a call.
+/// It begins with a Name; an Invocation ends with the ')' of a call, or names an action.
 void parse_simple(Parsing& p, Block& to) {
     if (refuse_rung(p)) return;
     if (!p.is_name()) return expected(p, "a statement");
@@ -62,7 +74,7 @@ void parse_simple(Parsing& p, Block& to) {
     if (is_assignment(op)) return parse_assignment(p, target, to);
     if (op == Word::set_assign || op == Word::reset_assign) return parse_latch(p, target, to);
     if (op == Word::equal) return refuse_comparison(p);
-    if (target->kind != Expression::Kind::call) return refuse_value(p, *target);
+    if (target->kind != Expression::Kind::call) return parse_value_alone(p, target, to);
     Statement* statement = p.make(Statement::Kind::call, target->token);
     statement->place = target->place;
     statement->value = target;
@@ -208,7 +220,6 @@ void parse_statement(Parsing& p, Block& to) {
         case Word::semicolon:
             p.take();
             return;
-        case Word::action_:
         case Word::property_:
             if (!p.is_name(1)) return parse_simple(p, to);
             refuse_whole(p);

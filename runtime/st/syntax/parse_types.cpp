@@ -32,8 +32,10 @@ void parse_array(Parsing& p, TypeText& type) {
 void parse_structure(Parsing& p, TypeText& type, const Token& opener, Word end) {
     type.kind = TypeText::Kind::structure;
     while (!p.panic && !p.is_spoiled && !is_end(p.here().word) && !p.is(Word::end_of_file) &&
-           !p.at_pou())
+           (!p.at_pou() || p.is_declared())) {
+        if (p.here().word < Word::end_of_file && p.is_declared()) p.tokens[p.at].word = Word::name;
         parse_variables(p, type.members);
+    }
     close(p, end, opener);
 }
 
@@ -70,11 +72,11 @@ void parse_named_type(Parsing& p, TypeText& type) {
     type.name = parse_qualified_name(p, "a type");
     if (p.panic) return;
     const bool has_length = p.is(Word::open_bracket) || p.is(Word::open);
-    if (same_name(type.name.text, "string") && has_length) {
+    const bool is_text =
+        same_name(type.name.text, "string") || same_name(type.name.text, "wstring");
+    if (is_text && has_length) {
         type.kind = TypeText::Kind::text;
         type.length = parse_length(p);
-    } else if (same_name(type.name.text, "wstring") && has_length) {
-        parse_length(p);
     } else if (same_name(type.name.text, "reference") && p.is(Word::to_)) {
         refuse_reference(p, type.name);
     } else if (p.is(Word::open)) {

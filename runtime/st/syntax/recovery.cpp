@@ -37,7 +37,7 @@ constexpr bool ends_statements(Word word) {
 bool is_left(const Parsing& p) {
     return p.is(Word::end_of_file) || is_end(p.here().word) || p.is(Word::else_) ||
            p.is(Word::elsif_) || p.is(Word::until_) || find_pou(p.here().word) || p.at_test() ||
-           at_label_of_case(p) || (p.is(Word::type_) && p.is_name(1));
+           p.at_action() || at_label_of_case(p) || (p.is(Word::type_) && p.is_name(1));
 }
 
 /// Of a call: what follows its ')' is no operator and no ';'.
@@ -168,7 +168,7 @@ bool at_end_of_statements(const Cursor& p) {
     if (p.is(Word::method_))
         return p.is_name(1) || p.next().word == Word::private_ || p.next().word == Word::public_;
     return is_end(p.here().word) || ends_statements(p.here().word) || p.at_pou() || p.at_test() ||
-           (p.is(Word::type_) && p.is_name(1));
+           p.at_action() || (p.is(Word::type_) && p.is_name(1));
 }
 
 bool at_label_of_case(const Parsing& p) {
@@ -193,7 +193,7 @@ void skip_to_declaration(Parsing& p) {
     const auto begins_line = [&](Word word) { return p.is(word) && p.here().first_in_line; };
     while (!p.is(Word::end_of_file) && !p.at_pou() && !p.is(Word::var_global_) && !p.at_test() &&
            !p.is(Word::end_namespace_) && !begins_line(Word::type_) &&
-           !begins_line(Word::namespace_))
+           !begins_line(Word::namespace_) && !(p.at_action() && p.here().first_in_line))
         p.take();
 }
 

@@ -19,6 +19,17 @@ std::pair<std::string_view, Place> unit_between(const Tokens& tokens, std::size_
     return {};
 }
 
+bool has_attribute(const Tokens& tokens, std::size_t token, std::string_view name) {
+    const auto range = std::ranges::equal_range(tokens.pragmas, token, {}, &Pragma::before);
+    return std::ranges::any_of(range, [&](const Pragma& pragma) {
+        std::string_view text = pragma.place.text();
+        const std::size_t quote = std::min(text.find('\''), text.size());
+        if (text.substr(0, quote).find("attribute") == text.npos) return false;
+        text.remove_prefix(std::min(quote + 1, text.size()));
+        return same_name(text.substr(0, text.find('\'')), name);
+    });
+}
+
 std::string_view comment_before(const Tokens& tokens, std::size_t token, bool first_in_line) {
     const auto& comments = tokens.comments;
     const auto first = std::ranges::lower_bound(comments, token, {}, &Pragma::before);

@@ -26,6 +26,7 @@ struct Argument {
     Expression* value = nullptr;
     Variable* variable = nullptr;  ///< that it goes to or comes from, noted by the checker
     bool is_left_out = false;      ///< in a test: taken only if nothing was given before
+    bool is_negated = false;       ///< `NOT q => x`
 
     bool is_named() const { return name.word != Word::end_of_file; }
 };
@@ -122,6 +123,7 @@ struct Statement {
         exit,
         continue_,
         return_,
+        action,    ///< `a;`, which only an action can mean: its name in `value`
         sequence,  ///< several one behind the other, put in by the checker for one
     };
 
@@ -152,7 +154,7 @@ struct TypeText {
 /// `a, b : INT := 5;` has one for each name.
 struct Declaration {
     Token name = {};
-    TypeText* type = nullptr;
+    TypeText* type = nullptr;  ///< null: of CONST, whose value has one
     Expression* initial = nullptr;
     Token edge = {};  ///< R_EDGE or F_EDGE behind the type; else `end_of_file`
     std::string_view unit = {};
@@ -165,7 +167,9 @@ enum class Section : std::uint8_t { input, output, in_out, local, temp, global, 
 struct DeclarationBlock {
     Section section = Section::local;
     bool constant = false, retain = false;
-    bool is_lost = false;  ///< not understood
+    bool is_lost = false;            ///< not understood
+    std::string_view list = {};      ///< of VAR_GLOBAL: its file's name, without the ending
+    bool is_qualified_only = false;  ///< named as `list.x` alone
     std::vector<Declaration*> declarations = {};
 };
 
@@ -180,8 +184,9 @@ struct Pou {
     TypeText* base = nullptr;    ///< of a data block that is an instance, or a structure
     std::string_view doc = {};   ///< the comments before it, else below its first line
     bool is_private = false;
-    bool is_lost = false;   ///< not understood
-    bool is_tests = false;  ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it
+    bool is_action = false;  ///< of a method, and of a function that is one beside all blocks
+    bool is_lost = false;    ///< not understood
+    bool is_tests = false;   ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it
     std::vector<DeclarationBlock> blocks = {};
     Block body = {};
     std::vector<Pou*> methods = {};

@@ -108,6 +108,8 @@ const Type* find_prefix(std::string_view name) {
 }
 
 const Type* find_elementary(std::string_view name) {
+    if (same_name(name, "wstring")) return &string_type;
+    if (same_name(name, "wchar")) return &char_type;
     const auto* it =
         std::ranges::find_if(table, [&](const Type& type) { return same_name(type.name, name); });
     return it == std::end(table) ? nullptr : it;

@@ -13,7 +13,8 @@ inline constexpr Wide longest_text = 32767;
 /// `INT`, `ARRAY[0..3] OF LREAL`: for messages.
 std::string describe(const Type& type);
 
-/// BOOL, SINT, ..., LTIME; null for another name.
+/// BOOL, SINT, ..., LTIME; null for another name. A WSTRING is a STRING, and a WCHAR a CHAR: texts
+/// are UTF-8, and what counts their characters counts bytes.
 const Type* find_elementary(std::string_view name);
 
 /// What stands before '#': also Siemens' B, W, DW, LW and L.

@@ -14,8 +14,6 @@ struct Instead {
 };
 
 constexpr Instead types_of_vendors[] = {
-    {"wstring", "write STRING; texts are bytes"},
-    {"wchar", "write CHAR"},
     {"s5time", "write TIME"},
     {"any", "write the type; a block for each"},
     {"variant", "write the type; a block for each"},
