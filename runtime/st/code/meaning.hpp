@@ -211,6 +211,16 @@ struct Frames {
 
     std::uint64_t address_of(std::uint32_t slot) const { return base + slot; }
 
+    /// The address of something, as it means the same to any block that uses it in any scan: with
+    /// the number of the instance, where that is one of the program's.
+    std::uint64_t lasting(std::uint64_t address) const {
+        if (address >> 32 != 0) return address;
+        for (int i = 0; i < context.blocks; ++i)
+            if (context.instances[i] == root)
+                return (static_cast<std::uint64_t>(i) + 1) << 32 | address;
+        return address;
+    }
+
     std::uint64_t global_number(std::uint32_t number) const {
         return word(root, globals_slot + number);
     }

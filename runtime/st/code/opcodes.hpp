@@ -26,6 +26,7 @@
     OP(set_global, move, "wn--", put(a, frames.global(b)))                                           \
     OP(set_global_number, move, "wn--", put(a, frames.global_number(b)))                             \
     OP(address_of_number, move, "wr--", put(a, (U(b) + 1) << 32))                                    \
+    OP(lasting, move, "wr--", put(a, frames.lasting(U(b))))                                          \
     OP(offset, move, "wrn-", put(a, U(b) + c))                                                       \
     OP(offset_by, move, "wrr-", put(a, U(b) + U(c)))                                                 \
     OP(load, move, "wrn-", put(a, word(target(U(b)), c)))                                            \
