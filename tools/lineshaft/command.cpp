@@ -60,8 +60,7 @@ void CommonOptions::add_to(CLI::App& command) {
     command.add_option("--include-dir", include_dirs, "Allow files below this folder, too")
         ->type_name("DIR");
     command.add_flag("--json", json, "Print one JSON object for machines");
-    command.add_flag_callback("--no-native", st::switch_native_off,
-                              "Interpret Structured Text: slower, and the same in all else");
+    add_no_native(command);
     command.add_flag("--quiet", quiet, "Print results only, and nothing where a file takes them");
 }
 
@@ -81,6 +80,11 @@ LoadOptions CommonOptions::load_options(Diagnostics& out) const {
 
 void add_strict(CLI::App& command, bool& strict) {
     command.add_flag("--strict", strict, "Take warnings for errors");
+}
+
+void add_no_native(CLI::App& command) {
+    command.add_flag_callback("--no-native", st::switch_native_off,
+                              "Interpret Structured Text: slower, and the same in all else");
 }
 
 std::optional<st::Library> compile_files(const std::vector<std::string>& files, Diagnostics& out) {

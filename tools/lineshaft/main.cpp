@@ -16,6 +16,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "runtime/st/code/native/native.hpp"
 #include "runtime/version.hpp"
 #include "tools/lineshaft/command.hpp"
 
@@ -129,6 +130,10 @@ int run_command(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : static_cast<int>(Exit::wrong);
     }
+    if (st::is_native_refused())
+        spdlog::warn(
+            "the system refuses executable memory: Structured Text was interpreted, which "
+            "is slower; --no-native says so from the start");
     if (std::fflush(stdout) != 0) {
         if (is_unread()) return static_cast<int>(Exit::unread);
         spdlog::error("cannot write to the standard output: {}", std::strerror(errno));

@@ -140,6 +140,39 @@ TEST_CASE("Structured Text: fused instructions do what plain ones do", "[st]") {
     }
 }
 
+TEST_CASE("Structured Text: native code leaves the memory that the machine leaves", "[st]") {
+    const auto compare = [](const std::string& text, const st::Options& options) {
+        INFO(text);
+        st::Options interpreted = options;
+        interpreted.native = false;
+        const st::Library fast = compiled(text, options), slow = compiled(text, interpreted);
+        st::Instances a(fast), b(slow);
+        for (int scan = 0; scan < 30; ++scan) {
+            a.scan(scan, 1);
+            b.scan(scan, 1);
+            REQUIRE(a.memory() == b.memory());
+        }
+        CHECK(a.is_guarded());
+        REQUIRE(a.faults() == b.faults());
+        return a.faults();
+    };
+    for (unsigned seed = 0; seed < 500; ++seed) compare(Writer(seed).program(), {});
+    const auto job = [](const std::string& statements) {
+        return "FUNCTION Inner : DINT VAR_INPUT x, y : DINT; END_VAR\nInner := x / y;\n"
+               "END_FUNCTION\nPROGRAM Main\nVAR a : DINT := 7; b, n : DINT; t : ARRAY[1..4] OF "
+               "LINT; s : STRING[3]; END_VAR\nn := n + 1;\n" +
+               statements + "\nEND_PROGRAM\n";
+    };
+    using Faults = std::vector<std::string>;
+    CHECK(compare(job("b := Inner(a, 2) + Inner(a, 3);"), {}).empty());
+    CHECK(compare(job("s := DINT_TO_STRING(n * 1000);"), {}).empty());
+    CHECK(compare(job("b := Inner(a, b);"), {}) == Faults{"2 division_by_zero"});
+    CHECK(compare(job("t[n] := n;"), {}) == Faults{"7 array_bounds"});
+    CHECK(compare(job("WHILE TRUE DO b := b + 1; END_WHILE;"), {.fuel = 100}) ==
+          Faults{"7 no_end"});
+    CHECK(compare(job("WHILE TRUE DO b := Inner(a, 2); END_WHILE;"), {.fuel = 100}).size() == 1);
+}
+
 TEST_CASE("Structured Text: what is common takes few instructions", "[st]") {
     const auto listing = [](const std::string& statements) {
         return compiled(

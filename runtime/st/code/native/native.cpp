@@ -174,7 +174,7 @@ class Patching {
 }  // namespace
 
 std::shared_ptr<const Native> native_code(const Code& code) {
-    if (off) return {};
+    if (off || refused) return {};
     auto native = std::make_shared<Native>();
     Patching patching(code, *native);
     native->size = patching.lay_out();
