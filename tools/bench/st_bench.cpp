@@ -187,9 +187,9 @@ void in_cpp(benchmark::State& state) {
 }
 BENCHMARK(in_cpp);
 
-void in_structured_text(benchmark::State& state) {
+void in_structured_text(benchmark::State& state, bool native) {
     Diagnostics out;
-    const auto library = st::compile({bodies(1)}, standard_blocks(), out);
+    const auto library = st::compile({bodies(1)}, standard_blocks(), out, {.native = native});
     const BlockType& kind = library->kinds()[0];
     std::vector<std::uint64_t> memory(kind.size / 8);
     auto* block = reinterpret_cast<std::byte*>(memory.data());
@@ -221,7 +221,29 @@ void in_structured_text(benchmark::State& state) {
     if (!agrees) state.SkipWithError("Structured Text and C++ differ");
     if (std::getenv("ST_LISTING")) std::puts(library->listing().c_str());
 }
-BENCHMARK(in_structured_text);
+BENCHMARK_CAPTURE(in_structured_text, native, true);
+BENCHMARK_CAPTURE(in_structured_text, interpreted, false);
+
+void empty_block(benchmark::State& state, bool native) {
+    Diagnostics out;
+    const auto library =
+        st::compile({std::make_shared<const SourceFile>(
+                        SourceFile{"empty.st", "FUNCTION_BLOCK Empty\nEND_FUNCTION_BLOCK\n"})},
+                    standard_blocks(), out, {.native = native});
+    const BlockType& kind = library->kinds()[0];
+    std::vector<std::uint64_t> memory(kind.size / 8);
+    auto* block = reinterpret_cast<std::byte*>(memory.data());
+    kind.construct(block);
+    Quickest least;
+    for (auto _ : state) {
+        least.time([&] {
+            for (int i = 0; i < scans; ++i) kind.scan_blocks(block, 1, {}, {kind.context, nullptr});
+        });
+    }
+    least.count(state, scans);
+}
+BENCHMARK_CAPTURE(empty_block, native, true);
+BENCHMARK_CAPTURE(empty_block, interpreted, false);
 
 /// A multiply and an add after the other, the measure of the machine.
 void multiply_add(benchmark::State& state) {
@@ -239,19 +261,21 @@ void multiply_add(benchmark::State& state) {
 }
 BENCHMARK(multiply_add);
 
-void compile(benchmark::State& state, const std::shared_ptr<const SourceFile>& source) {
+void compile(benchmark::State& state, const std::shared_ptr<const SourceFile>& source,
+             bool native) {
     Quickest least;
     for (auto _ : state) {
         least.time([&] {
             Diagnostics out;
-            const auto library = st::compile({source}, standard_blocks(), out);
+            const auto library = st::compile({source}, standard_blocks(), out, {.native = native});
             if (!library) state.SkipWithError(out.render().substr(0, 300).c_str());
         });
     }
     least.count(state, 1);
 }
-BENCHMARK_CAPTURE(compile, 200_bodies, bodies(200));
-BENCHMARK_CAPTURE(compile, 10000_lines, stations(10'000));
+BENCHMARK_CAPTURE(compile, 200_bodies, bodies(200), true);
+BENCHMARK_CAPTURE(compile, 200_bodies_interpreted, bodies(200), false);
+BENCHMARK_CAPTURE(compile, 10000_lines, stations(10'000), true);
 
 }  // namespace
 
