@@ -34,6 +34,7 @@ using Evaluate = Evaluated (*)(Expression&);
 ///   L0921  warning: never used             L0922  warning: never reached
 ///   L0923  warning: an argument not taken
 ///   L0924  warning: a block assigns its own input
+///   L0925  warning: a step without a way out
 Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out);
 
 }  // namespace lineshaft::st

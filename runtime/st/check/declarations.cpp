@@ -3,6 +3,7 @@
 #include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/st/check/catalog_types.hpp"
+#include "runtime/st/check/charts.hpp"
 #include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/initial_values.hpp"
@@ -276,6 +277,7 @@ void declare_routines(Checking& c) {
             for (const DeclarationBlock& block : routine.pou->blocks)
                 if ((block.constant && block.section == Section::local) == constant)
                     declare(c, routine, block);
+        declare_chart(c, routine);
     }
     c.routine = nullptr;
     for (Routine& method : c.checked.routines)  // it works on what its block is made of

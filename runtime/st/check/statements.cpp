@@ -4,6 +4,7 @@
 
 #include "runtime/source/codes.hpp"
 #include "runtime/st/check/calls.hpp"
+#include "runtime/st/check/charts.hpp"
 #include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
@@ -133,6 +134,8 @@ void check_body(Checking& c, Routine& routine) {
     c.routine = &routine;
     c.loops = 0;
     routine.body = edge_calls(c, routine);
+    const Block chart = chart_statements(c, routine);
+    routine.body.insert(routine.body.end(), chart.begin(), chart.end());
     routine.body.insert(routine.body.end(), routine.pou->body.begin(), routine.pou->body.end());
     check(c, routine.body);
     c.routine = nullptr;

@@ -24,6 +24,9 @@ Pou* parse_pou(Parsing& p);
 void parse_attributes(Parsing& p);
 bool accept_access(Parsing& p);
 
+// parse_charts.cpp
+void parse_chart_element(Parsing& p, Pou& pou);
+
 // parse_tests.cpp
 void parse_test(Parsing& p);
 void parse_test_statement(Parsing& p, Block& to);

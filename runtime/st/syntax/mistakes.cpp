@@ -139,8 +139,8 @@ void refuse_bases(Parsing& p) {
 }
 
 void refuse_chart(Parsing& p) {
-    tell(p, code::not_supported, p.here().place, "sequential function charts are not supported",
-         "write a CASE over the steps");
+    tell(p, code::wrong_place, p.here().place, "a FUNCTION or METHOD has no steps",
+         "a chart keeps its steps from scan to scan: write it in a FUNCTION_BLOCK or PROGRAM");
     while (!p.is(Word::end_of_file) && !ends_pou(p.here().word)) p.take();
 }
 

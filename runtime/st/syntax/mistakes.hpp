@@ -20,7 +20,7 @@ bool refuse_whole(Parsing& p);
 bool refuse_modifier(Parsing& p);
 /// EXTENDS and IMPLEMENTS of a block, up to the end of the line.
 void refuse_bases(Parsing& p);
-/// A chart, up to the end of the block.
+/// A chart where nothing stays, up to the end of the block.
 void refuse_chart(Parsing& p);
 
 // In declarations.

@@ -87,14 +87,16 @@ void parse_action_beside(Parsing& p) {
         p.tree.units.push_back(parse_action(p, PouKind::function));
 }
 
-/// POU_Body : Stmt_List ( ( POU | Action_Decl ) Stmt_List ) *
-/// It is a METHOD, and only in a FUNCTION_BLOCK or a PROGRAM; an Action_Decl, too.
+/// POU_Body : Stmt_List ( ( POU | Action_Decl | Chart_Element ) Stmt_List ) *
+/// It is a METHOD, and only in a FUNCTION_BLOCK or a PROGRAM; the others, too.
 void parse_body(Parsing& p, Pou& pou, Word end) {
     for (;;) {
         parse_statements(p, pou.body, end);
-        if (!may_have_parts(pou)) return;
+        if (!may_have_parts(pou)) return p.at_chart() ? refuse_chart(p) : void();
         if (p.is(Word::method_))
             pou.methods.push_back(parse_pou(p));
+        else if (p.at_chart())
+            parse_chart_element(p, pou);
         else if (p.at_action())
             pou.methods.push_back(parse_action(p, PouKind::method));
         else

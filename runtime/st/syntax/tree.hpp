@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/st/syntax/chart.hpp"
 #include "runtime/st/syntax/constant.hpp"
 #include "runtime/st/syntax/testing.hpp"
 #include "runtime/st/syntax/token.hpp"
@@ -189,6 +190,7 @@ struct Pou {
     bool is_tests = false;   ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it
     std::vector<DeclarationBlock> blocks = {};
     Block body = {};
+    Chart* chart = nullptr;  ///< instead of a body
     std::vector<Pou*> methods = {};
 };
 
@@ -217,6 +219,7 @@ struct Tree {
     std::pmr::deque<TypeText> type_texts{&memory};
     std::pmr::deque<Declaration> declarations{&memory};
     std::pmr::deque<Pou> pous{&memory};
+    std::deque<Chart> charts;
 
     std::unordered_map<const Source*, std::deque<Scope>>
         scopes;                     ///< those within others behind them

@@ -1,0 +1,386 @@
+#include "runtime/st/check/charts.hpp"
+
+#include <algorithm>
+
+#include "runtime/source/codes.hpp"
+#include "runtime/st/check/catalog_types.hpp"
+#include "runtime/st/check/names.hpp"
+#include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/order.hpp"
+#include "runtime/st/syntax/literals.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+struct Qualifier {
+    std::string_view name;
+    bool has_time;
+};
+
+constexpr Qualifier qualifiers[] = {{"N", false},  {"S", false},  {"R", false}, {"P", false},
+                                    {"P0", false}, {"P1", false}, {"L", true},  {"D", true},
+                                    {"SD", true},  {"DS", true},  {"SL", true}};
+
+/// Writes what a chart does as statements, which are checked as those of a user.
+struct ChartWriter {
+    Checking& c;
+    Routine& routine;
+    Block out = {};
+
+    Expression like(const Token& token) const {
+        Expression made;
+        made.token = token;
+        made.place = token.place;
+        return made;
+    }
+    /// `of.part`, as it is called in names: what a chart keeps beside what its user declares.
+    std::string_view part_name(std::string_view of, std::string_view part) {
+        return c.checked.names.emplace_back(fmt::format("{}.{}", of, part));
+    }
+    Expression* name(const Token& at, std::string_view text) {
+        return make_name(c, like(at), text);
+    }
+    Expression* active(const Token& step) { return make_member(c, name(step, step.text), "X"); }
+    Expression* kept(const Token& at, std::string_view of, std::string_view part) {
+        return name(at, part_name(of, part));
+    }
+    Expression* joined(Word op, Expression* a, Expression* b) {
+        return a ? make_binary(c, b->place, b->place, op, a, b) : b;
+    }
+    Expression* negated(Expression* value) {
+        Expression* made = make(c, E::unary, *value);
+        made->op = Word::not_;
+        made->operands[0] = value;
+        return made;
+    }
+    Expression* truth(const Token& at, bool value) { return make_boolean(c, like(at), value); }
+    Statement* set(Expression* target, Expression* value) {
+        return make_assignment(c, target->place, target, value);
+    }
+    Statement* when(Expression* condition, Block then) {
+        return make_if(c, condition->place, condition, std::move(then), {});
+    }
+    /// `timer(IN := in, PT := preset);`
+    Statement* run(Expression* timer, Expression* in, Expression* preset) {
+        const auto named = [&](std::string_view text) {
+            return Token{.word = Word::name, .place = timer->place, .text = text};
+        };
+        std::vector<Argument> arguments = {{.name = named("in"), .value = in}};
+        if (preset) arguments.push_back({.name = named("pt"), .value = preset});
+        return make_call_statement(c, make_call(c, *timer, timer, std::move(arguments)));
+    }
+
+    void declare(const Token& at, std::string_view text, const Type* type) {
+        Variable& made = routine.variables.emplace_back();
+        made.name = at;
+        made.text = text;
+        made.type = type;
+        made.of = routine.pou;
+        made.used = true;
+        routine.names.emplace(text, &made);
+        depend(c, type, at.place);
+    }
+};
+
+const ChartStep* find_step(const Chart& chart, std::string_view name) {
+    const auto it = std::ranges::find_if(
+        chart.steps, [&](const ChartStep& step) { return same_name(step.name.text, name); });
+    return it == chart.steps.end() ? nullptr : &*it;
+}
+
+void check_transitions(Checking& c, const Chart& chart) {
+    std::vector<std::string> names;
+    for (const ChartStep& step : chart.steps) names.emplace_back(step.name.text);
+    NameSet left;
+    for (const ChartTransition& transition : chart.transitions) {
+        for (const auto* steps : {&transition.from, &transition.to})
+            for (const Token& step : *steps)
+                if (!find_step(chart, step.text))
+                    c.fail(code::not_declared, step.place,
+                           fmt::format("there is no step '{}'", step.text),
+                           suggest(step.text, names));
+        for (const Token& step : transition.from) left.insert(step.text);
+    }
+    for (const ChartStep& step : chart.steps)
+        if (!left.contains(step.name.text))
+            c.warn(code::step_without_way_out, step.name.place,
+                   fmt::format("no transition leads out of the step '{}'", step.name.text),
+                   "the chart stays there: write TRANSITION FROM it TO another");
+}
+
+/// Its initial step, of which there is one.
+void check_steps(Checking& c, const Routine& routine, const Chart& chart) {
+    const ChartStep* initial = nullptr;
+    for (const ChartStep& step : chart.steps) {
+        if (!step.is_initial) continue;
+        if (initial)
+            c.fail(code::declared_twice, step.name.place, "a chart has one initial step",
+                   fmt::format("'{}' in line {} is one already", initial->name.text,
+                               initial->name.place.mark().line));
+        initial = &step;
+    }
+    if (!initial)
+        c.fail(code::something_else_expected, routine.pou->name.place,
+               fmt::format("the chart of '{}' has no initial step", routine.name),
+               "write INITIAL_STEP in front of the step that it begins with");
+    if (!routine.pou->body.empty())
+        c.fail(code::wrong_place, routine.pou->body.front()->place,
+               "a statement stands beside a chart", "put it into an ACTION of a step");
+}
+
+bool check_association(Checking& c, const Routine& routine, const ChartAssociation& a) {
+    const Token& q = a.qualifier;
+    const std::string_view wanted = q.word == Word::end_of_file ? "N" : q.text;
+    const auto* known = std::ranges::find_if(
+        qualifiers, [&](const Qualifier& one) { return same_name(one.name, wanted); });
+    if (known == std::end(qualifiers))
+        return c.fail(code::not_declared, q.place, fmt::format("'{}' is no qualifier", q.text),
+                      "there are N, S, R, P, P0, P1, L, D, SD, DS and SL"),
+               false;
+    if (known->has_time != (a.time != nullptr))
+        return c.fail(code::wrong_arguments, q.place,
+                      fmt::format("{} takes {} time", known->name, known->has_time ? "a" : "no"),
+                      known->has_time ? fmt::format("write ({}, T#1s)", known->name)
+                                      : fmt::format("write ({})", known->name)),
+               false;
+    const auto method = routine.methods.find(a.action.text);
+    if (method != routine.methods.end()) return true;
+    const auto variable = routine.names.find(a.action.text);
+    if (variable != routine.names.end() && variable->second->type == &bool_type) return true;
+    return c.fail(code::not_declared, a.action.place,
+                  fmt::format("'{}' is neither an ACTION nor a BOOL", a.action.text),
+                  fmt::format("write ACTION {}: ... END_ACTION", a.action.text)),
+           false;
+}
+
+bool is(const ChartAssociation& a, std::string_view qualifier) {
+    return same_name(a.qualifier.word == Word::end_of_file ? "N" : a.qualifier.text, qualifier);
+}
+
+/// SD, DS and SL are stored each with a time of its own.
+bool is_stored_with_time(const ChartAssociation& a) {
+    return is(a, "SD") || is(a, "DS") || is(a, "SL");
+}
+
+/// One association of one action, and the number that what it keeps is known by.
+struct Use {
+    const ChartStep* step;
+    const ChartAssociation* association;
+    std::string_view kept = {};
+};
+
+/// Each action with its associations, in the order in which they are written.
+std::vector<std::pair<Token, std::vector<Use>>> actions_of(ChartWriter& w, const Chart& chart) {
+    std::vector<std::pair<Token, std::vector<Use>>> actions;
+    for (const ChartStep& step : chart.steps)
+        for (const ChartAssociation& a : step.associations) {
+            auto it = std::ranges::find_if(actions, [&](const auto& known) {
+                return same_name(known.first.text, a.action.text);
+            });
+            if (it == actions.end()) it = actions.insert(it, {a.action, {}});
+            const std::string number = std::to_string(it->second.size() + 1);
+            it->second.push_back({&step, &a, w.part_name(it->first.text, number)});
+        }
+    return actions;
+}
+
+/// X and T of each step, and its timer.
+void write_times(ChartWriter& w, const Chart& chart) {
+    constexpr Wide longest = (Wide{1} << 63) - 1;
+    for (const ChartStep& step : chart.steps) {
+        const Token& at = step.name;
+        Expression* preset = make_constant(w.c, w.like(at), time_type, {.integer = longest});
+        w.out.push_back(w.run(w.kept(at, at.text, "timer"), w.active(at), preset));
+        Expression* elapsed = make_member(w.c, w.kept(at, at.text, "timer"), "et");
+        Expression* time = make_member(w.c, w.name(at, at.text), "T");
+        w.out.push_back(w.when(w.active(at), {w.set(time, elapsed)}));
+    }
+}
+
+/// By their priorities, then as they are written.
+std::vector<const ChartTransition*> in_order(const Chart& chart) {
+    std::vector<const ChartTransition*> order;
+    for (const ChartTransition& transition : chart.transitions) order.push_back(&transition);
+    std::ranges::stable_sort(order, {}, [](const ChartTransition* t) {
+        const auto number = t->priority.word == Word::integer ? read_integer(t->priority.text)
+                                                              : std::optional<Wide>();
+        return number.value_or(Wide{1} << 65);
+    });
+    return order;
+}
+
+bool shares_step(const ChartTransition& a, const ChartTransition& b) {
+    return std::ranges::any_of(a.from, [&](const Token& x) {
+        return std::ranges::any_of(b.from,
+                                   [&](const Token& y) { return same_name(x.text, y.text); });
+    });
+}
+
+std::string_view fired_name(ChartWriter& w, std::size_t number) {
+    return w.part_name("transition", std::to_string(number + 1));
+}
+
+/// All conditions before anything changes, then what is left, then what is entered.
+void write_evolution(ChartWriter& w, const Chart& chart) {
+    const auto order = in_order(chart);
+    Block leaving, entering;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const ChartTransition& t = *order[i];
+        const Token& at = t.from.front();
+        Expression* may = nullptr;
+        for (const Token& step : t.from) may = w.joined(Word::and_, may, w.active(step));
+        for (std::size_t k = 0; k < i; ++k)
+            if (shares_step(*order[k], t))
+                may = w.joined(Word::and_, may, w.negated(w.name(at, fired_name(w, k))));
+        w.out.push_back(w.set(w.name(at, fired_name(w, i)), w.truth(at, false)));
+        w.out.push_back(w.when(may, {w.set(w.name(at, fired_name(w, i)), t.condition)}));
+        Block left, entered;
+        for (const Token& step : t.from)
+            left.push_back(w.set(w.active(step), w.truth(step, false)));
+        for (const Token& step : t.to) {
+            entered.push_back(w.set(w.active(step), w.truth(step, true)));
+            entered.push_back(
+                w.run(w.kept(step, step.text, "timer"), w.truth(step, false), nullptr));
+            entered.push_back(
+                w.run(w.kept(step, step.text, "timer"), w.truth(step, true), nullptr));
+            entered.push_back(w.set(make_member(w.c, w.name(step, step.text), "T"),
+                                    make_constant(w.c, w.like(step), time_type, {})));
+        }
+        leaving.push_back(w.when(w.name(at, fired_name(w, i)), std::move(left)));
+        entering.push_back(w.when(w.name(at, fired_name(w, i)), std::move(entered)));
+    }
+    w.out.insert(w.out.end(), leaving.begin(), leaving.end());
+    w.out.insert(w.out.end(), entering.begin(), entering.end());
+}
+
+/// What the qualifier of one association asks for; null: nothing now.
+Expression* write_qualifier(ChartWriter& w, const Token& action, const Use& use) {
+    const ChartAssociation& a = *use.association;
+    const Token& at = a.action;
+    const Token& step = use.step->name;
+    const auto is_before = [&] { return w.kept(step, step.text, "before"); };
+    const auto later = [&](Word relation) {
+        return w.joined(relation, make_member(w.c, w.name(step, step.text), "T"), a.time);
+    };
+    const auto store = [&](Expression* when, std::string_view where) {
+        w.out.push_back(w.when(when, {w.set(w.name(at, where), w.truth(at, true))}));
+    };
+    if (is(a, "N")) return w.active(step);
+    if (is(a, "P")) return w.joined(Word::and_, w.active(step), w.negated(is_before()));
+    if (is(a, "L")) return w.joined(Word::and_, w.active(step), later(Word::less));
+    if (is(a, "D")) return w.joined(Word::and_, w.active(step), later(Word::greater_or_equal));
+    if (is(a, "S")) return store(w.active(step), w.part_name(action.text, "stored")), nullptr;
+    if (!is_stored_with_time(a)) return nullptr;
+    if (is(a, "DS")) {
+        store(w.joined(Word::and_, w.active(step), later(Word::greater_or_equal)), use.kept);
+    } else {
+        store(w.active(step), use.kept);
+    }
+    const auto cleared = w.kept(at, action.text, "reset");
+    w.out.push_back(w.when(cleared, {w.set(w.name(at, use.kept), w.truth(at, false))}));
+    if (is(a, "DS")) return w.name(at, use.kept);
+    const auto timer = [&] { return w.kept(at, use.kept, "timer"); };
+    w.out.push_back(w.run(timer(), w.name(at, use.kept), a.time));
+    Expression* is_over = make_member(w.c, timer(), "q");
+    return is(a, "SD") ? is_over : w.joined(Word::and_, w.name(at, use.kept), w.negated(is_over));
+}
+
+/// P1 as the step begins, P0 as it ends: once, without a scan behind it.
+Expression* pulse_of(ChartWriter& w, const Use& use) {
+    const Token& step = use.step->name;
+    Expression* before = w.kept(step, step.text, "before");
+    if (is(*use.association, "P1")) return w.joined(Word::and_, w.active(step), w.negated(before));
+    if (is(*use.association, "P0")) return w.joined(Word::and_, before, w.negated(w.active(step)));
+    return nullptr;
+}
+
+/// An ACTION runs while it is asked for, and once more behind; a BOOL is whether it is.
+void write_action(ChartWriter& w, const Token& action, const std::vector<Use>& uses) {
+    Expression* reset = w.truth(action, false);
+    for (const Use& use : uses)
+        if (is(*use.association, "R")) reset = w.joined(Word::or_, reset, w.active(use.step->name));
+    const auto kept = [&](std::string_view part) { return w.kept(action, action.text, part); };
+    w.out.push_back(w.set(kept("reset"), reset));
+    Expression *asked = w.truth(action, false), *pulse = w.truth(action, false);
+    for (const Use& use : uses) {
+        if (Expression* now = write_qualifier(w, action, use))
+            asked = w.joined(Word::or_, asked, now);
+        if (Expression* now = pulse_of(w, use)) pulse = w.joined(Word::or_, pulse, now);
+    }
+    w.out.push_back(w.when(kept("reset"), {w.set(kept("stored"), w.truth(action, false))}));
+    asked = w.joined(Word::or_, asked, kept("stored"));
+    w.out.push_back(w.set(kept("runs"), w.joined(Word::and_, asked, w.negated(kept("reset")))));
+    Expression* now = w.joined(Word::or_, kept("runs"), pulse);
+    const bool is_variable = w.routine.methods.find(action.text) == w.routine.methods.end();
+    if (is_variable) return w.out.push_back(w.set(w.name(action, action.text), now));
+    now = w.joined(Word::or_, now, kept("ran"));
+    Expression* call = make_call(w.c, w.like(action), w.name(action, action.text), {});
+    w.out.push_back(w.when(now, {make_call_statement(w.c, call)}));
+    w.out.push_back(w.set(kept("ran"), kept("runs")));
+}
+
+}  // namespace
+
+void declare_chart(Checking& c, Routine& routine) {
+    if (!routine.pou->chart) return;
+    const Chart& chart = *routine.pou->chart;
+    ChartWriter w{c, routine};
+    Type& type = c.make_type(Kind::structure, "STEP");
+    for (const auto& [name, part] : {std::pair("X", &bool_type), std::pair("T", &time_type)}) {
+        Variable& member = c.checked.variables.emplace_back();
+        member.text = name;
+        member.type = part;
+        type.members.push_back(&member);
+    }
+    for (const ChartStep& step : chart.steps) {
+        const Token& at = step.name;
+        if (const auto known = routine.names.find(at.text); known != routine.names.end()) {
+            c.fail(code::declared_twice, at.place, fmt::format("'{}' is declared twice", at.text),
+                   fmt::format("first in line {}", known->second->name.place.mark().line));
+            continue;
+        }
+        w.declare(at, at.text, &type);
+        if (step.is_initial) {
+            Expression* list = make(c, E::list, w.like(at));
+            Token x = at;
+            x.text = "X";
+            list->arguments = {{.name = x, .value = w.truth(at, true)}};
+            routine.variables.back().initial = list;
+        }
+        w.declare(at, w.part_name(at.text, "timer"), standard_type(c, "ton"));
+        w.declare(at, w.part_name(at.text, "before"), &bool_type);
+    }
+    for (std::size_t i = 0; i < chart.transitions.size(); ++i)
+        w.declare(chart.transitions[i].from.front(), fired_name(w, i), &bool_type);
+    for (const auto& [action, uses] : actions_of(w, chart)) {
+        for (const std::string_view part : {"stored", "reset", "runs", "ran"})
+            w.declare(action, w.part_name(action.text, part), &bool_type);
+        for (const Use& use : uses) {
+            if (!is_stored_with_time(*use.association)) continue;
+            w.declare(action, use.kept, &bool_type);
+            w.declare(action, w.part_name(use.kept, "timer"), standard_type(c, "ton"));
+        }
+    }
+    check_steps(c, routine, chart);
+    check_transitions(c, chart);
+}
+
+Block chart_statements(Checking& c, Routine& routine) {
+    if (!routine.pou->chart) return {};
+    const Chart& chart = *routine.pou->chart;
+    ChartWriter w{c, routine};
+    bool is_right = c.out.empty();
+    for (const ChartStep& step : chart.steps)
+        for (const ChartAssociation& association : step.associations)
+            is_right = check_association(c, routine, association) && is_right;
+    if (!is_right) return {};
+    write_times(w, chart);
+    write_evolution(w, chart);
+    for (const auto& [action, uses] : actions_of(w, chart)) write_action(w, action, uses);
+    for (const ChartStep& step : chart.steps)
+        w.out.push_back(w.set(w.kept(step.name, step.name.text, "before"), w.active(step.name)));
+    return std::move(w.out);
+}
+
+}  // namespace lineshaft::st
