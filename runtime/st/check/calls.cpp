@@ -5,6 +5,7 @@
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
+#include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
@@ -24,7 +25,8 @@ namespace lineshaft::st {
 namespace {
 
 bool is_variable(const Expression& e) {
-    return e.kind == E::name || e.kind == E::member || (e.kind == E::index && !e.is_character());
+    return e.kind == E::name || e.kind == E::member || e.kind == E::self ||
+           (e.kind == E::index && !e.is_character());
 }
 
 /// A structure or an array that came as an input, or in one, is passed on by reference.
@@ -49,9 +51,10 @@ Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std:
     const bool named = argument.is_named();
     const bool inner = c.is_in_test() && named && routine.has_instances();
     std::size_t i = 0;
-    for (Variable& variable : routine.variables) {
-        if (!is_parameter(variable) && !inner) continue;
-        if (named ? same_name(variable.text, argument.name.text) : i == position) return &variable;
+    const std::vector<Variable*> variables = all_variables(routine);
+    for (Variable* variable : variables) {
+        if (!is_parameter(*variable) && !inner) continue;
+        if (named ? same_name(variable->text, argument.name.text) : i == position) return variable;
         ++i;
     }
     if (argument.is_output && same_name(argument.name.text, "eno")) return &eno_of(c, routine);
@@ -59,8 +62,8 @@ Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std:
         return c.fail(code::wrong_arguments, argument.value->place,
                       fmt::format("'{}' takes {} argument{}", routine.name, i, i == 1 ? "" : "s"));
     std::vector<std::string> names;
-    for (const Variable& variable : routine.variables)
-        if (is_parameter(variable) || inner) names.emplace_back(variable.text);
+    for (const Variable* variable : variables)
+        if (is_parameter(*variable) || inner) names.emplace_back(variable->text);
     return c.fail(code::wrong_arguments, argument.name.place,
                   fmt::format("'{}' has no argument '{}'", routine.name, argument.name.text),
                   same_name(argument.name.text, "en")
@@ -109,10 +112,12 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
         return;
     }
     const bool texts = given->kind == Kind::text && type->kind == Kind::text;
-    const bool fits =
-        same_type(*given, *type) || (parameter.section == Section::in_out
-                                         ? texts && type->is_open
-                                         : texts || (type->is_scalar() && widens(*type, *given)));
+    const bool derives = parameter.section == Section::in_out && given->kind == Kind::block &&
+                         type->kind == Kind::block && is_a(*given->routine, *type->routine);
+    const bool fits = same_type(*given, *type) || derives ||
+                      (parameter.section == Section::in_out
+                           ? texts && type->is_open
+                           : texts || (type->is_scalar() && widens(*type, *given)));
     if (!fits)
         c.fail(code::type_does_not_fit, value->place,
                fmt::format("'{}' is {}, and {} is given", parameter.text, describe(*type),
@@ -152,7 +157,8 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
         check_argument(c, argument, *parameter);
     }
     std::vector<Argument> left_out;
-    for (Variable& variable : routine.variables) {
+    for (Variable* declared : all_variables(routine)) {
+        Variable& variable = *declared;
         const bool due =
             variable.section == Section::in_out ||
             (variable.section == Section::input && !routine.has_instances() &&
@@ -235,11 +241,29 @@ void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
     }
 }
 
+/// That the routine at hand runs `called`, if it is known.
+void note_call(Checking& c, const Expression& call, Routine* called) {
+    if (!c.routine) return;
+    if (call.is_dispatched) {
+        c.routine->dispatches = c.checked.dispatches = true;
+    } else if (called) {
+        c.routine->calls.push_back(called);
+        c.routine->call_places.push_back(call.place);
+    }
+}
+
 const Type* check_instance_call(Checking& c, Expression*& e, const Type& type, bool as_statement) {
     if (!as_statement)
         return c.fail(code::type_does_not_fit, e->place, "the call of an instance has no value",
                       "call it as a statement of its own, then take an output: name.Q");
     if (type.kind == Kind::block) {
+        const Expression& instance = *e->operands[0];
+        if (type.routine->pou->is_class)
+            return c.fail(code::wrong_place, e->place,
+                          fmt::format("{} is a CLASS, and has no body", type.name),
+                          "call one of its methods");
+        e->is_dispatched = type.routine->is_replaced && may_be_derived(instance);
+        note_call(c, *e, instance.kind == E::self ? type.routine : nullptr);
         e->routine = type.routine;
         check_arguments(c, e, *type.routine);
     } else {
@@ -252,10 +276,7 @@ const Type* check_instance_call(Checking& c, Expression*& e, const Type& type, b
 
 const Type* check_routine_call(Checking& c, Expression*& e, Routine& routine, bool as_statement) {
     e->routine = &routine;
-    if (c.routine) {
-        c.routine->calls.push_back(&routine);
-        c.routine->call_places.push_back(e->place);
-    }
+    note_call(c, *e, &routine);
     check_arguments(c, e, routine);
     if (routine.result) return routine.result->type;
     if (!as_statement)
@@ -284,25 +305,23 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
             e = make_call(c, *e, callee.operands[0], e->arguments);  // `#delay.TON(...)`
             return check_instance_call(c, e, *of, as_statement);
         }
-        if (of->kind == Kind::block) {
+        if (of->kind == Kind::block || of->kind == Kind::interface) {
             const auto it = of->routine->methods.find(callee.token.text);
             if (it != of->routine->methods.end()) {
                 Routine& method = *it->second;
-                const bool outside =
-                    !c.routine || (c.routine != of->routine && c.routine->owner != of->routine);
-                if (method.pou->is_private && outside && !c.is_in_test())
-                    return c.fail(code::wrong_arguments, callee.token.place,
-                                  fmt::format("'{}' is PRIVATE to {}", callee.token.text, of->name),
-                                  "only its own block calls it");
-                return check_routine_call(c, e, method, as_statement);
+                if (!is_accessible(c, method.pou->access, *method.owner, callee.token))
+                    return nullptr;
+                return check_method_call(c, e, method, *callee.operands[0], as_statement);
             }
         }
     }
-    if (callee.kind == E::name && !is_instance(c, callee.token)) {
+    if (callee.kind == E::name && !is_instance(c, callee.token) && !is_own_instance(c, callee)) {
         const std::string_view name = callee.token.text;
         for (const Routine* r = c.routine; r; r = r->owner)
-            if (const auto it = r->methods.find(name); it != r->methods.end())
+            if (const auto it = r->methods.find(name); it != r->methods.end()) {
+                e->is_dispatched = it->second->is_replaced;
                 return check_routine_call(c, e, *it->second, as_statement);
+            }
         Routine* routine = c.find_routine(callee.token);
         if (routine && !routine->type) return check_routine_call(c, e, *routine, as_statement);
         const bool is_function = (routine || !callee.token.quoted) && !callee.token.local &&

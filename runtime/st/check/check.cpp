@@ -1,5 +1,6 @@
 #include "runtime/st/check/check.hpp"
 
+#include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/initial_values.hpp"
 #include "runtime/st/check/order.hpp"
@@ -10,8 +11,10 @@ namespace lineshaft::st {
 Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out) {
     Checking c{tree, catalog, evaluate, out};
     collect_names(c);
+    resolve_bases(c);
     declare_globals(c);
     declare_routines(c);
+    check_classes(c);
     check_initial_values(c);
     for (Routine& routine : c.checked.routines) check_body(c, routine);
     order_routines(c);

@@ -173,6 +173,26 @@ const Type* wider_for(const Expression& constant, const Type& typed) {
     return nullptr;
 }
 
+/// `0` is none.
+bool coerce_instance(Checking& c, Expression*& e, const Type& to) {
+    const Type& from = *e->type;
+    if (is_constant(*e) && from.is_any() && e->constant.integer == 0) {
+        e = make_constant(c, *e, to, {});
+        return true;
+    }
+    const bool has_methods = from.kind == Kind::block || from.kind == Kind::interface;
+    if (has_methods && is_a(*from.routine, *to.routine)) {
+        e = make_converted(c, e, to);
+        return true;
+    }
+    if (has_methods && from.routine->has_unknown_base) return false;
+    c.fail(code::type_does_not_fit, e->place,
+           fmt::format("expected {}, found {}", describe(to), describe(from)),
+           has_methods ? fmt::format("{} does not implement it", describe(from))
+                       : "assign an instance of a block that implements it");
+    return false;
+}
+
 }  // namespace
 
 bool is_single(const Type& type) {
@@ -191,6 +211,7 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
         return true;
     }
     if (&from == &to || same_type(from, to)) return true;
+    if (to.kind == Kind::interface) return coerce_instance(c, e, to);
     if (!to.of_number.empty() && from.is_integer() && e->place.dialect().numbers_stand_for_names)
         return coerce_number(c, e, to);
     if (from.is_any()) return coerce_constant(c, e, to);

@@ -1,9 +1,12 @@
 #include "runtime/st/check/declarations.hpp"
 
+#include <utility>
+
 #include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/charts.hpp"
+#include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/initial_values.hpp"
@@ -86,6 +89,7 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
     variable->retain = block.retain;
     variable->space = Space::global;
     variable->global = 0;
+    refuse_abstract(c, type, declared.name.place);
     if (block.constant) make_constant(c, *variable);
     if (variable->space != Space::constant) all.members.push_back(variable);
     if (!block.is_qualified_only) c.globals.emplace(declared.name.text, variable);
@@ -141,21 +145,26 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         variable->constant = block.constant;
         variable->retain = block.retain;
         variable->of = routine.pou;
+        variable->access = block.access;
         if (block.section == Section::in_out && !(type && type->is_handle()))
             variable->space = Space::reference;
         const auto [it, added] = routine.names.emplace(variable->text, variable);
         if (!added)
             c.fail(code::declared_twice, declared->name.place,
                    fmt::format("'{}' is declared twice", variable->text),
-                   it->second->section == Section::result
+                   it->second->of != routine.pou ? fmt::format("a base has it already, in line {}",
+                                                               it->second->name.place.mark().line)
+                   : it->second->section == Section::result
                        ? "the function's own name is that of its result"
                        : fmt::format("first in line {}", it->second->name.place.mark().line));
         if (type && type->is_instance() && !routine.has_instances() && !routine.is_test() &&
-            block.section != Section::in_out)
+            block.section != Section::in_out && block.section != Section::kept)
             c.fail(code::wrong_place, declared->name.place,
                    "a function keeps nothing from call to call, so it has no instances",
                    "pass the instance as VAR_IN_OUT");
-        depend(c, type, declared->name.place);
+        if (variable->space != Space::reference) refuse_abstract(c, type, declared->name.place);
+        const bool is_only_named = routine.is_prototype() && type && type->kind == Kind::block;
+        if (!is_only_named) depend(c, type, declared->name.place);
         if (routine.pou->is_tests || routine.is_test()) make_object(c, *variable);
         if (!declared->type)
             make_untyped_constant(c, *variable);
@@ -164,6 +173,29 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         if (declared->edge.word != Word::end_of_file)
             declare_edge(c, routine, *variable, declared->edge);
     }
+}
+
+void add_method(Routine& block, Routine& method) {
+    block.own_methods.push_back(&method);
+    auto& known = method.pou->accessor == Accessor::get   ? block.getters
+                  : method.pou->accessor == Accessor::set ? block.setters
+                                                          : block.methods;
+    known.emplace(method.pou->name.text, &method);
+}
+
+/// Its base first, whose variables are its own.
+void declare_routine(Checking& c, Routine& routine) {
+    if (std::exchange(routine.is_declared, true)) return;
+    if (routine.base) declare_routine(c, *routine.base);
+    inherit_variables(routine);
+    c.routine = &routine;
+    if (routine.base) depend(c, routine.base->type, routine.pou->name.place);
+    declare_result(c, routine);
+    for (const bool constant : {true, false})  // bounds may name what stands further down
+        for (const DeclarationBlock& block : routine.pou->blocks)
+            if ((block.constant && block.section == Section::local) == constant)
+                declare(c, routine, block);
+    declare_chart(c, routine);
 }
 
 }  // namespace
@@ -187,6 +219,10 @@ void collect_names(Checking& c) {
         if (routine.is_function()) continue;
         routine.type = &c.make_type(Kind::block, routine.name);
         routine.type->routine = &routine;
+        if (routine.is_interface()) {
+            routine.type->kind = Kind::interface;
+            routine.type->slots = 1;
+        }
         NameMap<Place> names;
         for (Pou* method : pou->methods) {
             const std::string name(method->name.text);
@@ -195,8 +231,10 @@ void collect_names(Checking& c) {
             made.owner = &routine;
             const bool is_test = pou->is_tests && method->name.word != Word::setup_ &&
                                  method->name.word != Word::teardown_;
-            if (is_new_name(c, method->name, names, is_test) && !is_test)
-                routine.methods.emplace(method->name.text, &made);
+            const bool is_second =
+                method->accessor == Accessor::set && routine.getters.contains(method->name.text);
+            if ((is_second || is_new_name(c, method->name, names, is_test)) && !is_test)
+                add_method(routine, made);
         }
     }
     for (const DeclarationBlock& block : c.tree.globals)
@@ -270,15 +308,7 @@ void declare_globals(Checking& c) {
 }
 
 void declare_routines(Checking& c) {
-    for (Routine& routine : c.checked.routines) {
-        c.routine = &routine;
-        declare_result(c, routine);
-        for (const bool constant : {true, false})  // bounds may name what stands further down
-            for (const DeclarationBlock& block : routine.pou->blocks)
-                if ((block.constant && block.section == Section::local) == constant)
-                    declare(c, routine, block);
-        declare_chart(c, routine);
-    }
+    for (Routine& routine : c.checked.routines) declare_routine(c, routine);
     c.routine = nullptr;
     for (Routine& method : c.checked.routines)  // it works on what its block is made of
         if (method.owner) {

@@ -45,6 +45,7 @@ const Type* check(Checking& c, Expression*& e, const Type* expected) {
             return c.fail(
                 code::type_does_not_fit, e->place, "a list of values stands in a declaration only",
                 "declare a variable that begins with it, or assign the elements one by one");
+        case E::self:
         case E::converted:
             type = e->type;
     }

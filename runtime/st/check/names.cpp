@@ -6,6 +6,7 @@
 #include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/source/utf8.hpp"
+#include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/namespaces.hpp"
@@ -68,7 +69,7 @@ bool is_new_name(Checking& c, Token name, NameMap<Place>& names, bool is_test) {
 std::vector<std::string> visible_names(Checking& c) {
     std::vector<std::string> names;
     for (const Routine* r = c.routine; r; r = r->owner)
-        for (const Variable& variable : r->variables) names.emplace_back(variable.text);
+        for (const Variable* variable : all_variables(*r)) names.emplace_back(variable->text);
     for (const auto& [name, variable] : c.globals) names.emplace_back(name);
     for (const auto& [name, value] : c.users.values) names.emplace_back(name);
     for (const auto& [name, routine] : c.users.routines)
@@ -80,6 +81,8 @@ std::vector<std::string> visible_names(Checking& c) {
 const Type* undeclared(Checking& c, const Token& name, Place place,
                        const std::vector<std::string>& names) {
     if (may_be_elsewhere(c, place)) return nullptr;
+    for (const Routine* r = c.routine; r; r = r->owner)
+        if (r->has_unknown_base) return nullptr;
     if (c.tree.lost.contains(name.text) || !c.undeclared[c.routine].insert(name.text).second)
         return nullptr;
     const auto near = nearest(name.text, names);
@@ -140,6 +143,12 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     }
     if (Variable* variable = find_variable(c, token))
         return variable->edge ? use_edge(c, e, *variable) : use(c, e, *variable);
+    if (is_own_instance(c, *e)) return check_own_instance(c, e);
+    if (Routine* getter = find_accessor(c, *e, Accessor::get)) return check_getter(c, e, *getter);
+    if (expected && expected->kind == Kind::interface && same_name(token.text, "null")) {
+        e = make_constant(c, *e, *expected, {});
+        return expected;
+    }
     if (same_name(token.text, "true") || same_name(token.text, "false")) {
         e = make_boolean(c, *e, same_name(token.text, "true"));
         return &bool_type;

@@ -68,6 +68,13 @@ const Type* check_comparison(Checking& c, Expression*& e) {
     if (is_dtl(*e->operands[0]->type) && is_dtl(*e->operands[1]->type)) become_moments(c, *e);
     const Type &a = *e->operands[0]->type, &b = *e->operands[1]->type;
     const bool order = e->op != Word::equal && e->op != Word::unequal;
+    if (!order && is_kind(Kind::interface)) {
+        const int other = e->operands[0]->type->kind == Kind::interface ? 1 : 0;
+        Expression*& operand = e->operands[other];
+        const bool fits = operand->type->kind == Kind::interface ||
+                          coerce(c, operand, *e->operands[1 - other]->type);
+        return fits ? &bool_type : nullptr;
+    }
     if (a.kind == Kind::text && b.kind == Kind::text) return &bool_type;
     if (a.kind == Kind::text || b.kind == Kind::text)
         return c.fail(
@@ -75,6 +82,10 @@ const Type* check_comparison(Checking& c, Expression*& e) {
             fmt::format("'{}' does not go with {} and {}", shown(e->op), describe(a), describe(b)),
             "a STRING is compared with a STRING");
     for (const Type* type : {&a, &b}) {
+        if (type->kind == Kind::interface)
+            return c.fail(code::type_does_not_fit, e->token.place,
+                          fmt::format("'{}' does not compare {}", shown(e->op), describe(*type)),
+                          "instances are equal or not");
         const bool fits = type->is_scalar() && !(order && type->kind == Kind::enumeration);
         if (!fits)
             return c.fail(code::type_does_not_fit, e->token.place,

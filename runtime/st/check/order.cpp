@@ -43,15 +43,13 @@ void depend(Checking& c, const Type* type, Place place) {
         c.routine->call_places.push_back(place);
     };
     add_call(type->routine);
-    for (const Pou* method : type->routine->pou->methods)
-        if (const auto it = type->routine->methods.find(method->name.text);
-            it != type->routine->methods.end())
-            add_call(it->second);
+    for (Routine* method : type->routine->own_methods) add_call(method);
 }
 
 void order_routines(Checking& c) {
     std::vector<const Routine*> path;
-    for (Routine& routine : c.checked.routines) visit(c, routine, path);
+    for (Routine& routine : c.checked.routines)
+        if (!routine.is_prototype()) visit(c, routine, path);
 }
 
 void warn_of_unused(Checking& c) {

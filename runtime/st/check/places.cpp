@@ -7,6 +7,7 @@
 #include "runtime/source/units.hpp"
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/catalog_types.hpp"
+#include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
@@ -28,6 +29,17 @@ Variable* find_member(const Type& type, std::string_view name) {
     return it == type.members.end() ? nullptr : *it;
 }
 
+namespace {
+
+/// The block, or that of its bases, which the variable stands in.
+const Routine* declaring_block(const Routine& block, const Variable& variable) {
+    const Routine* found = &block;
+    while (found->base && found->pou != variable.of) found = found->base;
+    return found;
+}
+
+}  // namespace
+
 const Type* check_member(Checking& c, Expression*& e) {
     if (const auto name = qualified_name(c, *e)) {
         e = make_name(c, *e, name->text);
@@ -41,6 +53,7 @@ const Type* check_member(Checking& c, Expression*& e) {
     const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
     if (Routine* part = find_part(c, *type, e->token.text)) return check_part(c, e, *part);
+    if (Routine* getter = find_accessor(c, *e, Accessor::get)) return check_getter(c, e, *getter);
     if (type->kind == Kind::handle) {
         type = object_type(c, *type);
         convert(c, e->operands[0], *type);
@@ -52,10 +65,18 @@ const Type* check_member(Checking& c, Expression*& e) {
             e = make_constant(c, *e, *found->type, found->value);
             return found->type;
         }
-        if (type->kind == Kind::block && (found->section == Section::temp || is_value))
+        if (type->kind == Kind::block && e->operands[0]->kind == E::self) {
+            if (is_value) {
+                e = make_constant(c, *e, *found->type, found->value);
+                return found->type;
+            }
+        } else if (type->kind == Kind::block && (found->section == Section::temp || is_value))
             return c.fail(code::not_declared, e->token.place,
                           fmt::format("'{}' of {} is not seen from outside", name, type->name),
                           "make it a VAR_OUTPUT");
+        if (type->kind == Kind::block && found->of &&
+            !is_accessible(c, found->access, *declaring_block(*type->routine, *found), e->token))
+            return nullptr;
         found->used = true;
         e->variable = found;
         return found->type;
@@ -66,7 +87,12 @@ const Type* check_member(Checking& c, Expression*& e) {
     }
     std::vector<std::string> names;
     if (type->kind == Kind::block)
-        for (const Variable& variable : type->routine->variables) names.emplace_back(variable.text);
+        for (const Variable* variable : all_variables(*type->routine))
+            names.emplace_back(variable->text);
+    if (type->routine && type->routine->has_unknown_base) return nullptr;
+    if (type->kind == Kind::interface)
+        for (const auto known : {&Routine::methods, &Routine::getters})
+            for (const auto& [method, routine] : type->routine->*known) names.emplace_back(method);
     for (const Variable* member : type->members) names.emplace_back(member->text);
     if (names.empty())
         return c.fail(code::type_does_not_fit, e->token.place,
@@ -168,11 +194,13 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     if (target.kind == E::index || target.kind == E::bit) {
         return !target.operands[0]->type || check_target(c, *target.operands[0], how);
     }
+    if (target.kind == E::self) return true;
     if (target.kind != E::name && target.kind != E::member)
         return refuse("a value", "a variable, an element or a member stands left of ':='");
     const Variable* variable = target.variable;
     if (!variable) return false;
-    const bool own = target.kind == E::name;
+    const bool own =
+        target.kind == E::name || (target.kind == E::member && target.operands[0]->kind == E::self);
     const bool of_instance = target.kind == E::member && target.operands[0]->type &&
                              target.operands[0]->type->is_instance();
     if (variable->constant && !(c.is_in_test() && of_instance))

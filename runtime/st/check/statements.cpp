@@ -5,6 +5,7 @@
 #include "runtime/source/codes.hpp"
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/charts.hpp"
+#include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
@@ -183,6 +184,7 @@ void check(Checking& c, Statement*& slot) {
 }
 
 void check_assignment(Checking& c, Statement*& s) {
+    if (rewrite_property(c, s)) return;
     const Type* type = check(c, s->target);
     if (s->op != Word::assign && type) {
         const Word op = s->op == Word::plus_assign    ? Word::plus

@@ -42,7 +42,15 @@ struct CodeRoutine {
     std::string name;
     std::uint32_t entry = 0, end = 0;  ///< instructions
     std::uint32_t frame = 0;           ///< slots that it may use, from its base on
-    std::uint32_t depth = 0;           ///< levels of calls below it
+    std::uint32_t depth = 0;   ///< levels of calls below it, but for those found by instances
+    std::uint32_t levels = 0;  ///< that an instance which runs it has room for
+    std::uint32_t mark = 0;    ///< slot that says that it runs; 0: it has none
+};
+
+/// The method of a kind of instance that a call finds.
+struct FoundRoutine {
+    std::uint64_t routine = 0;
+    std::uint64_t first = 0;  ///< slot of the first that is given to it
 };
 
 /// What an Op::cover counts the passes of.
@@ -55,8 +63,9 @@ struct CoverPoint {
 };
 
 /// An instance begins with these slots. Then come the numbers of the data blocks among the
-/// program's instances, two slots for each call that runs (where it goes on, and on which frame),
-/// and its variables.
+/// program's instances, its kind where calls find routines by it, two slots for each call that runs
+/// (where it goes on, and on which frame), and its variables. A block that extends another begins
+/// with all of its frame.
 enum HeaderSlot : std::uint32_t {
     error_slot,     ///< BOOL: the last scan ended with a fault
     error_id_slot,  ///< Fault
@@ -80,6 +89,12 @@ struct Code {
     std::vector<std::uint64_t> images;       ///< frames as they begin
     std::vector<const BlockType*> standard;  ///< kinds of the catalogue that are called
     std::uint32_t globals = 0;
+    std::vector<FoundRoutine> found;  ///< by kind of instance, and number of what is called
+    std::uint32_t methods = 0;        ///< how many numbers there are
+    bool has_kinds = false;           ///< an instance says which it is
+
+    std::uint32_t kind_slot() const { return globals_slot + globals; }
+    std::uint32_t calls_slot() const { return globals_slot + globals + has_kinds; }
     std::vector<CoverPoint> points;                      ///< only with coverage
     std::unique_ptr<std::atomic<std::uint64_t>[]> hits;  ///< of each of them
     std::shared_ptr<const Native> native;                ///< null: the machine interprets it

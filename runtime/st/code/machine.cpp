@@ -91,7 +91,7 @@ ended:
 
 Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, Scan& now,
               const Context& context, std::int64_t fuel, const std::int64_t* times) {
-    Frames frames{code, now, context, fuel, instance};
+    Frames frames{code, now, context, fuel, instance, routine.levels};
     if (!times && code.native)
         return code.native->entry(routine.entry)(instance, frames, frames.fuel);
     if (!times) return run<false>(frames, routine);

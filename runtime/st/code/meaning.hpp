@@ -196,7 +196,8 @@ struct Frames {
     const Context& context;
     std::int64_t fuel;
     std::byte* root;
-    std::byte* bottom = root + 8 * (globals_slot + code.globals);
+    std::uint32_t levels = 0;  ///< of calls that the root has room for
+    std::byte* bottom = root + 8 * std::size_t{code.calls_slot()};
     std::byte* top = bottom;           ///< of the calls that run
     std::uint64_t base = 0;            ///< address of the frame
     std::uint64_t* counted = nullptr;  ///< instructions of each class
@@ -225,6 +226,30 @@ struct Frames {
         return word(root, globals_slot + number);
     }
     std::uint64_t global(std::uint32_t number) const { return (global_number(number) + 1) << 32; }
+
+    /// Of the instance at the address, which is one: what that method is.
+    const FoundRoutine& find(std::uint64_t address, std::uint32_t method) const {
+        const std::uint64_t kind = word(place(address), code.kind_slot());
+        return code.found.data()[kind * code.methods + method];
+    }
+
+    bool has_room(std::uint64_t routine) const {
+        const auto running = static_cast<std::uint64_t>(top - bottom) / 16;
+        return running + 1 + code.routines[routine].depth <= levels;
+    }
+
+    /// Nothing runs any more: where it was left says what did.
+    void unmark(std::uint64_t at, std::uint64_t frame) const {
+        std::byte* level = top;
+        for (;;) {
+            const auto runs = std::ranges::upper_bound(code.routines, at, {}, &CodeRoutine::end);
+            if (runs->mark != 0) set_word(place(frame), runs->mark, 0);
+            if (level == bottom) return;
+            level -= 16;
+            at = word(level, 0) - 1;
+            frame = word(level, 1);
+        }
+    }
 
     void call_block(std::byte* block, std::uint32_t number) const {
         const BlockType& type = *code.standard[number];
@@ -265,6 +290,7 @@ struct Frames {
         if (fault == Fault::none) return fault;
         set_word(root, place_slot, at);
         set_word(root, depth_slot, static_cast<std::uint64_t>(top - bottom) / 16);
+        if (code.has_kinds) unmark(at, base);
         return fault;
     }
 };

@@ -4,6 +4,7 @@
 
 #include "runtime/st/generate/assertions.hpp"
 #include "runtime/st/generate/conversions.hpp"
+#include "runtime/st/generate/dispatch.hpp"
 #include "runtime/st/generate/layout.hpp"
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/standard_functions.hpp"
@@ -36,6 +37,13 @@ Location method_base(Writing& w, const Expression& e) {
     return {Mode::slot, 0};
 }
 
+/// Where a parameter is in the frame that a call is given.
+Location parameter(Writing& w, const Location& frame, const Expression& e,
+                   const Variable& variable) {
+    if (!e.is_dispatched || !e.routine->owner) return behind(frame, variable.slot);
+    return behind(frame, slot_in_signature(w, *e.routine, variable));
+}
+
 /// Where the value of a VAR_IN_OUT is, and what it holds if any length may be given.
 void refer(Writing& w, const Location& to, const Variable& variable, const Expression& value,
            std::vector<Later>& later) {
@@ -47,7 +55,7 @@ void refer(Writing& w, const Location& to, const Variable& variable, const Expre
 void give_left_out(Writing& w, const Location& frame, const Expression& e) {
     for (const Argument& argument : e.arguments) {
         if (!argument.is_left_out) continue;
-        const Location reference = behind(frame, argument.variable->slot);
+        const Location reference = parameter(w, frame, e, *argument.variable);
         Jumps given;
         w.jump(Op::jump_if, 0, load(w, reference), given);
         std::vector<Later> later;
@@ -72,7 +80,7 @@ void give(Writing& w, const Location& frame, const Expression& e, const Routine&
         if (!is_given(argument)) continue;
         const Variable& variable = *argument.variable;
         const Type& type = *variable.type;
-        const Location to = behind(frame, variable.slot);
+        const Location to = parameter(w, frame, e, variable);
         if (variable.space == Space::reference) {
             refer(w, to, variable, *argument.value, later);
         } else if (!nested) {
@@ -100,6 +108,14 @@ void give(Writing& w, const Location& frame, const Expression& e, const Routine&
                              });
         if (!missing || variable.space == Space::constant) continue;
         const std::uint32_t slots = slots_of(w, *variable.type);
+        if (e.is_dispatched) {
+            signature_image(w, routine);
+            const Slot made = w.new_temporary(slots);
+            w.image_uses.push_back({w.next(), nullptr, &routine});
+            w.put(Op::initialise, made, slot_in_signature(w, routine, variable), slots);
+            copy(w, parameter(w, frame, e, variable), {Mode::slot, made}, slots);
+            continue;
+        }
         const Type* block = routine.owner ? routine.owner->type : nullptr;
         const Slot made =
             frame.mode == Mode::slot ? frame.slot + variable.slot : w.new_temporary(slots);
@@ -116,7 +132,8 @@ void take(Writing& w, const Location& frame, const Expression& e) {
         const Variable& variable = *argument.variable;
         const bool is_taken = argument.is_output || variable.section == Section::output;
         if (!is_taken || is_set(argument)) continue;
-        const Location from = part(w, frame, variable);
+        const Location from =
+            e.is_dispatched ? parameter(w, frame, e, variable) : part(w, frame, variable);
         const Type &given = *variable.type, &wanted = *argument.value->type;
         const auto taken = [&] {
             const Slot slot = load(w, from);
@@ -157,6 +174,32 @@ void give_and_call(Writing& w, const Location& frame, const Expression& e, const
     put_call(w, Op::call, Op::call_at, frame, w.routine_number(routine));
 }
 
+/// The instance says which routine that is, and where its parameters are.
+Location find_and_call(Writing& w, const Expression& e, Slot instance) {
+    const Slot found = w.new_temporary(2);
+    w.place = e.place;
+    w.put(Op::find_routine, found, instance, method_number(w, *e.routine));
+    const Location frame{Mode::address, 0, e.routine->owner ? found + 1 : instance};
+    give(w, frame, e, *e.routine);
+    w.place = e.place;
+    w.put(Op::call_found, instance, found);
+    take(w, frame, e);
+    return frame;
+}
+
+/// Its address, in a slot that stays while arguments are computed.
+Slot address_of_instance(Writing& w, const Expression& e) {
+    const Expression& callee = *e.operands[0];
+    const bool is_interface = callee.kind == E::member && callee.operands[0]->type &&
+                              callee.operands[0]->type->kind == Kind::interface;
+    const Slot to = w.new_temporary();
+    if (is_interface)
+        value_to(w, *callee.operands[0], to);
+    else
+        store(w, {Mode::slot, to}, address_of(w, method_base(w, e)));
+    return to;
+}
+
 }  // namespace
 
 Slot call(Writing& w, const Expression& e, Slot wanted) {
@@ -165,7 +208,9 @@ Slot call(Writing& w, const Expression& e, Slot wanted) {
     const Routine& routine = *e.routine;
     const std::uint32_t slots = slots_of(w, *routine.result->type);
     const bool is_function = routine.is_function();
-    const Location from = part(w, is_function ? frame : method_base(w, e), *routine.result);
+    const Location from = e.is_dispatched
+                              ? parameter(w, frame, e, *routine.result)
+                              : part(w, is_function ? frame : method_base(w, e), *routine.result);
     const Slot to = slots == 1 ? w.result(wanted) : w.new_temporary(slots);
     if (slots == 1)
         store(w, {Mode::slot, to}, load(w, from, to));
@@ -176,6 +221,7 @@ Slot call(Writing& w, const Expression& e, Slot wanted) {
 
 Location call_routine(Writing& w, const Expression& e) {
     const Routine& routine = *e.routine;
+    if (e.is_dispatched) return find_and_call(w, e, address_of_instance(w, e));
     const bool is_function = routine.is_function();
     Location frame =
         is_function ? Location{Mode::slot, Region::window} : on_frame(w, method_base(w, e));
@@ -196,6 +242,12 @@ void call_instance(Writing& w, const Expression& e) {
     const Expression& callee = *e.operands[0];
     const Type& type = *callee.type;
     const Location frame = on_frame(w, locate(w, callee));
+    if (e.is_dispatched) {
+        const Slot instance = w.new_temporary();
+        store(w, {Mode::slot, instance}, address_of(w, frame));
+        find_and_call(w, e, instance);
+        return;
+    }
     if (type.kind == Kind::block) {
         give_and_call(w, frame, e, *type.routine);
         return take(w, frame, e);

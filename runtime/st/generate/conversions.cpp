@@ -88,6 +88,10 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
     const Expression& operand = *e.operands[0];
     if (e.type->kind == Kind::handle)
         return w.emit(Op::set_global_number, wanted, static_cast<Slot>(operand.variable->global));
+    if (e.type->kind == Kind::interface) {
+        if (operand.type->kind == Kind::interface) return value(w, operand, wanted);
+        return w.emit(Op::lasting, wanted, address_of(w, locate(w, operand)));
+    }
     if (operand.type->kind == Kind::text) {
         const Slot text = text_address(w, operand);
         if (e.type->kind == Kind::real) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/st/generate/assertions.hpp"
+#include "runtime/st/generate/dispatch.hpp"
 #include "runtime/st/generate/images.hpp"
 #include "runtime/st/generate/layout.hpp"
 #include "runtime/st/generate/statements.hpp"
@@ -28,8 +29,13 @@ void begin(Writing& w, Routine& routine) {
     w.constant_slots.clear();
     w.loops.clear();
     w.numbers[&routine] = static_cast<std::uint32_t>(w.code.routines.size());
-    w.code.routines.push_back({routine.name, w.next(), 0, 0, routine.depth});
+    w.code.routines.push_back({.name = routine.name,
+                               .entry = w.next(),
+                               .depth = routine.depth,
+                               .levels = block->levels,
+                               .mark = routine.mark});
     w.place = routine.pou->place;
+    if (routine.mark != 0) w.put(Op::begin_once, routine.mark);
     const bool in_function = routine.is_function();
     if (in_function || routine.temps_begin < routine.variables_end) {
         w.image_uses.push_back({w.next(), in_function ? nullptr : block->type, &routine});
@@ -86,7 +92,7 @@ void write(Writing& w, Routine& routine) {
     begin_mockable(w, routine);
     w.cover(CoverPoint::Kind::function, routine.pou->place);
     write_block(w, routine.body);
-    w.put(Op::leave);
+    w.leave();
     finish(w, routine);
 }
 
@@ -103,6 +109,7 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
         w.has_tests = true;
         routine.owner->depth = std::max(routine.owner->depth, routine.depth);
     }
+    prepare_dispatch(w);
     w.fuses = !w.options.counted && !w.options.covered && !w.has_tests;
     for (const Global& global : w.checked.globals)
         if (global.type->kind != Kind::block) slots_of(w, *global.type);
@@ -110,6 +117,7 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
         if (!w.out.empty()) return {};
         write(w, *routine);
     }
+    finish_dispatch(w);
     for (const Global& global : w.checked.globals) {
         Writing::Image image(slots_of(w, *global.type), 0);
         fill_default(w, image, 0, *global.type);

@@ -28,17 +28,40 @@ void place_variables(Writing& w, Routine& routine, std::uint32_t& at, auto condi
         if (elsewhere || !condition(variable)) continue;
         w.place = variable.name.place;
         variable.slot = at;
-        const std::uint64_t own = slots_of(w, *variable.type);  // also lays out what is referred to
-        const std::uint64_t slots = variable.space != Space::reference ? own
-                                    : variable.type->is_open           ? 2
-                                                                       : 1;
+        const std::uint64_t slots = slots_in_frame(w, variable);
         check_size(w, at + slots, variable.name.place, variable.text);
         if (at + slots > most_slots) return;
         at += static_cast<std::uint32_t>(slots);
     }
 }
 
+/// A block that extends another has that whole in front.
+std::uint32_t begin_block(Writing& w, Routine& block, Writing::Image& image) {
+    if (!block.base) return w.code.calls_slot() + 2 * block.levels;
+    image = w.images[block.base->type];
+    return block.base->frame;
+}
+
+/// A slot that says that the routine runs, if it may meet itself.
+void place_mark(Routine& routine, std::uint32_t& at) {
+    if (routine.may_meet_itself && !routine.is_function()) routine.mark = at++;
+}
+
 }  // namespace
+
+std::uint32_t slots_in_frame(Writing& w, const Variable& variable) {
+    if (variable.space == Space::constant || variable.space == Space::global) return 0;
+    const bool is_reference = variable.space == Space::reference;
+    if (is_reference && variable.type->kind == Kind::block) return 1;
+    const std::uint32_t own = slots_of(w, *variable.type);  // also lays out what is referred to
+    return !is_reference ? own : variable.type->is_open ? 2 : 1;
+}
+
+bool is_in_signature(const Variable& variable, bool is_given) {
+    const Section section = variable.section;
+    return is_given ? section == Section::input || section == Section::in_out
+                    : section == Section::result || section == Section::output;
+}
 
 std::uint32_t slots_of(Writing& w, const Type& type) {
     if (type.kind == Kind::block) return type.routine->frame;
@@ -60,13 +83,18 @@ std::uint32_t slots_of(Writing& w, const Type& type) {
 
 void lay_out(Writing& w, Routine& block) {
     if (block.variables_end != 0) return;
-    std::uint32_t at = globals_slot + w.code.globals + 2 * block.depth;
+    Writing::Image begun;
+    std::uint32_t at = begin_block(w, block, begun);
+    place_mark(block, at);
     place_variables(w, block, at, [](const Variable& v) { return v.section != Section::temp; });
     block.temps_begin = at;
     place_variables(w, block, at, [](const Variable& v) { return v.section == Section::temp; });
     block.variables_end = block.frame = at;
     Writing::Image& image = w.images[block.type];
-    image.assign(at, 0);
+    image = std::move(begun);
+    image.resize(at, 0);
+    if (w.code.has_kinds)
+        image[w.code.kind_slot()] = w.kinds.emplace(&block, w.kinds.size() + 1).first->second;
     for (const Variable& variable : block.variables) fill(w, image, variable.slot, variable);
 }
 
@@ -74,12 +102,19 @@ void lay_out_call(Writing& w, Routine& routine) {
     Routine* block = routine.owner;
     if (block) lay_out(w, *block);
     std::uint32_t at = block ? block->frame : 0;
-    const auto is_given = [](const Variable& v) {
-        return v.section == Section::input || v.section == Section::in_out;
+    const auto is_given = [](const Variable& v) { return is_in_signature(v, true); };
+    const auto is_kept = [](const Variable& v) { return v.section == Section::kept; };
+    const auto is_taken = [&](const Variable& v) {
+        return routine.is_dispatched && is_in_signature(v, false);
     };
+    place_variables(w, routine, at, is_kept);
+    place_mark(routine, at);
+    routine.first = at;
     place_variables(w, routine, at, is_given);
     routine.temps_begin = at;
-    place_variables(w, routine, at, [&](const Variable& v) { return !is_given(v); });
+    place_variables(w, routine, at, is_taken);
+    place_variables(w, routine, at,
+                    [&](const Variable& v) { return !is_given(v) && !is_kept(v) && !is_taken(v); });
     routine.variables_end = at;
     Writing::Image& image = block ? w.images[block->type] : w.function_images[&routine];
     image.resize(at, 0);

@@ -11,6 +11,11 @@ std::uint32_t slots_of(Writing& w, const Type& type);
 /// Variables that live for one call only come last, to be initialised in one go.
 void lay_out(Writing& w, Routine& block);
 
+/// Those of a variable in its frame.
+std::uint32_t slots_in_frame(Writing& w, const Variable& variable);
+/// It is given to a method, or else taken from it.
+bool is_in_signature(const Variable& variable, bool is_given);
+
 /// What is given to a function or a method comes first. A method's frame is a part of its block's.
 void lay_out_call(Writing& w, Routine& routine);
 

@@ -82,6 +82,7 @@ Location locate(Writing& w, const Expression& e) {
     if (e.kind == E::index) return locate_element(w, e);
     if (e.kind == E::call) return {Mode::slot, call(w, e, none)};
     if (e.kind == E::converted) return locate_object(w, e);
+    if (e.kind == E::self) return {Mode::slot, 0};
     const Variable& variable = *e.variable;
     if (variable.space == Space::reference) {
         const bool of_block = w.routine->owner && variable.of != w.routine->pou;

@@ -258,7 +258,7 @@ void write_statement(Writing& w, const Statement& s) {
         case S::continue_:
             return w.jump(Op::jump, 0, 0, w.loops.back().nexts);
         case S::return_:
-            return w.put(Op::leave);
+            return w.leave();
         case S::action:  // a call by now
         case S::sequence:
             w.cover_branch(s, 0);

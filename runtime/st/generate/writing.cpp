@@ -26,6 +26,11 @@ void Writing::put(Op op, Slot a, Slot b, Slot c, Slot d) {
     if (fuses && next() - 1 > landed) fuse();
 }
 
+void Writing::leave() {
+    if (routine->mark != 0) put(Op::move, routine->mark, constant_slot(0));
+    put(Op::leave);
+}
+
 void Writing::jump(Op op, Slot a, Slot b, Jumps& to) {
     put(op, a, b, 0);
     to.push_back(next() - 1);

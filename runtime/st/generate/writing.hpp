@@ -44,6 +44,8 @@ struct Writing {
     std::uint32_t routine_number(const Routine& called) const { return numbers.at(&called); }
     std::uint32_t standard_number(const BlockType& kind);
 
+    void leave();
+
     void cover(CoverPoint::Kind kind, Place at, std::size_t branch = 0);
     void cover_branch(const Statement& s, std::size_t branch) {
         cover(CoverPoint::Kind::branch, s.place, branch);
@@ -73,6 +75,8 @@ struct Writing {
     std::unordered_map<const Routine*, Image> function_images = {};
     std::unordered_map<const Routine*, std::uint32_t> numbers = {};
     std::unordered_map<const BlockType*, std::uint32_t> standard_numbers = {};
+    std::unordered_map<const Routine*, std::uint32_t> method_numbers = {};  ///< of what is found
+    std::unordered_map<const Routine*, std::uint64_t> kinds = {};  ///< of instances, by their block
     struct ImageUse {
         std::uint32_t instruction;
         const Type* type;  ///< of a block, or null

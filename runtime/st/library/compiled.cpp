@@ -72,7 +72,7 @@ FaultPlace fault_of(const Code& code, const std::byte* instance) {
     if (found.fault == Fault::none) return found;
     std::uint64_t at = slot(place_slot);
     found.mark = place(at);
-    const std::uint32_t stack = globals_slot + code.globals;
+    const std::uint32_t stack = code.calls_slot();
     for (std::uint64_t level = slot(depth_slot);; --level) {
         found.calls.push_back(fmt::format("{} (line {})", routine(at), place(at).line));
         if (level == 0) return found;

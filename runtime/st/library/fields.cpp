@@ -107,9 +107,11 @@ class FieldWriter {
                     write(*member, slot, name + ".", inner(direction));
                 return;
             case Kind::block:
-                for (const Variable& member : type.routine->variables)
-                    if (member.section != Section::temp)
-                        write(member, slot, name + ".", inner(direction));
+                for (const Variable* member : all_variables(*type.routine))
+                    if (member->section != Section::temp)
+                        write(*member, slot, name + ".", inner(direction));
+                return;
+            case Kind::interface:
                 return;
             case Kind::text:
                 if (kind_.texts.size() < Library::most_parts)
@@ -233,7 +235,8 @@ void write_fields(Library::Made& made, KindContext& kind, const Routine& routine
     std::set<int> objects;
     find_objects(routine, seen, objects);
     fields.write_header(routine, objects);
-    for (const Variable& variable : routine.variables) {
+    for (const Variable* declared : all_variables(routine)) {
+        const Variable& variable = *declared;
         const std::size_t before = kind.fields.size();
         fields.write(variable, 0, {}, FieldWriter::direction_of(variable));
         keep(kind, before, variable.retain);
@@ -246,8 +249,9 @@ void write_fields(Library::Made& made, KindContext& kind, const Routine& routine
 void write_fields(Library::Made& made, KindContext& kind, const Global& global) {
     FieldWriter fields(made, kind);
     if (global.type->kind == Type::Kind::block) {
-        for (const Variable& variable : global.type->routine->variables)
-            if (variable.section != Section::temp) fields.write(variable, 0, {}, Direction::local);
+        for (const Variable* variable : all_variables(*global.type->routine))
+            if (variable->section != Section::temp)
+                fields.write(*variable, 0, {}, Direction::local);
     }
     for (const Variable* member : global.type->members) {
         const std::size_t before = kind.fields.size();

@@ -85,11 +85,16 @@ void visit(const Type& type, std::size_t slot, const Value& value) {
         for (const Variable* member : type.members)
             visit(*member->type, slot + member->slot, value);
     } else if (type.kind == Kind::block) {
-        for (const Variable& member : type.routine->variables) {
-            if (!member.type || member.section == Section::temp) continue;
-            if (member.space == Space::frame && !member.constant)
-                visit(*member.type, slot + member.slot, value);
-        }
+        const auto visit_kept = [&](const Variable& member) {
+            if (!member.type || member.space != Space::frame || member.constant) return;
+            visit(*member.type, slot + member.slot, value);
+        };
+        for (const Variable* member : all_variables(*type.routine))
+            if (member->section != Section::temp) visit_kept(*member);
+        for (const Routine* block = type.routine; block; block = block->base)
+            for (const Routine* method : block->own_methods)
+                for (const Variable& member : method->variables)
+                    if (member.section == Section::kept) visit_kept(member);
     } else {
         value(type, slot);
     }

@@ -53,7 +53,8 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     const CodeRoutine* code = made->generated.code.routines.data();
     for (const Routine* routine : made->checked.order) codes.emplace(routine, code++);
     for (const Routine& routine : made->checked.routines)
-        if (routine.has_instances() && !routine.owner && !routine.pou->place.source->is_prelude())
+        if (routine.has_instances() && !routine.owner && !routine.pou->is_abstract &&
+            !routine.pou->place.source->is_prelude())
             add_routine(*made, routine, *codes.at(&routine), options);
     for (const Global& global : made->checked.globals)
         if (!global.object) add_global(*made, global, options);

@@ -30,10 +30,12 @@ struct Cursor : Tokens {
         return true;
     }
 
-    /// A program organization unit begins; `METHOD` may be the name of a variable.
+    /// A program organization unit or a PROPERTY begins; `METHOD` may be the name of a variable.
     bool at_pou() const {
-        return is(Word::method_) ? is_name(1) : find_pou(here().word) != nullptr;
+        if (is(Word::property_) || (is_name() && find_pou(here().word))) return is_name(1);
+        return find_pou(here().word) != nullptr;
     }
+    bool at_method() const { return (is(Word::method_) || is(Word::property_)) && is_name(1); }
     /// A TEST has a text behind it; SETUP and TEARDOWN are names, too.
     bool at_test() const;
     /// `MOCK a.b;`, `MOCK_FUNCTION f RETURNS 5;`, `ADVANCE_TIME T#1s;`

@@ -22,7 +22,17 @@ Token parse_qualified_name(Parsing& p, std::string_view what);
 void parse_declaration(Parsing& p);
 Pou* parse_pou(Parsing& p);
 void parse_attributes(Parsing& p);
-bool accept_access(Parsing& p);
+/// `said`: where to note it.
+bool accept_access(Parsing& p, Access* said = nullptr);
+
+// parse_classes.cpp
+void parse_pou_modifiers(Parsing& p, Pou& pou);
+/// EXTENDS and IMPLEMENTS.
+void parse_bases(Parsing& p, Pou& pou);
+/// Its GET and SET become methods.
+void parse_property(Parsing& p, std::vector<Pou*>& to);
+/// A METHOD or PROPERTY behind the END of its block.
+void parse_late_method(Parsing& p);
 
 // parse_charts.cpp
 void parse_chart_element(Parsing& p, Pou& pou);

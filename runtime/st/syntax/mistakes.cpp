@@ -17,13 +17,6 @@ struct Unsupported {
 };
 
 constexpr Unsupported unsupported[] = {
-    {Word::abstract_, "abstract blocks are", "leave it out, and write the whole block"},
-    {Word::class_, "classes are", "write a FUNCTION_BLOCK with METHODs"},
-    {Word::interface_, "interfaces are", "write a FUNCTION_BLOCK with METHODs"},
-    {Word::extends_, "inheritance is", "declare an instance of the other block and call it"},
-    {Word::implements_, "interfaces are", "leave it out, and call the block by its own type"},
-    {Word::property_, "properties are", "write a METHOD, or a VAR_OUTPUT"},
-    {Word::super_, "inheritance is", "declare an instance of the other block and call it"},
     {Word::goto_, "GOTO is", "write IF, CASE, EXIT or RETURN"},
     {Word::ref_to_, "references are", "pass the variable as VAR_IN_OUT"},
     {Word::pointer_, "pointers are", "pass the variable as VAR_IN_OUT, or use an index"},
@@ -31,8 +24,6 @@ constexpr Unsupported unsupported[] = {
     {Word::caret, "pointers are", "pass the variable as VAR_IN_OUT, and leave '^' out"},
     {Word::var_access_, "access paths are", "declare the variable in VAR_GLOBAL"},
     {Word::direct, "direct addresses are", "declare a VAR_INPUT or VAR_OUTPUT and wire it"},
-    {Word::override_, "inheritance is", "leave it out"},
-    {Word::final_, "inheritance is", "leave it out"},
     {Word::test_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
     {Word::setup_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
     {Word::teardown_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
@@ -71,13 +62,6 @@ std::string habit_of_signs(const Cursor& p) {
     return {};
 }
 
-/// Of a block, where the end of the part before was left out.
-bool at_next_part(const Cursor& p) {
-    const bool begins = p.is(Word::method_) || p.is(Word::property_) || p.is(Word::action_);
-    return ends_pou(p.here().word) ||
-           (p.here().first_in_line && (p.at_pou() || (begins && p.is_name(1))));
-}
-
 bool is_elementary(std::string_view name) {
     return std::ranges::any_of(elementary_names,
                                [&](std::string_view known) { return same_name(known, name); });
@@ -104,38 +88,6 @@ bool refuse_unsupported(Parsing& p) {
         fail(p, code::not_supported, p.here().place, fmt::format("{} not supported", it->what),
              std::string(it->instead));
     return true;
-}
-
-bool refuse_whole(Parsing& p) {
-    static constexpr Word words[] = {Word::class_, Word::interface_, Word::property_};
-    if (std::ranges::find(words, p.here().word) == std::end(words)) return false;
-    const std::string end = fmt::format("end_{}", p.here().text);
-    const bool is_part = p.is(Word::property_);
-    refuse_unsupported(p);
-    p.panic = false;
-    const std::size_t first = p.at;
-    const auto at_last = [&] {
-        return p.is(Word::end_of_file) || p.is(Word::end_namespace_) || p.says(end);
-    };
-    while (!at_last() && !(is_part && p.at != first && at_next_part(p))) p.take();
-    if (p.says(end)) p.take();
-    p.accept(Word::semicolon);
-    return true;
-}
-
-bool refuse_modifier(Parsing& p) {
-    if (!p.is_name(1) || p.next().first_in_line ||
-        !(p.is(Word::override_) || p.is(Word::final_) || p.is(Word::abstract_)))
-        return false;
-    if (!p.is(Word::abstract_) || !p.is_wrong) refuse_unsupported(p);  // told of its block
-    p.panic = false;
-    p.take();
-    return true;
-}
-
-void refuse_bases(Parsing& p) {
-    if (p.is(Word::extends_) || p.is(Word::implements_)) refuse_unsupported(p);
-    if (p.panic) skip_line(p);
 }
 
 void refuse_chart(Parsing& p) {

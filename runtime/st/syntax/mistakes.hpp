@@ -14,12 +14,6 @@ bool refuse_unsupported(Parsing& p);
 
 // Beside blocks and within them. False: it is none.
 
-/// CLASS, INTERFACE, PROPERTY: up to its END_...
-bool refuse_whole(Parsing& p);
-/// `FUNCTION_BLOCK ABSTRACT x`
-bool refuse_modifier(Parsing& p);
-/// EXTENDS and IMPLEMENTS of a block, up to the end of the line.
-void refuse_bases(Parsing& p);
 /// A chart where nothing stays, up to the end of the block.
 void refuse_chart(Parsing& p);
 
@@ -27,7 +21,7 @@ void refuse_chart(Parsing& p);
 
 /// VAR_ACCESS. False: it is none.
 bool refuse_section(Parsing& p);
-/// VAR_INST, and VAR_STAT where nothing stays.
+/// VAR_INST and VAR_STAT where nothing stays.
 void refuse_static(Parsing& p, PouKind kind);
 /// Behind AT: `%IX0.0`, or another variable.
 void refuse_place(Parsing& p);

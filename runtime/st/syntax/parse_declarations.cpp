@@ -20,7 +20,7 @@ bool accept_modifier(Parsing& p, DeclarationBlock& block) {
     if (p.accept(Word::retain_)) return block.retain = true;
     if (p.is(Word::name) && p.says("db_specific")) return p.take(), true;
     if (p.is(Word::name) && p.says("persistent")) return p.take(), block.retain = true;
-    return p.accept(Word::non_retain_) || accept_access(p);
+    return p.accept(Word::non_retain_) || accept_access(p, &block.access);
 }
 
 /// It begins its line, as `CONST` and `LABEL` are names elsewhere.
@@ -79,8 +79,12 @@ void parse_sections(Parsing& p, Pou& pou, Word end) {
         if (!is_inst && p.is_name(1) && is_list) respell(p, variable_words);
         const SectionWord* word = find_section(p.here().word);
         if (!word && !is_inst) return;
-        if (is_inst || (p.is(Word::var_stat_) && !stays(pou.kind))) refuse_static(p, pou.kind);
-        DeclarationBlock block = parse_section(p, is_inst ? Section::local : word->section);
+        const bool is_static = is_inst || (p.is(Word::var_stat_) && !stays(pou.kind));
+        const bool is_kept = is_static && pou.kind == PouKind::method;
+        if (is_static && !is_kept && !stays(pou.kind)) refuse_static(p, pou.kind);
+        DeclarationBlock block = parse_section(p, is_kept   ? Section::kept
+                                                  : is_inst ? Section::local
+                                                            : word->section);
         if (block.section != Section::external) pou.blocks.push_back(std::move(block));
     }
 }

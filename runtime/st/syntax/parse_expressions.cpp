@@ -54,11 +54,14 @@ bool at_operator_call(const Cursor& p) {
            p.next().word == Word::open;
 }
 
-/// `THIS.x` is a variable or a method of the own block, also as CODESYS writes it, `THIS^.x`.
-void skip_this(Parsing& p) {
-    const std::size_t dot = p.next().word == Word::caret ? 2 : 1;
-    const bool has_dot = p.next(dot).word == Word::dot && p.is_name(dot + 1);
-    if (p.is(Word::name) && p.says("this") && has_dot) p.at += dot + 1;
+/// Variable_Name : ( 'THIS' | 'SUPER' ) '^' ? | Name
+///               | 'AND' | 'OR' | 'XOR' | 'MOD'
+/// AND and its like are names before a '('. THIS and SUPER are an instance with and without '^'.
+Expression* parse_name(Parsing& p) {
+    const bool is_own = p.is(Word::super_) || (p.is(Word::name) && p.says("this"));
+    Expression* name = p.make(Expression::Kind::name, p.take());
+    if (is_own && p.is(Word::caret)) name->place = name->place.to(p.take().place);
+    return name;
 }
 
 Expression* parse_primary(Parsing& p);
@@ -112,9 +115,6 @@ Expression* parse_in_parentheses(Parsing& p) {
 
 /// Primary_Expr : Unsigned_Int | Real | Text | Typed_Literal | In_Parentheses | Variable_Name
 ///              | Array_Init
-/// Variable_Name : ( 'THIS' '^' ? '.' ) ? Name
-///               | 'AND' | 'OR' | 'XOR' | 'MOD'
-/// AND and its like are names before a '('.
 /// The checker refuses an Array_Init here.
 Expression* parse_primary(Parsing& p) {
     const Level level(p);
@@ -131,11 +131,8 @@ Expression* parse_primary(Parsing& p) {
             case Word::open:
                 return parse_in_parentheses(p);
             default:
-                skip_this(p);
-                if (p.is(Word::super_) && p.next().word == Word::caret) break;
                 if (p.at_qualified_prefix()) return parse_typed_literal(p);
-                if (p.is_name() || at_operator_call(p))
-                    return p.make(Expression::Kind::name, p.take());
+                if (p.is_name() || at_operator_call(p)) return parse_name(p);
         }
     }
     expected(p, "a value");

@@ -33,18 +33,21 @@ bool at_attribute(const Cursor& p) {
     static constexpr std::string_view words[] = {
         "title", "author", "family", "name", "know_how_protect", "read_only", "unlinked"};
     if (p.is(Word::version_)) return true;
-    return p.is(Word::name) && !p.here().quoted && p.here().first_in_line &&
+    const Word behind = p.next().word;
+    const bool is_used = behind == Word::assign || behind == Word::dot || behind == Word::open ||
+                         behind == Word::open_bracket;
+    return p.is(Word::name) && !p.here().quoted && p.here().first_in_line && !is_used &&
            std::ranges::any_of(words, [&](std::string_view word) { return p.says(word); });
 }
 
-/// POU_Header : Using_Directive * Attribute * ( 'NON_RETAIN' | 'RETAIN' ) ? Data_Block_Type ?
-/// Data_Block_Type : ( Array_Spec | Struct_Decl | Type_Access ) ';' ?
-/// Only a DATA_BLOCK has a type here; a name is always that.
+/// POU_Header : Using_Directive * Pou_Bases Attribute * ( 'NON_RETAIN' | 'RETAIN' ) ?
+/// Data_Block_Type ? Data_Block_Type : ( Array_Spec | Struct_Decl | Type_Access ) ';' ? Only a
+/// DATA_BLOCK has a type here; a name is always that.
 void parse_header(Parsing& p, Pou& pou) {
     const bool has_using = p.is(Word::using_) && p.is_name(1);
     if (has_using) open_scope(p, pou.place.begin, p.scope ? p.scope->path : std::string_view());
     while (p.is(Word::using_) && p.is_name(1)) parse_using(p);
-    refuse_bases(p);
+    parse_bases(p, pou);
     parse_attributes(p);
     p.accept(Word::non_retain_) || p.accept(Word::retain_);
     if (pou.kind != PouKind::data_block) return;
@@ -57,7 +60,8 @@ void parse_header(Parsing& p, Pou& pou) {
 }
 
 bool may_have_parts(const Pou& pou) {
-    return pou.kind == PouKind::function_block || pou.kind == PouKind::program;
+    return pou.kind == PouKind::function_block || pou.kind == PouKind::program ||
+           pou.kind == PouKind::interface;
 }
 
 /// Action_Decl : 'ACTION' Name ':' ? Stmt_List 'END_ACTION' ';' ?
@@ -87,13 +91,16 @@ void parse_action_beside(Parsing& p) {
         p.tree.units.push_back(parse_action(p, PouKind::function));
 }
 
-/// POU_Body : Stmt_List ( ( POU | Action_Decl | Chart_Element ) Stmt_List ) *
-/// It is a METHOD, and only in a FUNCTION_BLOCK or a PROGRAM; the others, too.
+/// POU_Body : Stmt_List ( ( POU | Prop_Decl | Action_Decl | Chart_Element ) Stmt_List ) *
+/// It is a METHOD, and only in a FUNCTION_BLOCK, a CLASS, an INTERFACE or a PROGRAM; so are the
+/// others.
 void parse_body(Parsing& p, Pou& pou, Word end) {
     for (;;) {
         parse_statements(p, pou.body, end);
         if (!may_have_parts(pou)) return p.at_chart() ? refuse_chart(p) : void();
-        if (p.is(Word::method_))
+        if (p.at_method() && p.is(Word::property_))
+            parse_property(p, pou.methods);
+        else if (p.at_method())
             pou.methods.push_back(parse_pou(p));
         else if (p.at_chart())
             parse_chart_element(p, pou);
@@ -122,17 +129,16 @@ void parse_globals(Parsing& p) {
 }  // namespace
 
 /// Declaration : POU | Action_Decl | Data_Type_Decl | Var_Section | Config_Decl | Test
-/// A METHOD stands within another unit; variables beside units are VAR_GLOBAL or VAR, which is the
-/// same there; a Test stands in a file of tests.
+/// A METHOD stands within another unit, or behind it; variables beside units are VAR_GLOBAL or VAR,
+/// which is the same there; a Test stands in a file of tests.
 void parse_declaration(Parsing& p) {
     if (p.is(Word::end_of_file)) return;
-    if (find_pou(p.here().word) && !p.is(Word::method_))
-        return p.tree.units.push_back(parse_pou(p));
+    if (p.at_method()) return parse_late_method(p);
+    if (p.at_pou() && !p.is(Word::method_)) return p.tree.units.push_back(parse_pou(p));
     if (p.is(Word::type_)) return parse_type_declarations(p);
     if (p.is(Word::var_global_) || p.is(Word::var_)) return parse_globals(p);
     if (p.is(Word::configuration_)) return parse_configuration(p);
     if (p.at_action()) return parse_action_beside(p);
-    if (refuse_whole(p)) return;
     if (p.is_name(1) && respell(p, declaration_words)) return parse_declaration(p);
     const bool is_tests = p.source->kind == SourceKind::tests;
     if (p.at_test() || (is_tests && p.is(Word::test_))) return parse_test(p);
@@ -145,12 +151,12 @@ void parse_declaration(Parsing& p) {
     p.take();
 }
 
-/// POU : POU_Word Access_Spec * Name ( ':' Data_Type ) ? POU_Header Var_Sections 'BEGIN' ?
+/// POU : POU_Word Pou_Modifier * Name ( ':' Data_Type ) ? POU_Header Var_Sections 'BEGIN' ?
 ///       POU_Body POU_End ';' ?
 /// POU_Word : 'PROGRAM' | 'ORGANIZATION_BLOCK' | 'FUNCTION_BLOCK' | 'FUNCTION' | 'DATA_BLOCK'
-///          | 'METHOD'
+///          | 'CLASS' | 'INTERFACE' | 'METHOD'
 /// POU_End : 'END_PROGRAM' | 'END_ORGANIZATION_BLOCK' | 'END_FUNCTION_BLOCK' | 'END_FUNCTION'
-///         | 'END_DATA_BLOCK' | 'END_METHOD'
+///         | 'END_DATA_BLOCK' | 'END_CLASS' | 'END_INTERFACE' | 'END_METHOD'
 Pou* parse_pou(Parsing& p) {
     const PouWords& words = *find_pou(p.here().word);
     const std::string_view doc = comment_before(p, p.at, true);
@@ -158,8 +164,8 @@ Pou* parse_pou(Parsing& p) {
     Pou& pou = p.tree.pous.emplace_back();
     pou.kind = words.kind;
     pou.doc = doc;
-    pou.is_private = p.is(Word::private_);
-    while (accept_access(p) || refuse_modifier(p)) continue;
+    pou.is_class = opener.word == Word::class_;
+    parse_pou_modifiers(p, pou);
     pou.name = expect_name(p, fmt::format("the name of the {}", shown(opener.word)));
     pou.place = opener.place.to(pou.name.place);
     if (p.accept(Word::colon)) pou.result = parse_type(p);
@@ -182,9 +188,18 @@ Pou* parse_pou(Parsing& p) {
 }
 
 /// Access_Spec : 'PRIVATE' | 'PUBLIC' | 'PROTECTED' | 'INTERNAL'
-bool accept_access(Parsing& p) {
-    return !p.is_declared() && (p.accept(Word::private_) || p.accept(Word::public_) ||
-                                p.accept(Word::protected_) || p.accept(Word::internal_));
+bool accept_access(Parsing& p, Access* said) {
+    static constexpr std::pair<Word, Access> words[] = {{Word::private_, Access::private_},
+                                                        {Word::public_, Access::public_},
+                                                        {Word::protected_, Access::protected_},
+                                                        {Word::internal_, Access::internal_}};
+    if (p.is_declared()) return false;
+    for (const auto& [word, access] : words) {
+        if (!p.accept(word)) continue;
+        if (said) *said = access;
+        return true;
+    }
+    return false;
 }
 
 /// Attribute : 'VERSION' ':' Real

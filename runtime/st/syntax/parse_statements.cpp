@@ -220,10 +220,6 @@ void parse_statement(Parsing& p, Block& to) {
         case Word::semicolon:
             p.take();
             return;
-        case Word::property_:
-            if (!p.is_name(1)) return parse_simple(p, to);
-            refuse_whole(p);
-            return;
         case Word::network_:
             if (p.next().word == Word::assign) return parse_simple(p, to);
             return parse_region(p);

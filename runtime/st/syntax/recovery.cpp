@@ -30,14 +30,14 @@ bool closes_statement(Word word) {
 
 constexpr bool ends_statements(Word word) {
     return word == Word::end_of_file || word == Word::else_ || word == Word::elsif_ ||
-           word == Word::until_ || word == Word::method_;
+           word == Word::until_;
 }
 
 /// What stands here cannot be within a block, whose end is missing.
 bool is_left(const Parsing& p) {
     return p.is(Word::end_of_file) || is_end(p.here().word) || p.is(Word::else_) ||
-           p.is(Word::elsif_) || p.is(Word::until_) || find_pou(p.here().word) || p.at_test() ||
-           p.at_action() || at_label_of_case(p) || (p.is(Word::type_) && p.is_name(1));
+           p.is(Word::elsif_) || p.is(Word::until_) || p.at_pou() || p.at_test() || p.at_action() ||
+           at_label_of_case(p) || (p.is(Word::type_) && p.is_name(1));
 }
 
 /// Of a call: what follows its ')' is no operator and no ';'.
@@ -131,7 +131,7 @@ bool close(Parsing& p, Word end, const Token& opener) {
 void end_statement(Parsing& p) {
     if (p.panic || p.unclosed_at == p.at || p.accept(Word::semicolon)) return;
     const Token& here = p.here();
-    if (!here.first_in_line && !is_end(here.word) && !ends_statements(here.word))
+    if (!here.first_in_line && !is_end(here.word) && !ends_statements(here.word) && !p.at_method())
         return expected(p, ";", "after the statement");
     if (follows_mistake(p)) return;
     Place place = p.last().place;
@@ -165,8 +165,6 @@ bool at_doomed_name(const Cursor& p) {
 
 bool at_end_of_statements(const Cursor& p) {
     if (p.is(Word::end_region_) || p.is(Word::end_network_)) return false;
-    if (p.is(Word::method_))
-        return p.is_name(1) || p.next().word == Word::private_ || p.next().word == Word::public_;
     return is_end(p.here().word) || ends_statements(p.here().word) || p.at_pou() || p.at_test() ||
            p.at_action() || (p.is(Word::type_) && p.is_name(1));
 }

@@ -59,9 +59,10 @@ inline bool same_name(std::string_view a, std::string_view b) {
     WORD(abstract) WORD(action) WORD(and) WORD(and_then) WORD(array) WORD(at) WORD(begin) WORD(by) WORD(case) \
     WORD(class) WORD(configuration) WORD(constant) WORD(continue) WORD(data_block) WORD(do)        \
     WORD(else) WORD(elsif) WORD(end_action) WORD(end_case) WORD(end_class) WORD(end_data_block)    \
-    WORD(end_for) WORD(end_function) WORD(end_function_block) WORD(end_if) WORD(end_interface)     \
+    WORD(end_for) WORD(end_function) WORD(end_function_block) WORD(end_get) WORD(end_if)           \
+    WORD(end_interface)                                                                            \
     WORD(end_method) WORD(end_namespace) WORD(end_network) WORD(end_organization_block)            \
-    WORD(end_program) WORD(end_property) WORD(end_region) WORD(end_repeat) WORD(end_setup)         \
+    WORD(end_program) WORD(end_property) WORD(end_region) WORD(end_repeat) WORD(end_set) WORD(end_setup)         \
     WORD(end_struct) WORD(end_teardown) WORD(end_test) WORD(end_type) WORD(end_union)              \
     WORD(end_var) WORD(end_while) WORD(exit) WORD(extends) WORD(final) WORD(for) WORD(function)    \
     WORD(function_block) WORD(goto) WORD(if) WORD(implements) WORD(interface) WORD(internal)       \

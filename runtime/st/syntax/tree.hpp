@@ -58,6 +58,7 @@ struct Expression {
         list,       ///< `[1, 4(0.0)]`: of arguments, or `(x := 1, y := 2)`, `(1, 2)`
         repeated,   ///< `4(0.0)`: operands[0] times what is in `arguments`
         converted,  ///< operands[0] to `type`, put in by the checker
+        self,       ///< THIS; by its base's type SUPER; put in by the checker
     };
 
     Kind kind = Kind::constant;
@@ -75,6 +76,7 @@ struct Expression {
     BitRange bits = {};                          ///< of `bit`
     Variable* variable = nullptr;                ///< that a name or a member means
     Routine* routine = nullptr;                  ///< that a name means, or a call calls
+    bool is_dispatched = false;                  ///< a call: the instance says which routine
     const StandardFunction* standard = nullptr;  ///< that a call calls
     Expression* initial = nullptr;               ///< what it is to all of `a, b : INT := 2 + 3`
 
@@ -163,18 +165,42 @@ struct Declaration {
     std::string_view doc = {};  ///< the comments behind it
 };
 
-enum class Section : std::uint8_t { input, output, in_out, local, temp, global, external, result };
+enum class Section : std::uint8_t {
+    input,
+    output,
+    in_out,
+    local,
+    temp,
+    global,
+    external,
+    result,
+    kept,  ///< VAR_INST of a method: stays in its instance
+};
+
+/// Who may name a variable or a method of a block.
+enum class Access : std::uint8_t { unsaid, public_, protected_, internal_, private_ };
 
 struct DeclarationBlock {
     Section section = Section::local;
     bool constant = false, retain = false;
+    Access access = Access::unsaid;
     bool is_lost = false;            ///< not understood
     std::string_view list = {};      ///< of VAR_GLOBAL: its file's name, without the ending
     bool is_qualified_only = false;  ///< named as `list.x` alone
     std::vector<Declaration*> declarations = {};
 };
 
-enum class PouKind : std::uint8_t { program, function_block, function, method, data_block };
+enum class PouKind : std::uint8_t {
+    program,
+    function_block,  ///< also a CLASS
+    function,
+    method,
+    data_block,
+    interface,
+};
+
+/// What of a PROPERTY a method is.
+enum class Accessor : std::uint8_t { none, get, set };
 
 /// A program organization unit.
 struct Pou {
@@ -184,7 +210,11 @@ struct Pou {
     TypeText* result = nullptr;  ///< null: none
     TypeText* base = nullptr;    ///< of a data block that is an instance, or a structure
     std::string_view doc = {};   ///< the comments before it, else below its first line
-    bool is_private = false;
+    Access access = Access::unsaid;
+    bool is_class = false, is_abstract = false, is_final = false, is_override = false;
+    Accessor accessor = Accessor::none;   ///< of a method
+    std::vector<Token> bases = {};        ///< behind EXTENDS
+    std::vector<Token> implemented = {};  ///< behind IMPLEMENTS
     bool is_action = false;  ///< of a method, and of a function that is one beside all blocks
     bool is_lost = false;    ///< not understood
     bool is_tests = false;   ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it

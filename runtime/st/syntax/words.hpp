@@ -19,6 +19,8 @@ inline constexpr PouWords pou_words[] = {
     {Word::function_block_, Word::end_function_block_, PouKind::function_block},
     {Word::function_, Word::end_function_, PouKind::function},
     {Word::data_block_, Word::end_data_block_, PouKind::data_block},
+    {Word::class_, Word::end_class_, PouKind::function_block},
+    {Word::interface_, Word::end_interface_, PouKind::interface},
     {Word::method_, Word::end_method_, PouKind::method}};
 
 struct SectionWord {

@@ -22,15 +22,16 @@ struct Layout;
 struct Type {
     enum class Kind : std::uint8_t {
         boolean,
-        integer,  ///< SINT to ULINT
-        bits,     ///< BYTE to LWORD
-        real,     ///< REAL, LREAL
-        time,     ///< TIME, LTIME [ns]
-        handle,   ///< AXIS_REF: the number of an instance of `standard`, -1 of none
-        date,     ///< DATE, LDATE: its midnight [ns since 1970-01-01]
-        clock,    ///< TOD, LTOD [ns since midnight]
-        moment,   ///< DT, LDT [ns since 1970-01-01]
-        text,     ///< STRING[length]
+        integer,    ///< SINT to ULINT
+        bits,       ///< BYTE to LWORD
+        real,       ///< REAL, LREAL
+        time,       ///< TIME, LTIME [ns]
+        handle,     ///< AXIS_REF: the number of an instance of `standard`, -1 of none
+        date,       ///< DATE, LDATE: its midnight [ns since 1970-01-01]
+        clock,      ///< TOD, LTOD [ns since midnight]
+        moment,     ///< DT, LDT [ns since 1970-01-01]
+        interface,  ///< of an INTERFACE, `routine`: the address of an instance, 0 of none
+        text,       ///< STRING[length]
         enumeration,
         array,
         structure,
@@ -62,7 +63,7 @@ struct Type {
     bool counted = true;                     ///< those are 0, 1, 2, ...
     std::vector<std::int64_t> of_number = {};  ///< what SCL's numbers mean; -1, or beyond: nothing
     bool is_code = false;  ///< of an enumeration: one that the standards make a WORD, as ErrorID
-    Routine* routine = nullptr;  ///< of a block
+    Routine* routine = nullptr;  ///< of a block, of an interface
     const BlockType* standard = nullptr;
     std::vector<std::pair<std::string_view, Constant>> presets = {};  ///< parameters of `standard`
     Constant initial = {};
@@ -120,6 +121,7 @@ struct Variable {
     Expression* initial = nullptr;
     std::string unit = {};
     const Pou* of = nullptr;  ///< null: a member of a structure, or of the catalogue
+    Access access = Access::unsaid;
     bool used = false;
     Variable* edge = nullptr;    ///< of `x : BOOL R_EDGE`: the R_TRIG whose Q its name means inside
     std::string_view text = {};  ///< its name
@@ -136,7 +138,17 @@ struct Routine {
     Routine* owner = nullptr;  ///< of a method: its block
     std::deque<Variable> variables = {};
     NameMap<Variable*> names = {};
-    NameMap<Routine*> methods = {};
+    std::vector<Routine*> own_methods = {};        ///< of a block, in their order
+    NameMap<Routine*> methods = {};                ///< those of its bases too
+    NameMap<Routine*> getters = {}, setters = {};  ///< of PROPERTY
+    Routine* base = nullptr;                       ///< of a block: what it EXTENDS
+    std::vector<Routine*> interfaces = {};         ///< IMPLEMENTS; of an interface its bases
+    bool has_unknown_base = false;                 ///< which was told, or is lost
+    Routine* overrides = nullptr;                  ///< of a method: that of a base
+    bool is_replaced = false;                      ///< by what derives from its block
+    bool is_declared = false;                      ///< its variables are
+    bool is_dispatched = false;                    ///< a call may find it by the instance
+    bool dispatches = false;                       ///< calls what is found by an instance
     Variable* result = nullptr;
     Type* type = nullptr;  ///< of its instances, of a block
     Block body = {};       ///< as checked: what its statements stand for
@@ -149,6 +161,9 @@ struct Routine {
 
     bool is_function() const { return pou->kind == PouKind::function; }
     bool is_test() const { return owner && owner->pou->is_tests; }
+    bool is_interface() const { return pou->kind == PouKind::interface; }
+    /// Of an interface: declared, and nothing that runs.
+    bool is_prototype() const { return is_interface() || (owner && owner->is_interface()); }
     bool has_instances() const {
         return pou->kind == PouKind::function_block || pou->kind == PouKind::program;
     }
@@ -160,7 +175,16 @@ struct Routine {
     std::uint32_t variables_end = 0;  ///< behind its own variables
     std::uint32_t frame = 0;          ///< slots with temporaries and what its functions need
     std::uint32_t depth = 0;          ///< levels of calls below it
+    std::uint32_t levels = 0;         ///< that its instance has room for, of a block
+    std::uint32_t first = 0;          ///< of a method: slot of the first that is given to it
+    std::uint32_t mark = 0;           ///< slot that says that it runs; 0: it has none
+    bool may_meet_itself = false;     ///< what it calls may call it, by the instance
 };
+
+/// Of a block: its variables, those of its bases first.
+std::vector<Variable*> all_variables(const Routine& block);
+/// The block is the other one, or derives from it; the block or interface implements it.
+bool is_a(const Routine& block, const Routine& other);
 
 /// `VAR_GLOBAL`, or a DATA_BLOCK: memory that all blocks see.
 struct Global {

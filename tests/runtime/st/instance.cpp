@@ -53,7 +53,10 @@ void Instances::scan(std::int64_t time, std::int64_t interval) {
     for (std::size_t i = 0; i < places_.size(); ++i) {
         const BlockType& kind = library_.kinds()[i];
         if (is_program(kind) || !has_program)
-            kind.scan_blocks(places_[i], 1, now, {kind.context, places_.data()});
+            kind.scan_blocks(places_[i], 1, now,
+                             {.kind = kind.context,
+                              .instances = places_.data(),
+                              .blocks = static_cast<int>(places_.size())});
     }
 }
 

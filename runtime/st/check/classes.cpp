@@ -1,0 +1,367 @@
+#include "runtime/st/check/classes.hpp"
+
+#include <algorithm>
+
+#include "runtime/source/codes.hpp"
+#include "runtime/st/check/calls.hpp"
+#include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/names.hpp"
+#include "runtime/st/check/namespaces.hpp"
+#include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/order.hpp"
+#include "runtime/st/check/statements.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+NameMap<Routine*>& methods_like(Routine& block, const Routine& method) {
+    const Accessor accessor = method.pou->accessor;
+    return accessor == Accessor::get   ? block.getters
+           : accessor == Accessor::set ? block.setters
+                                       : block.methods;
+}
+
+/// Null where there is none of that name, which was told.
+Routine* find_base(Checking& c, const Routine& of, const Token& name, bool wants_interface) {
+    const auto fits = [&](const Routine& r) {
+        return r.type && r.is_interface() == wants_interface && r.pou->kind != PouKind::program;
+    };
+    Routine* found = c.find_routine(name);
+    if (found && fits(*found)) return found;
+    if (c.is_lost(name) || c.tree.lost.contains(name.text) || may_be_elsewhere(c, name.place))
+        return nullptr;
+    const std::string_view wanted = wants_interface ? "an interface" : "a function block";
+    if (found)
+        return c.fail(code::type_does_not_fit, name.place,
+                      fmt::format("'{}' is not {}", name.text, wanted),
+                      found->is_interface() ? "write IMPLEMENTS" : "");
+    std::vector<std::string> names;
+    for (const auto& [known, routine] : c.users.routines)
+        if (fits(*routine) && routine != &of) names.emplace_back(known);
+    std::ranges::sort(names);
+    if (c.catalog.find(name.text))
+        return c.fail(code::not_supported, name.place,
+                      fmt::format("'{}' cannot be extended", name.text),
+                      "declare an instance of it, and call that");
+    return c.fail(code::not_declared, name.place, fmt::format("'{}' is not {}", name.text, wanted),
+                  suggest(name.text, names));
+}
+
+/// The hops from `from` up to `to`; empty: there is no such way.
+std::string hops(const Routine& from, const Routine& to) {
+    if (&from == &to) return from.name;
+    std::vector<const Routine*> bases(from.interfaces.begin(), from.interfaces.end());
+    if (from.base) bases.push_back(from.base);
+    for (const Routine* base : bases)
+        if (const std::string rest = hops(*base, to); !rest.empty())
+            return from.name + " -> " + rest;
+    return {};
+}
+
+void add_base(Checking& c, Routine& routine, const Token& name, bool wants_interface) {
+    Routine* base = find_base(c, routine, name, wants_interface);
+    if (!base) {
+        routine.has_unknown_base = true;
+        return;
+    }
+    if (const std::string way = hops(*base, routine); !way.empty()) {
+        c.fail(code::contains_itself, name.place,
+               fmt::format("'{}' extends itself: {} -> {}", routine.name, routine.name, way),
+               "let one of them be without a base");
+        return;
+    }
+    if (base->pou->is_final)
+        c.fail(code::wrong_place, name.place, fmt::format("{} is FINAL", base->name),
+               "declare an instance of it instead, or take FINAL away");
+    if (wants_interface)
+        routine.interfaces.push_back(base);
+    else
+        routine.base = base;
+}
+
+void replace(Checking& c, Routine& method, Routine& replaced) {
+    method.overrides = &replaced;
+    for (Routine* r = &replaced; r; r = r->overrides) r->is_replaced = r->is_dispatched = true;
+    method.is_dispatched = true;
+    if (replaced.pou->is_final)
+        c.fail(code::wrong_place, method.pou->name.place, fmt::format("{} is FINAL", replaced.name),
+               "give it another name");
+}
+
+/// `seen`: those that are linked.
+void link_methods(Checking& c, Routine& block, std::unordered_set<const Routine*>& seen) {
+    if (!block.type || !seen.insert(&block).second) return;
+    std::vector<Routine*> bases;
+    if (block.base) bases.push_back(block.base);
+    if (block.is_interface())
+        bases.insert(bases.end(), block.interfaces.begin(), block.interfaces.end());
+    for (Routine* base : bases) link_methods(c, *base, seen);
+    if (block.base)
+        for (Routine* r = block.base; r; r = r->base) r->is_replaced = true;
+    for (const Routine* base : bases) block.has_unknown_base |= base->has_unknown_base;
+    for (Routine* method : block.own_methods) {
+        for (Routine* base : bases) {
+            const auto& known = methods_like(*base, *method);
+            if (const auto it = known.find(method->pou->name.text); it != known.end())
+                replace(c, *method, *it->second);
+        }
+        if (method->pou->is_override && !method->overrides && !block.has_unknown_base &&
+            block.interfaces.empty())
+            c.fail(code::not_declared, method->pou->name.place,
+                   fmt::format("{} overrides nothing", method->name),
+                   "no base has a method of that name: leave OVERRIDE out");
+    }
+    for (Routine* base : bases)
+        for (auto member : {&Routine::methods, &Routine::getters, &Routine::setters})
+            (block.*member).insert((base->*member).begin(), (base->*member).end());
+}
+
+std::vector<const Variable*> parameters(const Routine& method) {
+    std::vector<const Variable*> found;
+    for (const Section section : {Section::input, Section::in_out, Section::output})
+        for (const Variable& variable : method.variables)
+            if (variable.section == section) found.push_back(&variable);
+    return found;
+}
+
+/// Empty: they are called alike.
+std::string difference(const Routine& a, const Routine& b) {
+    const auto type_of = [](const Routine& r) { return r.result ? r.result->type : nullptr; };
+    const Type *result_a = type_of(a), *result_b = type_of(b);
+    if (!a.result != !b.result || (result_a && result_b && !same_type(*result_a, *result_b)))
+        return "another result";
+    const auto of_a = parameters(a), of_b = parameters(b);
+    if (of_a.size() != of_b.size())
+        return fmt::format("{} argument{}, not {}", of_a.size(), of_a.size() == 1 ? "" : "s",
+                           of_b.size());
+    for (std::size_t i = 0; i < of_a.size(); ++i) {
+        const Variable &x = *of_a[i], &y = *of_b[i];
+        if (!same_name(x.text, y.text) || x.section != y.section)
+            return fmt::format("the argument '{}', not '{}'", x.text, y.text);
+        if (x.type && y.type && !same_type(*x.type, *y.type))
+            return fmt::format("'{}' as {}, not {}", x.text, describe(*x.type), describe(*y.type));
+    }
+    return {};
+}
+
+void check_signature(Checking& c, const Routine& method, const Routine& wanted) {
+    const std::string other = difference(method, wanted);
+    if (other.empty()) return;
+    c.fail(code::wrong_arguments, method.pou->name.place,
+           fmt::format("{} has {}, as {} has", method.name, other, wanted.name),
+           fmt::format("declare it as in line {}", wanted.pou->name.place.mark().line));
+}
+
+/// All methods of an interface with those of its bases.
+void collect(const Routine& interface, std::vector<Routine*>& to) {
+    for (const Routine* base : interface.interfaces) collect(*base, to);
+    to.insert(to.end(), interface.own_methods.begin(), interface.own_methods.end());
+}
+
+std::string shown_name(const Routine& method) {
+    const Accessor accessor = method.pou->accessor;
+    return fmt::format("{}{}", method.pou->name.text,
+                       accessor == Accessor::get   ? " (GET)"
+                       : accessor == Accessor::set ? " (SET)"
+                                                   : "");
+}
+
+void check_interfaces(Checking& c, Routine& block) {
+    for (std::size_t i = 0; i < block.interfaces.size(); ++i) {
+        std::vector<Routine*> wanted;
+        collect(*block.interfaces[i], wanted);
+        std::vector<std::string> lacking;
+        for (Routine* method : wanted) {
+            method->is_dispatched = true;
+            const auto& known = methods_like(block, *method);
+            const auto it = known.find(method->pou->name.text);
+            if (it == known.end()) {
+                if (std::ranges::find(lacking, shown_name(*method)) == lacking.end())
+                    lacking.push_back(shown_name(*method));
+                continue;
+            }
+            for (Routine* r = it->second; r; r = r->overrides) r->is_dispatched = true;
+            check_signature(c, *it->second, *method);
+        }
+        if (lacking.empty() || block.has_unknown_base || block.pou->is_abstract) continue;
+        c.fail(code::not_declared, block.pou->implemented[i].place,
+               fmt::format("{} lacks of {}: {}", block.name, block.interfaces[i]->name,
+                           fmt::join(lacking, ", ")),
+               "write these methods");
+    }
+}
+
+void check_abstract(Checking& c, const Routine& block) {
+    std::vector<std::string> open;
+    for (const auto member : {&Routine::methods, &Routine::getters, &Routine::setters})
+        for (const auto& [name, method] : block.*member)
+            if (method->pou->is_abstract) open.push_back(method->name);
+    std::ranges::sort(open);
+    if (open.empty() || block.pou->is_abstract || block.has_unknown_base) return;
+    c.fail(code::wrong_place, block.pou->name.place,
+           fmt::format("{} has no body for {}", block.name, fmt::join(open, ", ")),
+           "write these methods, or make the block ABSTRACT");
+}
+
+const Routine* own_block(const Checking& c) {
+    if (!c.routine) return nullptr;
+    const Routine* block = c.routine->owner ? c.routine->owner : c.routine;
+    return block->type && !block->pou->is_tests ? block : nullptr;
+}
+
+std::string_view namespace_of(const Routine& block) {
+    const std::size_t point = block.name.rfind('.');
+    return std::string_view(block.name).substr(0, point == std::string::npos ? 0 : point);
+}
+
+}  // namespace
+
+void resolve_bases(Checking& c) {
+    for (Routine& routine : c.checked.routines) {
+        if (!routine.type) continue;
+        const bool is_interface = routine.is_interface();
+        for (const Token& name : routine.pou->bases) add_base(c, routine, name, is_interface);
+        for (const Token& name : routine.pou->implemented) add_base(c, routine, name, true);
+    }
+    std::unordered_set<const Routine*> seen;
+    for (Routine& routine : c.checked.routines) link_methods(c, routine, seen);
+}
+
+void inherit_variables(Routine& block) {
+    if (block.base) block.names.insert(block.base->names.begin(), block.base->names.end());
+}
+
+void check_classes(Checking& c) {
+    for (Routine& routine : c.checked.routines) {
+        if (routine.overrides) check_signature(c, routine, *routine.overrides);
+        if (!routine.type || routine.is_interface()) continue;
+        check_interfaces(c, routine);
+        check_abstract(c, routine);
+        if (routine.pou->is_class && !routine.pou->body.empty())
+            c.fail(code::wrong_place, routine.pou->body.front()->place, "a CLASS has no body",
+                   "write a METHOD, or make it a FUNCTION_BLOCK");
+    }
+}
+
+void refuse_abstract(Checking& c, const Type* type, Place place) {
+    while (type && type->kind == Kind::array) type = type->element;
+    if (!type || type->kind != Kind::block || !type->routine->pou->is_abstract) return;
+    c.fail(code::wrong_place, place, fmt::format("{} is ABSTRACT: it has no instances", type->name),
+           "declare one of a block that extends it");
+}
+
+bool is_own_instance(Checking& c, const Expression& e) {
+    const bool is_word = e.kind == E::name && !e.token.local && !e.token.quoted && own_block(c) &&
+                         (same_name(e.token.text, "this") || same_name(e.token.text, "super"));
+    return is_word && !find_variable(c, e.token);
+}
+
+const Type* check_own_instance(Checking& c, Expression*& e) {
+    const Routine& block = *own_block(c);
+    const bool is_super = same_name(e->token.text, "super");
+    if (is_super && block.has_unknown_base) return nullptr;
+    if (is_super && !block.base)
+        return c.fail(code::not_declared, e->place, fmt::format("{} has no base", block.name),
+                      "write EXTENDS behind its name");
+    e = make(c, E::self, *e);
+    return e->type = is_super ? block.base->type : block.type;
+}
+
+bool is_accessible(Checking& c, Access access, const Routine& owner, const Token& name) {
+    const Routine* own = own_block(c);
+    if (c.is_in_test() || own == &owner) return true;
+    const auto refuse = [&](std::string_view word, std::string_view who) {
+        c.fail(code::wrong_arguments, name.place,
+               fmt::format("'{}' is {} to {}", name.text, word, owner.name), std::string(who));
+        return false;
+    };
+    if (access == Access::private_) return refuse("PRIVATE", "only its own block calls it");
+    if (access == Access::protected_ && !(own && is_a(*own, owner)))
+        return refuse("PROTECTED", "only its own block and those that extend it name it");
+    const bool elsewhere = !own || namespace_of(*own) != namespace_of(owner);
+    if (access == Access::internal_ && elsewhere && !namespace_of(owner).empty())
+        return refuse("INTERNAL", "only its own namespace names it");
+    return true;
+}
+
+bool may_be_derived(const Expression& receiver) {
+    if (receiver.kind == E::self) return !same_name(receiver.token.text, "super");
+    const bool is_place = receiver.kind == E::name || receiver.kind == E::member;
+    return is_place && receiver.variable && receiver.variable->space == Space::reference;
+}
+
+const Type* check_method_call(Checking& c, Expression*& call, Routine& method,
+                              const Expression& receiver, bool as_statement) {
+    const bool through =
+        method.owner->is_interface() || (receiver.type && receiver.type->kind == Kind::interface);
+    call->is_dispatched = through || (method.is_replaced && may_be_derived(receiver));
+    if (method.pou->is_abstract && !call->is_dispatched && !may_be_derived(receiver))
+        return c.fail(code::wrong_place, call->place,
+                      fmt::format("{} is ABSTRACT: it has no body", method.name),
+                      "call it where a block that extends this one has written it");
+    return check_routine_call(c, call, method, as_statement);
+}
+
+Routine* find_accessor(Checking& c, const Expression& e, Accessor accessor) {
+    const auto in = [&](const Routine& block) -> Routine* {
+        const auto& known = accessor == Accessor::get ? block.getters : block.setters;
+        const auto it = known.find(e.token.text);
+        return it == known.end() ? nullptr : it->second;
+    };
+    if (e.kind == E::member) {
+        const Type* of = e.operands[0]->type;
+        if (!of || !of->routine) return nullptr;
+        return in(*of->routine);
+    }
+    const Routine* block = own_block(c);
+    if (e.kind != E::name || !block || e.token.local || e.token.quoted) return nullptr;
+    return find_variable(c, e.token) ? nullptr : in(*block);
+}
+
+const Type* check_getter(Checking& c, Expression*& e, Routine& getter) {
+    if (!is_accessible(c, getter.pou->access, *getter.owner, e->token)) return nullptr;
+    Expression* own = make_name(c, *e, "this");
+    const Expression& receiver = e->kind == E::member ? *e->operands[0] : *own;
+    if (e->kind == E::name) own->kind = E::self;
+    e = make_call(c, *e, e, {});
+    return e->type = check_method_call(c, e, getter, receiver, false);
+}
+
+bool rewrite_property(Checking& c, Statement*& s) {
+    Expression* target = s->target;
+    if (target->kind == E::member) {
+        if (qualified_name(c, *target) || enumeration_of(c, *target)) return false;
+        if (target->operands[0]->kind == E::member && qualified_name(c, *target->operands[0]))
+            return false;
+        if (refuse_member_of_namespace(c, *target)) return true;
+        if (!check(c, target->operands[0])) return true;
+    } else if (target->kind != E::name) {
+        return false;
+    }
+    Routine* setter = find_accessor(c, *target, Accessor::set);
+    if (!setter) {
+        if (!find_accessor(c, *target, Accessor::get)) return false;
+        c.fail(code::cannot_be_assigned, target->place,
+               fmt::format("the property '{}' has no SET", target->token.text), "it is only read");
+        return true;
+    }
+    if (!is_accessible(c, setter->pou->access, *setter->owner, target->token)) return true;
+    Expression* own = make_name(c, *target, "this");
+    own->kind = E::self;
+    const Expression& receiver = target->kind == E::member ? *target->operands[0] : *own;
+    Expression* value = s->value;
+    if (s->op != Word::assign)
+        value = make_binary(c, s->place, s->place,
+                            s->op == Word::plus_assign    ? Word::plus
+                            : s->op == Word::minus_assign ? Word::minus
+                            : s->op == Word::times_assign ? Word::times
+                                                          : Word::divided,
+                            make_copy(c, *target), value);
+    Expression* call = make_call(c, *target, target, {{.value = value}});
+    check_method_call(c, call, *setter, receiver, true);
+    s = make_call_statement(c, call);
+    return true;
+}
+
+}  // namespace lineshaft::st

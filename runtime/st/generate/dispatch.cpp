@@ -1,0 +1,88 @@
+#include "runtime/st/generate/dispatch.hpp"
+
+#include <algorithm>
+
+#include "runtime/st/generate/images.hpp"
+#include "runtime/st/generate/layout.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+const Routine& origin(const Routine& called) {
+    const Routine* first = &called;
+    while (first->overrides) first = first->overrides;
+    return *first;
+}
+
+/// What of the block stands for a method or a body, which it has or inherits; null: nothing.
+const Routine* find_in(const Routine& block, const Routine& wanted) {
+    const bool is_body = !wanted.owner;
+    if (!is_a(block, is_body ? wanted : *wanted.owner)) return nullptr;
+    if (is_body) return &block;
+    const auto& known = wanted.pou->accessor == Accessor::get   ? block.getters
+                        : wanted.pou->accessor == Accessor::set ? block.setters
+                                                                : block.methods;
+    const auto it = known.find(wanted.pou->name.text);
+    return it == known.end() ? nullptr : it->second;
+}
+
+}  // namespace
+
+void prepare_dispatch(Writing& w) {
+    w.code.has_kinds = w.checked.dispatches;
+    for (Routine* routine : w.checked.order) {
+        routine->may_meet_itself = routine->dispatches;
+        for (const Routine* called : routine->calls)
+            routine->may_meet_itself |= called->may_meet_itself;
+        routine->levels = routine->depth + (routine->may_meet_itself ? found_levels : 0);
+        Routine* block = routine->owner ? routine->owner : routine;
+        block->levels = std::max(block->levels, routine->levels);
+    }
+    for (Routine& routine : w.checked.routines)
+        for (Routine* base = routine.base; base; base = base->base)
+            base->levels = std::max(base->levels, routine.levels);
+    for (Routine* routine : w.checked.order)
+        if (routine->base) routine->levels = routine->base->levels;  // bases come first
+}
+
+std::uint32_t slot_in_signature(Writing& w, const Routine& method, const Variable& parameter) {
+    std::uint32_t at = 0;
+    for (const bool given : {true, false})
+        for (const Variable& variable : method.variables) {
+            if (!is_in_signature(variable, given)) continue;
+            if (&variable == &parameter) return at;
+            at += slots_in_frame(w, variable);
+        }
+    return at;
+}
+
+const Writing::Image& signature_image(Writing& w, const Routine& method) {
+    Writing::Image& image = w.function_images[&method];
+    if (!image.empty()) return image;
+    std::uint32_t slots = 0;
+    for (const Variable& variable : method.variables) slots += slots_in_frame(w, variable);
+    image.resize(slots + 1, 0);
+    for (const Variable& variable : method.variables)
+        if (variable.section == Section::input)
+            fill(w, image, slot_in_signature(w, method, variable), variable);
+    return image;
+}
+
+std::uint32_t method_number(Writing& w, const Routine& called) {
+    const auto next = static_cast<std::uint32_t>(w.method_numbers.size());
+    return w.method_numbers.emplace(&origin(called), next).first->second;
+}
+
+void finish_dispatch(Writing& w) {
+    if (!w.code.has_kinds) return;
+    w.code.methods = static_cast<std::uint32_t>(w.method_numbers.size());
+    w.code.found.resize((w.kinds.size() + 1) * w.code.methods);  // of no kind too
+    for (const auto& [block, kind] : w.kinds)
+        for (const auto& [wanted, number] : w.method_numbers)
+            if (const Routine* found = find_in(*block, *wanted))
+                w.code.found[kind * w.code.methods + number] = {w.routine_number(*found),
+                                                                found->first};
+}
+
+}  // namespace lineshaft::st
