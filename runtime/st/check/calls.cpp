@@ -12,6 +12,7 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/order.hpp"
 #include "runtime/st/check/places.hpp"
+#include "runtime/st/check/references.hpp"
 #include "runtime/st/check/rewrites.hpp"
 #include "runtime/st/check/standard_calls.hpp"
 #include "runtime/st/check/test_statements.hpp"
@@ -24,7 +25,8 @@ namespace lineshaft::st {
 namespace {
 
 bool is_variable(const Expression& e) {
-    return e.kind == E::name || e.kind == E::member || (e.kind == E::index && !e.is_character());
+    return e.kind == E::name || e.kind == E::member || e.kind == E::deref ||
+           (e.kind == E::index && !e.is_character());
 }
 
 /// A structure or an array that came as an input, or in one, is passed on by reference.
@@ -113,6 +115,7 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
         same_type(*given, *type) || (parameter.section == Section::in_out
                                          ? texts && type->is_open
                                          : texts || (type->is_scalar() && widens(*type, *given)));
+    note_lending(c, *value);
     if (!fits)
         c.fail(code::type_does_not_fit, value->place,
                fmt::format("'{}' is {}, and {} is given", parameter.text, describe(*type),
@@ -126,6 +129,7 @@ Argument leave_out(Checking& c, const Expression& call, Variable& parameter) {
     own.type = parameter.type->is_open ? &string_type : parameter.type;
     own.of = c.routine->pou;
     depend(c, own.type, call.place);
+    c.routine->lends = true;
     Expression* value = make(c, E::name, call);
     value->variable = &own;
     value->type = own.type;
@@ -241,6 +245,7 @@ const Type* check_instance_call(Checking& c, Expression*& e, const Type& type, b
                       "call it as a statement of its own, then take an output: name.Q");
     if (type.kind == Kind::block) {
         e->routine = type.routine;
+        if (root_of(*e->operands[0]).kind == E::deref) depend(c, &type, e->place);
         check_arguments(c, e, *type.routine);
     } else {
         check_standard_arguments(c, e, type);
@@ -309,6 +314,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
                                  (find_standard_function(name) || !find_variable(c, callee.token));
         if (is_function && find_test_statement(name) != TestCall::none)
             return check_test_statement(c, *e, as_statement);
+        if (is_function)
+            if (const auto given = check_reference_call(c, e, expected)) return *given;
         if (is_function) return check_standard_function(c, e, expected);
     }
     const Type* type = check(c, e->operands[0]);

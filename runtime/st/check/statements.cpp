@@ -9,6 +9,7 @@
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/places.hpp"
+#include "runtime/st/check/references.hpp"
 #include "runtime/st/check/rewrites.hpp"
 
 namespace lineshaft::st {
@@ -180,6 +181,7 @@ void check(Checking& c, Statement*& slot) {
 }
 
 void check_assignment(Checking& c, Statement*& s) {
+    if (s->op == Word::reference_assign) return check_reference_assignment(c, *s);
     const Type* type = check(c, s->target);
     if (s->op != Word::assign && type) {
         const Word op = s->op == Word::plus_assign    ? Word::plus

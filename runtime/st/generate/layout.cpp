@@ -6,6 +6,7 @@
 
 #include "runtime/source/codes.hpp"
 #include "runtime/st/generate/images.hpp"
+#include "runtime/st/generate/references.hpp"
 
 namespace lineshaft::st {
 
@@ -22,6 +23,16 @@ void check_size(Writing& w, std::uint64_t slots, Place place, std::string_view n
               fmt::format("'{}' takes more than 512 MB", name), "make its arrays smaller");
 }
 
+/// Its address, what a text of any length holds, and a reference where something refers to it.
+std::uint32_t slots_of_in_out(const Writing& w, const Variable& variable) {
+    return 1 + (variable.type->is_open ? 1 : 0) +
+           (w.checked.refers_to_in_outs ? reference_slots : 0);
+}
+
+void note_activation(const Writing& w, Routine& routine, std::uint32_t& at) {
+    if (w.checked.has_references && routine.lends) routine.activation = at++;
+}
+
 void place_variables(Writing& w, Routine& routine, std::uint32_t& at, auto condition) {
     for (Variable& variable : routine.variables) {
         const bool elsewhere = variable.space == Space::constant || variable.space == Space::global;
@@ -29,9 +40,8 @@ void place_variables(Writing& w, Routine& routine, std::uint32_t& at, auto condi
         w.place = variable.name.place;
         variable.slot = at;
         const std::uint64_t own = slots_of(w, *variable.type);  // also lays out what is referred to
-        const std::uint64_t slots = variable.space != Space::reference ? own
-                                    : variable.type->is_open           ? 2
-                                                                       : 1;
+        const std::uint64_t slots =
+            variable.space == Space::reference ? slots_of_in_out(w, variable) : own;
         check_size(w, at + slots, variable.name.place, variable.text);
         if (at + slots > most_slots) return;
         at += static_cast<std::uint32_t>(slots);
@@ -60,10 +70,11 @@ std::uint32_t slots_of(Writing& w, const Type& type) {
 
 void lay_out(Writing& w, Routine& block) {
     if (block.variables_end != 0) return;
-    std::uint32_t at = globals_slot + w.code.globals + 2 * block.depth;
+    std::uint32_t at = w.code.stack_slot() + 2 * block.depth;
     place_variables(w, block, at, [](const Variable& v) { return v.section != Section::temp; });
     block.temps_begin = at;
     place_variables(w, block, at, [](const Variable& v) { return v.section == Section::temp; });
+    note_activation(w, block, at);
     block.variables_end = block.frame = at;
     Writing::Image& image = w.images[block.type];
     image.assign(at, 0);
@@ -80,6 +91,7 @@ void lay_out_call(Writing& w, Routine& routine) {
     place_variables(w, routine, at, is_given);
     routine.temps_begin = at;
     place_variables(w, routine, at, [&](const Variable& v) { return !is_given(v); });
+    note_activation(w, routine, at);
     routine.variables_end = at;
     Writing::Image& image = block ? w.images[block->type] : w.function_images[&routine];
     image.resize(at, 0);

@@ -111,6 +111,8 @@ class FieldWriter {
                     if (member.section != Section::temp)
                         write(member, slot, name + ".", inner(direction));
                 return;
+            case Kind::reference:
+                return;
             case Kind::text:
                 if (kind_.texts.size() < Library::most_parts)
                     kind_.texts.push_back(made_.names.emplace_back(name));

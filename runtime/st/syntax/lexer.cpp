@@ -51,7 +51,7 @@ constexpr Sign signs[] = {{":=", Word::assign},
                           {"S=", Word::set_assign},
                           {"R=", Word::reset_assign},
                           {"=>", Word::output},
-                          {"?=", Word::reference_assign},
+                          {"?=", Word::attempt_assign},
                           {"**", Word::power},
                           {"<=", Word::less_or_equal},
                           {">=", Word::greater_or_equal},
@@ -310,8 +310,9 @@ class Lexer {
         if (peek() != '=' || tokens_.tokens.empty()) return {};
         if (same_name(text, "ref")) return Word::reference_assign;
         const Token& before = tokens_.tokens.back();
-        const bool assigned = before.word == Word::name || before.word == Word::close_bracket ||
-                              before.word == Word::direct || before.word == Word::integer;
+        const bool assigned = before.word == Word::name || before.word == Word::caret ||
+                              before.word == Word::close_bracket || before.word == Word::direct ||
+                              before.word == Word::integer;
         if (!assigned || new_line_) return {};
         if (same_name(text, "s")) return Word::set_assign;
         return same_name(text, "r") ? std::optional(Word::reset_assign) : std::nullopt;
