@@ -1043,6 +1043,7 @@ class CWriter {
 
 void add_parts(std::vector<Part>& to, const std::string& name, const Type& type, std::size_t offset,
                int global) {
+    if (type.is_reference()) return;
     if (type.kind == Kind::array) {
         const Type& element = *type.element;
         const std::size_t step =
