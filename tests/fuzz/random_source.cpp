@@ -1568,6 +1568,25 @@ class SourceMaker {
         }
     }
 
+    /// Statements that give references variables that are in scope; what they refer to is in scope
+    /// from then on, too.
+    std::string references(std::string& declared) {
+        std::string bound;
+        for (std::size_t i = below(6) / 2; i > 0; --i) {
+            const Type& type = any_type();
+            const auto target = type.name.empty() ? std::nullopt : place(type, true);
+            if (!target) continue;
+            const std::string name = new_name("r");
+            const std::size_t how = below(3);
+            const char* const words[] = {"REFERENCE TO", "REF_TO", "POINTER TO"};
+            const char* const given[] = {"{} REF= {};\n", "{} := REF({});\n", "{} := ADR({});\n"};
+            declared += fmt::format("VAR {} : {} {}; END_VAR\n", name, words[how], type.name);
+            bound += fmt::format(fmt::runtime(given[how]), name, *target);
+            scope_.push_back({how == 0 ? name : name + "^", &type});
+        }
+        return bound;
+    }
+
     void write_program() {
         scope_ = globals_;
         std::vector<Variable> inputs;
@@ -1581,14 +1600,16 @@ class SourceMaker {
         const auto temps = variables("t", below(3), true);
         enter(inputs, locals, temps);
         has_eno_ = false;
-        const std::string body = written_body(below(20));
+        std::string declared;
+        const std::string bound = references(declared);
+        const std::string body = bound + written_body(below(20));
         line("PROGRAM Main");
         section("VAR_INPUT", inputs, false);
         section("VAR CONSTANT", constants_, false);
         section("VAR", locals, true);
         section("VAR_TEMP", temps, true);
         section("VAR", counters_, false);
-        out_ += body;
+        out_ += declared + body;
         line("END_PROGRAM");
     }
 

@@ -95,6 +95,8 @@ class CWriter {
             case Kind::enumeration:
             case Kind::any_integer:
                 return "i64";
+            case Kind::reference:
+                return c_type(*type.element) + "*";
             case Kind::standard:
                 return "struct " + small(type.standard->name);
             default:
@@ -112,6 +114,7 @@ class CWriter {
     }
 
     void declare(const Type& type) {
+        if (type.is_reference()) return declare(*type.element);
         if (type.is_scalar() || type.kind == Kind::standard || declared_[&type]) return;
         declared_[&type] = true;
         std::string inside;
@@ -170,6 +173,8 @@ class CWriter {
             put("memset(&{0}, 0, sizeof {0});", place);
             for (const auto& [name, value] : type.presets)
                 put("{}.{} = {};", place, name, static_cast<std::int64_t>(value.integer));
+        } else if (type.is_reference()) {
+            put("{} = 0;", place);
         } else if (type.is_scalar()) {
             put("{} = {};", place, constant(type, type.initial));
         } else {
@@ -234,6 +239,7 @@ class CWriter {
     }
 
     void dump(const std::string& place, const Type& type) {
+        if (type.is_reference()) return;
         if (type.kind == Kind::text)
             put("to = twin_put_text(to, &{});", place);
         else if (type.kind == Kind::standard)
@@ -369,6 +375,10 @@ class CWriter {
 
     void write_assignment(const Statement& s) {
         const Expression& target = *s.target;
+        if (target.type->is_reference()) {
+            const std::string to = value(*s.value);
+            return put("{} = {};", place(target), to);
+        }
         if (target.kind == E::bit) {
             const std::string bits = value(*s.value), whole = place(*target.operands[0]);
             const auto [first, mask] = bits_of(target);
@@ -489,8 +499,11 @@ class CWriter {
         switch (e.kind) {
             case E::constant:
                 return constant(*e.type, e.constant);
+            case E::refer:
+                return "&" + place(*e.operands[0]);
             case E::name:
             case E::member:
+            case E::deref:
             case E::index:
                 return e.is_character() ? character(e) : made(*e.type, place(e));
             case E::bit: {
@@ -518,6 +531,7 @@ class CWriter {
 
     std::string place(const Expression& e) {
         if (e.kind == E::index) return element(e);
+        if (e.kind == E::deref) return "(*" + place(*e.operands[0]) + ")";
         const Variable& v = *e.variable;
         if (e.kind == E::member) {
             const std::string of = place(*e.operands[0]);
@@ -1029,6 +1043,7 @@ class CWriter {
 
 void add_parts(std::vector<Part>& to, const std::string& name, const Type& type, std::size_t offset,
                int global) {
+    if (type.is_reference()) return;
     if (type.kind == Kind::array) {
         const Type& element = *type.element;
         const std::size_t step =

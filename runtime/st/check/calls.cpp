@@ -13,6 +13,7 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/order.hpp"
 #include "runtime/st/check/places.hpp"
+#include "runtime/st/check/references.hpp"
 #include "runtime/st/check/rewrites.hpp"
 #include "runtime/st/check/standard_calls.hpp"
 #include "runtime/st/check/test_statements.hpp"
@@ -25,7 +26,7 @@ namespace lineshaft::st {
 namespace {
 
 bool is_variable(const Expression& e) {
-    return e.kind == E::name || e.kind == E::member || e.kind == E::self ||
+    return e.kind == E::name || e.kind == E::member || e.kind == E::self || e.kind == E::deref ||
            (e.kind == E::index && !e.is_character());
 }
 
@@ -118,6 +119,7 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
                       (parameter.section == Section::in_out
                            ? texts && type->is_open
                            : texts || (type->is_scalar() && widens(*type, *given)));
+    note_lending(c, *value);
     if (!fits)
         c.fail(code::type_does_not_fit, value->place,
                fmt::format("'{}' is {}, and {} is given", parameter.text, describe(*type),
@@ -131,6 +133,7 @@ Argument leave_out(Checking& c, const Expression& call, Variable& parameter) {
     own.type = parameter.type->is_open ? &string_type : parameter.type;
     own.of = c.routine->pou;
     depend(c, own.type, call.place);
+    c.routine->lends = true;
     Expression* value = make(c, E::name, call);
     value->variable = &own;
     value->type = own.type;
@@ -265,6 +268,7 @@ const Type* check_instance_call(Checking& c, Expression*& e, const Type& type, b
         e->is_dispatched = type.routine->is_replaced && may_be_derived(instance);
         note_call(c, *e, instance.kind == E::self ? type.routine : nullptr);
         e->routine = type.routine;
+        if (root_of(*e->operands[0]).kind == E::deref) depend(c, &type, e->place);
         check_arguments(c, e, *type.routine);
     } else {
         check_standard_arguments(c, e, type);
@@ -328,6 +332,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
                                  (find_standard_function(name) || !find_variable(c, callee.token));
         if (is_function && find_test_statement(name) != TestCall::none)
             return check_test_statement(c, *e, as_statement);
+        if (is_function)
+            if (const auto given = check_reference_call(c, e, expected)) return *given;
         if (is_function) return check_standard_function(c, e, expected);
     }
     const Type* type = check(c, e->operands[0]);

@@ -77,6 +77,9 @@ struct Checking {
     };
     NameMap<GlobalConstant> constants = {};  ///< until all globals are declared
     std::unordered_set<const Declaration*> begun_constants = {};  ///< declared, or being so
+    std::vector<std::pair<Type*, const TypeText*>> targets =
+        {};  ///< of references, until all types are known
+    bool knows_types = false;
     int hops = 0;  ///< from constant to constant that is declared later
     std::unordered_set<const Pou*> assigned_inputs = {};  ///< blocks that were warned of it
     NameMap<const Type*> catalog_types = {};

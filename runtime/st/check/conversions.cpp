@@ -4,6 +4,7 @@
 
 #include "runtime/source/codes.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/references.hpp"
 #include "runtime/st/syntax/literals.hpp"
 
 namespace lineshaft::st {
@@ -201,6 +202,7 @@ bool is_single(const Type& type) {
 
 bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (!e->type) return false;
+    if (to.is_reference() || e->type->is_reference()) return coerce_reference(c, e, to);
     const Type& from = *e->type;
     if (from.kind == Kind::text && to.kind == Kind::text) {
         if (is_constant(*e) && e->constant.text.size() > to.length)

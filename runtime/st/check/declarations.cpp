@@ -14,6 +14,7 @@
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/objects.hpp"
 #include "runtime/st/check/order.hpp"
+#include "runtime/st/check/references.hpp"
 #include "runtime/st/check/types.hpp"
 
 namespace lineshaft::st {
@@ -246,6 +247,7 @@ void collect_names(Checking& c) {
             }
     for (const TypeDeclaration& declared : c.tree.types)
         if (NamedType* type = c.look_up(&Names::types, declared.name)) resolve_declared(c, *type);
+    resolve_targets(c);
 }
 
 Variable* add(Checking& c, std::deque<Variable>& to, const Declaration& declared,

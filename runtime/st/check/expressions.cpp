@@ -6,6 +6,7 @@
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/operators.hpp"
 #include "runtime/st/check/places.hpp"
+#include "runtime/st/check/references.hpp"
 
 namespace lineshaft::st {
 
@@ -23,7 +24,7 @@ const Type* check(Checking& c, Expression*& e, const Type* expected) {
             type = check_member(c, e);
             break;
         case E::index:
-            type = check_index(c, *e);
+            type = check_index(c, e);
             break;
         case E::bit:
             type = check_bit(c, e);
@@ -45,11 +46,16 @@ const Type* check(Checking& c, Expression*& e, const Type* expected) {
             return c.fail(
                 code::type_does_not_fit, e->place, "a list of values stands in a declaration only",
                 "declare a variable that begins with it, or assign the elements one by one");
+        case E::deref:
+            type = check_target_of(c, *e);
+            break;
+        case E::refer:
         case E::self:
         case E::converted:
             type = e->type;
     }
-    return e->type = type;
+    e->type = type;
+    return type && type->is_alias() ? take_target(c, e) : type;
 }
 
 }  // namespace lineshaft::st

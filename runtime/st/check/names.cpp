@@ -172,6 +172,10 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     if (expected && expected->kind == Kind::handle && !token.local &&
         (token.quoted || !c.is_in_test()))
         return use_object(c, e, *object_type(c, *expected));
+    if (same_name(token.text, "null") && !token.quoted && !token.local) {
+        e = make_constant(c, *e, null_type, {});
+        return &null_type;
+    }
     return unknown_name(c, *e);
 }
 

@@ -8,15 +8,12 @@
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/references.hpp"
 #include "runtime/st/check/time_operators.hpp"
 
 namespace lineshaft::st {
 
 namespace {
-
-bool is_comparison(Word op) {
-    return op >= Word::less && op <= Word::unequal;
-}
 
 bool is_logic(Word op) {
     return op == Word::and_ || op == Word::or_ || op == Word::xor_ || op == Word::and_then_ ||
@@ -198,6 +195,8 @@ const Type* check_binary(Checking& c, Expression*& e, const Type* expected) {
     check(c, left, wanted);
     check(c, right, is_comparison(e->op) ? left->type : wanted);
     if (!left->type || !right->type) return nullptr;
+    if (left->type->is_reference() || right->type->is_reference())
+        return check_reference_operator(c, e, expected);
     if (is_logic(e->op)) return check_logic(c, e);
     if (is_comparison(e->op)) return check_comparison(c, e);
     if (e->op == Word::power) return check_power(c, e, expected);

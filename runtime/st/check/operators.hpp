@@ -4,6 +4,10 @@
 
 namespace lineshaft::st {
 
+inline bool is_comparison(Word op) {
+    return op >= Word::less && op <= Word::unequal;
+}
+
 /// `-x`, `NOT x`, `a + b`: checks the operands, brings them to one type, and folds constants. L0905
 /// and L0906 where an operator does not go with them.
 const Type* check_unary(Checking& c, Expression*& e, const Type* expected);

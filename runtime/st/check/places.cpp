@@ -14,6 +14,7 @@
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/objects.hpp"
+#include "runtime/st/check/references.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/vendors/names.hpp"
 
@@ -107,11 +108,13 @@ const Type* check_member(Checking& c, Expression*& e) {
                   fmt::format("{} has no '{}'", describe(*type), name), suggest(name, names));
 }
 
-const Type* check_index(Checking& c, Expression& e) {
+const Type* check_index(Checking& c, Expression*& node) {
+    Expression& e = *node;
     const Type* type = check(c, e.operands[0]);
     for (Argument& argument : e.arguments) check(c, argument.value);
     for (Argument& argument : e.arguments) {
         if (!type) return nullptr;
+        if (type->is_pointer()) return check_pointer_index(c, node);
         const bool of_text = type->kind == Kind::text;
         if (type->kind != Kind::array && !of_text)
             return c.fail(code::type_does_not_fit, argument.value->place,
@@ -194,7 +197,7 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     if (target.kind == E::index || target.kind == E::bit) {
         return !target.operands[0]->type || check_target(c, *target.operands[0], how);
     }
-    if (target.kind == E::self) return true;
+    if (target.kind == E::self || target.kind == E::deref) return true;
     if (target.kind != E::name && target.kind != E::member)
         return refuse("a value", "a variable, an element or a member stands left of ':='");
     const Variable* variable = target.variable;

@@ -12,7 +12,7 @@ Variable* find_member(const Type& type, std::string_view name);
 /// function. L0904 where there is none.
 const Type* check_member(Checking& c, Expression*& e);
 /// `table[i, 2]`, `text[3]`.
-const Type* check_index(Checking& c, Expression& e);
+const Type* check_index(Checking& c, Expression*& e);
 /// `word.%X3`, `word.%B1`, `word.3`.
 const Type* check_bit(Checking& c, Expression*& e);
 /// False for what may not be written, which was told, L0910; `how` it would be.

@@ -11,6 +11,7 @@
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/places.hpp"
+#include "runtime/st/check/references.hpp"
 #include "runtime/st/check/rewrites.hpp"
 
 namespace lineshaft::st {
@@ -184,6 +185,7 @@ void check(Checking& c, Statement*& slot) {
 }
 
 void check_assignment(Checking& c, Statement*& s) {
+    if (s->op == Word::reference_assign) return check_reference_assignment(c, *s);
     if (rewrite_property(c, s)) return;
     const Type* type = check(c, s->target);
     if (s->op != Word::assign && type) {

@@ -11,6 +11,7 @@
 #include "runtime/st/check/initial_values.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
+#include "runtime/st/check/references.hpp"
 #include "runtime/st/vendors/instead.hpp"
 #include "runtime/st/vendors/names.hpp"
 
@@ -137,6 +138,8 @@ const Type* resolve(Checking& c, const TypeText& text) {
             return resolve_subrange(c, text);
         case TypeText::Kind::text:
             return resolve_text(c, text);
+        case TypeText::Kind::reference:
+            return resolve_reference(c, text);
     }
     return nullptr;
 }

@@ -84,6 +84,21 @@ std::string instruction_error(const Code& code, const CodeRoutine& routine, cons
                                                : "";
         case Op::cover:
             return in.a >= code.points.size() ? "a point that is not there" : "";
+        case Op::bytes_of_slots:
+            return in.c >= code.shapes.size() ? "a shape that is not there" : "";
+        case Op::reach:
+            return in.b + 2 >= routine.frame || in.c >= code.shapes.size()
+                       ? "a reference that is not whole"
+                       : "";
+        case Op::move_reference:
+            return in.a + 2 >= routine.frame || in.b + 2 >= routine.frame
+                       ? "a reference that is not whole"
+                       : "";
+        case Op::compare_references:
+        case Op::reference_distance:
+            return in.b + 2 >= routine.frame || in.c + 2 >= routine.frame
+                       ? "a reference that is not whole"
+                       : "";
         case Op::look_up:
             return numbers_of(code, in).empty() ? "a list of numbers that is not there" : "";
         case Op::choose:

@@ -9,6 +9,7 @@
 
 #include "runtime/model/catalog.hpp"
 #include "runtime/st/code/opcodes.hpp"
+#include "runtime/st/code/shapes.hpp"
 #include "runtime/st/syntax/token.hpp"
 
 namespace lineshaft::st {
@@ -63,9 +64,10 @@ struct CoverPoint {
 };
 
 /// An instance begins with these slots. Then come the numbers of the data blocks among the
-/// program's instances, its kind where calls find routines by it, two slots for each call that runs
-/// (where it goes on, and on which frame), and its variables. A block that extends another begins
-/// with all of its frame.
+/// program's instances, where there are references the Piece that one of them left (plus 1, or 0),
+/// its kind where calls find routines by it, two slots for each call that runs (where it goes on,
+/// and on which frame), and its variables. A block that extends another begins with all of its
+/// frame.
 enum HeaderSlot : std::uint32_t {
     error_slot,     ///< BOOL: the last scan ended with a fault
     error_id_slot,  ///< Fault
@@ -92,12 +94,18 @@ struct Code {
     std::vector<FoundRoutine> found;  ///< by kind of instance, and number of what is called
     std::uint32_t methods = 0;        ///< how many numbers there are
     bool has_kinds = false;           ///< an instance says which it is
-
-    std::uint32_t kind_slot() const { return globals_slot + globals; }
-    std::uint32_t calls_slot() const { return globals_slot + globals + has_kinds; }
-    std::vector<CoverPoint> points;                      ///< only with coverage
+    bool has_references = false;
+    std::vector<Piece> pieces;         ///< what references refer to
+    std::vector<Shape> shapes;         ///< of those, and of what is wanted of them
+    std::vector<ShapeMember> members;  ///< of structures
+    std::vector<CoverPoint> points;    ///< only with coverage
     std::unique_ptr<std::atomic<std::uint64_t>[]> hits;  ///< of each of them
     std::shared_ptr<const Native> native;                ///< null: the machine interprets it
+
+    std::uint32_t left_slot() const { return globals_slot + globals; }
+    std::uint32_t kind_slot() const { return left_slot() + (has_references ? 1 : 0); }
+    /// Where the calls that run begin.
+    std::uint32_t calls_slot() const { return kind_slot() + (has_kinds ? 1 : 0); }
 
     /// Of a jump's address; none of this code if it is not one.
     std::uint64_t place_of(std::uint64_t address) const {

@@ -1,11 +1,30 @@
 #include "runtime/st/code/meaning.hpp"
 
 #include <charconv>
+#include <tuple>
 
 #include "runtime/source/letters.hpp"
 #include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft::st::meaning {
+
+namespace {
+
+std::int32_t bytes_from_first(const std::byte* reference) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(word(reference, 1)));
+}
+
+/// 0 of none, else the number of its Piece plus 1.
+std::uint64_t piece_of(const std::byte* reference) {
+    return word(reference, 1) >> 32;
+}
+
+auto parts_of(const std::byte* reference) {
+    return std::tuple(word(reference, 0), piece_of(reference), bytes_from_first(reference),
+                      word(reference, 2));
+}
+
+}  // namespace
 
 std::string_view text_at(const std::byte* place) {
     return {reinterpret_cast<const char*>(place + 8), static_cast<std::size_t>(word(place, 0))};
@@ -106,5 +125,56 @@ template void write_number(std::byte*, double, bool);
 template void write_number(std::byte*, float, bool);
 template std::uint64_t number_of_text(const std::byte*);
 template double number_of_text(const std::byte*);
+
+bool move_reference(std::byte* to, const std::byte* from, std::int64_t by) {
+    std::int32_t bytes = 0;
+    if (__builtin_add_overflow(std::int64_t{bytes_from_first(from)}, by, &bytes)) return false;
+    const std::uint64_t address = word(from, 0), piece = piece_of(from), call = word(from, 2);
+    set_word(to, 0, address);
+    set_word(to, 1, piece << 32 | static_cast<std::uint32_t>(bytes));
+    set_word(to, 2, call);
+    return true;
+}
+
+std::int64_t compare_references(const std::byte* a, const std::byte* b) {
+    const auto order = parts_of(a) <=> parts_of(b);
+    return order < 0 ? -1 : order > 0;
+}
+
+std::optional<std::int64_t> reference_distance(const std::byte* a, const std::byte* b) {
+    if (word(a, 0) != word(b, 0) || piece_of(a) != piece_of(b)) return {};
+    return std::int64_t{bytes_from_first(a)} - bytes_from_first(b);
+}
+
+bool Frames::goes_on(const Piece& piece, const std::byte* reference,
+                     const Instruction* next) const {
+    const CodeRoutine& routine = code.routines[piece.routine];
+    const std::byte* variable = place(word(reference, 0));
+    auto at = static_cast<std::uint64_t>(next - code.instructions.data()) - 1;
+    const std::byte* frame = place(base);
+    for (const std::byte* level = top;; level -= 16) {
+        const bool is_its = at >= routine.entry && at < routine.end;
+        if (is_its && frame + 8 * std::size_t{piece.slot} == variable)
+            return word(frame, piece.activation) == word(reference, 2);
+        if (level == bottom) return false;
+        at = word(level - 16, 0) - 1;
+        frame = place(word(level - 16, 1));
+    }
+}
+
+Fault Frames::reach(const std::byte* reference, std::uint32_t shape, const Instruction* next) {
+    const std::uint64_t number = piece_of(reference);
+    if (number == 0) return Fault::no_reference;
+    const Piece& piece = code.pieces[number - 1];
+    const auto refuse = [&](Fault fault) {
+        set_word(root, code.left_slot(), number);
+        return fault;
+    };
+    if (piece.ends && !goes_on(piece, reference, next)) return refuse(Fault::call_has_ended);
+    const auto slot = slot_of(code, piece.shape, bytes_from_first(reference), shape);
+    if (!slot) return refuse(Fault::outside_of_variable);
+    reached = word(reference, 0) + *slot;
+    return Fault::none;
+}
 
 }  // namespace lineshaft::st::meaning

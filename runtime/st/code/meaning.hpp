@@ -189,6 +189,15 @@ void write_time(std::byte* to, std::uint64_t kind, std::int64_t value);
 /// `T#1s`, or without what stands before '#'; 0 where it is none.
 std::int64_t time_of_text(std::uint64_t kind, const std::byte* from);
 
+// References: see Piece.
+
+/// False where it would be beyond what a reference holds.
+bool move_reference(std::byte* to, const std::byte* from, std::int64_t by);
+/// -1, 0 or 1. One variable is before another as they stand in memory.
+std::int64_t compare_references(const std::byte* a, const std::byte* b);
+/// In bytes; empty if they are to parts of different variables.
+std::optional<std::int64_t> reference_distance(const std::byte* a, const std::byte* b);
+
 /// What a scan needs besides where it is: apart, so that the registers are left to that.
 struct Frames {
     const Code& code;
@@ -200,6 +209,7 @@ struct Frames {
     std::byte* bottom = root + 8 * std::size_t{code.calls_slot()};
     std::byte* top = bottom;           ///< of the calls that run
     std::uint64_t base = 0;            ///< address of the frame
+    std::uint64_t reached = 0;         ///< what the last reference is to
     std::uint64_t* counted = nullptr;  ///< instructions of each class
 
     /// Of an address: the number of an instance of the program plus 1, or 0 for the block itself,
@@ -277,6 +287,18 @@ struct Frames {
         if (word(root, cut_slot) == 0)
             set_word(root, cut_slot, static_cast<std::uint64_t>(at - code.instructions.data()));
     }
+
+    /// Of a call that begins now: no other one of the same frame has it.
+    std::uint64_t number_of_call(std::int64_t left) const {
+        return static_cast<std::uint64_t>(now.index + 1) << 32 | static_cast<std::uint32_t>(left);
+    }
+
+    /// Whether the call that has the variable of a piece goes on, or is the one that runs.
+    bool goes_on(const Piece& piece, const std::byte* reference, const Instruction* next) const;
+
+    /// Finds in `reached` what a reference is to, which is to be of that shape. `next` is behind
+    /// the instruction that asks.
+    Fault reach(const std::byte* reference, std::uint32_t shape, const Instruction* next);
 
     std::uint64_t leave() {
         top -= 16;

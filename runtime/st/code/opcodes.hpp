@@ -27,6 +27,12 @@
     OP(set_global_number, move, "wn--", put(a, frames.global_number(b)))                             \
     OP(address_of_number, move, "wr--", put(a, (U(b) + 1) << 32))                                    \
     OP(lasting, move, "wr--", put(a, frames.lasting(U(b))))                                          \
+    OP(number_call, move, "w---", put(a, frames.number_of_call(fuel)))                                \
+    OP(bytes_of_slots, integer, "wrn-", put(a, byte_of(code, c, U(b))))                              \
+    OP(move_reference, move, "ssr-", if (!move_reference(at(a), at(b), I(c))) FAIL(out_of_range))    \
+    OP(compare_references, integer, "wss-", put(a, compare_references(at(b), at(c))))                \
+    OP(reference_distance, integer, "wss-", if (const auto n = reference_distance(at(b), at(c))) put(a, *n); else FAIL(out_of_range)) \
+    OP(reach, move, "wsn-", const Fault wrong = frames.reach(at(b), c, pc); if (wrong == Fault::no_reference) FAIL(no_reference); if (wrong == Fault::outside_of_variable) FAIL(outside_of_variable); if (wrong == Fault::call_has_ended) FAIL(call_has_ended); put(a, frames.reached)) \
     OP(offset, move, "wrn-", put(a, U(b) + c))                                                       \
     OP(offset_by, move, "wrr-", put(a, U(b) + U(c)))                                                 \
     OP(load, move, "wrn-", put(a, word(target(U(b)), c)))                                            \

@@ -7,6 +7,7 @@
 #include "runtime/st/generate/dispatch.hpp"
 #include "runtime/st/generate/layout.hpp"
 #include "runtime/st/generate/places.hpp"
+#include "runtime/st/generate/references.hpp"
 #include "runtime/st/generate/standard_functions.hpp"
 #include "runtime/st/generate/values.hpp"
 
@@ -22,7 +23,7 @@ using Mode = Location::Mode;
 struct Later {
     Location to;
     Slot slot;
-    std::uint32_t slots = 0;  ///< of an array, a structure or a text
+    std::uint32_t slots = 0;  ///< of an array, a structure, a text or a reference
 };
 
 /// A test sets an output or a local by its name.
@@ -50,6 +51,18 @@ void refer(Writing& w, const Location& to, const Variable& variable, const Expre
     const Location at = locate(w, value);
     later.push_back({to, address_of(w, at)});
     if (variable.type->is_open) later.push_back({behind(to, 1), capacity_of(w, at, *value.type)});
+    if (w.checked.refers_to_in_outs)
+        later.push_back(
+            {behind(to, variable.type->is_open ? 2 : 1), reference_to(w, value), reference_slots});
+}
+
+void give(Writing& w, const std::vector<Later>& later) {
+    for (const Later& value : later) {
+        if (value.slots > 0)
+            copy(w, value.to, {Mode::slot, value.slot}, value.slots);
+        else
+            store(w, value.to, value.slot);
+    }
 }
 
 void give_left_out(Writing& w, const Location& frame, const Expression& e) {
@@ -60,7 +73,7 @@ void give_left_out(Writing& w, const Location& frame, const Expression& e) {
         w.jump(Op::jump_if, 0, load(w, reference), given);
         std::vector<Later> later;
         refer(w, reference, *argument.variable, *argument.value, later);
-        for (const Later& value : later) store(w, value.to, value.slot);
+        give(w, later);
         w.land(given);
     }
 }
@@ -94,12 +107,7 @@ void give(Writing& w, const Location& frame, const Expression& e, const Routine&
             assign(w, {Mode::slot, later.back().slot}, type, *argument.value);
         }
     }
-    for (const Later& value : later) {
-        if (value.slots > 0)
-            copy(w, value.to, {Mode::slot, value.slot}, value.slots);
-        else
-            store(w, value.to, value.slot);
-    }
+    give(w, later);
     if (routine.has_instances()) return;
     for (const Variable& variable : routine.variables) {
         const bool missing = variable.section == Section::input &&

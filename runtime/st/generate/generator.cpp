@@ -6,6 +6,7 @@
 #include "runtime/st/generate/dispatch.hpp"
 #include "runtime/st/generate/images.hpp"
 #include "runtime/st/generate/layout.hpp"
+#include "runtime/st/generate/references.hpp"
 #include "runtime/st/generate/statements.hpp"
 
 namespace lineshaft::st {
@@ -42,6 +43,7 @@ void begin(Writing& w, Routine& routine) {
         w.put(Op::initialise, routine.temps_begin, routine.temps_begin,
               routine.variables_end - routine.temps_begin);
     }
+    if (routine.activation != 0) w.put(Op::number_call, routine.activation);
 }
 
 /// A block's frame grows by what its body and its methods need; `variables_end` is then behind it.
@@ -101,6 +103,7 @@ void write(Writing& w, Routine& routine) {
 Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& options) {
     Writing w{checked, out, options};
     w.code.globals = static_cast<std::uint32_t>(w.checked.globals.size());
+    w.code.has_references = w.checked.has_references;
     for (Routine* routine : w.checked.order)
         for (const Routine* called : routine->calls)
             routine->depth = std::max(routine->depth, called->depth + 1);
@@ -125,6 +128,7 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
         w.images[global.type] = std::move(image);
     }
     finish_images(w);
+    finish_shapes(w);
     w.link();
     return {std::move(w.code), std::move(w.images), std::move(w.assertions)};
 }

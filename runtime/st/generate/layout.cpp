@@ -6,6 +6,7 @@
 
 #include "runtime/source/codes.hpp"
 #include "runtime/st/generate/images.hpp"
+#include "runtime/st/generate/references.hpp"
 
 namespace lineshaft::st {
 
@@ -20,6 +21,16 @@ void check_size(Writing& w, std::uint64_t slots, Place place, std::string_view n
     if (!place.source) return;
     w.out.add(code::too_deep_or_large, place.mark(),
               fmt::format("'{}' takes more than 512 MB", name), "make its arrays smaller");
+}
+
+/// Its address, what a text of any length holds, and a reference where something refers to it.
+std::uint32_t slots_of_in_out(const Writing& w, const Variable& variable) {
+    return 1 + (variable.type->is_open ? 1 : 0) +
+           (w.checked.refers_to_in_outs ? reference_slots : 0);
+}
+
+void note_activation(const Writing& w, Routine& routine, std::uint32_t& at) {
+    if (w.checked.has_references && routine.lends) routine.activation = at++;
 }
 
 void place_variables(Writing& w, Routine& routine, std::uint32_t& at, auto condition) {
@@ -52,9 +63,9 @@ void place_mark(Routine& routine, std::uint32_t& at) {
 std::uint32_t slots_in_frame(Writing& w, const Variable& variable) {
     if (variable.space == Space::constant || variable.space == Space::global) return 0;
     const bool is_reference = variable.space == Space::reference;
-    if (is_reference && variable.type->kind == Kind::block) return 1;
+    if (is_reference && variable.type->kind == Kind::block) return slots_of_in_out(w, variable);
     const std::uint32_t own = slots_of(w, *variable.type);  // also lays out what is referred to
-    return !is_reference ? own : variable.type->is_open ? 2 : 1;
+    return is_reference ? slots_of_in_out(w, variable) : own;
 }
 
 bool is_in_signature(const Variable& variable, bool is_given) {
@@ -89,6 +100,7 @@ void lay_out(Writing& w, Routine& block) {
     place_variables(w, block, at, [](const Variable& v) { return v.section != Section::temp; });
     block.temps_begin = at;
     place_variables(w, block, at, [](const Variable& v) { return v.section == Section::temp; });
+    note_activation(w, block, at);
     block.variables_end = block.frame = at;
     Writing::Image& image = w.images[block.type];
     image = std::move(begun);
@@ -115,6 +127,7 @@ void lay_out_call(Writing& w, Routine& routine) {
     place_variables(w, routine, at, is_taken);
     place_variables(w, routine, at,
                     [&](const Variable& v) { return !is_given(v) && !is_kept(v) && !is_taken(v); });
+    note_activation(w, routine, at);
     routine.variables_end = at;
     Writing::Image& image = block ? w.images[block->type] : w.function_images[&routine];
     image.resize(at, 0);

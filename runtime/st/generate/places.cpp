@@ -2,6 +2,7 @@
 
 #include "runtime/st/generate/calls.hpp"
 #include "runtime/st/generate/layout.hpp"
+#include "runtime/st/generate/references.hpp"
 #include "runtime/st/generate/standard_functions.hpp"
 #include "runtime/st/generate/texts.hpp"
 #include "runtime/st/generate/values.hpp"
@@ -21,42 +22,13 @@ Location locate_object(Writing& w, const Expression& e) {
     return {Mode::address, 0, address, 0};
 }
 
-Location locate_element(Writing& w, const Expression& e) {
-    Location at = locate(w, *e.operands[0]);
-    const Type* type = e.operands[0]->type;
-    Slot index = none;
-    for (const Argument& argument : e.arguments) {
-        const std::uint32_t stride = slots_of(w, *type->element);
-        const Expression& number = *argument.value;
-        if (number.kind == E::constant) {
-            const auto place = static_cast<std::uint32_t>(number.constant.integer - type->lower);
-            at = behind(at, place * stride);
-        } else {
-            const IndexTable made{
-                type->lower, static_cast<std::uint64_t>(type->upper - type->lower) + 1, stride};
-            const Slot given = value(w, number);
-            if (index == none)
-                index = w.emit(Op::index, none, given, w.table(made));
-            else
-                w.put(Op::index_more, index, given, w.table(made));
-        }
-        type = type->element;
-    }
-    if (index == none) return at;
-    if (at.mode == Mode::slot) return {Mode::indexed, at.slot, index};
-    if (at.mode == Mode::indexed) {
-        const Slot sum = w.emit(Op::offset_by, none, at.index, index);
-        return {Mode::indexed, at.slot, sum};
-    }
-    return {Mode::address, 0, w.emit(Op::offset_by, none, at.index, index), at.offset};
-}
-
 /// An array, a structure, a text.
 void copy_value(Writing& w, const Location& to, const Type& type, const Expression& from) {
     if (type.kind == Kind::text) {
         const Slot text = text_address(w, from);
         return w.put(Op::text_copy, address_of(w, to), text, capacity_of(w, to, type));
     }
+    if (type.is_reference()) return copy(w, to, {Mode::slot, reference(w, from)}, reference_slots);
     if (from.kind == E::call) {
         const Location made = from.routine ? Location{Mode::slot, call(w, from, none)}
                                            : Location{Mode::address, 0, standard(w, from, none)};
@@ -79,7 +51,8 @@ void store_bits(Writing& w, const Expression& target, Slot bits) {
 
 Location locate(Writing& w, const Expression& e) {
     if (e.kind == E::member) return part(w, locate(w, *e.operands[0]), *e.variable);
-    if (e.kind == E::index) return locate_element(w, e);
+    if (e.kind == E::index) return element(w, locate(w, *e.operands[0]), e);
+    if (e.kind == E::deref) return locate_target(w, e);
     if (e.kind == E::call) return {Mode::slot, call(w, e, none)};
     if (e.kind == E::converted) return locate_object(w, e);
     if (e.kind == E::self) return {Mode::slot, 0};
@@ -111,6 +84,35 @@ Location part(Writing& w, Location of, const Variable& member) {
         return made;
     }
     return behind(of, member.slot);
+}
+
+Location element(Writing& w, Location at, const Expression& e) {
+    const Type* type = e.operands[0]->type;
+    Slot index = none;
+    for (const Argument& argument : e.arguments) {
+        const std::uint32_t stride = slots_of(w, *type->element);
+        const Expression& number = *argument.value;
+        if (number.kind == E::constant) {
+            const auto place = static_cast<std::uint32_t>(number.constant.integer - type->lower);
+            at = behind(at, place * stride);
+        } else {
+            const IndexTable made{
+                type->lower, static_cast<std::uint64_t>(type->upper - type->lower) + 1, stride};
+            const Slot given = value(w, number);
+            if (index == none)
+                index = w.emit(Op::index, none, given, w.table(made));
+            else
+                w.put(Op::index_more, index, given, w.table(made));
+        }
+        type = type->element;
+    }
+    if (index == none) return at;
+    if (at.mode == Mode::slot) return {Mode::indexed, at.slot, index};
+    if (at.mode == Mode::indexed) {
+        const Slot sum = w.emit(Op::offset_by, none, at.index, index);
+        return {Mode::indexed, at.slot, sum};
+    }
+    return {Mode::address, 0, w.emit(Op::offset_by, none, at.index, index), at.offset};
 }
 
 Location behind(Location of, std::uint32_t slots) {

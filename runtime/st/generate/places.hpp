@@ -21,6 +21,8 @@ struct Location {
 Location locate(Writing& w, const Expression& e);
 Location locate_global(Writing& w, const Variable& variable);
 Location part(Writing& w, Location of, const Variable& member);
+/// Of the array at `of`, the one that `e` indexes.
+Location element(Writing& w, Location of, const Expression& e);
 Location behind(Location of, std::uint32_t slots);  ///< so many slots on
 Location as_address(Writing& w, Location location);
 Slot address_of(Writing& w, Location location);

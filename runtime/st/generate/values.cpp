@@ -3,6 +3,7 @@
 #include "runtime/st/generate/calls.hpp"
 #include "runtime/st/generate/conversions.hpp"
 #include "runtime/st/generate/places.hpp"
+#include "runtime/st/generate/references.hpp"
 #include "runtime/st/generate/texts.hpp"
 
 namespace lineshaft::st {
@@ -44,6 +45,8 @@ Slot unary(Writing& w, const Expression& e, Slot wanted) {
 
 Slot comparison(Writing& w, const Expression& e, Slot wanted) {
     const Expression &left = *e.operands[0], &right = *e.operands[1];
+    if (left.type->is_reference())
+        return compare(w, e.op, lint_type, compare_references(w, e), w.constant_slot(0), wanted);
     if (left.type->kind == Kind::text) {
         const Slot a = text_address(w, left), b = text_address(w, right);
         const Slot order = w.emit(Op::text_compare, none, a, b);
@@ -67,6 +70,7 @@ Slot lazy(Writing& w, const Expression& e) {
 Slot binary(Writing& w, const Expression& e, Slot wanted) {
     if (e.op >= Word::less && e.op <= Word::unequal) return comparison(w, e, wanted);
     if (e.op == Word::and_then_ || e.op == Word::or_else_) return lazy(w, e);
+    if (e.operands[0]->type->is_reference()) return reference_distance(w, e, wanted);
     const Type& type = *e.type;
     Slot a = value_before(w, *e.operands[0], *e.operands[1]), b = value(w, *e.operands[1]);
     if (type.kind == Kind::time && e.operands[1]->type->is_real()) {
@@ -145,6 +149,7 @@ Slot value(Writing& w, const Expression& e, Slot wanted) {
             [[fallthrough]];
         case E::name:
         case E::member:
+        case E::deref:
             return load(w, locate(w, e), wanted);
         case E::bit:
             return bit(w, e, wanted);

@@ -83,6 +83,7 @@ struct Writing {
         const Routine* function;
     };
     std::vector<ImageUse> image_uses = {};
+    std::unordered_map<const Variable*, std::uint32_t> pieces = {};
     std::map<IndexTable, std::uint32_t> tables = {};  ///< their numbers
 
     // Of the routine that is being written.

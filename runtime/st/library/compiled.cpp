@@ -70,6 +70,8 @@ FaultPlace fault_of(const Code& code, const std::byte* instance) {
     FaultPlace found;
     found.fault = static_cast<Fault>(slot(error_id_slot));
     if (found.fault == Fault::none) return found;
+    if (code.has_references && slot(code.left_slot()) > 0)
+        found.left = code.pieces[slot(code.left_slot()) - 1].name;
     std::uint64_t at = slot(place_slot);
     found.mark = place(at);
     const std::uint32_t stack = code.calls_slot();

@@ -113,6 +113,8 @@ class FieldWriter {
                 return;
             case Kind::interface:
                 return;
+            case Kind::reference:
+                return;
             case Kind::text:
                 if (kind_.texts.size() < Library::most_parts)
                     kind_.texts.push_back(made_.names.emplace_back(name));

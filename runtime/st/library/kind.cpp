@@ -67,6 +67,10 @@ std::string why(const std::byte* block, const Context& context, const NameOf&) {
         fmt::format("at {}:{}:{}", found.mark.file->path, found.mark.line, found.mark.column);
     for (std::size_t i = 0; i < found.calls.size(); ++i)
         text += (i == 0 ? " in " : ", called by ") + found.calls[i];
+    if (found.fault == Fault::outside_of_variable)
+        text += fmt::format(", which left the variable '{}'", found.left);
+    if (found.fault == Fault::call_has_ended)
+        text += fmt::format(", where the call that had '{}' has ended", found.left);
     return text;
 }
 
@@ -116,6 +120,57 @@ void take(std::byte* block, const std::byte* kept, const void* context) {
     visit(*kind.type, 0, [&](const Type& type, std::size_t slot) { copy(slot, slots_of(type)); });
 }
 
+bool is_at(const Type& type, std::size_t slot, const Type& wanted);
+
+/// A part of an instance that outlives a scan.
+bool is_in_block(const Type& block, std::size_t slot, const Type& wanted) {
+    return std::ranges::any_of(block.routine->variables, [&](const Variable& variable) {
+        const bool stays = variable.type && variable.section != Section::temp &&
+                           variable.space == Space::frame && !variable.constant;
+        return stays && slot >= variable.slot &&
+               is_at(*variable.type, slot - variable.slot, wanted);
+    });
+}
+
+/// A value of that type, or an instance, begins there.
+bool is_at(const Type& type, std::size_t slot, const Type& wanted) {
+    if (slot == 0 && same_type(type, wanted)) return true;
+    switch (type.kind) {
+        case Kind::array: {
+            const auto count = static_cast<std::size_t>(type.upper - type.lower + 1);
+            const std::size_t slots = element_slots(type);
+            return slots > 0 && slot / slots < count && is_at(*type.element, slot % slots, wanted);
+        }
+        case Kind::structure:
+            return std::ranges::any_of(type.members, [&](const Variable* member) {
+                return slot >= member->slot && is_at(*member->type, slot - member->slot, wanted);
+            });
+        case Kind::block:
+            return is_in_block(type, slot, wanted);
+        default:
+            return false;
+    }
+}
+
+/// NULL, or to a variable that is there. One of a call is used only while that goes on, and is then
+/// known by its frame.
+bool is_reference(const std::byte* place, const KeptState& machine) {
+    const auto& own = *static_cast<const KindContext*>(machine.context.kind);
+    const auto address = read<std::uint64_t>(place);
+    const std::uint64_t piece = read<std::uint64_t>(place + 8) >> 32, instance = address >> 32;
+    if (piece == 0) return true;
+    if (!own.code || piece > own.code->pieces.size() || instance == 0 ||
+        instance > static_cast<std::uint64_t>(machine.context.blocks))
+        return false;
+    const Piece& to = own.code->pieces[piece - 1];
+    if (to.ends) return true;
+    const BlockType& type = *machine.context.types[instance - 1];
+    if (type.scan_blocks != scan_blocks) return false;
+    const auto& kind = *static_cast<const KindContext*>(type.context);
+    return kind.code == own.code &&
+           is_at(*kind.type, address & 0xFFFF'FFFF, *own.code->shapes[to.shape].type);
+}
+
 bool is_handle(const Type& type, std::int64_t number, const Context& context) {
     if (number < 0) return number == -1;
     return number < context.blocks && context.types[number] == type.standard;
@@ -141,6 +196,8 @@ bool is_value(const Type& type, const std::byte* place, const KeptState& machine
             return is_handle(type, number, machine.context);
         case Kind::text:
             return number >= 0 && number <= std::int64_t{type.length};
+        case Kind::reference:
+            return is_reference(place, machine);
         case Kind::standard:
             return lineshaft::is_valid(*type.standard, place, machine);
         default:

@@ -27,6 +27,7 @@ struct FaultPlace {
     Fault fault = Fault::none;
     Mark mark;
     std::vector<std::string> calls;  ///< `Clamp (line 12)`, the innermost first
+    std::string left = {};           ///< the variable that a reference was to, and is not
 };
 
 /// The kinds of block that sources bring along, to be used as those of the catalogue are: each

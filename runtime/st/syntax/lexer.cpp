@@ -51,7 +51,7 @@ constexpr Sign signs[] = {{":=", Word::assign},
                           {"S=", Word::set_assign},
                           {"R=", Word::reset_assign},
                           {"=>", Word::output},
-                          {"?=", Word::reference_assign},
+                          {"?=", Word::attempt_assign},
                           {"**", Word::power},
                           {"<=", Word::less_or_equal},
                           {">=", Word::greater_or_equal},
@@ -227,7 +227,8 @@ class Lexer {
             if (!holds(text, defined_)) skip_part(true);
         } else if (says_pragma(text, "elsif") || says_pragma(text, "else")) {
             if (!choices_.empty()) skip_part(false);
-        } else if (says_pragma(text, "end_if") && !choices_.empty()) {
+        } else if ((says_pragma(text, "end_if") || says_pragma(text, "endif")) &&
+                   !choices_.empty()) {
             choices_.pop_back();
         }
     }
@@ -240,7 +241,7 @@ class Lexer {
             const std::size_t end = std::min(text_.find('}', at_), text_.size() - 1);
             const std::string_view pragma = text_.substr(at_, end + 1 - at_);
             at_ = end;
-            const bool ends = says_pragma(pragma, "end_if");
+            const bool ends = says_pragma(pragma, "end_if") || says_pragma(pragma, "endif");
             if (ends && inner == 0) return choices_.pop_back();
             inner += says_pragma(pragma, "if");
             inner -= ends;
@@ -310,8 +311,9 @@ class Lexer {
         if (peek() != '=' || tokens_.tokens.empty()) return {};
         if (same_name(text, "ref")) return Word::reference_assign;
         const Token& before = tokens_.tokens.back();
-        const bool assigned = before.word == Word::name || before.word == Word::close_bracket ||
-                              before.word == Word::direct || before.word == Word::integer;
+        const bool assigned = before.word == Word::name || before.word == Word::caret ||
+                              before.word == Word::close_bracket || before.word == Word::direct ||
+                              before.word == Word::integer;
         if (!assigned || new_line_) return {};
         if (same_name(text, "s")) return Word::set_assign;
         return same_name(text, "r") ? std::optional(Word::reset_assign) : std::nullopt;

@@ -18,10 +18,8 @@ struct Unsupported {
 
 constexpr Unsupported unsupported[] = {
     {Word::goto_, "GOTO is", "write IF, CASE, EXIT or RETURN"},
-    {Word::ref_to_, "references are", "pass the variable as VAR_IN_OUT"},
-    {Word::pointer_, "pointers are", "pass the variable as VAR_IN_OUT, or use an index"},
-    {Word::reference_assign, "references are", "pass the variable as VAR_IN_OUT"},
-    {Word::caret, "pointers are", "pass the variable as VAR_IN_OUT, and leave '^' out"},
+    {Word::attempt_assign, "attempts to refer (?=) are",
+     "write REF= or ':=' with what is of the type"},
     {Word::var_access_, "access paths are", "declare the variable in VAR_GLOBAL"},
     {Word::direct, "direct addresses are", "declare a VAR_INPUT or VAR_OUTPUT and wire it"},
     {Word::test_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
@@ -79,14 +77,19 @@ std::string habit(const Parsing& p) {
     return is_reserved && (p.is_declared() || p.next().word == Word::assign) ? another_name(p) : "";
 }
 
+bool at_power(const Parsing& p) {
+    return p.is(Word::caret) && (p.next().word == Word::integer || p.next().word == Word::real);
+}
+
 bool refuse_unsupported(Parsing& p) {
+    if (at_power(p)) {
+        fail(p, code::something_else_expected, p.here().place, "'^' is not a power", "write '**'");
+        return true;
+    }
     const auto* it = std::ranges::find(unsupported, p.here().word, &Unsupported::word);
     if (it == std::end(unsupported)) return false;
-    if (p.is(Word::caret) && (p.next().word == Word::integer || p.next().word == Word::real))
-        fail(p, code::something_else_expected, p.here().place, "'^' is not a power", "write '**'");
-    else
-        fail(p, code::not_supported, p.here().place, fmt::format("{} not supported", it->what),
-             std::string(it->instead));
+    fail(p, code::not_supported, p.here().place, fmt::format("{} not supported", it->what),
+         std::string(it->instead));
     return true;
 }
 
@@ -145,11 +148,6 @@ void refuse_base(Parsing& p) {
 void refuse_any_length(Parsing& p) {
     fail(p, code::not_supported, p.here().place, "arrays of any length are not supported",
          "write its bounds: ARRAY[0..9] OF ...");
-}
-
-void refuse_reference(Parsing& p, const Token& word) {
-    fail(p, code::not_supported, word.place, "references are not supported",
-         "pass the variable as VAR_IN_OUT");
 }
 
 bool refuse_union(Parsing& p) {

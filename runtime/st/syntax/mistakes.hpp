@@ -9,6 +9,9 @@ namespace lineshaft::st {
 /// What is written here in other languages: what to write instead. Empty if nothing is known.
 std::string habit(const Parsing& p);
 
+/// `x ^ 2`, as some languages write a power.
+bool at_power(const Parsing& p);
+
 /// A word of what is not supported. It is not skipped.
 bool refuse_unsupported(Parsing& p);
 
@@ -33,8 +36,6 @@ void refuse_reserved_name(Parsing& p);
 void refuse_base(Parsing& p);
 /// ARRAY[*]
 void refuse_any_length(Parsing& p);
-/// REFERENCE TO
-void refuse_reference(Parsing& p, const Token& word);
 /// UNION, whose members are read all the same. False: it is none.
 bool refuse_union(Parsing& p);
 

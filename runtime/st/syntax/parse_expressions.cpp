@@ -196,7 +196,7 @@ Expression* parse_expression(Parsing& p) {
     return parse_binary(p, 1);
 }
 
-/// Variable_Access : Primary_Expr ( '(' Params ')' | '[' Subscripts ']' | '.' Member ) *
+/// Variable_Access : Primary_Expr ( '(' Params ')' | '[' Subscripts ']' | '.' Member | '^' ) *
 /// Subscripts : Param_Assign ( ',' Param_Assign ) *
 /// Their values are expressions.
 Expression* parse_access(Parsing& p) {
@@ -213,6 +213,10 @@ Expression* parse_access(Parsing& p) {
             parse_arguments(p, *index, Word::close_bracket, parse_expression);
             p.add_operand(*index, 0, left);
             left = index;
+        } else if (p.is(Word::caret) && !at_power(p)) {
+            Expression* target = p.make(Expression::Kind::deref, p.take());
+            p.add_operand(*target, 0, left);
+            left = target;
         } else if (p.accept(Word::dot)) {
             left = parse_member(p, left);
         } else {

@@ -7,11 +7,11 @@ namespace lineshaft::st {
 namespace {
 
 bool is_assignment(Word op) {
-    return op >= Word::assign && op <= Word::divided_assign;
+    return (op >= Word::assign && op <= Word::divided_assign) || op == Word::reference_assign;
 }
 
 /// Assign_Stmt : Variable_Access ( Assign_Op Init ) + ';'
-/// Assign_Op : ':=' | '+=' | '-=' | '*=' | '/='
+/// Assign_Op : ':=' | '+=' | '-=' | '*=' | '/=' | 'REF='
 /// `a := b := 0;` is `b := 0; a := b;`, whose two `b` are read each.
 void parse_assignment(Parsing& p, Expression* target, Block& to) {
     const Level level(p);

@@ -67,7 +67,6 @@ Expression* parse_length(Parsing& p) {
 ///             | 'STRING' Text_Length | 'WSTRING' Text_Length
 ///             | Name Enum_Values | Name '(' Subrange ')'
 void parse_named_type(Parsing& p, TypeText& type) {
-    if (p.is(Word::pointer_) && p.next().word == Word::to_) refuse_unsupported(p);
     if (p.here().text == "_" && p.next().word == Word::dot) p.at += 2;
     type.name = parse_qualified_name(p, "a type");
     if (p.panic) return;
@@ -77,8 +76,6 @@ void parse_named_type(Parsing& p, TypeText& type) {
     if (is_text && has_length) {
         type.kind = TypeText::Kind::text;
         type.length = parse_length(p);
-    } else if (same_name(type.name.text, "reference") && p.is(Word::to_)) {
-        refuse_reference(p, type.name);
     } else if (p.is(Word::open)) {
         const Word behind = p.next(2).word;
         if (p.is_name(1) &&
@@ -89,6 +86,20 @@ void parse_named_type(Parsing& p, TypeText& type) {
         parse_bounds(p, type);
         expect(p, Word::close, "after the bounds");
     }
+}
+
+/// `REF_TO`, `POINTER TO`, `REFERENCE TO`
+bool at_reference(const Parsing& p) {
+    const bool may_be = p.is(Word::pointer_) || (p.is(Word::name) && p.says("reference"));
+    return p.is(Word::ref_to_) || (may_be && p.next().word == Word::to_);
+}
+
+/// Ref_Spec : ( 'REF_TO' | 'POINTER' 'TO' | 'REFERENCE' 'TO' ) Data_Type
+void parse_reference(Parsing& p, TypeText& type) {
+    type.kind = TypeText::Kind::reference;
+    type.name = p.take();
+    p.accept(Word::to_);
+    type.element = parse_type(p);
 }
 
 }  // namespace
@@ -114,7 +125,7 @@ void parse_type_declarations(Parsing& p) {
     p.accept(Word::semicolon);
 }
 
-/// Data_Type : Array_Spec | Struct_Decl | Enum_Spec | Type_Access
+/// Data_Type : Array_Spec | Struct_Decl | Enum_Spec | Ref_Spec | Type_Access
 TypeText* parse_type(Parsing& p) {
     const Level level(p);
     TypeText& type = p.tree.type_texts.emplace_back();
@@ -127,6 +138,8 @@ TypeText* parse_type(Parsing& p) {
         parse_structure(p, type, first, Word::end_union_);
     else if (p.is(Word::open))
         parse_enumeration(p, type);
+    else if (at_reference(p))
+        parse_reference(p, type);
     else
         parse_named_type(p, type);
     type.place = first.place.to(p.last().place);

@@ -95,7 +95,8 @@ enum class Word : std::uint8_t {
     set_assign,        ///< `S=`
     reset_assign,      ///< `R=`
     output,            ///< `=>`
-    reference_assign,  ///< `?=`, `REF=`: not of this language
+    reference_assign,  ///< `REF=`
+    attempt_assign,    ///< `?=`: not of this language
     power,
     times,
     divided,

@@ -57,6 +57,8 @@ struct Expression {
         typed,      ///< `INT#5`, `Colour#red`: token.text # operands[0]
         list,       ///< `[1, 4(0.0)]`: of arguments, or `(x := 1, y := 2)`, `(1, 2)`
         repeated,   ///< `4(0.0)`: operands[0] times what is in `arguments`
+        deref,      ///< operands[0]^; of REFERENCE TO put in by the checker
+        refer,      ///< where operands[0] is, put in by the checker
         converted,  ///< operands[0] to `type`, put in by the checker
         self,       ///< THIS; by its base's type SUPER; put in by the checker
     };
@@ -131,7 +133,7 @@ struct Statement {
     };
 
     Kind kind = Kind::assign;
-    Word op = Word::assign;  ///< `:=`, `+=`
+    Word op = Word::assign;  ///< `:=`, `+=`, `REF=`
     Place place = {};
     Expression* target = nullptr;  ///< of an assignment; of a FOR its variable
     Expression* value = nullptr;   ///< assigned, called, tested; of a FOR its first one
@@ -142,7 +144,15 @@ struct Statement {
 
 /// A type as it is written.
 struct TypeText {
-    enum class Kind : std::uint8_t { name, array, structure, enumeration, subrange, text };
+    enum class Kind : std::uint8_t {
+        name,
+        array,
+        structure,
+        enumeration,
+        subrange,
+        text,
+        reference,  ///< to `element`; `name` is its first word
+    };
 
     Kind kind = Kind::name;
     Token name = {};  ///< also of the base of an enumeration or a subrange

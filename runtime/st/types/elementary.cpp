@@ -73,12 +73,32 @@ const Type table[] = {elementary(Kind::boolean, "BOOL", 1),
                       character()};
 static_assert(std::size(table) == std::size(elementary_names));
 
+Type null_reference() {
+    Type type = elementary(Kind::reference, "NULL");
+    type.slots = 3;
+    return type;
+}
+
+/// Of references to references, as far as anybody would write them.
+bool refer_to_the_same(const Type* a, const Type* b) {
+    for (int hops = 0; hops < 64; ++hops) {
+        if (a == b) return true;
+        if (!a || !b || !a->is_reference() || !b->is_reference()) break;
+        if (a->referring != b->referring) return false;
+        a = a->element;
+        b = b->element;
+    }
+    return a && b && !a->is_reference() && same_type(*a, *b);
+}
+
 const Type open_string = text_type(true);
 const Type any_integer = elementary(Kind::any_integer, "a whole number", 64, true);
 const Type any_real = elementary(Kind::any_real, "a real number");
 const Type any_bits = elementary(Kind::any_bits, "a whole number");
 
 }  // namespace
+
+const Type null_type = null_reference();
 
 const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &lint_type = table[4], &ulint_type = table[8], &real_type = table[13],
@@ -88,6 +108,11 @@ const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &open_string_type = open_string, &char_type = table[28];
 
 std::string describe(const Type& type) {
+    if (type.is_reference() && type.name.empty()) {
+        static constexpr std::string_view words[] = {"REFERENCE TO", "REF_TO", "POINTER TO"};
+        return fmt::format("{} {}", words[static_cast<std::size_t>(type.referring)],
+                           type.element ? describe(*type.element) : "?");
+    }
     if (type.kind != Kind::array || !type.name.empty()) return type.name;
     std::string bounds;
     const Type* element = &type;
@@ -167,6 +192,8 @@ bool same_type(const Type& a, const Type& b) {
             return a.length == b.length && a.is_open == b.is_open;
         case Kind::array:
             return a.lower == b.lower && a.upper == b.upper && same_type(*a.element, *b.element);
+        case Kind::reference:
+            return refer_to_the_same(&a, &b);
         case Kind::structure:
             return a.is_unnamed && b.is_unnamed &&
                    std::ranges::equal(a.members, b.members,

@@ -4,6 +4,50 @@
 
 namespace lineshaft::st {
 
+const Expression& root_of(const Expression& place) {
+    const bool is_part =
+        place.kind == Expression::Kind::index ||
+        (place.kind == Expression::Kind::member && !place.operands[0]->type->is_instance());
+    return is_part ? root_of(*place.operands[0]) : place;
+}
+
+std::uint64_t bytes_of(const Type& type) {
+    using Kind = Type::Kind;
+    std::uint64_t bytes = 0;
+    switch (type.kind) {
+        case Kind::boolean:
+            return 1;
+        case Kind::time:
+            return type.counts_ns ? 8 : 4;
+        case Kind::date:
+        case Kind::clock:
+        case Kind::moment:
+            return type.name.starts_with('L') ? 8 : 4;
+        case Kind::text:
+            return type.length + 1;
+        case Kind::enumeration:
+            return bytes_of(*type.base);
+        case Kind::array:
+            return static_cast<std::uint64_t>(type.upper - type.lower + 1) *
+                   bytes_of(*type.element);
+        case Kind::structure:
+            for (const Variable* member : type.members) bytes += bytes_of(*member->type);
+            return bytes;
+        case Kind::block:
+            for (const Variable& variable : type.routine->variables)
+                if (variable.type && variable.space == Space::frame)
+                    bytes += bytes_of(*variable.type);
+            return bytes;
+        case Kind::standard:
+            return type.standard->size;
+        case Kind::reference:
+        case Kind::handle:
+            return 8;
+        default:
+            return static_cast<std::uint64_t>(type.bits) / 8;
+    }
+}
+
 bool has_call(const Expression& e) {
     if (e.kind == Expression::Kind::call && e.routine) return true;
     for (const Expression* operand : e.operands)

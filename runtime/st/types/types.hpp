@@ -15,6 +15,13 @@ struct Variable;
 struct Routine;
 struct Layout;
 
+/// What a reference may be used for.
+enum class Referring : std::uint8_t {
+    alias,    ///< REFERENCE TO: its name means what it refers to
+    ref,      ///< REF_TO
+    pointer,  ///< POINTER TO: reckoned with, too
+};
+
 /// How values of a type are kept. Each scalar has a slot of 64 bits: an integer as std::int64_t
 /// (ULINT and LWORD as std::uint64_t), a REAL as a double that a float holds too, an enumeration as
 /// the place of its value in the list. An array or structure has those of its parts one behind the
@@ -35,6 +42,7 @@ struct Type {
         enumeration,
         array,
         structure,
+        reference,    ///< REFERENCE TO, REF_TO, POINTER TO: `Piece` in code/code.hpp
         block,        ///< an instance of a FUNCTION_BLOCK or PROGRAM of the sources
         standard,     ///< an instance of a kind of the catalogue
         any_integer,  ///< of a number without type, before it is known where it goes
@@ -53,7 +61,8 @@ struct Type {
     bool is_unnamed = false;                 ///< STRUCT without a TYPE: any of its members is equal
     bool counts_ns = false;                  ///< LTIME, of which a real number is in ns, not ms
     const Type* base = nullptr;              ///< of a subrange; of an enumeration with numbers
-    const Type* element = nullptr;           ///< of an array
+    const Type* element = nullptr;           ///< of an array; what a reference is to, or null
+    Referring referring = Referring::ref;    ///< of a reference
     bool has_inner = false;                  ///< of an array: its element is its next dimension
     std::uint32_t length = 0;                ///< of a text, in characters
     bool is_open = false;                    ///< VAR_IN_OUT STRING: of what length is given
@@ -83,6 +92,9 @@ struct Type {
     }
     /// References to it are values, `AXIS_REF`.
     bool is_object() const { return kind == Kind::standard && !standard->handle.empty(); }
+    bool is_reference() const { return kind == Kind::reference; }
+    bool is_alias() const { return is_reference() && referring == Referring::alias; }
+    bool is_pointer() const { return is_reference() && referring == Referring::pointer; }
     bool is_instance() const { return kind == Kind::block || kind == Kind::standard; }
     bool is_unsigned_64() const {
         return (is_bits() || kind == Kind::integer) && !is_signed && bits == 64;
@@ -95,6 +107,14 @@ struct Type {
 inline bool Expression::is_character() const {
     return kind == Kind::index && operands[0]->type && operands[0]->type->kind == Type::Kind::text;
 }
+
+/// What a reference to a part of it is in: a variable, a variable of an instance, what another
+/// reference is to, or a call. Elements and members of structures are parts.
+const Expression& root_of(const Expression& place);
+
+/// The bytes that a controller's memory has of a value, one variable behind the other: what SIZEOF
+/// is, and what a POINTER is reckoned in.
+std::uint64_t bytes_of(const Type& type);
 
 /// A function or a method is called in it, which may write variables.
 bool has_call(const Expression& expression);
@@ -127,6 +147,12 @@ struct Variable {
     std::string_view text = {};  ///< its name
     std::string_view doc = {};   ///< comments, as they are written
 
+    /// Of one call only.
+    bool ends_with_call() const {
+        const bool of_call = of && (of->kind == PouKind::function || of->kind == PouKind::method);
+        return space == Space::frame && (section == Section::temp || of_call);
+    }
+
     /// By a call, with `=>`: an output, and ENO, which is a temporary.
     bool can_be_taken() const { return section == Section::output || section == Section::temp; }
 };
@@ -157,6 +183,8 @@ struct Routine {
     std::vector<int> objects = {};  ///< globals that are blocks of the program, and that it names
     enum class State : std::uint8_t { fresh, visiting, done } state = State::fresh;
 
+    bool lends = false;  ///< something refers to a variable of its calls
+
     const Variable *mock_flag = nullptr, *mock_value = nullptr;  ///< of a function: MOCK_FUNCTION
 
     bool is_function() const { return pou->kind == PouKind::function; }
@@ -174,6 +202,7 @@ struct Routine {
     std::uint32_t temps_begin = 0;    ///< first slot of what is initialised at each call
     std::uint32_t variables_end = 0;  ///< behind its own variables
     std::uint32_t frame = 0;          ///< slots with temporaries and what its functions need
+    std::uint32_t activation = 0;     ///< slot with the number of a call, of one that `lends`
     std::uint32_t depth = 0;          ///< levels of calls below it
     std::uint32_t levels = 0;         ///< that its instance has room for, of a block
     std::uint32_t first = 0;          ///< of a method: slot of the first that is given to it

@@ -42,7 +42,8 @@ Instances::Instances(const Library& library) : library_(library) {
         for (const Field& field : library.kinds()[i].fields)
             for (std::size_t k = 0; k < places_.size(); ++k)
                 if (field.direction == Direction::in_out && library.kinds()[k].name == field.refers)
-                    store(Type::integer, places_[i] + field.offset, static_cast<std::int64_t>(k));
+                    store(lineshaft::Type::integer, places_[i] + field.offset,
+                          static_cast<std::int64_t>(k));
 }
 
 void Instances::scan(std::int64_t time, std::int64_t interval) {

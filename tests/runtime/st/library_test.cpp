@@ -50,7 +50,7 @@ TEST_CASE("Structured Text: variables are fields of the kind", "[st]") {
     CHECK(field(kind, "speed").direction == Direction::input);
     CHECK(field(kind, "speed").unit == "mm/s");
     CHECK(field(kind, "n").maximum == 32767);
-    CHECK(field(kind, "mode").type == Type::enumeration);
+    CHECK(field(kind, "mode").type == lineshaft::Type::enumeration);
     CHECK(field(kind, "mode").names[1] == "busy");
     CHECK(field(kind, "table[2]").direction == Direction::local);
     CHECK(field(kind, "delay.et").unit == "ns");
@@ -93,15 +93,15 @@ TEST_CASE("Structured Text: with overflow_faults an integer's overflow is a faul
             const st::Wide right[] = {a + b, a - b, a * b, b == 0 ? 0 : a / b, b == 0 ? 0 : a % b,
                                       -a,    a + b};
             const st::Wide wanted = right[op];
-            store(Type::integer, place("op"), op);
-            store(Type::integer, place("a"), static_cast<std::int64_t>(a));
-            store(Type::integer, place("b"), static_cast<std::int64_t>(b));
+            store(lineshaft::Type::integer, place("op"), op);
+            store(lineshaft::Type::integer, place("a"), static_cast<std::int64_t>(a));
+            store(lineshaft::Type::integer, place("b"), static_cast<std::int64_t>(b));
             instances.scan(i, 1);
             INFO(name << " op " << op << " of " << st::to_string(a) << " and " << st::to_string(b));
             const bool fits = wanted >= st::smallest(type) && wanted <= st::largest(type);
             CHECK(instances.text("error") == (fits ? "false" : "true"));
             if (fits)
-                CHECK(std::get<std::int64_t>(load(Type::integer, place("x"))) ==
+                CHECK(std::get<std::int64_t>(load(lineshaft::Type::integer, place("x"))) ==
                       static_cast<std::int64_t>(wanted));
         }
     }
@@ -116,8 +116,8 @@ TEST_CASE("Structured Text: a wire's value beyond an input's type is a fault", "
     std::byte* r = instances.memory(0) + field(library.kinds()[0], "r").offset;
     for (const std::int64_t value : {-129, -128, 0, 127, 128, 256}) {
         INFO(value);
-        store(Type::integer, n, value);
-        store(Type::real, r, 0.1);
+        store(lineshaft::Type::integer, n, value);
+        store(lineshaft::Type::real, r, 0.1);
         instances.scan(0, 1);
         const bool fits = value >= -128 && value <= 127;
         CHECK(instances.text("error") == (fits ? "false" : "true"));

@@ -109,10 +109,11 @@ std::vector<std::uint64_t> values(const st::Library& library, st::Instances& ins
 std::int64_t time_taken(const st::Library& library, std::int64_t n) {
     st::Instances instances(library);
     const BlockType& kind = library.kinds()[0];
-    store(Type::integer, instances.memory(0) + kind.find_settable("n")->offset, n);
+    store(lineshaft::Type::integer, instances.memory(0) + kind.find_settable("n")->offset, n);
     instances.scan(0, 1);
     REQUIRE(instances.faults().empty());
-    return std::get<std::int64_t>(load(Type::integer, instances.memory(0) + *kind.time_taken));
+    return std::get<std::int64_t>(
+        load(lineshaft::Type::integer, instances.memory(0) + *kind.time_taken));
 }
 
 /// Of a FOR over n with these statements in it.

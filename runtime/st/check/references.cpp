@@ -1,0 +1,324 @@
+#include "runtime/st/check/references.hpp"
+
+#include "runtime/source/codes.hpp"
+#include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/names.hpp"
+#include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/operators.hpp"
+#include "runtime/st/check/order.hpp"
+#include "runtime/st/check/places.hpp"
+#include "runtime/st/check/types.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+constexpr std::uint32_t reference_slots = 3;
+
+Type& make_reference(Checking& c, Referring referring, const Type* target) {
+    Type& type = c.make_type(Kind::reference, {});
+    type.slots = reference_slots;
+    type.referring = referring;
+    type.element = target;
+    return type;
+}
+
+bool is_null(const Expression& e) {
+    const bool is_number = is_constant(e) && e.type->kind == Kind::any_integer;
+    return e.type == &null_type || (is_number && e.constant.integer == 0);
+}
+
+/// What is written left of REF=, and where else a REFERENCE TO means itself.
+Expression*& without_alias(Expression*& e) {
+    const bool is_alias = e->kind == E::deref && e->operands[0]->type->is_alias();
+    return is_alias ? e->operands[0] : e;
+}
+
+/// What cannot be referred to; empty if it can.
+std::string_view why_no_place(const Expression& e) {
+    if (e.kind == E::constant)
+        return e.variable ? "a constant has no place" : "a value has no place";
+    if (e.kind == E::bit || e.is_character()) return "a part of a value has no place of its own";
+    if (e.kind != E::name && e.kind != E::member && e.kind != E::index && e.kind != E::deref)
+        return "a value has no place";
+    const Expression& root = root_of(e);
+    if (root.kind == E::deref) return {};
+    if (root.kind != E::name && root.kind != E::member) return "a value has no place";
+    if (root.variable && root.variable->constant) return "a constant has no place";
+    const bool is_standard =
+        root.kind == E::member && root.operands[0]->type->kind == Kind::standard;
+    if (is_standard || e.type->is_object())
+        return "a part of a standard block cannot be referred to";
+    return {};
+}
+
+/// `e`, a variable, becomes where it is; false for what is no variable, which was told.
+bool refer(Checking& c, Expression*& e, const Type& to) {
+    if (e->kind == E::deref && e->operands[0]->type->element == e->type &&
+        (e->operands[0]->kind == E::name || e->operands[0]->kind == E::member)) {
+        e = make_converted(c, e->operands[0], to);
+        return true;
+    }
+    if (const std::string_view why = why_no_place(*e); !why.empty()) {
+        c.fail(code::type_does_not_fit, e->place, std::string(why),
+               "declare a variable, and refer to that");
+        return false;
+    }
+    note_lending(c, *e);
+    const Expression& root = root_of(*e);
+    if (root.variable) root.variable->used = true;
+    if (root.kind != E::deref && root.variable->space == Space::reference)
+        c.checked.refers_to_in_outs = true;
+    Expression* made = make(c, E::refer, *e);
+    made->operands[0] = e;
+    made->type = &to;
+    e = made;
+    return true;
+}
+
+/// Its first element or member, or that one's, is of the type: a pointer to the one is one to the
+/// other.
+bool begins_with(const Type& whole, const Type& part) {
+    if (same_type(whole, part)) return true;
+    if (whole.kind == Kind::array) return whole.element && begins_with(*whole.element, part);
+    if (whole.kind != Kind::structure || whole.members.empty()) return false;
+    const Type* first = whole.members.front()->type;
+    return first && begins_with(*first, part);
+}
+
+bool is_target(const Type& reference, const Type& given) {
+    return reference.element && same_type(*reference.element, given);
+}
+
+bool refuse_target(Checking& c, const Expression& e, const Type& to, const Type& from) {
+    std::string help = "write '^' behind it: what it refers to";
+    if (to.is_integer() || to.is_bits())
+        help =
+            fmt::format("a number does not hold where a variable is: declare a {}", describe(from));
+    if (from.element && same_type(*from.element, to))
+        help = "write '^' behind it: what it refers to";
+    if (to.is_reference() && from.is_reference()) help = "both are to refer to one type";
+    if (to.is_reference() && !from.is_reference())
+        help = to.is_alias() ? "a REFERENCE TO is given a variable of its type"
+                             : "write ADR(...) or REF(...) of a variable";
+    c.fail(code::type_does_not_fit, e.place,
+           fmt::format("expected {}, found {}", describe(to), describe(from)), std::move(help));
+    return false;
+}
+
+/// A REFERENCE TO is given a variable, or another reference.
+bool bind(Checking& c, Expression*& e, const Type& to) {
+    if (is_null(*e)) {
+        e = make_constant(c, *e, to, {});
+        return true;
+    }
+    if (e->type->is_reference() && e->type->element && is_target(to, *e->type->element)) {
+        e = make_converted(c, e, to);
+        return true;
+    }
+    if (!to.element) return false;
+    if (!is_target(to, *e->type)) return refuse_target(c, *e, to, *e->type);
+    return refer(c, e, to);
+}
+
+/// What another block is made of is to be known before what refers to it.
+void depend_on_target(Checking& c, const Type* target, Place place) {
+    const Routine* own = c.routine && c.routine->owner ? c.routine->owner : c.routine;
+    if (!target || (target->kind == Kind::block && target->routine == own)) return;
+    depend(c, target, place);
+}
+
+const Type* check_size(Checking& c, Expression*& e) {
+    Expression*& of = e->arguments[0].value;
+    const bool is_type = of->kind == E::name && !find_variable(c, of->token);
+    const Type* type = is_type ? resolve_name(c, of->token) : check(c, of);
+    if (!type) return nullptr;
+    e = make_constant(c, *e, any_integer_type, {.integer = Wide{bytes_of(*type)}});
+    return &any_integer_type;
+}
+
+const Type* check_refer(Checking& c, Expression*& e, Referring referring) {
+    Expression* place = e->arguments[0].value;
+    const Type* type = check(c, place);
+    if (!type || !refer(c, place, make_reference(c, referring, type))) return nullptr;
+    e = place;
+    return e->type;
+}
+
+const Type* check_is_bound(Checking& c, Expression*& e) {
+    Expression*& given = e->arguments[0].value;
+    if (!check(c, given)) return nullptr;
+    Expression* reference = without_alias(given);
+    if (!reference->type->is_reference())
+        return c.fail(
+            code::type_does_not_fit, given->place,
+            fmt::format("__ISVALIDREF takes a reference, not {}", describe(*given->type)));
+    e = make_binary(c, e->place, e->token.place, Word::unequal, reference,
+                    make_constant(c, *reference, *reference->type, {}));
+    return e->type = &bool_type;
+}
+
+const Type* check_moved(Checking& c, Expression*& e) {
+    Expression *&pointer = e->operands[0], *&by = e->operands[1];
+    if (e->op == Word::plus && !pointer->type->is_reference()) std::swap(pointer, by);
+    const bool is_number = by->type->is_integer() || by->type->is_bits();
+    if (!pointer->type->is_pointer() || !is_number)
+        return c.fail(code::type_does_not_fit, e->token.place,
+                      fmt::format("'{}' does not go with {} and {}", shown(e->op),
+                                  describe(*pointer->type), describe(*by->type)),
+                      "to a POINTER a whole number of bytes is added: p + SIZEOF(p^)");
+    if (by->type->is_any())
+        coerce(c, by, lint_type);
+    else
+        convert(c, by, lint_type);
+    return e->type = pointer->type;
+}
+
+}  // namespace
+
+const Type* resolve_reference(Checking& c, const TypeText& text) {
+    const Referring referring = text.name.word == Word::ref_to_    ? Referring::ref
+                                : text.name.word == Word::pointer_ ? Referring::pointer
+                                                                   : Referring::alias;
+    Type& type = make_reference(c, referring, nullptr);
+    c.checked.has_references = true;
+    if (c.knows_types)
+        type.element = resolve(c, *text.element);
+    else
+        c.targets.emplace_back(&type, text.element);
+    return &type;
+}
+
+void resolve_targets(Checking& c) {
+    c.knows_types = true;
+    for (const auto& [type, target] : c.targets) type->element = resolve(c, *target);
+    c.targets.clear();
+}
+
+const Type* check_target_of(Checking& c, Expression& e) {
+    const Type* type = check(c, e.operands[0]);
+    if (!type) return nullptr;
+    if (!type->is_reference())
+        return c.fail(code::type_does_not_fit, e.place,
+                      fmt::format("'^' does not go with {}", describe(*type)),
+                      "it takes what a REF_TO or a POINTER TO refers to");
+    depend_on_target(c, type->element, e.place);
+    return type->element;
+}
+
+const Type* take_target(Checking& c, Expression*& e) {
+    const Type* target = e->type->element;
+    Expression* made = make(c, E::deref, *e);
+    made->operands[0] = e;
+    made->type = target;
+    depend_on_target(c, target, e->place);
+    e = made;
+    return target && target->is_alias() ? take_target(c, e) : target;
+}
+
+const Type* check_pointer_index(Checking& c, Expression*& e) {
+    Expression* pointer = e->operands[0];
+    const Type* target = pointer->type->element;
+    Expression* index = e->arguments[0].value;
+    if (!target || !index->type) return nullptr;
+    if (e->arguments.size() > 1 || !(index->type->is_integer() || index->type->is_bits()))
+        return c.fail(code::type_does_not_fit, index->place,
+                      "a POINTER has one index, a whole number");
+    if (index->type->is_any())
+        coerce(c, index, lint_type);
+    else
+        convert(c, index, lint_type);
+    Expression* size = make_constant(c, *index, lint_type, {.integer = Wide{bytes_of(*target)}});
+    Expression* bytes = make_binary(c, index->place, index->place, Word::times, index, size);
+    bytes->type = &lint_type;
+    Expression* moved = make_binary(c, e->place, e->place, Word::plus, pointer, bytes);
+    moved->type = pointer->type;
+    Expression* made = make(c, E::deref, *e);
+    made->operands[0] = moved;
+    depend_on_target(c, target, e->place);
+    e = made;
+    return e->type = target;
+}
+
+void note_lending(Checking& c, const Expression& place) {
+    const Expression& root = root_of(place);
+    if (c.routine && root.variable && root.variable->ends_with_call()) c.routine->lends = true;
+}
+
+void check_reference_assignment(Checking& c, Statement& s) {
+    const Type* type = check(c, s.target);
+    const Type* given = check(c, s.value);
+    if (!type) return;
+    Expression*& target = without_alias(s.target);
+    if (!target->type->is_reference()) {
+        c.fail(code::type_does_not_fit, s.target->place,
+               fmt::format("REF= does not go with {}", describe(*type)),
+               "it gives a REFERENCE TO the variable that it refers to");
+        return;
+    }
+    if (!given || !check_target(c, *target)) return;
+    s.target = target;
+    bind(c, s.value, *target->type);
+}
+
+std::optional<const Type*> check_reference_call(Checking& c, Expression*& e, const Type*) {
+    const Token& name = e->operands[0]->token;
+    const auto is = [&](std::string_view known) { return same_name(name.text, known); };
+    if (is("__new") || is("__delete"))
+        return c.fail(code::not_supported, name.place,
+                      fmt::format("{} is not supported", name.text),
+                      "a program's memory does not grow: declare the variable, and take ADR of it");
+    const bool is_known = is("adr") || is("ref") || is("sizeof") || is("__isvalidref");
+    if (!is_known) return {};
+    if (e->arguments.size() != 1 || e->arguments[0].is_output)
+        return c.fail(code::wrong_arguments, name.place,
+                      fmt::format("{} takes 1 argument", name.text));
+    if (is("sizeof")) return check_size(c, e);
+    if (is("__isvalidref")) return check_is_bound(c, e);
+    return check_refer(c, e, is("adr") ? Referring::pointer : Referring::ref);
+}
+
+const Type* check_reference_operator(Checking& c, Expression*& e, const Type* expected) {
+    Expression *&left = e->operands[0], *&right = e->operands[1];
+    const bool is_sum = e->op == Word::plus || e->op == Word::minus;
+    const bool both = left->type->is_reference() && right->type->is_reference();
+    if (is_sum && !both) return check_moved(c, e);
+    const Type& type =
+        left->type->is_reference() && left->type != &null_type ? *left->type : *right->type;
+    if (e->op == Word::minus && type.is_pointer() && coerce(c, left, type) &&
+        coerce(c, right, type)) {
+        const bool fits = expected && expected->is_integer() && expected->bits >= 32;
+        return e->type = fits ? expected : &dint_type;
+    }
+    const bool order = e->op != Word::equal && e->op != Word::unequal;
+    if (!is_comparison(e->op) || (order && !type.is_pointer()))
+        return c.fail(code::type_does_not_fit, e->token.place,
+                      fmt::format("'{}' does not go with {}", shown(e->op), describe(type)),
+                      type.is_pointer() ? "a POINTER takes '+' and '-' with bytes, and is compared"
+                                        : "references are equal or not");
+    return coerce(c, left, type) && coerce(c, right, type) ? e->type = &bool_type : nullptr;
+}
+
+bool coerce_reference(Checking& c, Expression*& e, const Type& to) {
+    const Type& from = *e->type;
+    if (!to.is_reference()) return refuse_target(c, *e, to, from);
+    if (to.is_alias()) return bind(c, e, to);
+    if (is_null(*e)) {
+        e = make_constant(c, *e, to, {});
+        return true;
+    }
+    if (&from == &to || same_type(from, to)) return true;
+    const bool are_pointers = to.is_pointer() && from.is_pointer() && to.element && from.element;
+    const bool fits =
+        from.is_reference() && from.element &&
+        (is_target(to, *from.element) || (are_pointers && begins_with(*from.element, *to.element)));
+    if (fits) {
+        e = make_converted(c, e, to);
+        return true;
+    }
+    if (!to.element || (from.is_reference() && !from.element)) return false;
+    return refuse_target(c, *e, to, from);
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "runtime/st/check/checking.hpp"
+
+namespace lineshaft::st {
+
+/// REFERENCE TO, REF_TO, POINTER TO. What it is to may be declared further down, or be what it is
+/// in.
+const Type* resolve_reference(Checking& c, const TypeText& text);
+/// Of those that had to wait until all types are known.
+void resolve_targets(Checking& c);
+
+/// `p^`
+const Type* check_target_of(Checking& c, Expression& e);
+/// `e`, a REFERENCE TO, becomes what it refers to, whose type is given.
+const Type* take_target(Checking& c, Expression*& e);
+/// `p[i]`, which is `(p + i * SIZEOF(p^))^`.
+const Type* check_pointer_index(Checking& c, Expression*& e);
+
+/// A VAR_IN_OUT is given that: what it refers to may end with the call at hand.
+void note_lending(Checking& c, const Expression& place);
+
+/// `r REF= x;`
+void check_reference_assignment(Checking& c, Statement& s);
+/// ADR, REF, SIZEOF, __ISVALIDREF; __NEW and __DELETE, which are refused. Empty: none of them.
+std::optional<const Type*> check_reference_call(Checking& c, Expression*& e, const Type* expected);
+/// One of both is a reference: comparisons, and what is reckoned with a POINTER.
+const Type* check_reference_operator(Checking& c, Expression*& e, const Type* expected);
+/// As coerce(), where one of both types is that of a reference.
+bool coerce_reference(Checking& c, Expression*& e, const Type& to);
+
+}  // namespace lineshaft::st

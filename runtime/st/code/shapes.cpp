@@ -1,0 +1,72 @@
+#include "runtime/st/code/shapes.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <span>
+
+#include "runtime/st/code/code.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+/// The last member that begins there or before.
+const ShapeMember* member_at(const Code& code, const Shape& of, std::uint64_t ShapeMember::*begin,
+                             std::uint64_t at) {
+    const auto members = std::span(code.members).subspan(of.first, of.count);
+    const auto behind = std::ranges::upper_bound(members, at, {}, begin);
+    return behind == members.begin() ? nullptr : &*std::prev(behind);
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> slot_of(const Code& code, std::uint32_t shape, std::int64_t byte,
+                                     std::uint32_t wanted) {
+    if (byte < 0) return {};
+    auto at = static_cast<std::uint64_t>(byte);
+    std::uint64_t slot = 0;
+    for (;;) {
+        const Shape& here = code.shapes[shape];
+        if (at >= here.bytes && at != 0) return {};
+        if (shape == wanted) return at == 0 ? std::optional(slot) : std::nullopt;
+        if (here.kind == Shape::Kind::array) {
+            const Shape& element = code.shapes[here.element];
+            if (element.bytes == 0) return {};
+            slot += at / element.bytes * element.slots;
+            at %= element.bytes;
+            shape = here.element;
+        } else if (here.kind == Shape::Kind::structure) {
+            const ShapeMember* member = member_at(code, here, &ShapeMember::byte, at);
+            if (!member) return {};
+            slot += member->slot;
+            at -= member->byte;
+            shape = member->shape;
+        } else {
+            return {};
+        }
+    }
+}
+
+std::uint64_t byte_of(const Code& code, std::uint32_t shape, std::uint64_t slot) {
+    std::uint64_t byte = 0;
+    while (slot > 0) {
+        const Shape& here = code.shapes[shape];
+        if (here.kind == Shape::Kind::array) {
+            const Shape& element = code.shapes[here.element];
+            byte += slot / element.slots * element.bytes;
+            slot %= element.slots;
+            shape = here.element;
+        } else if (here.kind == Shape::Kind::structure) {
+            const ShapeMember* member = member_at(code, here, &ShapeMember::slot, slot);
+            if (!member) return byte;
+            byte += member->byte;
+            slot -= member->slot;
+            shape = member->shape;
+        } else {
+            return byte;
+        }
+    }
+    return byte;
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lineshaft::st {
+
+struct Type;
+
+/// How a controller has a value in its memory, in bytes, and how it is kept here, in slots: so that
+/// a reference may be reckoned with in bytes.
+struct Shape {
+    enum class Kind : std::uint8_t { whole, array, structure };
+
+    const Type* type = nullptr;
+    Kind kind = Kind::whole;  ///< nothing in it is found by bytes, else its elements or members are
+    std::uint64_t bytes = 0, slots = 0;
+    std::uint32_t element = 0;           ///< of an array
+    std::uint32_t first = 0, count = 0;  ///< of a structure: its members in Code::members
+};
+
+struct ShapeMember {
+    std::uint64_t byte = 0, slot = 0;
+    std::uint32_t shape = 0;
+};
+
+/// A variable that something refers to. A reference is three slots: the lasting address of the
+/// variable, 0 of NULL; the number of its Piece plus 1, times 2^32, plus how many bytes it is from
+/// the variable's first one (as std::int32_t); and the number of the call that has it, or 0.
+struct Piece {
+    std::string name;  ///< for messages: `Motor.table`
+    std::uint32_t shape = 0;
+    bool ends = false;             ///< with the call of its routine
+    std::uint32_t routine = 0;     ///< by number
+    std::uint32_t slot = 0;        ///< in the frame
+    std::uint32_t activation = 0;  ///< slot in the frame with the number of the call
+};
+
+struct Code;
+
+/// How many slots behind the first one of a value of that shape a value of the shape `wanted`
+/// begins at that byte; empty: none begins there.
+std::optional<std::uint64_t> slot_of(const Code& code, std::uint32_t shape, std::int64_t byte,
+                                     std::uint32_t wanted);
+
+/// The first byte of what begins so many slots behind the first one.
+std::uint64_t byte_of(const Code& code, std::uint32_t shape, std::uint64_t slot);
+
+}  // namespace lineshaft::st
