@@ -101,6 +101,13 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
                    "declare one and give it here");
         return;
     }
+    if (parameter.section == Section::in_out && is_packed(*value)) {
+        c.fail(code::wrong_arguments, value->place,
+               fmt::format("'{}' takes a variable, not bytes of the process image",
+                           parameter.text),
+               "copy it to a variable, give that, and copy it back");
+        return;
+    }
     const bool texts = given->kind == Kind::text && type->kind == Kind::text;
     const bool fits =
         same_type(*given, *type) || (parameter.section == Section::in_out

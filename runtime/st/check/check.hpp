@@ -13,6 +13,7 @@ struct Checked {
     std::vector<Global> globals;     ///< `VAR_GLOBAL` and data blocks, by number
     std::vector<Routine*> order;     ///< each behind all that it calls or holds
     std::deque<std::string> names;   ///< of variables that no source declares
+    Image image = {};                ///< the process image
 };
 
 /// What an expression comes to, or the fault that it ends with.

@@ -3,6 +3,7 @@
 #include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/st/check/catalog_types.hpp"
+#include "runtime/st/check/image.hpp"
 #include "runtime/st/check/initial_values.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
@@ -55,13 +56,16 @@ Variable* declare_global(Checking& c, const Declaration& declared, bool constant
     if (!is_new_name(c, declared.name, c.users.places)) return nullptr;
     Variable* variable = add(c, c.checked.variables, declared, type);
     if (type && type->kind == Kind::handle) return declare_object(c, *variable);
-    variable->section = Section::global;
     variable->constant = constant;
     variable->retain = retain;
-    variable->space = Space::global;
-    variable->global = 0;
+    locate_in_image(c, *variable, declared);
+    variable->section = Section::global;
+    if (variable->space == Space::frame) {
+        variable->space = Space::global;
+        variable->global = 0;
+    }
     if (constant) make_constant(c, *variable);
-    if (variable->space != Space::constant) all.members.push_back(variable);
+    if (variable->space == Space::global) all.members.push_back(variable);
     c.globals.emplace(declared.name.text, variable);
     return variable;
 }
@@ -130,6 +134,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
                    "a function keeps nothing from call to call, so it has no instances",
                    "pass the instance as VAR_IN_OUT");
         depend(c, type, declared->name.place);
+        locate_in_image(c, *variable, *declared);
         if (routine.pou->is_tests || routine.is_test()) make_object(c, *variable);
         if (block.constant && block.section != Section::input) make_constant(c, *variable);
         if (declared->edge.word != Word::end_of_file)

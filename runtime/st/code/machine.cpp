@@ -14,6 +14,7 @@
 
 #include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/constant.hpp"
+#include "runtime/st/types/packed.hpp"
 #include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft::st {

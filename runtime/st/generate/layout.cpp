@@ -24,7 +24,8 @@ void check_size(Writing& w, std::uint64_t slots, Place place, std::string_view n
 
 void place_variables(Writing& w, Routine& routine, std::uint32_t& at, auto condition) {
     for (Variable& variable : routine.variables) {
-        const bool elsewhere = variable.space == Space::constant || variable.space == Space::global;
+        const bool elsewhere = variable.space == Space::constant ||
+                               variable.space == Space::global || variable.space == Space::image;
         if (elsewhere || !condition(variable)) continue;
         w.place = variable.name.place;
         variable.slot = at;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/model/address.hpp"
 #include "runtime/model/catalog.hpp"
 #include "runtime/st/code/machine.hpp"
 
@@ -17,6 +18,8 @@ struct Options {
         10'000'000;  ///< passes of loops and calls that one scan of a block may take
     std::optional<InstructionTimes> times = {};  ///< see `Library::counts`
     bool overflow_faults = false;  ///< an integer beyond its type is a fault: it does not wrap
+
+    std::vector<ImageAddress> addresses = {};  ///< of the process image, that a program's file names
 
     bool operator==(const Options&) const = default;
 };

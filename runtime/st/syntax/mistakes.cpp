@@ -31,7 +31,6 @@ constexpr Unsupported unsupported[] = {
     {Word::reference_assign, "references are", "pass the variable as VAR_IN_OUT"},
     {Word::caret, "pointers are", "pass the variable as VAR_IN_OUT, and leave '^' out"},
     {Word::var_access_, "access paths are", "declare the variable in VAR_GLOBAL"},
-    {Word::direct, "direct addresses are", "declare a VAR_INPUT or VAR_OUTPUT and wire it"},
     {Word::override_, "inheritance is", "leave it out"},
     {Word::final_, "inheritance is", "leave it out"},
     {Word::test_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
@@ -180,8 +179,12 @@ void refuse_place(Parsing& p) {
         return fail(p, code::not_supported, p.here().place, "overlays (AT) are not supported",
                     fmt::format("leave AT out, and write {0}.%X3 or {0}.%B1, or SCATTER and GATHER",
                                 p.here().text));
-    fail(p, code::not_supported, p.here().place, "direct addresses are not supported",
-         "leave AT out, and wire the variable in the program");
+    expected(p, "an address", "after AT");
+}
+
+void refuse_shared_place(Parsing& p) {
+    fail(p, code::something_else_expected, p.here().place, "several variables at one address",
+         "declare each by itself, with an address of its own");
 }
 
 void refuse_statement(Parsing& p) {

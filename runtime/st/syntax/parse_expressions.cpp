@@ -112,7 +112,7 @@ Expression* parse_in_parentheses(Parsing& p) {
 
 /// Primary_Expr : Unsigned_Int | Real | Text | Typed_Literal | In_Parentheses | Variable_Name
 ///              | Array_Init
-/// Variable_Name : ( 'THIS' '^' ? '.' ) ? Name
+/// Variable_Name : ( 'THIS' '^' ? '.' ) ? Name | Direct
 ///               | 'AND' | 'OR' | 'XOR' | 'MOD'
 /// AND and its like are names before a '('.
 /// The checker refuses an Array_Init here.
@@ -134,7 +134,7 @@ Expression* parse_primary(Parsing& p) {
                 skip_this(p);
                 if (p.is(Word::super_) && p.next().word == Word::caret) break;
                 if (p.at_qualified_prefix()) return parse_typed_literal(p);
-                if (p.is_name() || at_operator_call(p))
+                if (p.is_name() || p.is(Word::direct) || at_operator_call(p))
                     return p.make(Expression::Kind::name, p.take());
         }
     }
