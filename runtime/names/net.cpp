@@ -96,10 +96,11 @@ std::optional<Signal> Net::find_address(const Reader& read, const Node& node,
                                         std::string_view text) const {
     const auto address = read_address(text);
     if (!address || address->end() > longest_area) {
-        read.fail(code::unknown_signal, node, fmt::format("'{}' is not an address", text),
-                  fmt::format("write the area I, Q or M, the size X, B, W, D or L, and the byte, up "
-                              "to {}: \"%IX0.3\", \"%QW4\"",
-                              longest_area - 1));
+        read.fail(
+            code::unknown_signal, node, fmt::format("'{}' is not an address", text),
+            fmt::format("write the area I, Q or M, the size X, B, W, D or L, and the byte, up "
+                        "to {}: \"%IX0.3\", \"%QW4\"",
+                        longest_area - 1));
         return {};
     }
     const auto it = instance_numbers.find(std::string(st::image_name));

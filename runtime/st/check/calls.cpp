@@ -103,8 +103,7 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     }
     if (parameter.section == Section::in_out && is_packed(*value)) {
         c.fail(code::wrong_arguments, value->place,
-               fmt::format("'{}' takes a variable, not bytes of the process image",
-                           parameter.text),
+               fmt::format("'{}' takes a variable, not bytes of the process image", parameter.text),
                "copy it to a variable, give that, and copy it back");
         return;
     }

@@ -23,7 +23,7 @@ struct Location {
         bool is_bit = false;  ///< a boolean at an address, `%IX0.3`
     };
     std::optional<Packed> packed = {};  ///< of the bytes from there on
-    Slot capacity = none;  ///< of a text of any length: what it holds is in that slot
+    Slot capacity = none;               ///< of a text of any length: what it holds is in that slot
 };
 
 Location locate(Writing& w, const Expression& e);

@@ -71,7 +71,7 @@ bool image_is_valid(const std::byte* block, const KeptState& machine) {
 Direction direction_of(ImageAddress::Area area) {
     return area == ImageAddress::Area::input    ? Direction::input
            : area == ImageAddress::Area::output ? Direction::output
-                                           : Direction::local;
+                                                : Direction::local;
 }
 
 Field field_of(const Type& type, const ImageAddress& address) {

@@ -19,7 +19,8 @@ struct Options {
     std::optional<InstructionTimes> times = {};  ///< see `Library::counts`
     bool overflow_faults = false;  ///< an integer beyond its type is a fault: it does not wrap
 
-    std::vector<ImageAddress> addresses = {};  ///< of the process image, that a program's file names
+    std::vector<ImageAddress> addresses =
+        {};  ///< of the process image, that a program's file names
 
     bool operator==(const Options&) const = default;
 };

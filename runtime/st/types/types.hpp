@@ -122,9 +122,9 @@ struct Variable {
     bool is_byte = false;
     int global = -1;
     ImageAddress address = {};     ///< in the process image
-    bool is_direct = false;   ///< no variable: an address that code names
+    bool is_direct = false;        ///< no variable: an address that code names
     Section pin = Section::local;  ///< `AT %I*`, `%Q*`: input or output of its block for programs
-    Constant value = {};  ///< of a constant scalar
+    Constant value = {};           ///< of a constant scalar
     Expression* initial = nullptr;
     std::string unit = {};
     const Pou* of = nullptr;  ///< null: a member of a structure, or of the catalogue
