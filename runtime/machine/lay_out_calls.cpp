@@ -129,15 +129,18 @@ void feed_at_once(const MainInput& input, Call& call) {
     if (feeds_it(call.copies[0]) && at_once) call.run = at_once;
 }
 
-void append_call(const Net& net, std::span<const int> blocks, Machine& machine) {
+/// `fed`: their wires come before it.
+void append_call(const Net& net, std::span<const int> blocks, ScanBlocks scan, bool fed,
+                 Machine& machine) {
     const Instance& first = net.instance(blocks.front());
     Task& task = machine.tasks[static_cast<std::size_t>(first.task)];
     Call& call = task.calls.emplace_back();
-    call.scan = first.type->scan_blocks;
+    call.scan = scan;
     call.context = machine.context_of(*first.type, first.task);
     call.first = machine.blocks[static_cast<std::size_t>(blocks.front())].live;
     call.count = blocks.size();
     call.size = first.type->size;
+    if (!fed) return;
     append_wires(wires_of(net, blocks, task.calls.size() == 1, machine), call, task.wires);
     feed_at_once(first.type->main_input, call);
 }
@@ -170,12 +173,21 @@ void lay_out_calls(const Net& net, const std::vector<int>& sequence, const std::
         return left.task != right.task || left.type != right.type ||
                levels[static_cast<std::size_t>(a)] != levels[static_cast<std::size_t>(b)];
     };
+    const auto calls_of_image = [&](bool before) {
+        for (const int& block : sequence)
+            if (const BlockType& type = *net.instance(block).type; type.scan_before_all)
+                append_call(net, {&block, 1}, before ? type.scan_before_all : type.scan_behind_all,
+                            before, machine);
+    };
+    calls_of_image(true);
     for (auto first = sequence.begin(); first != sequence.end();) {
         const auto end = std::adjacent_find(first, sequence.end(), is_other);
         const auto next = end == sequence.end() ? end : end + 1;
-        append_call(net, {first, next}, machine);
+        const BlockType& type = *net.instance(*first).type;
+        if (!type.scan_before_all) append_call(net, {first, next}, type.scan_blocks, true, machine);
         first = next;
     }
+    calls_of_image(false);
     std::ranges::for_each(machine.tasks, point_to_wires);
 }
 

@@ -53,6 +53,8 @@ struct BlockType {
     std::size_t alignment = 0;
     void (*make)(std::byte* place, const void* context) = nullptr;
     ScanBlocks scan_blocks = nullptr;
+    ScanBlocks scan_before_all = nullptr;  ///< of one that its task scans before all others, and
+    ScanBlocks scan_behind_all = nullptr;  ///< again behind them: the process image; or null
     MainInput main_input = {};
     DeviceCalls device = {};
     std::optional<Misfit> (*misfit)(const std::byte* block,

@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "runtime/model/address.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/st/library/library.hpp"
+#include "runtime/st/types/types.hpp"
 
 namespace lineshaft {
 
@@ -30,6 +32,7 @@ std::string Instance::described() const {
 }
 
 std::optional<Signal> Net::find(const Reader& read, const Node& node, std::string_view text) const {
+    if (text.starts_with('%')) return find_address(read, node, text);
     const auto name = split_signal(text);
     if (!name) {
         read.fail(code::unknown_signal, node, fmt::format("'{}' is not a signal", text),
@@ -89,6 +92,29 @@ std::string_view Net::misspelt(std::string_view port) const {
     return known ? std::string_view() : port;
 }
 
+std::optional<Signal> Net::find_address(const Reader& read, const Node& node,
+                                        std::string_view text) const {
+    const auto address = read_address(text);
+    if (!address || address->end() > longest_area) {
+        read.fail(
+            code::unknown_signal, node, fmt::format("'{}' is not an address", text),
+            fmt::format("write the area I, Q or M, the size X, B, W, D or L, and the byte, up "
+                        "to {}: \"%IX0.3\", \"%QW4\"",
+                        longest_area - 1));
+        return {};
+    }
+    const auto it = instance_numbers.find(std::string(st::image_name));
+    const Field* field = it == instance_numbers.end()
+                             ? nullptr
+                             : instance(it->second).type->find_readable(text_of(*address));
+    if (field) return signal(port(it->second, *field));
+    if (kinds)
+        read.fail(code::unknown_signal, node,
+                  fmt::format("the program has no process image for '{}'", text),
+                  "its sources name no address: x AT %QW4 : INT");
+    return {};
+}
+
 std::optional<Signal> Net::find_input(const Reader& read, const Node& node,
                                       std::string_view name) const {
     const auto it = std::ranges::find(inputs, name, &InputNode::name);
@@ -132,7 +158,9 @@ Port Net::port(int number, const Field& field) const {
 
 Signal Net::signal(Port port) const {
     const Field& field = this->field(port);
-    return {.name = fmt::format("{}.{}", instance(port).name, field.name),
+    const std::string& owner = instance(port).name;
+    return {.name = owner == st::image_name ? std::string(field.name)
+                                            : fmt::format("{}.{}", owner, field.name),
             .type = field.type,
             .unit = unit_of(port).text,
             .names = field.names,

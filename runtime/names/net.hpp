@@ -127,6 +127,8 @@ struct Net {
     std::string chosen_unit(const Instance& block, const Field& chosen) const;
     std::optional<Signal> find_input(const Reader& read, const Node& node,
                                      std::string_view name) const;
+    std::optional<Signal> find_address(const Reader& read, const Node& node,
+                                       std::string_view text) const;
     std::optional<Signal> find_output(const Reader& read, const Node& node,
                                       std::string_view name) const;
     void unknown_port(const Reader& read, const Node& node, const Instance& block,

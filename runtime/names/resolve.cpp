@@ -70,6 +70,7 @@ Net resolve(const Program& program, const Catalog& catalog, std::shared_ptr<cons
     resolve_instances(to);
     resolve_inputs(to);
     resolve_assignments(to);
+    resolve_io(to);
     resolve_constants(to);
     resolve_wires(to);
     resolve_outputs(to);

@@ -19,6 +19,9 @@ struct WireText {
     bool previous = false;
 };
 
+/// Empty for a constant. In `{...}` a name with an index stands in quotes.
+std::optional<WireText> parse_wire(const Node& node);
+
 /// `ratio: inputs.wanted` of a block: a field and what the program gives it.
 struct Assignment {
     int instance = 0;
@@ -43,6 +46,7 @@ struct Resolving {
 void resolve_tasks(Resolving& to);        ///< resolve_tasks.cpp
 void resolve_instances(Resolving& to);    ///< resolve_instances.cpp: types and tasks
 void resolve_assignments(Resolving& to);  ///< likewise
+void resolve_io(Resolving& to);           ///< resolve_io.cpp
 void resolve_constants(Resolving& to);    ///< resolve_constants.cpp
 void resolve_wires(Resolving& to);        ///< resolve_wires.cpp
 

@@ -117,7 +117,8 @@ void refer_to_globals(Resolving& to) {
                 if (!field.global.empty()) refer_to_global(to, number, field);
 }
 
-/// In `{...}` a name with an index stands in quotes.
+}  // namespace
+
 std::optional<WireText> parse_wire(const Node& node) {
     const bool is_indexed = node.text.find('[') != std::string::npos;
     if (!node.is_scalar() || (node.quoted && !is_indexed)) return {};
@@ -135,6 +136,8 @@ std::optional<WireText> parse_wire(const Node& node) {
     if (!split_signal(text) && !wire.negated && !wire.previous) return {};
     return wire;
 }
+
+namespace {
 
 void refuse_port(Resolving& to, const Instance& block, const Node& key) {
     if (const Field* field = block.type->find_readable(key.text))

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/model/address.hpp"
 #include "runtime/source/codes.hpp"
 
 namespace lineshaft {
@@ -34,6 +35,16 @@ std::string_view usual_type(Type type) {
     return type == Type::real ? "real32" : type == Type::integer ? "int32" : "uint16";
 }
 
+/// Of an address of the process image a type of its size.
+std::string_view usual_type(const Target& target) {
+    const auto address = read_address(target.signal.name);
+    if (!address || target.signal.type != Type::integer) return usual_type(target.signal.type);
+    const bool has_sign = target.field.minimum < 0;
+    if (address->bits == 64) return "int64";
+    if (address->bits == 32) return has_sign ? "int32" : "uint32";
+    return has_sign ? "int16" : "uint16";
+}
+
 /// Empty: reported.
 std::optional<double> scale_of(const Connecting& to, const RegisterPlan& plan,
                                const Signal& signal) {
@@ -56,7 +67,8 @@ std::int64_t whole_or_zero(double number) {
                : 0;
 }
 
-void set_type(const Connecting& to, const RegisterPlan& plan, MappedSignal& mapped) {
+void set_type(const Connecting& to, const RegisterPlan& plan, const Target& target,
+              MappedSignal& mapped) {
     const Signal& signal = mapped.signal;
     if (has_bits(plan.table)) {
         if (signal.type != Type::boolean)
@@ -69,7 +81,7 @@ void set_type(const Connecting& to, const RegisterPlan& plan, MappedSignal& mapp
                          "a bit has no type and no scale");
         return;
     }
-    const std::string_view name = plan.type ? plan.type->text : usual_type(signal.type);
+    const std::string_view name = plan.type ? plan.type->text : usual_type(target);
     const auto type = std::ranges::find(types, name, &NamedType::name);
     mapped.type = type->type;
     mapped.count = type->registers;
@@ -94,10 +106,11 @@ std::optional<Target> find_written(const Connecting& to, const RegisterPlan& pla
     return find_settable(to, plan.signal);
 }
 
-void add(Connecting& to, const RegisterPlan& plan, std::vector<MappedSignal>& table) {
+/// Returns the address behind it; 0: reported.
+int add(Connecting& to, const RegisterPlan& plan, std::vector<MappedSignal>& table) {
     const auto target = find_target(to, plan.signal);
     const auto address = to.read.integer(plan.address);
-    if (!target || !address) return;
+    if (!target || !address) return 0;
     const auto written = find_written(to, plan);
     MappedSignal mapped{.address = static_cast<int>(*address),
                         .little = plan.little,
@@ -106,12 +119,13 @@ void add(Connecting& to, const RegisterPlan& plan, std::vector<MappedSignal>& ta
                         .signal = target->signal};
     if (!target->is_of_block() || (written && written->live == target->live))
         mapped.set_to = target->live;
-    set_type(to, plan, mapped);
+    set_type(to, plan, *target, mapped);
     constexpr int addresses = 65536;
     if (mapped.end() > addresses)
-        return to.read.fail(
-            code::registers_overlap, plan.address,
-            fmt::format("{} registers from {} on end beyond 65535", mapped.count, mapped.address));
+        return to.read.fail(code::registers_overlap, plan.address,
+                            fmt::format("{} registers from {} on end beyond 65535", mapped.count,
+                                        mapped.address)),
+               0;
     const auto overlaps = [&](const MappedSignal& other) {
         return other.address < mapped.end() && mapped.address < other.end();
     };
@@ -121,8 +135,23 @@ void add(Connecting& to, const RegisterPlan& plan, std::vector<MappedSignal>& ta
                             fmt::format("'{}' has the registers {} to {}, '{}' those from {} on",
                                         other->signal.name, other->address, other->end() - 1,
                                         mapped.signal.name, mapped.address),
-                            fmt::format("the next that is free is {}", other->end()));
+                            fmt::format("the next that is free is {}", other->end())),
+               0;
+    const int end = mapped.end();
     table.push_back(std::move(mapped));
+    return end;
+}
+
+/// `%MW0..%MW99`: one behind the other.
+void add_range(Connecting& to, RegisterPlan plan, std::vector<MappedSignal>& table) {
+    const auto addresses = addresses_of_range(plan.signal.text);
+    if (addresses.size() < 2) return void(add(to, plan, table));
+    for (const ImageAddress& address : addresses) {
+        plan.signal.text = text_of(address);
+        const int next = add(to, plan, table);
+        if (next == 0) return;
+        plan.address.text = std::to_string(next);
+    }
 }
 
 }  // namespace
@@ -156,7 +185,7 @@ bool ModbusMap::empty() const {
 ModbusMap connect_modbus(Connecting& to) {
     ModbusMap map;
     for (const RegisterPlan& plan : to.program.registers)
-        add(to, plan, map.tables[static_cast<std::size_t>(plan.table)]);
+        add_range(to, plan, map.tables[static_cast<std::size_t>(plan.table)]);
     for (auto& table : map.tables) std::ranges::sort(table, {}, &MappedSignal::address);
     return map;
 }

@@ -18,7 +18,8 @@ const Form& register_form() {
     static const Form form = form_of<Mapped>(
         {.name = "register",
          .what = "a register",
-         .doc = "a signal in a table of Modbus; 100: SIGNAL alone is one that is only read",
+         .doc = "a signal in a table of Modbus; 100: SIGNAL alone is one that is only read. A "
+                "range of the process image, %MW0..%MW99, stands in one register behind the other",
          .keys = {
              key<&Mapped::signal>("signal", a_signal, "what is read there, and written").must(),
              key<&Mapped::type>(

@@ -193,6 +193,7 @@ struct Program {
     bool overflow_faults = false;  ///< of an integer of Structured Text; else it wraps
     std::vector<std::pair<Node, Node>> inputs;
     std::vector<std::pair<Node, Node>> outputs;  ///< name and the signal it shows
+    std::vector<std::pair<Node, Node>> io;       ///< addresses, and what they are wired to
     std::vector<Node> retain;                    ///< blocks, signals
     std::vector<StimulusPlan> stimuli;
     std::vector<ReplayPlan> replays;

@@ -89,6 +89,10 @@ const Form& program_form() {
                                     "names and values from outside, as they are at the start"),
               key<&Program::outputs>("outputs", named("an output", a_signal),
                                      "names for outside and the signals that they show"),
+              key<&Program::io>(
+                  "io", signals_to(a_value.as("a signal")),
+                  "addresses of the process image and what they are wired to: an input %IX0.0 "
+                  "takes a signal, an output %QW4 goes to an input of a block"),
               key<&Program::retain>(
                   "retain", list_of(either({a_signal, a_name})).unique("'{}' is retained already"),
                   "blocks with all that they remember, and signals, that outlive a run in "

@@ -19,7 +19,10 @@ using Json = nlohmann::ordered_json;
 const std::string name_pattern = "[A-Za-z_][A-Za-z0-9_]*";
 const std::string part_pattern =
     "[A-Za-z_\u00C0-\u1FFF\u3005-\uD7FF][A-Za-z0-9_\u00C0-\u1FFF\u3005-\uD7FF]*";
-const std::string signal_pattern = name_pattern + "(\\." + part_pattern + "(\\[[-0-9,]+\\])?)+";
+const std::string address_pattern = "%[IQMiqm][XBWDLxbwdl]?[0-9]+(\\.[0-7])?";
+const std::string signal_pattern = "(" + name_pattern + "(\\." + part_pattern +
+                                   "(\\[[-0-9,]+\\])?)+|" + address_pattern + "(\\.\\." +
+                                   address_pattern + ")?)";
 const std::string number_pattern = "([0-9._]+([eE][-+]?[0-9]+)?|(2|8|16)#[0-9A-Fa-f_]+)";
 
 /// A schema of one keyword. Braces alone would leave it to the compiler what a list of one is.

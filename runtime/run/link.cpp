@@ -1,5 +1,6 @@
 #include "runtime/run/link.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include <fmt/format.h>
@@ -17,8 +18,22 @@ namespace lineshaft {
 
 namespace {
 
+/// `"%QW4"` anywhere in a program's file: nothing else there begins with '%'.
+void find_addresses(const Node& node, std::vector<ImageAddress>& found) {
+    for (const ImageAddress& address : addresses_of_range(node.text))
+        if (std::ranges::find(found, address) == found.end()) found.push_back(address);
+    for (const Node& item : node.items) find_addresses(item, found);
+    for (const auto& [key, value] : node.entries) {
+        find_addresses(key, found);
+        find_addresses(value, found);
+    }
+}
+
 st::Options options_of(const Program& program) {
-    return {.times = program.instruction_times, .overflow_faults = program.overflow_faults};
+    st::Options options{.times = program.instruction_times,
+                        .overflow_faults = program.overflow_faults};
+    find_addresses(program.root, options.addresses);
+    return options;
 }
 
 /// What the program's Structured Text brings along; null if there is a mistake in it.

@@ -4,6 +4,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/run/single_run.hpp"
+#include "runtime/st/types/types.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {
@@ -56,8 +57,10 @@ std::string_view Drawing::value(const Wire& wire) const {
 /// `NOT previous(shaft.velocity)`
 std::string Drawing::text(const Wire& wire) const {
     const bool previous = wire.late == Late::previous;
-    return fmt::format("{}{}{}.{}{}", wire.negated ? "NOT " : "", previous ? "previous(" : "",
-                       source(wire), value(wire), previous ? ")" : "");
+    const bool is_address = source(wire) == st::image_name;
+    return fmt::format("{}{}{}{}{}{}", wire.negated ? "NOT " : "", previous ? "previous(" : "",
+                       is_address ? "" : source(wire), is_address ? "" : ".", value(wire),
+                       previous ? ")" : "");
 }
 
 std::vector<std::pair<std::string_view, std::string_view>> Drawing::references_of(int block) const {

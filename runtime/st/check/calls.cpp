@@ -112,6 +112,12 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
                "take the output as it is");
         return;
     }
+    if (parameter.section == Section::in_out && is_packed(*value)) {
+        c.fail(code::wrong_arguments, value->place,
+               fmt::format("'{}' takes a variable, not bytes of the process image", parameter.text),
+               "copy it to a variable, give that, and copy it back");
+        return;
+    }
     const bool texts = given->kind == Kind::text && type->kind == Kind::text;
     const bool derives = parameter.section == Section::in_out && given->kind == Kind::block &&
                          type->kind == Kind::block && is_a(*given->routine, *type->routine);

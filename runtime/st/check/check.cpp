@@ -2,6 +2,7 @@
 
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/image.hpp"
 #include "runtime/st/check/initial_values.hpp"
 #include "runtime/st/check/order.hpp"
 #include "runtime/st/check/statements.hpp"
@@ -17,6 +18,7 @@ Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics
     check_classes(c);
     check_initial_values(c);
     for (Routine& routine : c.checked.routines) check_body(c, routine);
+    finish_image(c);
     order_routines(c);
     if (out.empty()) warn_of_unused(c);
     return std::move(c.checked);

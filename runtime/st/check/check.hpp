@@ -16,6 +16,7 @@ struct Checked {
     bool refers_to_in_outs = false;  ///< to what a VAR_IN_OUT is given
     std::deque<std::string> names;   ///< of variables that no source declares
     bool dispatches = false;         ///< calls find routines by instances
+    Image image = {};                ///< the process image
 };
 
 /// What an expression comes to, or the fault that it ends with.
@@ -38,6 +39,7 @@ using Evaluate = Evaluated (*)(Expression&);
 ///   L0923  warning: an argument not taken
 ///   L0924  warning: a block assigns its own input
 ///   L0925  warning: a step without a way out
+///   L0926  warning: two variables at one address
 Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out);
 
 }  // namespace lineshaft::st

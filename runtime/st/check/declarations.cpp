@@ -9,6 +9,7 @@
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/image.hpp"
 #include "runtime/st/check/initial_values.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
@@ -85,14 +86,17 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
     c.globals.emplace(in_list, variable);
     if (type && type->kind == Kind::handle) return declare_object(c, *variable);
     variable->text = name.text;
-    variable->section = Section::global;
     variable->constant = block.constant;
     variable->retain = block.retain;
-    variable->space = Space::global;
-    variable->global = 0;
+    locate_in_image(c, *variable, declared);
+    variable->section = Section::global;
+    if (variable->space == Space::frame) {
+        variable->space = Space::global;
+        variable->global = 0;
+    }
     refuse_abstract(c, type, declared.name.place);
     if (block.constant) make_constant(c, *variable);
-    if (variable->space != Space::constant) all.members.push_back(variable);
+    if (variable->space == Space::global) all.members.push_back(variable);
     if (!block.is_qualified_only) c.globals.emplace(declared.name.text, variable);
     return variable;
 }
@@ -166,6 +170,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         if (variable->space != Space::reference) refuse_abstract(c, type, declared->name.place);
         const bool is_only_named = routine.is_prototype() && type && type->kind == Kind::block;
         if (!is_only_named) depend(c, type, declared->name.place);
+        locate_in_image(c, *variable, *declared);
         if (routine.pou->is_tests || routine.is_test()) make_object(c, *variable);
         if (!declared->type)
             make_untyped_constant(c, *variable);

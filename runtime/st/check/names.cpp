@@ -9,6 +9,7 @@
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/image.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/objects.hpp"
@@ -132,6 +133,7 @@ const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, co
 
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     const Token& token = e->token;
+    if (token.word == Word::direct) return check_direct(c, *e);
     if (expected && expected->kind == Kind::enumeration && !token.local) {
         const auto it = std::ranges::find_if(expected->values, [&](const std::string& known) {
             return same_name(known, token.text);

@@ -31,6 +31,7 @@ Fault run(Frames& frames, const CodeRoutine& routine) {
 #define number_of(value, number) code.numbers.data()[table(number).place(value)]
 #define within(value, number) table(number).contains(value)
 // The empty statement keeps a jump that is not taken off the way to the next instruction.
+#define UPPER_C static_cast<std::uint32_t>(to >> 32)
 #define GO(address)                                                                      \
     {                                                                                    \
         pc = reinterpret_cast<const Instruction*>(static_cast<std::uintptr_t>(address)); \

@@ -11,6 +11,7 @@
 
 #include "runtime/st/code/machine.hpp"
 #include "runtime/st/syntax/constant.hpp"
+#include "runtime/st/types/packed.hpp"
 
 /// What the lines of the instructions are written in: the machine and the stencils of native code
 /// (native/) include it. Nothing here throws.

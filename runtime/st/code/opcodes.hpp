@@ -17,6 +17,9 @@
 /// AGAIN(to) too and takes fuel; CALL and LEAVE begin and end a call; FAIL ends the scan with a
 /// fault.
 ///
+/// Of packed memory the lower half of c is where a value begins [bits], on from what slot d has, and
+/// the upper one, UPPER_C, its PackedFormat.
+///
 /// Fused instructions do what two or more of the others do. Code that is counted has none.
 // clang-format off
 #define LINESHAFT_ST_OPCODES(OP)                                                                     \
@@ -46,6 +49,8 @@
     OP(copy_from, move, "srn-", copy_slots(at(a), target(U(b)), c))                                  \
     OP(copy_between, move, "rrn-", copy_slots(target(U(a)), target(U(b)), c))                        \
     OP(copy_to, move, "rsn-", copy_slots(target(U(a)), at(b), c))                                    \
+    OP(load_packed, move, "wrnr", put(a, load_packed(target(U(b)), c + U(d), PackedFormat::of_number(UPPER_C)))) \
+    OP(store_packed, move, "rrnr", store_packed(target(U(b)), c + U(d), PackedFormat::of_number(UPPER_C), U(a))) \
     OP(initialise, move, "snn-", std::memcpy(at(a), &code.images[b], 8 * std::size_t{c}))            \
     OP(index, integer, "wrx-", ELEMENT(b, c); put(a, element))                                       \
     OP(index_more, integer, "wrx-", ELEMENT(b, c); put(a, U(a) + element))                           \

@@ -157,7 +157,7 @@ void take(Writing& w, const Location& frame, const Expression& e) {
             w.put(Op::text_copy, address_of(w, to), address_of(w, from),
                   capacity_of(w, to, wanted));
         else if (!given.is_scalar())
-            copy(w, to, from, slots_of(w, given));
+            copy_value(w, to, from, given);
         else
             store(w, to, taken());
     }

@@ -6,6 +6,7 @@
 #include "runtime/st/generate/dispatch.hpp"
 #include "runtime/st/generate/images.hpp"
 #include "runtime/st/generate/layout.hpp"
+#include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/references.hpp"
 #include "runtime/st/generate/statements.hpp"
 
@@ -115,7 +116,8 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
     prepare_dispatch(w);
     w.fuses = !w.options.counted && !w.options.covered && !w.has_tests;
     for (const Global& global : w.checked.globals)
-        if (global.type->kind != Kind::block) slots_of(w, *global.type);
+        if (global.type->kind != Kind::block && global.name != image_name)
+            slots_of(w, *global.type);
     for (Routine* routine : w.checked.order) {
         if (!w.out.empty()) return {};
         write(w, *routine);
@@ -125,6 +127,7 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
         Writing::Image image(slots_of(w, *global.type), 0);
         fill_default(w, image, 0, *global.type);
         fill_data_block(w, image, global);
+        if (global.name == image_name) fill_process_image(w, image);
         w.images[global.type] = std::move(image);
     }
     finish_images(w);

@@ -2,6 +2,7 @@
 
 #include "runtime/st/generate/calls.hpp"
 #include "runtime/st/generate/layout.hpp"
+#include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/references.hpp"
 #include "runtime/st/generate/standard_functions.hpp"
 #include "runtime/st/generate/texts.hpp"
@@ -32,9 +33,9 @@ void copy_value(Writing& w, const Location& to, const Type& type, const Expressi
     if (from.kind == E::call) {
         const Location made = from.routine ? Location{Mode::slot, call(w, from, none)}
                                            : Location{Mode::address, 0, standard(w, from, none)};
-        return copy(w, to, made, slots_of(w, type));
+        return copy_value(w, to, made, type);
     }
-    copy(w, to, locate(w, from), slots_of(w, type));
+    copy_value(w, to, locate(w, from), type);
 }
 
 }  // namespace
@@ -50,8 +51,15 @@ void store_bits(Writing& w, const Expression& target, Slot bits) {
 }
 
 Location locate(Writing& w, const Expression& e) {
-    if (e.kind == E::member) return part(w, locate(w, *e.operands[0]), *e.variable);
-    if (e.kind == E::index) return element(w, locate(w, *e.operands[0]), e);
+    if (e.variable && e.variable->space == Space::image) return locate_in_image(w, *e.variable);
+    if (e.kind == E::member) {
+        const Location of = locate(w, *e.operands[0]);
+        return of.packed ? packed_member(of, *e.variable) : part(w, of, *e.variable);
+    }
+    if (e.kind == E::index) {
+        const Location of = locate(w, *e.operands[0]);
+        return of.packed ? packed_element(w, of, e) : element(w, of, e);
+    }
     if (e.kind == E::deref) return locate_target(w, e);
     if (e.kind == E::call) return {Mode::slot, call(w, e, none)};
     if (e.kind == E::converted) return locate_object(w, e);
@@ -140,6 +148,7 @@ Slot capacity_of(Writing& w, const Location& text, const Type& type) {
 }
 
 Slot load(Writing& w, const Location& from, Slot wanted) {
+    if (from.packed) return load_packed(w, from, wanted);
     if (from.byte && from.mode == Mode::slot)
         return w.emit(Op::get_byte, wanted, from.slot, *from.byte);
     if (from.byte) return w.emit(Op::load_byte, wanted, from.index, from.offset * 8 + *from.byte);
@@ -149,6 +158,7 @@ Slot load(Writing& w, const Location& from, Slot wanted) {
 }
 
 void store(Writing& w, const Location& to, Slot from) {
+    if (to.packed) return store_packed(w, to, from);
     if (to.byte && to.mode == Mode::slot) return w.put(Op::set_byte, from, to.slot, *to.byte);
     if (to.byte) return w.put(Op::store_byte, from, to.index, to.offset * 8 + *to.byte);
     if (to.mode == Mode::indexed) return w.put(Op::store_at, from, to.slot, to.index);
@@ -164,9 +174,14 @@ void copy(Writing& w, const Location& to, const Location& from, std::uint32_t sl
     w.put(Op::copy_between, address_of(w, to), address_of(w, from), slots);
 }
 
+void copy_value(Writing& w, const Location& to, const Location& from, const Type& type) {
+    if (to.packed || from.packed) return copy_packed(w, to, from, type);
+    copy(w, to, from, slots_of(w, type));
+}
+
 void assign(Writing& w, const Location& to, const Type& type, const Expression& from) {
     if (!type.is_scalar()) return copy_value(w, to, type, from);
-    if (to.mode == Mode::slot && !to.byte) return value_to(w, from, to.slot);
+    if (to.mode == Mode::slot && !to.byte && !to.packed) return value_to(w, from, to.slot);
     store(w, to, value(w, from));
 }
 

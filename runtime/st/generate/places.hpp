@@ -15,7 +15,15 @@ struct Location {
     Slot slot = 0, index = 0;
     std::uint32_t offset = 0;
     std::optional<std::uint32_t> byte = {};  ///< of a boolean in an instance of the catalogue
-    Slot capacity = none;  ///< of a text of any length: what it holds is in that slot
+    struct Packed {
+        std::uint32_t first = 0;  ///< bit
+        Slot index = none;        ///< a slot with so many bits more; or none
+        const Dialect* dialect = nullptr;
+        const Type* type = nullptr;
+        bool is_bit = false;  ///< a boolean at an address, `%IX0.3`
+    };
+    std::optional<Packed> packed = {};  ///< of the bytes from there on
+    Slot capacity = none;               ///< of a text of any length: what it holds is in that slot
 };
 
 Location locate(Writing& w, const Expression& e);
@@ -41,6 +49,9 @@ void store_bits(Writing& w, const Expression& target, Slot bits);
 
 /// Slots as they are.
 void copy(Writing& w, const Location& to, const Location& from, std::uint32_t slots);
+
+/// A value of the type, of which any may be packed.
+void copy_value(Writing& w, const Location& to, const Location& from, const Type& type);
 
 /// Any value.
 void assign(Writing& w, const Location& to, const Type& type, const Expression& from);

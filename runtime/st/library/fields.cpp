@@ -83,6 +83,8 @@ class FieldWriter {
     }
 
     static Direction direction_of(const Variable& variable) {
+        if (variable.pin == Section::input) return Direction::input;
+        if (variable.pin == Section::output) return Direction::output;
         if (variable.section == Section::input)
             return variable.constant ? Direction::parameter : Direction::input;
         if (variable.section == Section::in_out) return Direction::in_out;

@@ -3,6 +3,7 @@
 #include <deque>
 
 #include "runtime/st/library/compiled.hpp"
+#include "runtime/st/types/packed.hpp"
 
 namespace lineshaft::st {
 
@@ -31,9 +32,23 @@ struct KindContext {
     std::vector<std::uint32_t> references;  ///< slots of VAR_IN_OUT, which a call fills
 };
 
+/// What the block with the process image works by.
+struct ImageKind {
+    struct Place {
+        std::uint64_t bit = 0;  ///< of the image
+        PackedFormat format = {};
+        bool is_taken = true;  ///< what others write there goes into the bytes
+    };
+    std::vector<Place> places;  ///< of each field
+    std::vector<Field> fields;
+    std::size_t bytes = 0;
+    const std::uint64_t* image = nullptr;  ///< as it begins
+};
+
 /// All that the kinds of a library refer to.
 struct Library::Made : Compiled {
     std::deque<KindContext> kinds;
+    ImageKind image;
     std::deque<std::string> names;                     ///< of fields
     std::deque<std::vector<std::string_view>> values;  ///< of enumerations
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runtime/st/library/fields.hpp"
+#include "runtime/st/library/image.hpp"
 
 namespace lineshaft::st {
 
@@ -45,6 +46,7 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
                                const Catalog& standard, Diagnostics& out, const Options& options) {
     const auto made = std::make_shared<Library::Made>();
     made->sources = sources;
+    made->tree.addresses = options.addresses;
     const CodeOptions code_options{.overflow_faults = options.overflow_faults,
                                    .counted = options.times.has_value()};
     if (!compile(*made, standard, out, code_options)) return {};
@@ -57,10 +59,13 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
             !routine.pou->place.source->is_prelude())
             add_routine(*made, routine, *codes.at(&routine), options);
     for (const Global& global : made->checked.globals)
-        if (!global.object) add_global(*made, global, options);
+        if (!global.object && global.name != image_name) add_global(*made, global, options);
     Library library;
     library.made_ = made;
     for (const KindContext& kind : made->kinds) library.kinds_.push_back(block_type(kind, made));
+    if (const int image = made->checked.image.global; image >= 0)
+        library.kinds_.push_back(
+            image_type(*made, made, made->checked.globals[static_cast<std::size_t>(image)]));
     return library;
 }
 

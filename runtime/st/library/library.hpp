@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/model/address.hpp"
 #include "runtime/model/catalog.hpp"
 #include "runtime/st/code/machine.hpp"
 
@@ -18,6 +19,9 @@ struct Options {
     std::optional<InstructionTimes> times = {};  ///< see `Library::counts`
     bool overflow_faults = false;  ///< an integer beyond its type is a fault: it does not wrap
     bool native = true;  ///< as the processor's code, where that is possible; see native_code()
+
+    std::vector<ImageAddress> addresses =
+        {};  ///< of the process image, that a program's file names
 
     bool operator==(const Options&) const = default;
 };

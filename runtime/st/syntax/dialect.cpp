@@ -35,7 +35,8 @@ const Dialect scl = {.sign_precedes_power = false,
                      .real_results_reckon_as_real = true,
                      .dint_becomes_real = true,
                      .numbers_stand_for_names = true,
-                     .texts_of_integers_have_signs = true};
+                     .texts_of_integers_have_signs = true,
+                     .packs_as_s7 = true};
 
 const Dialect& dialect_of(std::string_view path) {
     struct Ending {

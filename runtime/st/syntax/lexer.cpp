@@ -436,6 +436,7 @@ class Lexer {
             ++at_;
             skip_while(is_digit);
         }
+        if (!partial && peek() == '*') ++at_;
         add(Word::direct);
     }
 

@@ -21,7 +21,6 @@ constexpr Unsupported unsupported[] = {
     {Word::attempt_assign, "attempts to refer (?=) are",
      "write REF= or ':=' with what is of the type"},
     {Word::var_access_, "access paths are", "declare the variable in VAR_GLOBAL"},
-    {Word::direct, "direct addresses are", "declare a VAR_INPUT or VAR_OUTPUT and wire it"},
     {Word::test_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
     {Word::setup_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
     {Word::teardown_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
@@ -119,8 +118,12 @@ void refuse_place(Parsing& p) {
         return fail(p, code::not_supported, p.here().place, "overlays (AT) are not supported",
                     fmt::format("leave AT out, and write {0}.%X3 or {0}.%B1, or SCATTER and GATHER",
                                 p.here().text));
-    fail(p, code::not_supported, p.here().place, "direct addresses are not supported",
-         "leave AT out, and wire the variable in the program");
+    expected(p, "an address", "after AT");
+}
+
+void refuse_shared_place(Parsing& p) {
+    fail(p, code::something_else_expected, p.here().place, "several variables at one address",
+         "declare each by itself, with an address of its own");
 }
 
 void refuse_statement(Parsing& p) {

@@ -28,6 +28,7 @@ bool refuse_section(Parsing& p);
 void refuse_static(Parsing& p, PouKind kind);
 /// Behind AT: `%IX0.0`, or another variable.
 void refuse_place(Parsing& p);
+void refuse_shared_place(Parsing& p);
 /// A statement stands where a declaration is due.
 void refuse_statement(Parsing& p);
 /// A word of the language stands where a name is due: whatever uses it would be wrong too.

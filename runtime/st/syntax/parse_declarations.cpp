@@ -60,6 +60,15 @@ void parse_labels(Parsing& p) {
     p.accept(Word::semicolon);
 }
 
+/// Located_At : 'AT' Direct
+/// Only one variable is there.
+Token parse_location(Parsing& p, const std::vector<Token>& names) {
+    if (!p.accept(Word::at_)) return {};
+    if (!p.is(Word::direct)) return refuse_place(p), Token{};
+    if (names.size() > 1) refuse_shared_place(p);
+    return p.take();
+}
+
 }  // namespace
 
 /// Var_Sections : ( Var_Section | Const_Section | Label_Section ) *
@@ -107,8 +116,8 @@ DeclarationBlock parse_section(Parsing& p, Section section) {
     return block;
 }
 
-/// Var_Decl : Variable_List ':' Data_Type ( 'R_EDGE' | 'F_EDGE' ) ? ( ':=' Var_Init ) ? ';'
-/// Variable_List : Name ( ',' Name ) *
+/// Var_Decl : Variable_List Located_At ? ':' Data_Type ( 'R_EDGE' | 'F_EDGE' ) ? ( ':=' Var_Init )
+/// ? ';' Variable_List : Name ( ',' Name ) *
 void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
     const std::size_t first = p.at;
     const Word behind = p.next().word;
@@ -121,7 +130,7 @@ void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
     std::vector<Token> names;
     do names.push_back(expect_name(p, "the name of a variable"));
     while (p.accept(Word::comma));
-    if (p.accept(Word::at_)) refuse_place(p);
+    const Token at = parse_location(p, names);
     expect(p, Word::colon, "after the name");
     TypeText* type = parse_type(p);
     const bool is_edge = p.says("r_edge") || p.says("f_edge");
@@ -133,7 +142,7 @@ void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
     const std::string_view doc = comment_before(p, p.at, false);
     for (const Token& name : names)
         to.push_back(&p.tree.declarations.emplace_back(
-            Declaration{name, type, initial, edge, unit, place, doc}));
+            Declaration{name, type, initial, at, edge, unit, place, doc}));
 }
 
 }  // namespace lineshaft::st

@@ -132,6 +132,7 @@ Expression* parse_primary(Parsing& p) {
                 return parse_in_parentheses(p);
             default:
                 if (p.at_qualified_prefix()) return parse_typed_literal(p);
+                if (p.is(Word::direct)) return p.make(Expression::Kind::name, p.take());
                 if (p.is_name() || at_operator_call(p)) return parse_name(p);
         }
     }

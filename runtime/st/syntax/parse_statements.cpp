@@ -66,7 +66,7 @@ void parse_value_alone(Parsing& p, Expression* value, Block& to) {
 /// It begins with a Name; an Invocation ends with the ')' of a call, or names an action.
 void parse_simple(Parsing& p, Block& to) {
     if (refuse_rung(p)) return;
-    if (!p.is_name()) return expected(p, "a statement");
+    if (!p.is_name() && !p.is(Word::direct)) return expected(p, "a statement");
     if (p.is_in_test && p.at_test_statement()) return parse_test_statement(p, to);
     Expression* target = parse_access(p);
     if (p.panic) return;

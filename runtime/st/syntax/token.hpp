@@ -86,7 +86,7 @@ enum class Word : std::uint8_t {
     real,      ///< `1.5`, `1e3`
     duration,  ///< what follows `T#`, `LTIME#`, `DT#`: `1h2m3.5s`, `2020-02-29-12:30:15`
     text,      ///< `'...'`, with its quotes
-    direct,    ///< `%IX0.0`, and the `%X3` of a partial access
+    direct,    ///< `%IX0.0`, `%I*`, and the `%X3` of a partial access
     assign,    ///< `:=`
     plus_assign,
     minus_assign,

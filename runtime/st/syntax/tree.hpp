@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/model/address.hpp"
 #include "runtime/st/syntax/chart.hpp"
 #include "runtime/st/syntax/constant.hpp"
 #include "runtime/st/syntax/testing.hpp"
@@ -169,6 +170,7 @@ struct Declaration {
     Token name = {};
     TypeText* type = nullptr;  ///< null: of CONST, whose value has one
     Expression* initial = nullptr;
+    Token at = {};    ///< `%QW4` behind AT; else `end_of_file`
     Token edge = {};  ///< R_EDGE or F_EDGE behind the type; else `end_of_file`
     std::string_view unit = {};
     Place unit_place = {};
@@ -264,6 +266,8 @@ struct Tree {
     std::unordered_map<const Source*, std::deque<Scope>>
         scopes;                     ///< those within others behind them
     std::deque<std::string> names;  ///< that no source has as they are
+
+    std::vector<ImageAddress> addresses;  ///< that the program's file names beside the sources'
 
     std::vector<TypeDeclaration> types;  ///< in the order of the sources, as all lists
     std::vector<Pou*> units;             ///< all but methods

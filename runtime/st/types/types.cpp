@@ -48,6 +48,11 @@ std::uint64_t bytes_of(const Type& type) {
     }
 }
 
+bool is_packed(const Expression& place) {
+    if (place.variable && place.variable->space == Space::image) return true;
+    return place.operands[0] && is_packed(*place.operands[0]);
+}
+
 bool has_call(const Expression& e) {
     if (e.kind == Expression::Kind::call && e.routine) return true;
     for (const Expression* operand : e.operands)

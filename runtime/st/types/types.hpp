@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/model/address.hpp"
 #include "runtime/model/catalog.hpp"
 #include "runtime/st/syntax/tree.hpp"
 
@@ -116,6 +117,9 @@ const Expression& root_of(const Expression& place);
 /// is, and what a POINTER is reckoned in.
 std::uint64_t bytes_of(const Type& type);
 
+/// It is a part of the process image.
+bool is_packed(const Expression& place);
+
 /// A function or a method is called in it, which may write variables.
 bool has_call(const Expression& expression);
 
@@ -124,6 +128,7 @@ enum class Space : std::uint8_t {
     frame,      ///< of its routine, or of the block that a method belongs to
     reference,  ///< its slot has the address: VAR_IN_OUT
     global,     ///< of a data block: `global` is its number
+    image,      ///< of the process image: `address` says where
     constant,   ///< nowhere: its value is known
 };
 
@@ -137,7 +142,10 @@ struct Variable {
     std::uint32_t byte = 0;  ///< of a boolean of a kind of the catalogue, in its memory
     bool is_byte = false;
     int global = -1;
-    Constant value = {};  ///< of a constant scalar
+    ImageAddress address = {};     ///< in the process image
+    bool is_direct = false;        ///< no variable: an address that code names
+    Section pin = Section::local;  ///< `AT %I*`, `%Q*`: input or output of its block for programs
+    Constant value = {};           ///< of a constant scalar
     Expression* initial = nullptr;
     std::string unit = {};
     const Pou* of = nullptr;  ///< null: a member of a structure, or of the catalogue
@@ -221,6 +229,21 @@ struct Global {
     const Type* type = nullptr;  ///< structure, or block
     const Pou* pou = nullptr;
     const Variable* object = nullptr;  ///< a block of the program, which sources name only
+};
+
+/// The instance that has a program's process image. No name of a source is like it.
+inline constexpr std::string_view image_name = "%";
+
+/// What sources see of the process image: bytes of a global of its own, area by area.
+struct Image {
+    int global = -1;  ///< none: no source names an address
+    std::vector<Variable*> variables = {};
+    std::uint32_t begins[areas] = {};  ///< [bytes]
+    std::uint32_t bytes = 0;
+
+    std::uint32_t begin(ImageAddress::Area area) const {
+        return begins[static_cast<std::size_t>(area)];
+    }
 };
 
 }  // namespace lineshaft::st

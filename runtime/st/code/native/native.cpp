@@ -126,6 +126,8 @@ class Patching {
                 return in.b;
             case Hole::c_number:
                 return c;
+            case Hole::c_upper:
+                return in.c >> 32;
             case Hole::d_number:
                 return in.d;
             case Hole::c_table:

@@ -18,7 +18,7 @@ SYMBOLS(b)
 SYMBOLS(c)
 SYMBOLS(d)
 #undef SYMBOLS
-extern "C" const char c_table[], d_table[], place_behind[];
+extern "C" const char c_upper[], c_table[], d_table[], place_behind[];
 
 /// The compiler knows of an address that it is none of the others and not 0, which a number may be.
 #define NUMBER(symbol)                                  \
@@ -103,6 +103,7 @@ WAY_OF call(const Operand&, STATE) {
 #define I(slot) static_cast<std::int64_t>(U(slot))
 #define R(slot) std::bit_cast<double>(U(slot))
 #define put(slot, value) put_at(at(slot), value)
+#define UPPER_C NUMBER(c_upper)
 #define target(address) frames.place(address)
 #define table(operand) (*operand.table)
 #define number_of(value, operand) code.numbers.data()[table(operand).place(value)]

@@ -1,0 +1,78 @@
+#include "runtime/model/address.hpp"
+
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "runtime/source/letters.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+constexpr std::string_view area_letters = "IQM", size_letters = "XBWDL";
+constexpr std::uint8_t sizes[] = {1, 8, 16, 32, 64};
+
+/// The number at the beginning, which is taken off; empty for none, or one that is too long.
+std::optional<std::uint32_t> take_number(std::string_view& text) {
+    constexpr std::uint32_t most = 100'000'000;
+    std::uint32_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || number > most) return {};
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    return number;
+}
+
+}  // namespace
+
+std::optional<ImageAddress> read_address(std::string_view text) {
+    if (text.size() < 3 || text.front() != '%') return {};
+    const auto area = area_letters.find(upper(text[1]));
+    const auto size = size_letters.find(upper(text[2]));
+    if (area == area_letters.npos) return {};
+    ImageAddress address{.area = static_cast<ImageAddress::Area>(area)};
+    if (size != size_letters.npos) address.bits = sizes[size];
+    text.remove_prefix(size == size_letters.npos ? 2 : 3);
+    const auto first = take_number(text);
+    if (!first) return {};
+    address.byte = *first;
+    if (address.bits > 1) return text.empty() ? std::optional(address) : std::nullopt;
+    if (text.empty()) {
+        address.byte = *first / 8;
+        address.bit = *first % 8;
+        return address;
+    }
+    if (text.front() != '.') return {};
+    text.remove_prefix(1);
+    const auto bit = take_number(text);
+    if (!bit || *bit > 7 || !text.empty()) return {};
+    address.bit = static_cast<std::uint8_t>(*bit);
+    return address;
+}
+
+std::vector<ImageAddress> addresses_of_range(std::string_view text) {
+    const std::size_t dots = text.find("..");
+    auto address = read_address(text.substr(0, dots));
+    const auto last = dots == text.npos ? address : read_address(text.substr(dots + 2));
+    if (!address || !last || address->area != last->area || address->bits != last->bits) return {};
+    if (last->end() > longest_area) return {};
+    const auto first_bit = [](const ImageAddress& a) { return 8 * a.byte + a.bit; };
+    std::vector<ImageAddress> all;
+    for (std::uint32_t bit = first_bit(*address); bit <= first_bit(*last); bit += address->bits) {
+        address->byte = bit / 8;
+        address->bit = bit % 8;
+        all.push_back(*address);
+    }
+    return all;
+}
+
+std::string text_of(const ImageAddress& address) {
+    std::size_t size = 0;
+    while (sizes[size] != address.bits) ++size;
+    const std::string text =
+        fmt::format("%{}{}{}", area_letters[static_cast<std::size_t>(address.area)],
+                    size_letters[size], address.byte);
+    return address.bits > 1 ? text : fmt::format("{}.{}", text, address.bit);
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lineshaft {
+
+/// A place in a program's process image: `%IX0.3`, `%QW4`, `%MD8`. Bytes are counted, so `%MW1`
+/// has the second byte of `%MW0`.
+struct ImageAddress {
+    enum class Area : std::uint8_t { input, output, memory };  ///< I, Q, M
+
+    Area area = Area::input;
+    std::uint32_t byte = 0;  ///< the first
+    std::uint8_t bit = 0;    ///< of a bit
+    std::uint8_t bits = 1;   ///< 1, 8, 16, 32, 64: X, B, W, D, L
+
+    std::uint32_t end() const { return byte + (bits + 7U) / 8; }  ///< byte behind it
+    bool operator==(const ImageAddress&) const = default;
+};
+
+inline constexpr int areas = 3;
+
+/// Bytes that an area may have.
+inline constexpr std::uint32_t longest_area = 65536;
+
+/// Also `%I0.3` and, as the standard numbers bits, `%IX3`. Empty where the text is none; it may lie
+/// beyond its area.
+std::optional<ImageAddress> read_address(std::string_view text);
+
+/// `%MW0..%MW99`: one behind the other, without gaps; of an address alone it is it. Empty for what
+/// is none, or leaves its area.
+std::vector<ImageAddress> addresses_of_range(std::string_view text);
+
+/// In capital letters, with its size: `%IX0.3`.
+std::string text_of(const ImageAddress& address);
+
+}  // namespace lineshaft

@@ -1,0 +1,179 @@
+#include "runtime/st/check/image.hpp"
+
+#include <algorithm>
+
+#include "runtime/source/codes.hpp"
+#include "runtime/st/types/packed.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+std::optional<ImageAddress> address_of(Checking& c, const Token& token) {
+    const auto address = read_address(token.text);
+    if (!address) {
+        c.fail(code::not_declared, token.place, fmt::format("'{}' is not an address", token.text),
+               "write the area I, Q or M, the size X, B, W, D or L, and the byte: %IX0.3, %QW4, "
+               "%MD8");
+        return {};
+    }
+    if (address->end() <= longest_area) return address;
+    c.fail(code::value_out_of_range, token.place,
+           fmt::format("'{}' is beyond its area", token.text),
+           fmt::format("its bytes are 0 to {}", longest_area - 1));
+    return {};
+}
+
+const Type& type_at(const ImageAddress& address) {
+    return address.bits == 1 ? bool_type : bits_type(address.bits);
+}
+
+Image& image_of(Checking& c) {
+    Image& image = c.checked.image;
+    if (image.global < 0) {
+        image.global = static_cast<int>(c.checked.globals.size());
+        c.checked.globals.push_back({std::string(image_name), &c.make_type(Kind::structure, "")});
+    }
+    return image;
+}
+
+void put(Checking& c, Variable& variable, const ImageAddress& address) {
+    Image& image = image_of(c);
+    variable.space = Space::image;
+    variable.global = image.global;
+    variable.address = address;
+    image.variables.push_back(&variable);
+}
+
+/// Of the bits that a variable has there.
+bool fits(Checking& c, const Variable& variable, const ImageAddress& address, const Token& at) {
+    const Type& type = *variable.type;
+    const std::uint64_t bits = packed_bits(type, at.place.dialect());
+    if (bits == 0) {
+        c.fail(code::type_does_not_fit, at.place,
+               fmt::format("{} stands at no address", describe(type)),
+               "numbers, times, and structures and arrays of such do");
+        return false;
+    }
+    const bool is_bit = type.kind == Kind::boolean;
+    if (type.is_scalar() ? (is_bit ? 1 : bits) != address.bits : address.bits == 1) {
+        c.fail(code::type_does_not_fit, at.place,
+               fmt::format("'{}' is of {}, and {} has {} bit{}", variable.text, describe(type),
+                           at.text, static_cast<int>(address.bits), address.bits == 1 ? "" : "s"),
+               "X is of BOOL, B of 8 bits, W of 16, D of 32, L of 64; arrays and structures begin "
+               "at a byte");
+        return false;
+    }
+    if (address.byte + (bits + 7) / 8 <= longest_area) return true;
+    c.fail(code::value_out_of_range, at.place,
+           fmt::format("'{}' ends beyond its area", variable.text),
+           fmt::format("its bytes are 0 to {}", longest_area - 1));
+    return false;
+}
+
+/// In bits of its area, from the first on.
+std::pair<std::uint64_t, std::uint64_t> range_of(const Variable& variable) {
+    const ImageAddress& at = variable.address;
+    const std::uint64_t first = std::uint64_t{8} * at.byte + at.bit;
+    const bool is_bit = at.bits == 1;
+    return {first,
+            first + (is_bit ? 1 : packed_bits(*variable.type, variable.name.place.dialect()))};
+}
+
+bool cross(const Variable& a, const Variable& b) {
+    if (a.address.area != b.address.area) return false;
+    const auto [first, first_end] = range_of(a);
+    const auto [second, second_end] = range_of(b);
+    if (first >= second_end || second >= first_end) return false;
+    const bool is_same = first == second && first_end == second_end;
+    const bool holds = (first <= second && first_end >= second_end) ||
+                       (second <= first && second_end >= first_end);
+    return is_same || !holds;
+}
+
+void warn_of_crossing(Checking& c, const Image& image) {
+    std::vector<const Variable*> declared;
+    for (const Variable* variable : image.variables)
+        if (!variable->is_direct) declared.push_back(variable);
+    std::ranges::stable_sort(declared, {}, [](const Variable* v) { return range_of(*v); });
+    constexpr std::size_t most_neighbours = 64;
+    for (std::size_t i = 0; i < declared.size(); ++i)
+        for (std::size_t k = i + 1; k < std::min(declared.size(), i + most_neighbours); ++k) {
+            if (!cross(*declared[i], *declared[k])) continue;
+            c.warn(code::addresses_overlap, declared[k]->name.place,
+                   fmt::format("'{}' at {} has bytes of '{}' at {}", declared[k]->text,
+                               text_of(declared[k]->address), declared[i]->text,
+                               text_of(declared[i]->address)),
+                   "addresses count bytes: behind %MW0 comes %MW2");
+            break;
+        }
+}
+
+}  // namespace
+
+void locate_in_image(Checking& c, Variable& variable, const Declaration& declared) {
+    const Token& at = declared.at;
+    if (at.word == Word::end_of_file || !variable.type) return;
+    variable.used = true;
+    if (at.text.ends_with('*')) {
+        const char area = at.text.size() > 2 ? upper(at.text[1]) : ' ';
+        if (area == 'I') variable.pin = Section::input;
+        if (area == 'Q') variable.pin = Section::output;
+        return;
+    }
+    const auto address = address_of(c, at);
+    if (!address || !fits(c, variable, *address, at)) return void(variable.type = nullptr);
+    const bool stays = !c.routine || c.routine->has_instances();
+    if (variable.section == Section::local && !variable.constant && stays)
+        return put(c, variable, *address);
+    c.fail(code::wrong_place, at.place, "AT is for VAR and VAR_GLOBAL of what stays",
+           "declare it there, or write the address in the body");
+}
+
+const Type* check_direct(Checking& c, Expression& e) {
+    const auto address = address_of(c, e.token);
+    if (!address) return nullptr;
+    Image& image = image_of(c);
+    const auto is_there = [&](const Variable* variable) {
+        return variable->is_direct && variable->address == *address &&
+               &variable->name.place.dialect() == &e.place.dialect();
+    };
+    const auto it = std::ranges::find_if(image.variables, is_there);
+    if (it != image.variables.end()) {
+        e.variable = *it;
+        return e.variable->type;
+    }
+    Variable& variable = c.checked.variables.emplace_back();
+    variable.name = e.token;
+    variable.text = c.checked.names.emplace_back(text_of(*address));
+    variable.type = &type_at(*address);
+    variable.is_direct = variable.used = true;
+    put(c, variable, *address);
+    e.variable = &variable;
+    return variable.type;
+}
+
+void finish_image(Checking& c) {
+    Image& image = c.checked.image;
+    if (image.global < 0) return;
+    std::uint64_t sizes[areas] = {};
+    for (const Variable* variable : image.variables) {
+        std::uint64_t& size = sizes[static_cast<std::size_t>(variable->address.area)];
+        size = std::max(size, (range_of(*variable).second + 7) / 8);
+    }
+    for (const ImageAddress& address : c.tree.addresses) {
+        std::uint64_t& size = sizes[static_cast<std::size_t>(address.area)];
+        size = std::max<std::uint64_t>(size, address.end());
+    }
+    std::uint64_t at = 0;
+    for (std::size_t area = 0; area < areas; ++area) {
+        image.begins[area] = static_cast<std::uint32_t>(at);
+        at += (sizes[area] + 7) / 8 * 8;
+    }
+    image.bytes = static_cast<std::uint32_t>(at);
+    const_cast<Type&>(*c.checked.globals[static_cast<std::size_t>(image.global)].type).slots =
+        static_cast<std::uint32_t>(at / 8);
+    warn_of_crossing(c, image);
+}
+
+}  // namespace lineshaft::st

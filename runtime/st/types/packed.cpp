@@ -1,0 +1,165 @@
+#include "runtime/st/types/packed.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace lineshaft::st {
+
+namespace {
+
+using Kind = Type::Kind;
+using Coding = PackedFormat::Coding;
+
+enum Scale : std::uint8_t { in_ns, in_ms, in_seconds, in_days };
+
+constexpr std::int64_t scales[] = {1, 1'000'000, 1'000'000'000, 86'400'000'000'000};
+constexpr std::int64_t day_of_1990 = 7305;  ///< counted from 1970-01-01
+
+std::uint64_t aligned(std::uint64_t bits, std::uint64_t to) {
+    return (bits + to - 1) / to * to;
+}
+
+/// Where the next value of the type may begin, which needs so many bits. On an S7 booleans share
+/// bytes, and what is longer than a byte begins at an even one.
+std::uint64_t begin_of(const Type& type, std::uint64_t at, const Dialect& dialect) {
+    if (!dialect.packs_as_s7) return aligned(at, 8);
+    if (type.kind == Kind::boolean) return at;
+    const bool is_byte = type.is_scalar() && packed_bits(type, dialect) == 8;
+    return aligned(at, is_byte ? 8 : 16);
+}
+
+std::optional<PackedFormat> of_time(const Type& type, const Dialect& dialect) {
+    const bool is_long = type.name.starts_with('L'), is_s7 = dialect.packs_as_s7;
+    PackedFormat made{.coding = Coding::clock, .bytes = 4, .is_big = is_s7, .scale = in_ms};
+    if (is_long) return PackedFormat{Coding::clock, 8, is_s7, in_ns};
+    if (type.kind == Kind::date && is_s7) return PackedFormat{Coding::dated, 2, true, in_days};
+    if (type.kind == Kind::moment && is_s7) return {};  // a digit in each four bits
+    if (type.kind == Kind::date || type.kind == Kind::moment) made.scale = in_seconds;
+    return made;
+}
+
+std::uint64_t raw_bytes(const std::byte* bytes, const PackedFormat& format) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < format.bytes; ++i)
+        value = value << 8 |
+                std::to_integer<std::uint64_t>(bytes[format.is_big ? i : format.bytes - 1 - i]);
+    return value;
+}
+
+std::int64_t signed_value(std::uint64_t raw, const PackedFormat& format) {
+    const int unused = 64 - 8 * format.bytes;
+    return static_cast<std::int64_t>(raw << unused) >> unused;
+}
+
+std::int64_t quotient_down(std::int64_t value, std::int64_t by) {
+    return value / by - (value % by < 0 ? 1 : 0);
+}
+
+}  // namespace
+
+std::optional<PackedFormat> packed_format(const Type& given, const Dialect& dialect) {
+    const Type& type = given.plain();
+    const auto bytes = static_cast<std::uint8_t>(type.bits / 8);
+    const bool is_big = dialect.packs_as_s7;
+    switch (type.kind) {
+        case Kind::boolean:
+            return PackedFormat{is_big ? Coding::bit : Coding::truth, 1, is_big, 0};
+        case Kind::integer:
+        case Kind::bits:
+            return PackedFormat{type.is_signed ? Coding::with_sign : Coding::whole, bytes, is_big,
+                                0};
+        case Kind::real:
+            return PackedFormat{Coding::real, bytes, is_big, 0};
+        case Kind::time:
+        case Kind::date:
+        case Kind::clock:
+        case Kind::moment:
+            return of_time(type, dialect);
+        case Kind::enumeration:
+            if (!type.counted || !type.base) return {};
+            return packed_format(*type.base, dialect);
+        default:
+            return {};
+    }
+}
+
+std::uint64_t packed_bits(const Type& type, const Dialect& dialect) {
+    if (type.kind == Kind::boolean && dialect.packs_as_s7) return 1;
+    if (type.is_scalar()) {
+        const auto format = packed_format(type, dialect);
+        return format ? 8U * format->bytes : 0;
+    }
+    if (type.kind == Kind::array) {
+        const std::uint64_t stride = type.element ? packed_stride(type, dialect) : 0;
+        const std::uint64_t bits = stride * static_cast<std::uint64_t>(type.upper - type.lower + 1);
+        return dialect.packs_as_s7 ? aligned(bits, 16) : bits;
+    }
+    if (type.kind != Kind::structure) return 0;
+    std::uint64_t end = 0;
+    for (const Variable* member : type.members) {
+        const std::uint64_t bits = member->type ? packed_bits(*member->type, dialect) : 0;
+        if (bits == 0) return 0;
+        end = begin_of(*member->type, end, dialect) + bits;
+    }
+    return aligned(end, dialect.packs_as_s7 ? 16 : 8);
+}
+
+std::uint64_t packed_stride(const Type& array, const Dialect& dialect) {
+    const std::uint64_t bits = packed_bits(*array.element, dialect);
+    return begin_of(*array.element, bits, dialect);
+}
+
+std::uint64_t packed_offset(const Type& structure, const Variable& wanted, const Dialect& dialect) {
+    std::uint64_t end = 0;
+    for (const Variable* member : structure.members) {
+        const std::uint64_t begin = begin_of(*member->type, end, dialect);
+        if (member == &wanted) return begin;
+        end = begin + packed_bits(*member->type, dialect);
+    }
+    return end;
+}
+
+std::uint64_t load_packed(const std::byte* bytes, std::uint64_t bit, PackedFormat format) {
+    bytes += bit / 8;
+    const std::uint64_t raw = raw_bytes(bytes, format);
+    switch (format.coding) {
+        case Coding::bit:
+            return raw >> (bit % 8) & 1;
+        case Coding::truth:
+            return raw != 0;
+        case Coding::whole:
+            return raw;
+        case Coding::with_sign:
+            return static_cast<std::uint64_t>(signed_value(raw, format));
+        case Coding::real:
+            if (format.bytes == 8) return raw;
+            return std::bit_cast<std::uint64_t>(
+                double{std::bit_cast<float>(static_cast<std::uint32_t>(raw))});
+        case Coding::clock:
+            return static_cast<std::uint64_t>(signed_value(raw, format)) *
+                   static_cast<std::uint64_t>(scales[format.scale]);
+        case Coding::dated:
+            return (raw + day_of_1990) * static_cast<std::uint64_t>(scales[in_days]);
+    }
+    return raw;
+}
+
+void store_packed(std::byte* bytes, std::uint64_t bit, PackedFormat format, std::uint64_t value) {
+    bytes += bit / 8;
+    const auto number = static_cast<std::int64_t>(value);
+    if (format.coding == Coding::bit) {
+        const auto mask = static_cast<std::byte>(1U << (bit % 8));
+        *bytes = (value & 1) != 0 ? *bytes | mask : *bytes & ~mask;
+        return;
+    }
+    if (format.coding == Coding::real && format.bytes == 4)
+        value = std::bit_cast<std::uint32_t>(static_cast<float>(std::bit_cast<double>(value)));
+    if (format.coding == Coding::clock)
+        value = static_cast<std::uint64_t>(quotient_down(number, scales[format.scale]));
+    if (format.coding == Coding::dated)
+        value = static_cast<std::uint64_t>(quotient_down(number, scales[in_days]) - day_of_1990);
+    for (std::size_t i = 0; i < format.bytes; ++i, value >>= 8)
+        bytes[format.is_big ? format.bytes - 1 - i : i] = static_cast<std::byte>(value);
+}
+
+}  // namespace lineshaft::st
