@@ -45,9 +45,9 @@ VAR_OUTPUT value : INT; END_VAR
     <Folder Name="inner" Id="{2}" />
     <Method Name="Reset" Id="{3}" FolderPath="inner\">
       <Declaration><![CDATA[METHOD Reset
-VAR_INPUT to : INT; END_VAR]]></Declaration>
+VAR_INPUT first : INT; END_VAR]]></Declaration>
       <Implementation>
-        <ST><![CDATA[value := to; // no end of line]]></ST>
+        <ST><![CDATA[value := first; // no end of line]]></ST>
       </Implementation>
     </Method>
   </POU>
@@ -77,8 +77,8 @@ VAR_INPUT step : INT; END_VAR
 VAR_OUTPUT value : INT; END_VAR
 
 METHOD Reset
-VAR_INPUT to : INT; END_VAR
-value := to; // no end of line
+VAR_INPUT first : INT; END_VAR
+value := first; // no end of line
 END_METHOD
         value := value + step;
 END_FUNCTION_BLOCK
