@@ -89,9 +89,9 @@ END_FUNCTION_BLOCK
 
 TEST_CASE("a message stands at the line and column of the XML file, in any encoding") {
     const test::Folder folder;
-    const std::string text = pou("value := speed;");
-    const std::string tail = R"(:9:37: error[L0904]: 'speed' is not declared
-   9 |       <ST><![CDATA[        value := speed;]]></ST>
+    const std::string text = pou("value := steps;");
+    const std::string tail = R"(:9:37: error[L0904]: 'steps' is not declared
+   9 |       <ST><![CDATA[        value := steps;]]></ST>
      |                                     ^~~~~ did you mean 'step'?
 )";
     const std::string marked = "\xEF\xBB\xBF" + text;
