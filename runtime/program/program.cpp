@@ -10,8 +10,6 @@
 #include "runtime/program/shared_folder.hpp"
 #include "runtime/program/templates.hpp"
 #include "runtime/source/codes.hpp"
-#include "runtime/source/encoding.hpp"
-#include "runtime/st/library/test_sources.hpp"
 
 namespace lineshaft {
 
@@ -55,23 +53,6 @@ bool are_known(const Node& tasks) {
 
 }  // namespace
 
-std::vector<std::string> structured_text_below(const std::string& folder, std::error_code& error) {
-    std::vector<std::string> files;
-    std::error_code unknown;
-    constexpr auto options = fs::directory_options::skip_permission_denied;
-    for (fs::recursive_directory_iterator entry(folder, options, error), end;
-         !error && entry != end; entry.increment(error))
-        if (is_structured_text(entry->path()) && entry->is_regular_file(unknown))
-            files.push_back(entry->path().string());
-    Diagnostics unread;
-    std::erase_if(files, [&](const std::string& file) {
-        const auto source = read_source(file, unread);
-        return source && st::is_test_file(source);
-    });
-    std::ranges::sort(files);
-    return files;
-}
-
 namespace {
 
 /// A text from the command line: it has no place.
@@ -86,7 +67,7 @@ Node node_of(std::string_view text) {
 Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     program_.file = file;
     program_.title = fs::path(file->path).stem().string();
-    if (is_structured_text(file->path)) {
+    if (projects::is_source(file->path)) {
         read_.diagnostics().add(code::unknown_kind_of_file, {file, 1, 1, 1},
                                 "this is Structured Text, not a program",
                                 "name it in the 'sources' of a program");
@@ -265,26 +246,38 @@ void ProgramReader::find_source(const Node& named) {
     std::error_code unknown;
     if (!fs::is_directory(*path, unknown)) return read_source_file(*path, named.mark);
     std::error_code error;
-    const std::vector<std::string> files = structured_text_below(*path, error);
+    const std::vector<std::string> files = projects::sources_below(*path, error);
     if (error)
         read_.fail(code::file_cannot_be_read, named,
                    fmt::format("cannot read the folder '{}': {}", named.text, error.message()));
     else if (files.empty())
         read_.fail(code::file_cannot_be_read, named,
                    fmt::format("the folder '{}' has no file of Structured Text", named.text),
-                   "their names end with .st, .scl, .s7dcl, .udt or .db");
+                   "their names end with .st, .scl, .s7dcl, .udt, .db, .TcPOU, .TcDUT, .TcGVL, "
+                   ".TcIO, .plcproj, .xml (PLCopen), .exp, .typ, .var or .fun");
     program_.sources_known = program_.sources_known && !error && !files.empty();
     for (const std::string& file : files) read_source_file(file, named.mark);
 }
 
 void ProgramReader::read_source_file(const std::string& path, const Mark& mark) {
     Diagnostics& out = read_.diagnostics();
-    const auto file =
-        options_.files ? options_.files->source(path, out, mark) : read_source(path, out, mark);
-    if (!file) program_.sources_known = false;
-    if (file &&
-        std::ranges::find(program_.texts, file->path, &SourceFile::path) == program_.texts.end())
-        program_.texts.push_back(file);
+    const std::size_t before = out.count();
+    const auto resolve = [&](const std::string& named, const Mark& where) {
+        const fs::path own = fs::path(program_.file->path).parent_path();
+        return resolve_path(fs::path(named).lexically_proximate(own).string(), program_.file->path,
+                            options_.include_dirs, where, out);
+    };
+    const auto read = [&] {
+        projects::Project project;
+        projects::read_sources({project, out, resolve}, path, mark);
+        return project.sources;
+    };
+    const auto texts = options_.files ? options_.files->texts(path, read, out) : read();
+    if (out.count() != before) program_.sources_known = false;
+    for (const auto& text : texts)
+        if (std::ranges::none_of(program_.texts,
+                                 [&](const auto& other) { return other->is_same_text(*text); }))
+            program_.texts.push_back(text);
 }
 
 /// `signal=value`, then `@from..until`; without one of the times from the start or to the end.
@@ -308,6 +301,24 @@ void ProgramReader::force(const std::string& text) {
         return read_.fail(code::not_a_force, node_of(text),
                           fmt::format("'{}' ends before it begins", text), force_help);
     program_.forces.push_back(std::move(plan));
+}
+
+projects::Project read_project(const std::string& path,
+                               const std::vector<std::string>& include_dirs, Diagnostics& out) {
+    projects::Project project;
+    std::error_code error;
+    std::vector<std::string> files{path};
+    if (fs::is_directory(path, error)) files = projects::sources_below(path, error);
+    if (error) files = {path};
+    for (const std::string& file : files) {
+        const fs::path own = fs::path(file).parent_path();
+        const auto resolve = [&](const std::string& named, const Mark& where) {
+            return resolve_path(fs::path(named).lexically_proximate(own).string(), file,
+                                include_dirs, where, out);
+        };
+        projects::read_sources({project, out, resolve}, file);
+    }
+    return project;
 }
 
 bool check_kind(const Reader& read, const Node& root, std::string_view kind) {

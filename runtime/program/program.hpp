@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/model/catalog.hpp"
+#include "runtime/projects/project.hpp"
 #include "runtime/source/diagnostic.hpp"
 #include "runtime/source/reader.hpp"
 #include "runtime/source/yaml_files.hpp"
@@ -232,7 +233,9 @@ std::optional<std::string> resolve_path(const std::string& named, const std::str
                                         const std::vector<std::string>& include_dirs, Mark where,
                                         Diagnostics& out);
 
-/// Those below a folder, sorted, other than files of tests.
-std::vector<std::string> structured_text_below(const std::string& folder, std::error_code& error);
+/// The sources of a file in any form, or of all below a folder, that the command line names. What a
+/// project names lies below its own folder, or below an include directory.
+projects::Project read_project(const std::string& path,
+                               const std::vector<std::string>& include_dirs, Diagnostics& out);
 
 }  // namespace lineshaft

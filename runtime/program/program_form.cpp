@@ -69,9 +69,11 @@ const Form& program_form() {
               key<&Program::sources>(
                   "sources",
                   one_or_list(a_value.as("a file of 'sources'"), "'sources' has no file"),
-                  "Structured Text (.st, .scl, .s7dcl, .udt, .db), files or folders, relative to "
-                  "this file: "
-                  "its programs and function blocks are types of blocks"),
+                  "Structured Text (.st, .scl, .s7dcl, .udt, .db), projects of TwinCAT (.plcproj) "
+                  "and their files (.TcPOU, .TcDUT, .TcGVL, .TcIO), PLCopen XML (.xml), CoDeSys "
+                  "2.3 (.exp), "
+                  "B&R (.typ, .var, .fun), or folders of them, relative "
+                  "to this file: its programs and function blocks are types of blocks"),
               key<&Program::overflow_faults>("overflow",
                                              one_of("what an overflow does", {"wrap", "fault"}),
                                              "what an integer of Structured Text does beyond its "

@@ -1,6 +1,7 @@
 #include "runtime/source/diagnostic.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <numeric>
 #include <tuple>
@@ -176,6 +177,34 @@ std::size_t longest_part(std::string_view word) {
 }
 
 }  // namespace
+
+Mark mark_of(const std::shared_ptr<const SourceFile>& file, std::size_t begin, std::size_t end) {
+    std::string_view text = file->text;
+    const std::size_t whole = text.size();
+    Mark from{file, 1, 1, 1};
+    std::size_t first = text.starts_with(utf8_byte_order_mark) ? utf8_byte_order_mark.size() : 0;
+    if (!file->excerpts.empty()) {
+        const auto next =
+            std::ranges::upper_bound(file->excerpts, begin, std::less<>(), &Excerpt::begin);
+        const Excerpt& excerpt = *std::prev(next);
+        if (!excerpt.is_copied) return excerpt.place;
+        first = excerpt.begin;
+        from = excerpt.place;
+        end = std::min(end, next == file->excerpts.end() ? whole : next->begin);
+    }
+    begin = std::max(begin, first);
+    const std::string_view marked = text.substr(begin, std::max(end, begin) - begin);
+    std::string_view before = text.substr(first, begin - first);
+    for (std::size_t i = before.find('\n'); i != before.npos; i = before.find('\n')) {
+        ++from.line;
+        from.column = 1;
+        before.remove_prefix(i + 1);
+    }
+    from.column += static_cast<int>(count_characters(before));
+    const std::string_view shown = marked.substr(0, marked.find('\n'));
+    from.length = std::max(1, static_cast<int>(count_characters(shown)));
+    return from;
+}
 
 void Diagnostics::add(std::string code, Mark mark, std::string message, std::string help) {
     ++count_;

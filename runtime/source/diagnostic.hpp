@@ -8,17 +8,7 @@
 
 namespace lineshaft {
 
-/// A file's text, kept so that messages can show the line.
-struct SourceFile {
-    std::string path;  ///< as the user gave it
-    std::string text;
-    int first_line = 1;  ///< number of the line that `text` begins with: it may be a part
-
-    /// `lineshaft_study:` at the beginning of a line: what kind of file it is, before it is read.
-    bool has_key(std::string_view key) const {
-        return text.starts_with(key) || text.find("\n" + std::string(key)) != std::string::npos;
-    }
-};
+struct SourceFile;
 
 /// A place in a file: `length` characters from line:column, both counted from 1. line 0: no place.
 struct Mark {
@@ -27,6 +17,35 @@ struct Mark {
     int column = 0;
     int length = 1;
 };
+
+/// Where a part of a text that was put together of others comes from: it ends where the next
+/// begins.
+struct Excerpt {
+    std::size_t begin = 0;   ///< in bytes of the text
+    Mark place;              ///< of its first character
+    bool is_copied = false;  ///< as it stands there; else all of it was made for what is at `place`
+};
+
+/// A file's text, kept so that messages can show the line.
+struct SourceFile {
+    std::string path;  ///< as the user gave it
+    std::string text;
+    int first_line = 1;     ///< number of the line that `text` begins with: it may be a part
+    std::string part = {};  ///< which of several texts that one file holds; empty: the only one
+    std::vector<Excerpt> excerpts = {};  ///< of a text that does not stand like this in a file
+
+    /// `lineshaft_study:` at the beginning of a line: what kind of file it is, before it is read.
+    bool has_key(std::string_view key) const {
+        return text.starts_with(key) || text.find("\n" + std::string(key)) != std::string::npos;
+    }
+    bool is_same_text(const SourceFile& other) const {
+        return path == other.path && part == other.part;
+    }
+};
+
+/// The place of bytes [begin, end) of a text, in the file that they come from: the one way from a
+/// byte to a line and column. Of what goes over several lines the first is marked.
+Mark mark_of(const std::shared_ptr<const SourceFile>& file, std::size_t begin, std::size_t end);
 
 /// What a user got wrong.
 struct Diagnostic {

@@ -29,17 +29,6 @@ char32_t of_windows_1252(unsigned char byte) {
     return byte >= 0x80 && byte < 0xA0 ? windows_1252[byte - 0x80] : byte;
 }
 
-void add_character(std::string& to, char32_t code) {
-    const auto add = [&](char32_t byte) {
-        to += static_cast<char>(static_cast<unsigned char>(byte));
-    };
-    const auto rest = [&](int shift) { add(0x80U | ((code >> shift) & 0x3FU)); };
-    if (code < 0x80) return add(code);
-    if (code < 0x800) return add(0xC0U | (code >> 6)), rest(0);
-    if (code < 0x10000) return add(0xE0U | (code >> 12)), rest(6), rest(0);
-    add(0xF0U | (code >> 18)), rest(12), rest(6), rest(0);
-}
-
 /// Half a pair of surrogates, and half a unit at the end, are U+FFFD.
 std::string of_utf16(std::string_view bytes, bool big_endian) {
     const auto unit = [&](std::size_t at) -> char32_t {
@@ -67,7 +56,8 @@ std::string of_utf16(std::string_view bytes, bool big_endian) {
 }  // namespace
 
 bool is_structured_text(const std::filesystem::path& file) {
-    static constexpr std::string_view extensions[] = {".st", ".scl", ".s7dcl", ".udt", ".db"};
+    static constexpr std::string_view extensions[] = {".st",  ".scl", ".s7dcl", ".udt", ".db",
+                                                      ".exp", ".typ", ".var",   ".fun"};
     const std::string extension = lower(file.extension().string());
     return std::ranges::find(extensions, extension) != std::end(extensions);
 }

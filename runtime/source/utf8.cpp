@@ -32,6 +32,17 @@ Utf8Character first_beyond_ascii(std::string_view text) {
     return {code, length, true};
 }
 
+void add_character(std::string& to, char32_t code) {
+    const auto add = [&](char32_t byte) {
+        to += static_cast<char>(static_cast<unsigned char>(byte));
+    };
+    const auto rest = [&](int shift) { add(0x80U | ((code >> shift) & 0x3FU)); };
+    if (code < 0x80) return add(code);
+    if (code < 0x800) return add(0xC0U | (code >> 6)), rest(0);
+    if (code < 0x10000) return add(0xE0U | (code >> 12)), rest(6), rest(0);
+    add(0xF0U | (code >> 18)), rest(12), rest(6), rest(0);
+}
+
 std::size_t count_characters(std::string_view text) {
     std::size_t count = plain_length(text);
     for (text.remove_prefix(count); !text.empty(); ++count)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace lineshaft {
@@ -32,6 +33,9 @@ inline Utf8Character first_character(std::string_view text) {
     if (!is_ascii(text.front())) return first_beyond_ascii(text);
     return {static_cast<char32_t>(text.front()), 1, true};
 }
+
+/// Appends a character in UTF-8.
+void add_character(std::string& to, char32_t code);
 
 /// Number of characters.
 std::size_t count_characters(std::string_view text);

@@ -10,6 +10,15 @@ std::shared_ptr<const SourceFile> YamlFiles::source(const std::string& path, Dia
     return file;
 }
 
+YamlFiles::Texts YamlFiles::texts(const std::string& path, const std::function<Texts()>& read,
+                                  Diagnostics& out) {
+    if (const auto it = texts_.find(path); it != texts_.end()) return it->second;
+    const std::size_t before = out.count();
+    Texts made = read();
+    if (out.count() == before) texts_.emplace(path, made);
+    return made;
+}
+
 std::optional<Node> YamlFiles::parse(const std::shared_ptr<const SourceFile>& file,
                                      Diagnostics& out) {
     if (const auto it = roots_.find(file); it != roots_.end()) return it->second;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -19,6 +20,10 @@ class YamlFiles {
     std::shared_ptr<const SourceFile> source(const std::string& path, Diagnostics& out,
                                              Mark where = {});
 
+    using Texts = std::vector<std::shared_ptr<const SourceFile>>;
+    /// What `read` makes of a path, once. It tells in `out` what is wrong.
+    Texts texts(const std::string& path, const std::function<Texts()>& read, Diagnostics& out);
+
     /// As parse_yaml().
     std::optional<Node> parse(const std::shared_ptr<const SourceFile>& file, Diagnostics& out);
 
@@ -27,6 +32,7 @@ class YamlFiles {
 
   private:
     std::map<std::string, std::shared_ptr<const SourceFile>> sources_;
+    std::map<std::string, Texts> texts_;
     std::map<std::shared_ptr<const SourceFile>, Node> roots_;
 };
 

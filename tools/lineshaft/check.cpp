@@ -9,6 +9,7 @@
 #include "runtime/run/link.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/study/study_reader.hpp"
+#include "tools/lineshaft/check_project.hpp"
 #include "tools/lineshaft/command.hpp"
 #include "tools/lineshaft/test_files.hpp"
 
@@ -82,10 +83,7 @@ std::size_t check_folder(const std::string& folder, const LoadOptions& options, 
             check(test.path, options, found, &seen);
         once.add(found);
     }
-    std::error_code error;
-    std::vector<std::shared_ptr<const SourceFile>> texts;
-    for (const std::string& path : structured_text_below(folder, error))
-        if (auto source = read_source(path, out)) texts.push_back(std::move(source));
+    const auto texts = read_project(folder, options.include_dirs, out).sources;
     for (const auto& text : texts) pool.add(text);
     for (const auto& text : texts) {
         ++files;
@@ -109,7 +107,8 @@ bool has_programs(const std::string& path) {
 }
 
 /// Those that are no tests together.
-void check_structured_text(const std::vector<std::string>& paths, Diagnostics& out) {
+void check_sources(const std::vector<std::string>& paths, const LoadOptions& options,
+                   Diagnostics& out) {
     std::vector<std::string> sources;
     for (const std::string& path : paths) {
         Diagnostics unread;
@@ -119,7 +118,7 @@ void check_structured_text(const std::vector<std::string>& paths, Diagnostics& o
         else
             sources.push_back(path);
     }
-    if (!sources.empty()) compile_files(sources, out);
+    if (!sources.empty()) compile_files(sources, options.include_dirs, out);
 }
 
 Exit execute(const CheckCommand& command) {
@@ -128,14 +127,22 @@ Exit execute(const CheckCommand& command) {
     std::vector<std::string> sources, checked;
     for (const std::string& path : command.files) {
         checked.push_back(path);
+        const bool is_other = !has_programs(path) && is_project(path);
+        if (is_other) {
+            Diagnostics found;
+            const std::string page = check_project(path, options, found);
+            if (!command.common.json && !found.empty()) fmt::print("{}", page);
+            Once(out).add(found);
+            continue;
+        }
         if (std::error_code error; has_programs(path))
             checked.back() += fmt::format(": {} files", check_folder(path, options, out));
-        else if (is_structured_text(path) || std::filesystem::is_directory(path, error))
+        else if (projects::is_source(path) || std::filesystem::is_directory(path, error))
             sources.push_back(path);
         else
             check(path, options, out);
     }
-    check_structured_text(sources, out);
+    check_sources(sources, options, out);
     if (command.strict) out.be_strict();
     const bool speaks = !out.empty() || command.common.json || !out.warnings().empty();
     const Exit said = speaks ? report(out, command.common.json) : Exit::fine;
@@ -153,7 +160,8 @@ void add_check(CLI::App& app, Exit& result) {
         app.add_subcommand("check", "Say what is wrong with programs, studies and sources");
     sub->add_option(
            "files", command->files,
-           "Programs, studies, fits (YAML), files of Structured Text, and folders of all of "
+           "Programs, studies, fits (YAML), files of Structured Text, projects of others, and "
+           "folders of all of "
            "them")
         ->required();
     add_strict(*sub, command->strict);

@@ -87,19 +87,13 @@ void add_no_native(CLI::App& command) {
                               "Interpret Structured Text: slower, and the same in all else");
 }
 
-std::optional<st::Library> compile_files(const std::vector<std::string>& files, Diagnostics& out) {
-    std::vector<std::shared_ptr<const SourceFile>> sources;
-    const auto read = [&](const std::string& file) {
-        if (auto source = read_source(file, out)) sources.push_back(std::move(source));
-    };
-    for (const std::string& file : files) {
-        std::error_code error;
-        std::vector<std::string> below;
-        if (std::filesystem::is_directory(file, error)) below = structured_text_below(file, error);
-        if (below.empty()) read(file);
-        for (const std::string& one : below) read(one);
-    }
-    return out.empty() ? st::compile(sources, standard_blocks(), out) : std::nullopt;
+std::optional<st::Library> compile_files(const std::vector<std::string>& files,
+                                         const std::vector<std::string>& include_dirs,
+                                         Diagnostics& out) {
+    projects::Project all;
+    for (const std::string& file : files)
+        for (auto& source : read_project(file, include_dirs, out).sources) all.add(source);
+    return out.empty() ? st::compile(all.sources, standard_blocks(), out) : std::nullopt;
 }
 
 Exit report(const Diagnostics& diagnostics, bool json) {

@@ -73,7 +73,9 @@ class ProgressLine {
 };
 
 /// What files of Structured Text, and all in folders, make together.
-std::optional<st::Library> compile_files(const std::vector<std::string>& files, Diagnostics& out);
+std::optional<st::Library> compile_files(const std::vector<std::string>& files,
+                                         const std::vector<std::string>& include_dirs,
+                                         Diagnostics& out);
 
 /// What `lineshaft report` does, of these signals.
 Exit write_report(std::vector<std::string> inputs, std::vector<std::string> signals,

@@ -5,6 +5,7 @@
 
 #include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
+#include "tools/lineshaft/new_project.hpp"
 
 namespace lineshaft {
 
@@ -50,7 +51,7 @@ expect:
 )";
 
 struct NewCommand {
-    std::string name;
+    std::string name, project;
     bool quiet = false;
 };
 
@@ -62,8 +63,13 @@ Exit execute(const NewCommand& command) {
         spdlog::error("'{}' is there already; name another file", path.string());
         return Exit::wrong;
     }
+    Diagnostics out;
+    const std::string text = command.project.empty()
+                                 ? fmt::format(program_text, path.stem().string())
+                                 : program_around(command.project, path, out);
+    if (!out.empty()) return report(out, false);
     OutputFile file(path.string());
-    file.write(fmt::format(program_text, path.stem().string()));
+    file.write(text);
     if (!file.commit()) {
         spdlog::error("{}", file.error());
         return Exit::fault;
@@ -79,6 +85,10 @@ void add_new(CLI::App& app, Exit& result) {
     auto command = std::make_shared<NewCommand>();
     CLI::App* sub = app.add_subcommand("new", "Write a commented program to begin with");
     sub->add_option("name", command->name, "The program's file; .yaml may be left out")->required();
+    sub->add_option("--from", command->project,
+                    "Write it around a project of another tool: TwinCAT (.plcproj), PLCopen XML, "
+                    "sources, or a folder of them")
+        ->type_name("PROJECT");
     sub->add_flag("--quiet", command->quiet, "Print messages only");
     sub->callback([command, &result] { result = execute(*command); });
 }

@@ -64,8 +64,8 @@ bool can_be_tested(const fs::path& path) {
 
 void add_sources(st::SourcePool& pool, const std::string& path, bool below) {
     Diagnostics unread;
-    for (const std::string& file : files_of(path, below, is_structured_text))
-        if (const auto source = read_source(file, unread)) pool.add(source);
+    for (const std::string& file : files_of(path, below, projects::is_source))
+        for (const auto& source : read_project(file, {}, unread).sources) pool.add(source);
 }
 
 std::shared_ptr<const st::SourcePool> sources_for(const std::string& path,

@@ -66,7 +66,7 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
 }
 
 void SourcePool::add(const std::shared_ptr<const SourceFile>& file) {
-    const auto is_known = [&](const Entry& entry) { return entry.file->path == file->path; };
+    const auto is_known = [&](const Entry& entry) { return entry.file->is_same_text(*file); };
     if (std::ranges::any_of(entries_, is_known) || is_test_file(file)) return;
     entries_.push_back(entry_of(file));
 }

@@ -494,17 +494,7 @@ class Lexer {
 }  // namespace
 
 Mark Place::mark() const {
-    std::string_view before = source->text().substr(0, begin);
-    if (before.starts_with(utf8_byte_order_mark)) before.remove_prefix(utf8_byte_order_mark.size());
-    int line = 1;
-    std::size_t line_begin = 0;
-    for (std::size_t i = before.find('\n'); i != before.npos; i = before.find('\n', line_begin)) {
-        ++line;
-        line_begin = i + 1;
-    }
-    const std::string_view marked = text().substr(0, text().find('\n'));
-    return {source->file, line, static_cast<int>(count_characters(before.substr(line_begin))) + 1,
-            std::max(1, static_cast<int>(count_characters(marked)))};
+    return mark_of(source->file, begin, end);
 }
 
 bool SameName::operator()(std::string_view a, std::string_view b) const {

@@ -111,8 +111,9 @@ void parse_body(Parsing& p, Pou& pou, Word end) {
     }
 }
 
-/// The name that a list of VAR_GLOBAL has, which its file gives it.
+/// The name that a list of VAR_GLOBAL has, which its file gives it, or what it is in a project.
 std::string_view name_of_list(const Source& source) {
+    if (!source.file->part.empty()) return source.file->part;
     std::string_view name = source.file->path;
     name.remove_prefix(name.find_last_of("/\\") + 1);
     return name.substr(0, name.rfind('.'));

@@ -1,0 +1,70 @@
+#include "runtime/projects/excerpts.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "runtime/source/utf8.hpp"
+
+namespace lineshaft::projects {
+
+namespace {
+
+constexpr std::size_t step_bytes = 4096;
+
+bool begins_character(char byte) {
+    return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80;
+}
+
+/// From `mark` over a text that goes on there.
+void move_on(Mark& mark, std::string_view text) {
+    for (const char c : text) {
+        if (c == '\n')
+            ++mark.line, mark.column = 1;
+        else if (begins_character(c))
+            ++mark.column;
+    }
+}
+
+}  // namespace
+
+PlacedFile::PlacedFile(std::shared_ptr<const SourceFile> file) : file_(std::move(file)) {
+    Mark mark{nullptr, 1, 1, 1};
+    for (std::size_t at = 0; at <= text().size(); at += step_bytes) {
+        steps_.push_back(mark);
+        move_on(mark, text().substr(at, step_bytes));
+    }
+}
+
+Mark PlacedFile::mark(Part part) const {
+    const std::size_t step = part.begin / step_bytes;
+    Mark mark = steps_[step];
+    mark.file = file_;
+    move_on(mark, text().substr(step * step_bytes, part.begin - step * step_bytes));
+    constexpr std::size_t most = 400;  // bytes: a mark shows no more
+    const std::string_view marked = text(part).substr(0, most);
+    mark.length =
+        std::max(1, static_cast<int>(count_characters(marked.substr(0, marked.find('\n')))));
+    return mark;
+}
+
+void Excerpts::copy(const PlacedFile& from, Part part) {
+    if (part.begin == part.end) return;
+    Mark place = from.mark(part);
+    place.length = 1;
+    excerpts_.push_back({text_.size(), std::move(place), true});
+    text_ += from.text(part);
+}
+
+void Excerpts::write(std::string_view words, const Mark& place) {
+    excerpts_.push_back({text_.size(), place, false});
+    text_ += words;
+}
+
+std::shared_ptr<const SourceFile> Excerpts::finish(std::string path, std::string part) {
+    return std::make_shared<const SourceFile>(SourceFile{.path = std::move(path),
+                                                         .text = std::exchange(text_, {}),
+                                                         .part = std::move(part),
+                                                         .excerpts = std::exchange(excerpts_, {})});
+}
+
+}  // namespace lineshaft::projects

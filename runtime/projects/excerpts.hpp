@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "runtime/source/diagnostic.hpp"
+
+namespace lineshaft::projects {
+
+/// Bytes [begin, end) of a file.
+struct Part {
+    std::size_t begin = 0, end = 0;
+};
+
+/// A file with places that are found quickly, whatever the length of its lines.
+class PlacedFile {
+  public:
+    PlacedFile() = default;
+    explicit PlacedFile(std::shared_ptr<const SourceFile> file);
+
+    const std::shared_ptr<const SourceFile>& file() const { return file_; }
+    std::string_view text() const { return file_->text; }
+    std::string_view text(Part part) const {
+        return text().substr(part.begin, part.end - part.begin);
+    }
+    Mark mark(Part part) const;
+
+  private:
+    std::shared_ptr<const SourceFile> file_;
+    std::vector<Mark> steps_;  ///< of each 4096th byte; without the file
+};
+
+/// Puts a text together of what stands in files, and of words that the language asks for where a
+/// file has XML. Each piece knows where it comes from.
+class Excerpts {
+  public:
+    /// What stands there, as it stands.
+    void copy(const PlacedFile& from, Part part);
+    /// Words for what is at `place`.
+    void write(std::string_view words, const Mark& place);
+
+    bool is_empty() const { return text_.empty(); }
+    /// The text, under the path of the file; `part` names it among several of the file.
+    std::shared_ptr<const SourceFile> finish(std::string path, std::string part = {});
+
+  private:
+    std::string text_;
+    std::vector<Excerpt> excerpts_;
+};
+
+}  // namespace lineshaft::projects

@@ -1,0 +1,148 @@
+#include "runtime/projects/plcopen.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "runtime/projects/plcopen_text.hpp"
+#include "runtime/source/codes.hpp"
+#include "runtime/source/input_file.hpp"
+#include "runtime/source/letters.hpp"
+
+namespace lineshaft::projects {
+
+namespace {
+
+/// One project of PLCopen XML.
+class PlcopenProject {
+  public:
+    PlcopenProject(const XmlFile& file, const Reading& to) : file_(file), to_(to) {}
+
+    void read() {
+        const pugi::xml_node root = file_.root();
+        const pugi::xml_node types = root.child("types");
+        for (const pugi::xml_node type : types.child("dataTypes").children("dataType"))
+            add(type, &PlcopenText::add_type);
+        for (const pugi::xml_node pou : types.child("pous").children("pou"))
+            add(pou, &PlcopenText::add_pou);
+        for (const pugi::xml_node configuration :
+             root.child("instances").child("configurations").children("configuration")) {
+            globals_of(configuration);
+            for (const pugi::xml_node resource : configuration.children("resource")) {
+                globals_of(resource);
+                for (const pugi::xml_node task : resource.children("task")) add_task(task);
+                data_of(resource);
+            }
+        }
+        data_of(root);
+    }
+
+  private:
+    void add(pugi::xml_node element, void (PlcopenText::*add_to)(pugi::xml_node)) {
+        PlcopenText text(file_, to_.out);
+        (text.*add_to)(element);
+        to_.project.add(text.finish(element));
+    }
+
+    void globals_of(pugi::xml_node owner) {
+        for (const pugi::xml_node list : owner.children("globalVars"))
+            add(list, &PlcopenText::add_globals);
+    }
+
+    /// CODESYS has there what it has in an application.
+    void data_of(pugi::xml_node owner) {
+        for (const pugi::xml_node data : owner.child("addData").children("data")) {
+            globals_of(data);
+            for (const pugi::xml_node type : data.children("dataType"))
+                add(type, &PlcopenText::add_type);
+            for (const pugi::xml_node pou : data.children("pou")) add(pou, &PlcopenText::add_pou);
+            for (const pugi::xml_node resource : data.children("resource")) {
+                globals_of(resource);
+                for (const pugi::xml_node task : resource.children("task")) add_task(task);
+                data_of_application(resource);
+            }
+        }
+    }
+
+    void data_of_application(pugi::xml_node resource) {
+        for (const pugi::xml_node data : resource.child("addData").children("data")) {
+            globals_of(data);
+            for (const pugi::xml_node type : data.children("dataType"))
+                add(type, &PlcopenText::add_type);
+            for (const pugi::xml_node pou : data.children("pou")) add(pou, &PlcopenText::add_pou);
+        }
+    }
+
+    void add_task(pugi::xml_node task) {
+        const std::string priority = file_.plain(task.attribute("priority"));
+        ProjectTask made{.name = {file_.plain(task.attribute("name")),
+                                  file_.mark(file_.part(task.attribute("name")))}};
+        std::from_chars(priority.data(), priority.data() + priority.size(), made.priority);
+        made.every = interval_of(file_.plain(task.attribute("interval")));
+        for (const pugi::xml_node instance : task.children("pouInstance")) {
+            const pugi::xml_attribute type = instance.attribute("typeName");
+            const bool is_typed = !file_.plain(type).empty();
+            const pugi::xml_attribute named = is_typed ? type : instance.attribute("name");
+            made.programs.push_back({file_.plain(named), file_.mark(file_.part(named))});
+        }
+        to_.project.tasks.push_back(std::move(made));
+    }
+
+    /// `PT0.02S`, `T#20ms`, `t#1m2s`; a bare number is in seconds, as CODESYS writes it. 0: none of
+    /// these.
+    static std::int64_t interval_of(std::string_view text);
+
+    const XmlFile& file_;
+    const Reading& to_;
+};
+
+std::int64_t PlcopenProject::interval_of(std::string_view text) {
+    struct Unit {
+        std::string_view name;
+        double ns;
+    };
+    static constexpr Unit units[] = {{"ms", 1e6},   {"us", 1e3}, {"ns", 1}, {"d", 86400e9},
+                                     {"h", 3600e9}, {"m", 60e9}, {"s", 1e9}};
+    const std::string small = lower(text);
+    std::string_view rest = small;
+    for (const std::string_view prefix : {"pt", "time#", "t#"})
+        if (rest.starts_with(prefix)) rest.remove_prefix(prefix.size());
+    double sum = 0;
+    while (!rest.empty()) {
+        double number = 0;
+        const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+        if (error != std::errc()) return 0;
+        rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+        if (rest.empty()) return std::llround(std::clamp((sum + number * 1e9), 0.0, 1e18));
+        const auto* unit =
+            std::ranges::find_if(units, [&](const Unit& u) { return rest.starts_with(u.name); });
+        if (unit == std::end(units)) return 0;
+        rest.remove_prefix(unit->name.size());
+        sum += number * unit->ns;
+    }
+    return std::llround(std::clamp(sum, 0.0, 1e18));
+}
+
+}  // namespace
+
+bool is_plcopen(const std::filesystem::path& file) {
+    constexpr std::size_t most = 4096;
+    int error = 0;
+    std::string start = read_bytes(file.string(), most, error);
+    std::erase(start, '\0');
+    return error == 0 && start.find("plcopen.org/xml/tc6") != std::string::npos;
+}
+
+void read_plcopen(const Reading& to, const std::string& path, const Mark& where) {
+    const auto file = XmlFile::read(path, to.out, where);
+    if (!file) return;
+    if (std::string_view(file->root().name()) != "project")
+        return to.out.add(code::not_an_object, file->mark_of_tag(file->root()),
+                          fmt::format("<{}> is no project of PLCopen XML", file->root().name()),
+                          "its files begin with <project>");
+    PlcopenProject(*file, to).read();
+}
+
+}  // namespace lineshaft::projects

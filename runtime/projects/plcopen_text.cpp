@@ -1,0 +1,313 @@
+#include "runtime/projects/plcopen_text.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
+
+namespace lineshaft::projects {
+
+namespace {
+
+constexpr int deepest_type = 50;
+
+struct Term {
+    std::string_view element, text;
+};
+constexpr Term sections[] = {{"inputVars", "VAR_INPUT"},  {"outputVars", "VAR_OUTPUT"},
+                             {"inOutVars", "VAR_IN_OUT"}, {"localVars", "VAR"},
+                             {"tempVars", "VAR_TEMP"},    {"externalVars", "VAR_EXTERNAL"},
+                             {"globalVars", "VAR_GLOBAL"}};
+constexpr Term pou_kinds[] = {{"function", "FUNCTION"},
+                              {"functionBlock", "FUNCTION_BLOCK"},
+                              {"program", "PROGRAM"},
+                              {"interface", "INTERFACE"}};
+
+/// Empty: none of them.
+template <std::size_t count>
+std::string_view term_of(const Term (&words)[count], std::string_view element) {
+    const auto* word = std::ranges::find(words, element, &Term::element);
+    return word == std::end(words) ? std::string_view() : word->text;
+}
+
+pugi::xml_node first_element(pugi::xml_node node) {
+    for (const pugi::xml_node child : node.children())
+        if (child.type() == pugi::node_element) return child;
+    return {};
+}
+
+}  // namespace
+
+std::shared_ptr<const SourceFile> PlcopenText::finish(pugi::xml_node named) {
+    return text_.finish(file_.file()->path, file_.plain(named.attribute("name")));
+}
+
+bool PlcopenText::add_plain(pugi::xml_node element) {
+    for (const pugi::xml_node data : element.child("addData").children("data"))
+        if (const pugi::xml_node plain = data.child("InterfaceAsPlainText")) {
+            file_.copy(text_, plain);
+            write("\n", plain);
+            return true;
+        }
+    return false;
+}
+
+void PlcopenText::add_interface(pugi::xml_node interface) {
+    for (const pugi::xml_node section : interface.children())
+        if (const std::string_view word = term_of(sections, section.name()); !word.empty())
+            add_section(section, word);
+}
+
+void PlcopenText::add_section(pugi::xml_node section, std::string_view word) {
+    write(word, section);
+    for (const auto& [name, meaning] : {Term{"constant", " CONSTANT"}, Term{"retain", " RETAIN"},
+                                        Term{"nonretain", " NON_RETAIN"}})
+        if (file_.plain(section.attribute(name.data())) == "true") write(meaning, section);
+    write("\n", section);
+    for (const pugi::xml_node variable : section.children("variable")) add_variable(variable);
+    write("END_VAR\n", section);
+}
+
+void PlcopenText::add_variable(pugi::xml_node variable) {
+    write("  ", variable);
+    file_.copy(text_, variable.attribute("name"));
+    if (const pugi::xml_attribute address = variable.attribute("address")) {
+        write(" AT ", variable);
+        file_.copy(text_, address);
+    }
+    write(" : ", variable);
+    add_type_of(variable.child("type"), 0);
+    if (const pugi::xml_node value = variable.child("initialValue")) {
+        write(" := ", value);
+        add_value(value, 0);
+    }
+    write(";\n", variable);
+}
+
+void PlcopenText::add_type_of(pugi::xml_node type, int depth) {
+    const pugi::xml_node kind = first_element(type);
+    const std::string_view name = kind.name();
+    if (depth > deepest_type)
+        return out_.add(code::too_deep_or_large, file_.mark_of_tag(kind),
+                        fmt::format("types are nested deeper than {} levels", deepest_type));
+    if (!kind)
+        return out_.add(code::not_an_object, file_.mark_of_tag(type ? type : file_.root()),
+                        "a type has no element", "such as <INT/> or <derived name=\"T\"/>");
+    if (name == "derived") return file_.copy(text_, kind.attribute("name"));
+    if (name == "array") return add_array(kind, depth + 1);
+    if (name == "struct") return add_struct(kind, depth + 1);
+    if (name == "enum") return add_enumeration(kind);
+    if (name.starts_with("subrange")) return add_subrange(kind, depth + 1);
+    if (name == "string" || name == "wstring") return add_text_type(kind);
+    if (name == "pointer" || name == "reference") {
+        write(name == "pointer" ? "POINTER TO " : "REFERENCE TO ", kind);
+        return add_type_of(kind.child("baseType"), depth + 1);
+    }
+    const Part tag = file_.tag(kind);
+    file_.copy(text_, Part{tag.begin + 1, tag.end});
+}
+
+void PlcopenText::add_array(pugi::xml_node array, int depth) {
+    write("ARRAY[", array);
+    std::string_view before;
+    for (const pugi::xml_node dimension : array.children("dimension")) {
+        write(before, dimension);
+        file_.copy(text_, dimension.attribute("lower"));
+        write("..", dimension);
+        file_.copy(text_, dimension.attribute("upper"));
+        before = ", ";
+    }
+    write("] OF ", array);
+    add_type_of(array.child("baseType"), depth);
+}
+
+void PlcopenText::add_struct(pugi::xml_node structure, int depth) {
+    if (depth > 1)
+        return out_.add(code::not_supported, file_.mark_of_tag(structure),
+                        "a structure has a name of its own here",
+                        "declare it as a data type, and name that");
+    write("STRUCT\n", structure);
+    for (const pugi::xml_node variable : structure.children("variable")) add_variable(variable);
+    write("END_STRUCT", structure);
+}
+
+void PlcopenText::add_enumeration(pugi::xml_node enumeration) {
+    write("(", enumeration);
+    std::string_view before;
+    for (const pugi::xml_node value : enumeration.child("values").children("value")) {
+        write(before, value);
+        file_.copy(text_, value.attribute("name"));
+        if (const pugi::xml_attribute number = value.attribute("value")) {
+            write(" := ", value);
+            file_.copy(text_, number);
+        }
+        before = ", ";
+    }
+    write(")", enumeration);
+    if (const pugi::xml_node base = enumeration.child("baseType")) {
+        write(" ", base);
+        add_type_of(base, 0);
+    }
+}
+
+void PlcopenText::add_subrange(pugi::xml_node subrange, int depth) {
+    const pugi::xml_node range = subrange.child("range");
+    add_type_of(subrange.child("baseType"), depth);
+    write("(", subrange);
+    file_.copy(text_, range.attribute("lower"));
+    write("..", subrange);
+    file_.copy(text_, range.attribute("upper"));
+    write(")", subrange);
+}
+
+void PlcopenText::add_text_type(pugi::xml_node type) {
+    write(upper(std::string_view(type.name())), type);
+    const pugi::xml_attribute length = type.attribute("length");
+    if (!length) return;
+    write("[", type);
+    file_.copy(text_, length);
+    write("]", type);
+}
+
+void PlcopenText::add_value(pugi::xml_node value, int depth) {
+    if (depth > deepest_type)
+        return out_.add(code::too_deep_or_large, file_.mark_of_tag(value),
+                        fmt::format("values are nested deeper than {} levels", deepest_type));
+    if (const pugi::xml_node simple = value.child("simpleValue"))
+        return file_.copy(text_, simple.attribute("value"));
+    if (const pugi::xml_node array = value.child("arrayValue")) {
+        write("[", array);
+        add_list(array, "repetitionValue", depth + 1);
+        return write("]", array);
+    }
+    const pugi::xml_node structure = value.child("structValue");
+    write("(", value);
+    add_list(structure, "member", depth + 1);
+    write(")", value);
+}
+
+/// `3(0), 1` of an array, `x := 1, y := 2` of a structure.
+void PlcopenText::add_list(pugi::xml_node values, const char* key, int depth) {
+    const bool is_array = std::string_view(key) == "repetitionValue";
+    std::string_view before;
+    for (const pugi::xml_node value : values.children("value")) {
+        write(before, value);
+        const pugi::xml_attribute first = value.attribute(key);
+        const bool is_repeated = first && is_array;
+        file_.copy(text_, first);
+        if (first) write(is_array ? "(" : " := ", value);
+        add_value(value, depth);
+        if (is_repeated) write(")", value);
+        before = ", ";
+    }
+}
+
+void PlcopenText::add_body(pugi::xml_node owner, pugi::xml_node named) {
+    for (const pugi::xml_node body : owner.children("body")) {
+        const pugi::xml_node text = first_element(body);
+        const std::string_view form = text.name();
+        if (form == "ST") {
+            file_.copy(text_, text);
+            write("\n", text);
+        } else if (text && form != "documentation") {
+            const bool is_written = form == "IL";
+            out_.add(code::not_supported, file_.mark_of_tag(text),
+                     fmt::format("the body of '{}' is {} ({}), and only Structured Text is read",
+                                 file_.plain(named.attribute("name")),
+                                 is_written ? "an instruction list" : "drawn",
+                                 form == "addData" ? "CFC" : form),
+                     "convert it to Structured Text, or leave it out");
+        }
+    }
+}
+
+void PlcopenText::add_member(pugi::xml_node member) {
+    const bool is_method = std::string_view(member.name()) == "Method";
+    const pugi::xml_node interface = member.child("interface");
+    if (!is_method || !add_plain(interface)) {
+        write(is_method ? "METHOD " : "ACTION ", member);
+        file_.copy(text_, member.attribute("name"));
+        if (const pugi::xml_node result = interface.child("returnType")) {
+            write(" : ", result);
+            add_type_of(result, 0);
+        }
+        write(is_method ? "\n" : ":\n", member);
+        add_interface(interface);
+    }
+    add_body(member, member);
+    write(is_method ? "END_METHOD\n" : "END_ACTION\n", member);
+}
+
+void PlcopenText::add_property(pugi::xml_node property) {
+    const pugi::xml_node interface = property.child("interface");
+    if (!add_plain(interface)) {
+        write("PROPERTY ", property);
+        file_.copy(text_, property.attribute("name"));
+        write(" : ", property);
+        add_type_of(interface.child("returnType"), 0);
+        write("\n", property);
+    }
+    for (const auto& [element, word] : {Term{"GetAccessor", "GET"}, Term{"SetAccessor", "SET"}}) {
+        const pugi::xml_node accessor = property.child(element.data());
+        if (!accessor) continue;
+        write(fmt::format("{}\n", word), accessor);
+        if (!add_plain(accessor.child("interface"))) add_interface(accessor.child("interface"));
+        add_body(accessor, property);
+        write(fmt::format("END_{}\n", word), accessor);
+    }
+    write("END_PROPERTY\n", property);
+}
+
+void PlcopenText::add_data(pugi::xml_node owner) {
+    for (const pugi::xml_node data : owner.child("addData").children("data"))
+        for (const pugi::xml_node member : data.children()) {
+            const std::string_view kind = member.name();
+            if (kind == "Method") add_member(member);
+            if (kind == "Property") add_property(member);
+        }
+}
+
+void PlcopenText::add_pou(pugi::xml_node pou) {
+    const std::string type = file_.plain(pou.attribute("pouType"));
+    const std::string_view kind = term_of(pou_kinds, type);
+    if (kind.empty())
+        return out_.add(code::not_an_object, file_.mark_of_tag(pou),
+                        fmt::format("'{}' is no kind of POU", type),
+                        "pouType is function, functionBlock or program");
+    const pugi::xml_node interface = pou.child("interface");
+    if (!add_plain(interface)) {
+        write(fmt::format("{} ", kind), pou);
+        file_.copy(text_, pou.attribute("name"));
+        if (const pugi::xml_node result = interface.child("returnType")) {
+            write(" : ", result);
+            add_type_of(result, 0);
+        }
+        write("\n", pou);
+        add_interface(interface);
+    }
+    add_data(pou);
+    for (const pugi::xml_node action : pou.child("actions").children("action")) add_member(action);
+    add_body(pou, pou);
+    write(fmt::format("END_{}\n", kind), pou);
+}
+
+void PlcopenText::add_type(pugi::xml_node type) {
+    if (add_plain(type)) return;
+    write("TYPE ", type);
+    file_.copy(text_, type.attribute("name"));
+    write(" : ", type);
+    add_type_of(type.child("baseType"), 0);
+    if (const pugi::xml_node value = type.child("initialValue")) {
+        write(" := ", value);
+        add_value(value, 0);
+    }
+    write(";\nEND_TYPE\n", type);
+}
+
+void PlcopenText::add_globals(pugi::xml_node list) {
+    if (!add_plain(list)) add_section(list, "VAR_GLOBAL");
+}
+
+}  // namespace lineshaft::projects

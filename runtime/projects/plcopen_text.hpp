@@ -1,0 +1,46 @@
+#pragma once
+
+#include "runtime/projects/project.hpp"
+#include "runtime/projects/xml.hpp"
+
+namespace lineshaft::projects {
+
+/// Writes what PLCopen XML has in elements as Structured Text.
+class PlcopenText {
+  public:
+    PlcopenText(const XmlFile& file, Diagnostics& out) : file_(file), out_(out) {}
+
+    void add_pou(pugi::xml_node pou);
+    void add_type(pugi::xml_node type);
+    void add_globals(pugi::xml_node list);
+
+    std::shared_ptr<const SourceFile> finish(pugi::xml_node named);
+
+  private:
+    void write(std::string_view words, pugi::xml_node at) {
+        text_.write(words, file_.mark_of_tag(at));
+    }
+    /// The declaration as text that CODESYS has beside the elements. False: it has none.
+    bool add_plain(pugi::xml_node element);
+    void add_interface(pugi::xml_node interface);
+    void add_section(pugi::xml_node section, std::string_view word);
+    void add_variable(pugi::xml_node variable);
+    void add_type_of(pugi::xml_node type, int depth);
+    void add_array(pugi::xml_node array, int depth);
+    void add_struct(pugi::xml_node structure, int depth);
+    void add_enumeration(pugi::xml_node enumeration);
+    void add_subrange(pugi::xml_node subrange, int depth);
+    void add_text_type(pugi::xml_node type);
+    void add_value(pugi::xml_node value, int depth);
+    void add_list(pugi::xml_node values, const char* key, int depth);
+    void add_body(pugi::xml_node owner, pugi::xml_node named);
+    void add_member(pugi::xml_node member);
+    void add_property(pugi::xml_node property);
+    void add_data(pugi::xml_node owner);
+
+    const XmlFile& file_;
+    Diagnostics& out_;
+    Excerpts text_;
+};
+
+}  // namespace lineshaft::projects

@@ -1,0 +1,94 @@
+#include "runtime/projects/project.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "runtime/projects/plcopen.hpp"
+#include "runtime/projects/twincat.hpp"
+#include "runtime/source/encoding.hpp"
+#include "runtime/source/letters.hpp"
+#include "runtime/source/yaml.hpp"
+#include "runtime/st/library/test_sources.hpp"
+
+namespace lineshaft::projects {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void read_text(const Reading& to, const std::string& path, const Mark& where) {
+    if (auto source = read_source(path, to.out, where)) to.project.add(std::move(source));
+}
+
+/// By the ending of a file's name, in small letters.
+struct Form {
+    std::string_view ending;
+    void (*read)(const Reading& to, const std::string& path, const Mark& where);
+};
+constexpr Form forms[] = {{".tcpou", read_twincat_object}, {".tcdut", read_twincat_object},
+                          {".tcgvl", read_twincat_object}, {".tcio", read_twincat_object},
+                          {".tctto", read_twincat_object}, {".plcproj", read_plcproj},
+                          {".xml", read_plcopen}};
+
+const Form* form_of(const fs::path& file) {
+    const std::string ending = lower(file.extension().string());
+    const auto* form = std::ranges::find(forms, ending, &Form::ending);
+    return form == std::end(forms) ? nullptr : form;
+}
+
+bool is_plcproj(const std::string& file) {
+    return lower(fs::path(file).extension().string()) == ".plcproj";
+}
+
+bool is_test_file(const std::string& file) {
+    if (!is_structured_text(file)) return false;
+    Diagnostics unread;
+    const auto source = read_source(file, unread);
+    return source && st::is_test_file(source);
+}
+
+/// What projects list themselves.
+void leave_to_projects(std::vector<std::string>& files) {
+    std::vector<std::string> folders;
+    for (const std::string& file : files)
+        if (is_plcproj(file)) folders.push_back((fs::path(file).parent_path() / "").string());
+    std::erase_if(files, [&](const std::string& file) {
+        const Form* form = form_of(file);
+        return form && form->read == read_twincat_object &&
+               std::ranges::any_of(folders, [&](const auto& f) { return file.starts_with(f); });
+    });
+}
+
+}  // namespace
+
+void Project::add(std::shared_ptr<const SourceFile> source) {
+    const auto is_there = [&](const auto& other) { return other->is_same_text(*source); };
+    if (std::ranges::none_of(sources, is_there)) sources.push_back(std::move(source));
+}
+
+bool is_source(const fs::path& file) {
+    const Form* form = form_of(file);
+    if (form && form->read == read_plcopen) return is_plcopen(file);
+    return form || is_structured_text(file);
+}
+
+std::vector<std::string> sources_below(const std::string& folder, std::error_code& error) {
+    std::vector<std::string> files;
+    std::error_code unknown;
+    constexpr auto options = fs::directory_options::skip_permission_denied;
+    for (fs::recursive_directory_iterator entry(folder, options, error), end;
+         !error && entry != end; entry.increment(error))
+        if (is_source(entry->path()) && entry->is_regular_file(unknown))
+            files.push_back(entry->path().string());
+    std::erase_if(files, is_test_file);
+    leave_to_projects(files);
+    std::ranges::sort(files);
+    return files;
+}
+
+void read_sources(const Reading& to, const std::string& path, const Mark& where) {
+    const Form* form = form_of(path);
+    return form ? form->read(to, path, where) : read_text(to, path, where);
+}
+
+}  // namespace lineshaft::projects

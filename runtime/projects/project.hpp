@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "runtime/source/diagnostic.hpp"
+
+namespace lineshaft::projects {
+
+/// A word of a project, and where it stands.
+struct Name {
+    std::string text;
+    Mark mark;
+};
+
+/// A cyclic task.
+struct ProjectTask {
+    Name name;
+    std::int64_t every = 0;     ///< [ns] 0: not said, or started by an event
+    std::int64_t priority = 0;  ///< as the project counts: the smallest is the most urgent
+    std::vector<Name> programs = {};
+};
+
+/// What a project brings along.
+struct Project {
+    std::vector<std::shared_ptr<const SourceFile>> sources;  ///< each of them once
+    std::vector<ProjectTask> tasks;
+    std::vector<Name> libraries;  ///< that it refers to
+
+    /// Unless it is there.
+    void add(std::shared_ptr<const SourceFile> source);
+};
+
+/// The path of a file that a project names, or empty and told why.
+using Resolve =
+    std::function<std::optional<std::string>(const std::string& path, const Mark& where)>;
+
+/// What reads files of projects takes along.
+struct Reading {
+    Project& project;
+    Diagnostics& out;
+    const Resolve& resolve;
+};
+
+/// Whether a file holds sources, or names those that do: by the ending of its name, of `.xml` by
+/// its beginning too. Structured Text is one of the forms.
+bool is_source(const std::filesystem::path& file);
+
+/// Sources in any form below a folder, sorted, without files of tests. What a `.plcproj` stands
+/// over is left to it.
+std::vector<std::string> sources_below(const std::string& folder, std::error_code& error);
+
+/// Reads a file of any form, or all below a folder, into `to.project`. Whatever is wrong goes to
+/// `to.out`, at `where` if there is no other place for it. What could be read is there
+/// nevertheless.
+void read_sources(const Reading& to, const std::string& path, const Mark& where = {});
+
+}  // namespace lineshaft::projects

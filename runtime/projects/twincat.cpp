@@ -1,0 +1,216 @@
+#include "runtime/projects/twincat.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "runtime/projects/xml.hpp"
+#include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/lexer.hpp"
+
+namespace lineshaft::projects {
+
+namespace {
+
+namespace fs = std::filesystem;
+using st::Word;
+
+/// What a declaration declares: its first word, behind comments and attributes.
+Word declared_kind(const XmlFile& file, pugi::xml_node declaration) {
+    static constexpr Word kinds[] = {Word::program_, Word::function_block_, Word::function_,
+                                     Word::interface_, Word::class_};
+    Diagnostics unread;
+    const auto text =
+        std::make_shared<const SourceFile>(SourceFile{"", file.plain(declaration) + "\n"});
+    for (const st::Token& token : st::read_tokens(text, unread).tokens)
+        if (std::ranges::find(kinds, token.word) != std::end(kinds)) return token.word;
+    return Word::end_of_file;
+}
+
+/// Writes one object's text.
+class ObjectText {
+  public:
+    ObjectText(const XmlFile& file, Diagnostics& out) : file_(file), out_(out) {}
+
+    /// POU and interface, with what it has inside before its body.
+    void add_unit(pugi::xml_node unit) {
+        const pugi::xml_node declaration = unit.child("Declaration");
+        const Word kind = declared_kind(file_, declaration);
+        if (kind == Word::end_of_file) {
+            out_.add(code::not_an_object, file_.mark_of_tag(unit),
+                     fmt::format("'{}' declares neither a program nor a block, a function or an "
+                                 "interface",
+                                 name(unit)),
+                     "its Declaration begins with PROGRAM, FUNCTION_BLOCK, FUNCTION or INTERFACE");
+            return;
+        }
+        add_lines(declaration);
+        for (const pugi::xml_node part : unit.children()) add_member(part);
+        add_body(unit, unit);
+        add_end(fmt::format("END_{}", st::shown(kind)), unit);
+    }
+
+    /// A type or a list of globals, which its declaration is all of.
+    void add_declaration(pugi::xml_node object) { add_lines(object.child("Declaration")); }
+
+    std::shared_ptr<const SourceFile> finish(std::string part) {
+        return text_.finish(file_.file()->path, std::move(part));
+    }
+
+  private:
+    std::string name(pugi::xml_node element) const {
+        return file_.plain(element.attribute("Name"));
+    }
+
+    void add_lines(pugi::xml_node element) {
+        if (!element) return;
+        file_.copy(text_, element);
+        text_.write("\n", file_.mark_of_tag(element));
+    }
+
+    void add_end(std::string_view word, pugi::xml_node element) {
+        text_.write(fmt::format("{}\n", word), file_.mark_of_tag(element));
+    }
+
+    void add_member(pugi::xml_node part) {
+        const std::string_view kind = part.name();
+        if (kind == "Method") return add_routine(part, part, "END_METHOD");
+        if (kind == "Property") return add_property(part);
+        if (kind != "Action") return;
+        text_.write("ACTION ", file_.mark_of_tag(part));
+        file_.copy(text_, part.attribute("Name"));
+        text_.write(":\n", file_.mark_of_tag(part));
+        add_routine(part, part, "END_ACTION");
+    }
+
+    void add_routine(pugi::xml_node routine, pugi::xml_node named, std::string_view end) {
+        add_lines(routine.child("Declaration"));
+        add_body(routine, named);
+        add_end(end, routine);
+    }
+
+    void add_property(pugi::xml_node property) {
+        add_lines(property.child("Declaration"));
+        const auto add = [&](const char* element, std::string_view begin, std::string_view end) {
+            const pugi::xml_node accessor = property.child(element);
+            if (!accessor) return;
+            add_end(begin, accessor);
+            add_routine(accessor, property, end);
+        };
+        add("Get", "GET", "END_GET");
+        add("Set", "SET", "END_SET");
+        add_end("END_PROPERTY", property);
+    }
+
+    /// `named` is what a message calls it.
+    void add_body(pugi::xml_node routine, pugi::xml_node named) {
+        const pugi::xml_node implementation = routine.child("Implementation");
+        for (const pugi::xml_node body : implementation.children()) {
+            if (body.type() != pugi::node_element) continue;
+            if (std::string_view(body.name()) == "ST") {
+                add_lines(body);
+                continue;
+            }
+            out_.add(code::not_supported, file_.mark_of_tag(body),
+                     fmt::format("the body of '{}' is drawn ({}), and only Structured Text is read",
+                                 name(named), body.name()),
+                     "convert it to Structured Text in TwinCAT, or leave it out");
+        }
+    }
+
+    const XmlFile& file_;
+    Diagnostics& out_;
+    Excerpts text_;
+};
+
+std::int64_t number_of(const XmlFile& file, pugi::xml_node element) {
+    const std::string text = file.plain(element);
+    std::int64_t value = 0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+}
+
+/// Cycle times are in microseconds.
+ProjectTask task_of(const XmlFile& file, pugi::xml_node element) {
+    constexpr std::int64_t longest_us = 86'400'000'000;
+    ProjectTask task{
+        .name = {file.plain(element.attribute("Name")), file.mark_of_tag(element)},
+        .every = 1000 * std::clamp<std::int64_t>(number_of(file, element.child("CycleTime")), 0,
+                                                 longest_us),
+        .priority = number_of(file, element.child("Priority"))};
+    for (const pugi::xml_node call : element.children("PouCall"))
+        task.programs.push_back(
+            {file.plain(call.child("Name")), file.mark_of_tag(call.child("Name"))});
+    return task;
+}
+
+/// `POUs\MAIN.TcPOU`, from the folder of the file that names it. Capital letters make no
+/// difference on Windows: where there is no such file, one that differs in them is meant.
+std::string path_of(const fs::path& named_by, std::string text) {
+    std::ranges::replace(text, '\\', '/');
+    std::error_code unknown;
+    const fs::path folder = named_by.parent_path();
+    const fs::path path = (folder / text).lexically_normal();
+    if (fs::exists(path, unknown)) return path.string();
+    fs::path found = folder;
+    for (const fs::path& step : fs::path(text).lexically_normal()) {
+        fs::path next = found / step;
+        if (!fs::exists(next, unknown))
+            for (const auto& entry : fs::directory_iterator(found.empty() ? "." : found, unknown))
+                if (lower(entry.path().filename().string()) == lower(step.string()))
+                    next = found / entry.path().filename();
+        found = next;
+    }
+    return fs::exists(found, unknown) ? found.lexically_normal().string() : path.string();
+}
+
+/// A project does not list projects.
+bool is_same_form(const fs::path& a, const fs::path& b) {
+    return lower(a.extension().string()) == lower(b.extension().string());
+}
+
+}  // namespace
+
+void read_twincat_object(const Reading& to, const std::string& path, const Mark& where) {
+    const auto file = XmlFile::read(path, to.out, where);
+    if (!file) return;
+    const pugi::xml_node root = file->root();
+    if (std::string_view(root.name()) != "TcPlcObject")
+        return to.out.add(code::not_an_object, file->mark_of_tag(root),
+                          fmt::format("<{}> is no object of TwinCAT", root.name()),
+                          "its files begin with <TcPlcObject>");
+    for (const pugi::xml_node object : root.children()) {
+        const std::string_view kind = object.name();
+        if (kind == "Task") to.project.tasks.push_back(task_of(*file, object));
+        const bool is_unit = kind == "POU" || kind == "Itf";
+        if (!is_unit && kind != "DUT" && kind != "GVL") continue;
+        ObjectText text(*file, to.out);
+        if (is_unit)
+            text.add_unit(object);
+        else
+            text.add_declaration(object);
+        to.project.add(text.finish(file->plain(object.attribute("Name"))));
+    }
+}
+
+void read_plcproj(const Reading& to, const std::string& path, const Mark& where) {
+    const auto file = XmlFile::read(path, to.out, where);
+    if (!file) return;
+    for (const pugi::xml_node group : file->root().children("ItemGroup"))
+        for (const pugi::xml_node item : group.children()) {
+            const pugi::xml_attribute include = item.attribute("Include");
+            const Mark mark = file->mark(file->part(include));
+            const std::string_view kind = item.name();
+            if (kind == "PlaceholderReference" || kind == "LibraryReference")
+                to.project.libraries.push_back({file->plain(include), mark});
+            if (kind != "Compile") continue;
+            const std::string named = path_of(path, file->plain(include));
+            if (!is_source(named) || is_same_form(named, path)) continue;
+            if (const auto allowed = to.resolve(named, mark)) read_sources(to, *allowed, mark);
+        }
+}
+
+}  // namespace lineshaft::projects

@@ -1,0 +1,141 @@
+#include "tools/lineshaft/check_project.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "blocks/catalog.hpp"
+#include "runtime/source/encoding.hpp"
+#include "runtime/st/library/library.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+constexpr std::size_t most_causes = 30;
+
+/// A message without what it quotes: the same for all names.
+std::string cause_of(const Diagnostic& diagnostic) {
+    std::string cause = diagnostic.code + " ";
+    bool is_quoted = false;
+    for (const char c : diagnostic.message) {
+        if (c == '\'' && !is_quoted) cause += "'...'";
+        if (c == '\'')
+            is_quoted = !is_quoted;
+        else if (!is_quoted)
+            cause += c;
+    }
+    return cause;
+}
+
+/// Lines of a file that one text of a project has.
+struct Lines {
+    std::size_t source = 0;
+    int first = 0, last = 0;
+};
+
+using PartsOfFiles = std::map<std::string, std::vector<Lines>>;
+
+PartsOfFiles parts_of(const projects::Project& project) {
+    PartsOfFiles parts;
+    for (std::size_t i = 0; i < project.sources.size(); ++i) {
+        const SourceFile& source = *project.sources[i];
+        Lines lines{i, source.excerpts.empty() ? 1 : source.excerpts.front().place.line, 0};
+        for (const Excerpt& excerpt : source.excerpts) {
+            lines.first = std::min(lines.first, excerpt.place.line);
+            lines.last = std::max(lines.last, excerpt.place.line);
+        }
+        parts[source.path].push_back(lines);
+    }
+    return parts;
+}
+
+/// Texts of the project with a mistake in them. The last that begins before the mistake has it.
+std::set<std::size_t> with_mistakes(const PartsOfFiles& parts, const Diagnostics& out) {
+    std::set<std::size_t> wrong;
+    for (const Diagnostic& diagnostic : out.list()) {
+        const auto file =
+            diagnostic.mark.file ? parts.find(diagnostic.mark.file->path) : parts.end();
+        if (file == parts.end()) continue;
+        const Lines* found = nullptr;
+        for (const Lines& lines : file->second)
+            if (lines.first <= diagnostic.mark.line && (!found || lines.first > found->first))
+                found = &lines;
+        if (found) wrong.insert(found->source);
+    }
+    return wrong;
+}
+
+struct Cause {
+    std::size_t places = 0;
+    std::set<std::string> files;
+    const Diagnostic* first = nullptr;
+};
+
+bool is_before(const Diagnostic& a, const Diagnostic& b) {
+    const auto key = [](const Diagnostic& d) {
+        return std::make_tuple(d.mark.file ? d.mark.file->path : "", d.mark.line, d.mark.column);
+    };
+    return key(a) < key(b);
+}
+
+std::string table_of(const Diagnostics& out) {
+    std::map<std::string, Cause> causes;
+    for (const Diagnostic& diagnostic : out.list()) {
+        Cause& cause = causes[cause_of(diagnostic)];
+        ++cause.places;
+        if (diagnostic.mark.file) cause.files.insert(diagnostic.mark.file->path);
+        if (!cause.first || is_before(diagnostic, *cause.first)) cause.first = &diagnostic;
+    }
+    std::vector<std::pair<std::string, const Cause*>> sorted;
+    for (const auto& [text, cause] : causes) sorted.emplace_back(text, &cause);
+    std::ranges::stable_sort(sorted, [](const auto& a, const auto& b) {
+        return std::make_pair(a.second->files.size(), a.second->places) >
+               std::make_pair(b.second->files.size(), b.second->places);
+    });
+    std::string text = "  files  places  cause, and where it is first\n";
+    for (std::size_t i = 0; i < std::min(sorted.size(), most_causes); ++i) {
+        const Cause& cause = *sorted[i].second;
+        text += fmt::format("{:>7} {:>7}  {}\n", cause.files.size(), cause.places, sorted[i].first);
+        if (const Mark& mark = cause.first->mark; mark.file)
+            text += fmt::format("{:17}{}:{}:{}\n", "", mark.file->path, mark.line, mark.column);
+    }
+    if (sorted.size() > most_causes)
+        text += fmt::format("... and {} more causes\n", sorted.size() - most_causes);
+    if (out.count() > out.list().size())
+        text += fmt::format("... and {} more places, which are not counted here\n",
+                            out.count() - out.list().size());
+    return text;
+}
+
+}  // namespace
+
+bool is_project(const std::string& path) {
+    std::error_code error;
+    const auto is_other = [](const std::string& file) {
+        return projects::is_source(file) && !is_structured_text(file);
+    };
+    if (!std::filesystem::is_directory(path, error)) {
+        const std::string ending = std::filesystem::path(path).extension().string();
+        return is_other(path) && (ending == ".plcproj" || ending == ".xml");
+    }
+    const auto files = projects::sources_below(path, error);
+    return std::ranges::any_of(files, is_other);
+}
+
+std::string check_project(const std::string& path, const LoadOptions& options, Diagnostics& out) {
+    const projects::Project project = read_project(path, options.include_dirs, out);
+    st::compile(project.sources, standard_blocks(), out);
+    const std::size_t whole = project.sources.size();
+    const std::size_t wrong = with_mistakes(parts_of(project), out).size();
+    std::string page =
+        fmt::format("{}: {} of {} POUs, types and lists have no mistake; {} tasks, {} libraries\n",
+                    path, whole - wrong, whole, project.tasks.size(), project.libraries.size());
+    if (!out.empty()) page += table_of(out);
+    return page;
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,171 @@
+#include "tools/lineshaft/new_project.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "blocks/catalog.hpp"
+#include "runtime/program/program.hpp"
+#include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
+#include "runtime/st/library/library.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+constexpr std::size_t most_signals = 8;
+
+/// A block that is one of the program's, and the task that scans it.
+struct NewBlock {
+    std::string name, type, task;
+};
+
+struct NewTask {
+    std::string name;
+    std::int64_t every, priority;
+    std::vector<projects::Name> programs;
+};
+
+/// A name of a task as a program may have it.
+std::string plain_name(std::string_view text) {
+    std::string name;
+    for (const char c : text) name += is_letter(c) || is_digit(c) ? c : '_';
+    return name.empty() || is_digit(name.front()) ? "task_" + name : name;
+}
+
+std::string time_text(std::int64_t ns) {
+    if (ns % 1'000'000 == 0) return fmt::format("{} ms", ns / 1'000'000);
+    return ns % 1000 == 0 ? fmt::format("{} us", ns / 1000) : fmt::format("{} ns", ns);
+}
+
+/// Those that are cyclic. A project's smallest priority is the most urgent, here the largest.
+std::vector<NewTask> tasks_of(const projects::Project& project) {
+    std::vector<NewTask> tasks;
+    std::set<std::int64_t, std::greater<>> priorities;
+    for (const projects::ProjectTask& task : project.tasks)
+        if (task.every > 0) priorities.insert(task.priority);
+    std::set<std::string> names;
+    for (const projects::ProjectTask& task : project.tasks) {
+        if (task.every == 0) continue;
+        std::string name = plain_name(task.name.text);
+        while (!names.insert(name).second) name += '_';
+        const auto rank = std::distance(priorities.begin(), priorities.find(task.priority));
+        tasks.push_back({name, task.every, rank + 1, task.programs});
+    }
+    if (tasks.empty()) tasks.push_back({"main", 10'000'000, 1, {}});
+    return tasks;
+}
+
+bool is_program(const BlockType& kind) {
+    return kind.doc.starts_with("PROGRAM ");
+}
+
+/// The programs that tasks call; where none says so, all of them in the first task.
+std::vector<NewBlock> programs_of(const st::Library& library, const std::vector<NewTask>& tasks) {
+    std::vector<NewBlock> blocks;
+    const auto add = [&](const BlockType& kind, const std::string& task) {
+        std::string name(kind.name);
+        for (const NewBlock& other : blocks)
+            if (other.name == name) name += "_" + task;
+        blocks.push_back({name, std::string(kind.name), task});
+    };
+    for (const NewTask& task : tasks)
+        for (const projects::Name& named : task.programs)
+            for (const BlockType& kind : library.kinds())
+                if (is_program(kind) && lower(kind.name) == lower(named.text)) add(kind, task.name);
+    if (blocks.empty())
+        for (const BlockType& kind : library.kinds())
+            if (is_program(kind)) add(kind, tasks.front().name);
+    return blocks;
+}
+
+/// Blocks such as axes that the sources name, in the task of the first that does.
+std::vector<NewBlock> named_blocks(const st::Library& library,
+                                   const std::vector<NewBlock>& programs) {
+    std::vector<NewBlock> blocks;
+    for (const NewBlock& program : programs) {
+        const auto kind = std::ranges::find(library.kinds(), program.type, &BlockType::name);
+        for (const Field& field : kind->fields) {
+            const auto is_own = [&](const auto& b) { return b.name == field.global; };
+            const bool is_there = field.global.empty() ||
+                                  std::ranges::any_of(library.kinds(), is_own) ||
+                                  std::ranges::any_of(blocks, is_own);
+            if (!is_there)
+                blocks.push_back(
+                    {std::string(field.global), std::string(field.refers), program.task});
+        }
+    }
+    return blocks;
+}
+
+/// What is plainly named, outputs before all others.
+std::vector<std::string> signals_of(const st::Library& library, const NewBlock& block) {
+    std::vector<std::string> signals;
+    const auto kind = std::ranges::find(library.kinds(), block.type, &BlockType::name);
+    for (const bool outputs : {true, false})
+        for (const Field& field : kind->fields) {
+            const bool is_output = field.direction == Direction::output;
+            const bool is_read = is_output || field.direction == Direction::local;
+            const bool is_plain = std::ranges::all_of(
+                field.name, [](char c) { return is_letter(c) || is_digit(c) || c == '.'; });
+            const bool is_own_error = field.name == "error" || field.name == "error_id";
+            if (is_read && is_plain && !is_own_error && is_output == outputs &&
+                signals.size() < most_signals)
+                signals.push_back(fmt::format("{}.{}", block.name, field.name));
+        }
+    return signals;
+}
+
+std::string text_of(const std::vector<NewTask>& tasks, const std::vector<NewBlock>& blocks) {
+    std::string text = "tasks:                           # the larger priority runs first\n";
+    for (const NewTask& task : tasks)
+        text += fmt::format("  {}: {{every: {}, priority: {}}}\n", task.name, time_text(task.every),
+                            task.priority);
+    text += "blocks:\n";
+    for (const NewBlock& block : blocks)
+        text += fmt::format("  {}: {{type: {}, task: {}}}\n", block.name, block.type, block.task);
+    return text;
+}
+
+}  // namespace
+
+std::string program_around(const std::string& path, const std::filesystem::path& file,
+                           Diagnostics& out) {
+    const projects::Project project = read_project(path, {}, out);
+    const auto library = out.empty() ? st::compile(project.sources, standard_blocks(), out)
+                                     : std::optional<st::Library>();
+    if (!library) return {};
+    const std::vector<NewTask> tasks = tasks_of(project);
+    const std::vector<NewBlock> programs = programs_of(*library, tasks);
+    if (programs.empty()) {
+        out.add(code::entry_is_missing, {},
+                fmt::format("'{}' has no PROGRAM that a task could run", path),
+                "write a PROGRAM that calls its function blocks");
+        return {};
+    }
+    std::vector<NewBlock> blocks = named_blocks(*library, programs);
+    blocks.insert(blocks.end(), programs.begin(), programs.end());
+    const std::string source =
+        std::filesystem::absolute(path)
+            .lexically_normal()
+            .lexically_proximate(std::filesystem::absolute(file).lexically_normal().parent_path())
+            .string();
+    const std::string name = file.stem().string();
+    std::string text = fmt::format(
+        "# Around a project of another tool. Try, and then change:\n"
+        "#   lineshaft run {0}.yaml --trace {0}.csv\n"
+        "#   lineshaft check {0}.yaml\n"
+        "lineshaft: 1\ntitle: {0}\nsources: [\"{1}\"]\n{2}run: {{for: 1 s}}\n",
+        name, source, text_of(tasks, blocks));
+    const std::vector<std::string> signals = signals_of(*library, programs.front());
+    if (!signals.empty())
+        text += fmt::format("trace: {{task: {}, signals: [{}]}}\n", programs.front().task,
+                            fmt::join(signals, ", "));
+    return text;
+}
+
+}  // namespace lineshaft
