@@ -176,6 +176,40 @@ bool is_handle(const Type& type, std::int64_t number, const Context& context) {
     return number < context.blocks && context.types[number] == type.standard;
 }
 
+std::size_t slots_in_memory(const Type& type) {
+    if (type.kind == Kind::block) return type.routine->frame;
+    if (type.kind != Kind::array) return slots_of(type);
+    return static_cast<std::size_t>(type.upper - type.lower + 1) * element_slots(type);
+}
+
+/// The block whose instance begins at slot `wanted`, in what begins at `slot`; null: none does.
+const Routine* instance_at(const Type& type, std::size_t slot, std::size_t wanted) {
+    if (wanted < slot || wanted - slot >= slots_in_memory(type)) return nullptr;
+    if (type.kind == Kind::array) {
+        const std::size_t one = element_slots(type);
+        return instance_at(*type.element, wanted - (wanted - slot) % one, wanted);
+    }
+    if (type.kind == Kind::block && slot == wanted) return type.routine;
+    const auto parts = type.kind == Kind::block ? all_variables(*type.routine) : type.members;
+    for (const Variable* part : parts)
+        if (part->type && part->space != Space::reference && part->space != Space::constant)
+            if (const Routine* found = instance_at(*part->type, slot + part->slot, wanted))
+                return found;
+    return nullptr;
+}
+
+/// 0, or the address of an instance of the program that implements the interface.
+bool is_instance(const Type& interface, std::uint64_t address, const Context& context) {
+    if (address == 0) return true;
+    const std::uint64_t number = (address >> 32) - 1;
+    if (number >= static_cast<std::uint64_t>(context.blocks)) return false;
+    const BlockType& kind = *context.types[number];
+    if (kind.scan_blocks != scan_blocks) return false;
+    const Type& type = *static_cast<const KindContext*>(kind.context)->type;
+    const Routine* found = instance_at(type, 0, address & 0xFFFF'FFFF);
+    return found && is_a(*found, *interface.routine);
+}
+
 bool is_value(const Type& type, const std::byte* place, const KeptState& machine) {
     const auto number = read<std::int64_t>(place);
     switch (type.kind) {
@@ -194,6 +228,8 @@ bool is_value(const Type& type, const std::byte* place, const KeptState& machine
         }
         case Kind::handle:
             return is_handle(type, number, machine.context);
+        case Kind::interface:
+            return is_instance(type, static_cast<std::uint64_t>(number), machine.context);
         case Kind::text:
             return number >= 0 && number <= std::int64_t{type.length};
         case Kind::reference:

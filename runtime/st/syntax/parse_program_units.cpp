@@ -40,9 +40,10 @@ bool at_attribute(const Cursor& p) {
            std::ranges::any_of(words, [&](std::string_view word) { return p.says(word); });
 }
 
-/// POU_Header : Using_Directive * Pou_Bases Attribute * ( 'NON_RETAIN' | 'RETAIN' ) ?
-/// Data_Block_Type ? Data_Block_Type : ( Array_Spec | Struct_Decl | Type_Access ) ';' ? Only a
-/// DATA_BLOCK has a type here; a name is always that.
+/// POU_Header : Using_Directive * Pou_Bases Attribute * Retained ? Data_Block_Type ?
+/// Retained : 'NON_RETAIN' | 'RETAIN'
+/// Data_Block_Type : ( Array_Spec | Struct_Decl | Type_Access ) ';' ?
+/// Only a DATA_BLOCK has a type here; a name is always that.
 void parse_header(Parsing& p, Pou& pou) {
     const bool has_using = p.is(Word::using_) && p.is_name(1);
     if (has_using) open_scope(p, pou.place.begin, p.scope ? p.scope->path : std::string_view());
