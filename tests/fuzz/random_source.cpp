@@ -1575,7 +1575,8 @@ class SourceMaker {
         for (std::size_t i = below(6) / 2; i > 0; --i) {
             const Type& type = any_type();
             const auto target = type.name.empty() ? std::nullopt : place(type, true);
-            if (!target) continue;
+            const bool is_part_of_standard_block = target && target->starts_with("fb");
+            if (!target || is_part_of_standard_block) continue;
             const std::string name = new_name("r");
             const std::size_t how = below(3);
             const char* const words[] = {"REFERENCE TO", "REF_TO", "POINTER TO"};

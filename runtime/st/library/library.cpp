@@ -70,7 +70,8 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
 }
 
 FaultPlace Library::fault(const BlockType& kind, const std::byte* instance) const {
-    if (!static_cast<const KindContext*>(kind.context)->routine) return {};
+    const bool is_image = kind.context == &made_->image;
+    if (is_image || !static_cast<const KindContext*>(kind.context)->routine) return {};
     return fault_of(made_->generated.code, instance);
 }
 
