@@ -173,8 +173,9 @@ void Executive::restore_memory(StateReader& in, KeptMemory& memory, const std::b
 void Executive::restore_forces(StateReader& in, const KeptMemory& memory) {
     restore_list(in, machine_, machine_.forces);
     for (const Force& force : machine_.forces) {
-        const bool is_of_block = !force.block || std::ranges::count(machine_.blocks, force.block,
-                                                                    &BlockPlace::live) == 1;
+        const bool is_of_block =  // the process image stands in the list before and behind its task
+            !force.block || std::ranges::find(machine_.blocks, force.block, &BlockPlace::live) !=
+                                machine_.blocks.end();
         in.require(force.live && is_of_block && memory.is_signal(force.live, force.type, false) &&
                        (!force.published || memory.is_signal(force.published, force.type, true)),
                    "a force");

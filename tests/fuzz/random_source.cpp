@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/model/catalog.hpp"
+
 namespace lineshaft::test {
 
 namespace {
@@ -1575,7 +1577,10 @@ class SourceMaker {
         for (std::size_t i = below(6) / 2; i > 0; --i) {
             const Type& type = any_type();
             const auto target = type.name.empty() ? std::nullopt : place(type, true);
-            const bool is_part_of_standard_block = target && target->starts_with("fb");
+            const std::string_view letters = target ? std::string_view(*target) : "";
+            const auto first = letters.find_first_not_of('#');
+            const bool is_part_of_standard_block =
+                first != letters.npos && same_letters(letters.substr(first, 2), "fb");
             if (!target || is_part_of_standard_block) continue;
             const std::string name = new_name("r");
             const std::size_t how = below(3);
