@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <cstring>
 #include <map>
-#include <ranges>
 #include <string_view>
 #include <system_error>
 #include <tuple>
@@ -73,13 +72,14 @@ Client* Clients::next_to_go() {
     std::ranges::stable_sort(in_turn, {}, [](const auto& each) {
         return std::pair(std::get<0>(each), std::get<1>(each));
     });
-    const auto of_the_most = in_turn | std::views::take_while([&](const auto& each) {
-                                 return std::get<0>(each) == std::get<0>(in_turn.front());
-                             });
-    const auto next = std::ranges::find_if(of_the_most, [](const auto& each) {
+    const auto has_less = [&](const auto& each) {
+        return std::get<0>(each) != std::get<0>(in_turn.front());
+    };
+    const auto of_the_most = std::ranges::find_if(in_turn, has_less);
+    const auto next = std::find_if(in_turn.begin(), of_the_most, [](const auto& each) {
         return !std::get<Client*>(each)->socket->is_readable(0);
     });
-    return std::get<Client*>(next == of_the_most.end() ? in_turn.front() : *next);
+    return std::get<Client*>(next == of_the_most ? in_turn.front() : *next);
 }
 
 void Clients::forget() {

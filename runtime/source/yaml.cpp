@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
+#include <new>
 #include <sstream>
 #include <system_error>
 
@@ -34,6 +35,8 @@ void build(const YamlText& source, YamlBuilder& builder, Diagnostics& out) {
     } catch (const YAML::Exception& fault) {
         builder.check_open_maps();
         report_mistake(fault, source, builder, out);
+    } catch (const std::bad_alloc&) {
+        throw;  // of memory, not of the file
     } catch (const std::exception& fault) {
         out.add(code::not_yaml, source.mark(0),
                 fmt::format("the file cannot be read as YAML: {}", fault.what()));
