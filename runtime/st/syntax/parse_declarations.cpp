@@ -116,7 +116,7 @@ DeclarationBlock parse_section(Parsing& p, Section section) {
     return block;
 }
 
-/// Var_Decl : Variable_List Located_At ? ':' Data_Type ( 'R_EDGE' | 'F_EDGE' ) ?
+/// Var_Decl : ( Variable_List | Name Located_At ) ':' Data_Type ( 'R_EDGE' | 'F_EDGE' ) ?
 ///            ( ':=' Var_Init ) ? ';'
 /// Variable_List : Name ( ',' Name ) *
 void parse_variables(Parsing& p, std::vector<Declaration*>& to) {

@@ -20,8 +20,8 @@ std::pair<std::string_view, Place> unit_between(const Tokens& tokens, std::size_
 }
 
 bool has_attribute(const Tokens& tokens, std::size_t token, std::string_view name) {
-    const auto range = std::ranges::equal_range(tokens.pragmas, token, {}, &Pragma::before);
-    return std::ranges::any_of(range, [&](const Pragma& pragma) {
+    return std::any_of(tokens.pragmas.begin(), tokens.pragmas.end(), [&](const Pragma& pragma) {
+        if (pragma.before != token) return false;
         std::string_view text = pragma.place.text();
         const std::size_t quote = std::min(text.find('\''), text.size());
         if (text.substr(0, quote).find("attribute") == text.npos) return false;

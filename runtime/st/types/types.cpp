@@ -12,7 +12,6 @@ const Expression& root_of(const Expression& place) {
 }
 
 std::uint64_t bytes_of(const Type& type) {
-    using Kind = Type::Kind;
     std::uint64_t bytes = 0;
     switch (type.kind) {
         case Kind::boolean:
