@@ -217,7 +217,7 @@ void check_mock_function(Checking& c, Expression& call) {
 }  // namespace
 
 bool is_place(const Expression& e) {
-    return e.kind == E::name || e.kind == E::member || e.kind == E::index;
+    return e.kind == E::name || e.kind == E::member || e.kind == E::index || e.kind == E::deref;
 }
 
 const Type* check_test_statement(Checking& c, Expression& call, bool as_statement) {
