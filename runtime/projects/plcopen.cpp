@@ -52,13 +52,17 @@ class PlcopenProject {
             add(list, &PlcopenText::add_globals);
     }
 
+    void declared_in(pugi::xml_node data) {
+        globals_of(data);
+        for (const pugi::xml_node type : data.children("dataType"))
+            add(type, &PlcopenText::add_type);
+        for (const pugi::xml_node pou : data.children("pou")) add(pou, &PlcopenText::add_pou);
+    }
+
     /// CODESYS has there what it has in an application.
     void data_of(pugi::xml_node owner) {
         for (const pugi::xml_node data : owner.child("addData").children("data")) {
-            globals_of(data);
-            for (const pugi::xml_node type : data.children("dataType"))
-                add(type, &PlcopenText::add_type);
-            for (const pugi::xml_node pou : data.children("pou")) add(pou, &PlcopenText::add_pou);
+            declared_in(data);
             for (const pugi::xml_node resource : data.children("resource")) {
                 globals_of(resource);
                 for (const pugi::xml_node task : resource.children("task")) add_task(task);
@@ -68,12 +72,8 @@ class PlcopenProject {
     }
 
     void data_of_application(pugi::xml_node resource) {
-        for (const pugi::xml_node data : resource.child("addData").children("data")) {
-            globals_of(data);
-            for (const pugi::xml_node type : data.children("dataType"))
-                add(type, &PlcopenText::add_type);
-            for (const pugi::xml_node pou : data.children("pou")) add(pou, &PlcopenText::add_pou);
-        }
+        for (const pugi::xml_node data : resource.child("addData").children("data"))
+            declared_in(data);
     }
 
     void add_task(pugi::xml_node task) {

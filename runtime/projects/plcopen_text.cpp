@@ -77,13 +77,18 @@ void PlcopenText::add_variable(pugi::xml_node variable) {
         write(" AT ", variable);
         file_.copy(text_, address);
     }
-    write(" : ", variable);
-    add_type_of(variable.child("type"), 0);
-    if (const pugi::xml_node value = variable.child("initialValue")) {
+    add_declared(variable, "type");
+    write(";\n", variable);
+}
+
+/// What stands behind the name of a variable or a type.
+void PlcopenText::add_declared(pugi::xml_node declared, const char* type) {
+    write(" : ", declared);
+    add_type_of(declared.child(type), 0);
+    if (const pugi::xml_node value = declared.child("initialValue")) {
         write(" := ", value);
         add_value(value, 0);
     }
-    write(";\n", variable);
 }
 
 void PlcopenText::add_type_of(pugi::xml_node type, int depth) {
@@ -297,12 +302,7 @@ void PlcopenText::add_type(pugi::xml_node type) {
     if (add_plain(type)) return;
     write("TYPE ", type);
     file_.copy(text_, type.attribute("name"));
-    write(" : ", type);
-    add_type_of(type.child("baseType"), 0);
-    if (const pugi::xml_node value = type.child("initialValue")) {
-        write(" := ", value);
-        add_value(value, 0);
-    }
+    add_declared(type, "baseType");
     write(";\nEND_TYPE\n", type);
 }
 

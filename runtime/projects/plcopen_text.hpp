@@ -25,6 +25,7 @@ class PlcopenText {
     void add_interface(pugi::xml_node interface);
     void add_section(pugi::xml_node section, std::string_view word);
     void add_variable(pugi::xml_node variable);
+    void add_declared(pugi::xml_node declared, const char* type);
     void add_type_of(pugi::xml_node type, int depth);
     void add_array(pugi::xml_node array, int depth);
     void add_struct(pugi::xml_node structure, int depth);

@@ -17,8 +17,8 @@
 /// AGAIN(to) too and takes fuel; CALL and LEAVE begin and end a call; FAIL ends the scan with a
 /// fault.
 ///
-/// Of packed memory the lower half of c is where a value begins [bits], on from what slot d has, and
-/// the upper one, UPPER_C, its PackedFormat.
+/// Of packed memory the lower half of c is where a value begins [bits], on from what slot d has,
+/// and the upper one, UPPER_C, its PackedFormat.
 ///
 /// Fused instructions do what two or more of the others do. Code that is counted has none.
 // clang-format off
