@@ -7,13 +7,13 @@ namespace lineshaft::st {
 
 /// What the symbols in the stencils stand for, by their names there: operands, eight times them
 /// (slots), the tables that they number, the number of the instruction behind; the ways on.
-#define LINESHAFT_ST_HOLES(HOLE)                                                                \
-    HOLE(a_bytes)                                                                               \
-    HOLE(b_bytes)                                                                               \
-    HOLE(c_bytes)                                                                               \
-    HOLE(d_bytes) HOLE(a_number) HOLE(b_number) HOLE(c_number) HOLE(d_number) HOLE(c_upper)     \
-        HOLE(c_table) HOLE(d_table) HOLE(place_behind) HOLE(next_instruction) HOLE(jump_target) \
-            HOLE(called_routine)
+// clang-format off
+#define LINESHAFT_ST_HOLES(HOLE)                                                            \
+    HOLE(a_bytes) HOLE(b_bytes) HOLE(c_bytes) HOLE(d_bytes)                                 \
+    HOLE(a_number) HOLE(b_number) HOLE(c_number) HOLE(d_number) HOLE(c_upper)               \
+    HOLE(c_table) HOLE(d_table) HOLE(place_behind)                                          \
+    HOLE(next_instruction) HOLE(jump_target) HOLE(called_routine)
+// clang-format on
 
 enum class Hole : std::uint8_t {
 #define HOLE(name) name,
