@@ -16,65 +16,6 @@ namespace lineshaft::st {
 
 namespace {
 
-constexpr std::string_view word_names[] = {
-#define WORD(name) #name,
-    LINESHAFT_ST_WORDS(WORD)
-#undef WORD
-};
-
-/// Of what is neither a word nor a sign, in the order of Word.
-constexpr std::string_view other_names[] = {
-    "the end of the file", "a name", "a type", "a number", "a number", "a time", "a text",
-    "a direct address"};
-
-const NameMap<Word>& words() {
-    static const NameMap<Word> map = [] {
-        NameMap<Word> made;
-        for (std::size_t i = 0; i < std::size(word_names); ++i)
-            made.emplace(word_names[i], static_cast<Word>(i));
-        return made;
-    }();
-    return map;
-}
-
-struct Sign {
-    std::string_view text;
-    Word word;
-};
-
-// The longer ones first.
-constexpr Sign signs[] = {{":=", Word::assign},
-                          {"+=", Word::plus_assign},
-                          {"-=", Word::minus_assign},
-                          {"*=", Word::times_assign},
-                          {"/=", Word::divided_assign},
-                          {"S=", Word::set_assign},
-                          {"R=", Word::reset_assign},
-                          {"=>", Word::output},
-                          {"?=", Word::attempt_assign},
-                          {"**", Word::power},
-                          {"<=", Word::less_or_equal},
-                          {">=", Word::greater_or_equal},
-                          {"<>", Word::unequal},
-                          {"..", Word::range},
-                          {"*", Word::times},
-                          {"/", Word::divided},
-                          {"+", Word::plus},
-                          {"-", Word::minus},
-                          {"<", Word::less},
-                          {">", Word::greater},
-                          {"=", Word::equal},
-                          {"&", Word::ampersand},
-                          {"^", Word::caret},
-                          {"(", Word::open},
-                          {")", Word::close},
-                          {"[", Word::open_bracket},
-                          {"]", Word::close_bracket},
-                          {".", Word::dot},
-                          {",", Word::comma},
-                          {";", Word::semicolon},
-                          {":", Word::colon}};
-
 constexpr int deepest_comment = 200;
 
 constexpr std::string_view time_prefixes[] = {"t", "time", "lt", "ltime", "s5t", "s5time"};
@@ -276,7 +217,7 @@ class Lexer {
         if (c == '\'') return read_text();
         if (c == '"' || c == '#') return read_marked_name();
         if (c == '%' && is_direct()) return read_direct();
-        for (const Sign& sign : signs) {
+        for (const Sign& sign : signs()) {
             if (!at(sign.text)) continue;
             at_ += sign.text.size();
             add(sign.word);
@@ -295,15 +236,14 @@ class Lexer {
             add(*word);
             return;
         }
-        const auto it = words().find(text);
-        const bool is_variable = it != words().end() && it->second == Word::region_ &&
-                                 (!new_line_ || is_declared_or_assigned());
-        if (it == words().end() || after_dot || is_variable) {
+        const std::optional<Word> word = word_of(text);
+        const bool is_variable = word == Word::region_ && (!new_line_ || is_declared_or_assigned());
+        if (!word || after_dot || is_variable) {
             add(Word::name);
             return;
         }
-        add(it->second);
-        if (it->second == Word::region_ || it->second == Word::end_region_) skip_title();
+        add(*word);
+        if (word == Word::region_ || word == Word::end_region_) skip_title();
     }
 
     /// `REF=`, and behind what may be assigned `S=` and `R=`.
@@ -492,32 +432,6 @@ class Lexer {
 };
 
 }  // namespace
-
-Mark Place::mark() const {
-    return mark_of(source->file, begin, end);
-}
-
-bool SameName::operator()(std::string_view a, std::string_view b) const {
-    return std::ranges::equal(a, b, [](char x, char y) { return lower(x) == lower(y); });
-}
-
-std::size_t NameHash::operator()(std::string_view name) const {
-    std::size_t hash = 0xcbf29ce484222325;
-    for (const char c : name) hash = (hash ^ static_cast<unsigned char>(lower(c))) * 0x100000001b3;
-    return hash;
-}
-
-std::string_view shown(Word word) {
-    static const auto capitals = [] {
-        std::vector<std::string> made;
-        for (const std::string_view name : word_names) made.push_back(upper(name));
-        return made;
-    }();
-    const auto i = static_cast<std::size_t>(word);
-    if (i < capitals.size()) return capitals[i];
-    const auto* sign = std::ranges::find(signs, word, &Sign::word);
-    return sign != std::end(signs) ? sign->text : other_names[i - capitals.size()];
-}
 
 Tokens read_tokens(const std::shared_ptr<const SourceFile>& file, Diagnostics& out,
                    SourceKind kind) {

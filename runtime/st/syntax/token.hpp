@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string_view>
 #include <unordered_map>
 #include <unordered_set>
@@ -123,6 +125,17 @@ enum class Word : std::uint8_t {
 
 /// As messages show it: `END_IF`, `:=`, `a name`.
 std::string_view shown(Word word);
+
+/// The word of the language that is written so, whatever its capitals.
+std::optional<Word> word_of(std::string_view text);
+
+struct Sign {
+    std::string_view text;
+    Word word;
+};
+
+/// The longer ones first.
+std::span<const Sign> signs();
 
 struct Token {
     Word word = Word::end_of_file;

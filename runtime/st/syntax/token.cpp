@@ -1,0 +1,104 @@
+#include "runtime/st/syntax/token.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "runtime/source/habits.hpp"
+#include "runtime/source/letters.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+constexpr std::string_view word_names[] = {
+#define WORD(name) #name,
+    LINESHAFT_ST_WORDS(WORD)
+#undef WORD
+};
+
+/// Names of what is neither a word nor a sign, in the order of Word.
+constexpr std::string_view other_names[] = {
+    "the end of the file", "a name", "a type", "a number", "a number", "a time", "a text",
+    "a direct address"};
+
+constexpr Sign all_signs[] = {{":=", Word::assign},
+                              {"+=", Word::plus_assign},
+                              {"-=", Word::minus_assign},
+                              {"*=", Word::times_assign},
+                              {"/=", Word::divided_assign},
+                              {"S=", Word::set_assign},
+                              {"R=", Word::reset_assign},
+                              {"=>", Word::output},
+                              {"?=", Word::attempt_assign},
+                              {"**", Word::power},
+                              {"<=", Word::less_or_equal},
+                              {">=", Word::greater_or_equal},
+                              {"<>", Word::unequal},
+                              {"..", Word::range},
+                              {"*", Word::times},
+                              {"/", Word::divided},
+                              {"+", Word::plus},
+                              {"-", Word::minus},
+                              {"<", Word::less},
+                              {">", Word::greater},
+                              {"=", Word::equal},
+                              {"&", Word::ampersand},
+                              {"^", Word::caret},
+                              {"(", Word::open},
+                              {")", Word::close},
+                              {"[", Word::open_bracket},
+                              {"]", Word::close_bracket},
+                              {".", Word::dot},
+                              {",", Word::comma},
+                              {";", Word::semicolon},
+                              {":", Word::colon}};
+
+const NameMap<Word>& words() {
+    static const NameMap<Word> map = [] {
+        NameMap<Word> made;
+        for (std::size_t i = 0; i < std::size(word_names); ++i)
+            made.emplace(word_names[i], static_cast<Word>(i));
+        return made;
+    }();
+    return map;
+}
+
+}  // namespace
+
+Mark Place::mark() const {
+    return mark_of(source->file, begin, end);
+}
+
+bool SameName::operator()(std::string_view a, std::string_view b) const {
+    return std::ranges::equal(a, b, [](char x, char y) { return lower(x) == lower(y); });
+}
+
+std::size_t NameHash::operator()(std::string_view name) const {
+    std::size_t hash = 0xcbf29ce484222325;
+    for (const char c : name) hash = (hash ^ static_cast<unsigned char>(lower(c))) * 0x100000001b3;
+    return hash;
+}
+
+std::optional<Word> word_of(std::string_view text) {
+    const auto it = words().find(text);
+    return it == words().end() ? std::nullopt : std::optional(it->second);
+}
+
+std::span<const Sign> signs() {
+    return all_signs;
+}
+
+std::string_view shown(Word word) {
+    static const auto capitals = [] {
+        std::vector<std::string> made;
+        for (const std::string_view name : word_names) made.push_back(upper(name));
+        return made;
+    }();
+    const auto i = static_cast<std::size_t>(word);
+    if (i < capitals.size()) return capitals[i];
+    const auto* sign = std::ranges::find(all_signs, word, &Sign::word);
+    return sign != std::end(all_signs) ? sign->text : other_names[i - capitals.size()];
+}
+
+}  // namespace lineshaft::st
