@@ -119,6 +119,12 @@ write("broken/program.yaml", pathlib.Path(undecided).read_text().replace("fault:
 failed, _ = test("broken", code=1)
 assert len(failed) == 3 and "division_by_zero" in failed[1], failed  # the fault, not what it left undecided
 
+# Why something is expected is told with the verdict.
+reasoned = write("because.yaml", "lineshaft: 1\ntasks: {t: {every: 1 ms}}\nblocks: {n: {type: ctu, task: t, cu: true, pv: 3}}\n"
+                 "run: {for: 1 ms}\nexpect: [{at: end, n.cv: 2, because: a level counts once}]\n")
+assert "FAILED  at the end: n.cv = 2, because a level counts once" in run("run", reasoned, code=1)
+pathlib.Path(reasoned).unlink()
+
 # What takes minutes is marked, and runs when it is asked for.
 quick = "lineshaft: 1\ntasks: {t: {every: 1 ms}}\nblocks: {n: {type: ctu, task: t, cu: inputs.on, pv: 3}}\ninputs: {on: false}\nexpect: [{at: end, n.cv: 0}]\n"
 write("marked/a.yaml", quick + "run: {for: 1 ms}\n")

@@ -168,6 +168,7 @@ struct ExpectPlan {
     std::int64_t from = 0, until = never;  ///< [ns]
     Node signal, cause;
     std::optional<Node> equals, within, at_least, at_most;
+    std::string because;  ///< why it is expected, told with the verdict
 };
 
 /// `report:`, each as it is written; what stands beside a mistake is not here.

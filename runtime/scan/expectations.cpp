@@ -133,6 +133,7 @@ Expectation expectation(const Connecting& to, const ExpectPlan& plan, const Sign
     if (plan.when == When::always && !has_bounds) e.wanted = "true";
     if (plan.when == When::excluded)
         e.wanted = fmt::format("never {}", has_bounds ? e.wanted : "true");
+    if (!plan.because.empty()) e.text += ", because " + plan.because;
     return e;
 }
 
