@@ -44,10 +44,27 @@ const Type* resolve_array(Checking& c, const TypeText& text) {
     return element;
 }
 
+/// The members of the structure that is extended come first.
+void inherit_members(Checking& c, const Token& name, Type& to, NameMap<Place>& names) {
+    const Type* base = resolve_name(c, name);
+    if (!base) return;
+    if (base->kind != Kind::structure) {
+        c.fail(code::type_does_not_fit, name.place,
+               fmt::format("{} is not a structure", describe(*base)),
+               "a structure extends another one");
+        return;
+    }
+    for (const Variable* member : base->members) {
+        names.emplace(member->text, member->name.place);
+        to.members.push_back(&c.checked.variables.emplace_back(*member));
+    }
+}
+
 const Type* resolve_structure(Checking& c, const TypeText& text) {
     Type& type = c.make_type(Kind::structure, "STRUCT");
     type.is_unnamed = true;
     NameMap<Place> names;
+    if (text.base.word != Word::end_of_file) inherit_members(c, text.base, type, names);
     for (const Declaration* declared : text.members) {
         const Type* member = resolve(c, *declared->type);
         if (is_new_name(c, declared->name, names))
@@ -125,6 +142,9 @@ const Type* resolve_text(Checking& c, const TypeText& text) {
 }  // namespace
 
 const Type* resolve(Checking& c, const TypeText& text) {
+    if (text.base.word != Word::end_of_file && text.kind != TypeText::Kind::structure)
+        c.fail(code::wrong_place, text.base.place, "only a structure extends another type",
+               "write STRUCT behind ':'");
     switch (text.kind) {
         case TypeText::Kind::name:
             return resolve_name(c, text.name);

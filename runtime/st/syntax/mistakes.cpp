@@ -141,13 +141,6 @@ void refuse_reserved_name(Parsing& p) {
     p.unclosed_at = p.at;
 }
 
-void refuse_base(Parsing& p) {
-    fail(p, code::not_supported, p.here().place, "inheritance is not supported",
-         "declare a member of the other type");
-    p.panic = false;
-    while (!p.is(Word::end_of_file) && !p.is(Word::colon) && !p.is(Word::struct_)) p.take();
-}
-
 void refuse_any_length(Parsing& p) {
     fail(p, code::not_supported, p.here().place, "arrays of any length are not supported",
          "write its bounds: ARRAY[0..9] OF ...");

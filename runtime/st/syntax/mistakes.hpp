@@ -33,8 +33,6 @@ void refuse_shared_place(Parsing& p);
 void refuse_statement(Parsing& p);
 /// A word of the language stands where a name is due: whatever uses it would be wrong too.
 void refuse_reserved_name(Parsing& p);
-/// `TYPE t EXTENDS base : STRUCT`
-void refuse_base(Parsing& p);
 /// ARRAY[*]
 void refuse_any_length(Parsing& p);
 /// UNION, whose members are read all the same. False: it is none.

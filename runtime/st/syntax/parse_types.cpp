@@ -105,17 +105,20 @@ void parse_reference(Parsing& p, TypeText& type) {
 }  // namespace
 
 /// Data_Type_Decl : 'TYPE' Access_Spec * ( Type_Decl ( ';' Type_Decl ) * ';' ? ) ? 'END_TYPE' ';' ?
-/// Type_Decl : Name Attribute * ( ':' Data_Type | Struct_Decl ) ( ':=' Init ) ?
+/// Type_Decl : Name ( 'EXTENDS' Qualified_Name ) ? Attribute *
+///             ( ':' Data_Type | Struct_Decl ) ( ':=' Init ) ?
 void parse_type_declarations(Parsing& p) {
     const Token opener = p.take();
     while (accept_access(p)) continue;
     while (!is_end(p.here().word) && !p.is(Word::end_of_file) && !p.at_pou()) {
         TypeDeclaration declared;
         declared.name = expect_name(p, "the name of a type");
-        if (p.is(Word::extends_)) refuse_base(p);
+        Token base;
+        if (p.accept(Word::extends_)) base = parse_qualified_name(p, "a structure");
         parse_attributes(p);
         if (!p.is(Word::struct_)) expect(p, Word::colon, "after the name");
         declared.type = parse_type(p);
+        declared.type->base = base;
         if (p.accept(Word::assign)) declared.initial = parse_initial(p);
         if (!p.accept(Word::semicolon) && !p.is(Word::end_type_)) end_statement(p);
         if (p.panic) skip_declaration(p);

@@ -161,6 +161,7 @@ struct TypeText {
     std::vector<std::pair<Expression*, Expression*>> ranges = {};  ///< of array and subrange
     Expression* length = nullptr;                                  ///< STRING[length]
     TypeText* element = nullptr;
+    Token base = {};  ///< of a structure that extends another
     std::vector<struct Declaration*> members = {};
     std::vector<Argument> values = {};  ///< of an enumeration, with their numbers if given
 };
