@@ -168,7 +168,10 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
                    "a function keeps nothing from call to call, so it has no instances",
                    "pass the instance as VAR_IN_OUT");
         if (variable->space != Space::reference) refuse_abstract(c, type, declared->name.place);
-        const bool is_only_named = routine.is_prototype() && type && type->kind == Kind::block;
+        const bool is_own =
+            variable->space == Space::reference && routine.owner && type == routine.owner->type;
+        const bool is_only_named =
+            is_own || (routine.is_prototype() && type && type->kind == Kind::block);
         if (!is_only_named) depend(c, type, declared->name.place);
         locate_in_image(c, *variable, *declared);
         if (routine.pou->is_tests || routine.is_test()) make_object(c, *variable);

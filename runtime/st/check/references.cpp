@@ -40,6 +40,7 @@ std::string_view why_no_place(const Expression& e) {
     if (e.kind == E::constant)
         return e.variable ? "a constant has no place" : "a value has no place";
     if (e.kind == E::bit || e.is_character()) return "a part of a value has no place of its own";
+    if (e.kind == E::self) return {};
     if (e.kind != E::name && e.kind != E::member && e.kind != E::index && e.kind != E::deref)
         return "a value has no place";
     const Expression& root = root_of(e);
@@ -67,9 +68,10 @@ bool refer(Checking& c, Expression*& e, const Type& to) {
     }
     note_lending(c, *e);
     const Expression& root = root_of(*e);
-    if (root.variable) root.variable->used = true;
-    if (root.kind != E::deref && root.variable->space == Space::reference)
-        c.checked.refers_to_in_outs = true;
+    if (root.variable) {
+        root.variable->used = true;
+        c.checked.refers_to_in_outs |= root.variable->space == Space::reference;
+    }
     Expression* made = make(c, E::refer, *e);
     made->operands[0] = e;
     made->type = &to;
@@ -303,7 +305,8 @@ const Type* check_reference_operator(Checking& c, Expression*& e, const Type* ex
 bool coerce_reference(Checking& c, Expression*& e, const Type& to) {
     const Type& from = *e->type;
     if (!to.is_reference()) return refuse_target(c, *e, to, from);
-    if (to.is_alias()) return bind(c, e, to);
+    const bool is_this = to.is_pointer() && e->kind == E::self;
+    if (to.is_alias() || is_this) return bind(c, e, to);
     if (is_null(*e)) {
         e = make_constant(c, *e, to, {});
         return true;

@@ -48,8 +48,16 @@ Slot refer_to_part(Writing& w, Slot base, const Expression& part, const Expressi
     return made;
 }
 
+/// The instance itself, of a block's body and its methods.
+std::uint32_t piece_number(Writing& w, const Type& own) {
+    const auto number = static_cast<std::uint32_t>(w.code.pieces.size());
+    const auto [it, added] = w.own_pieces.emplace(&own, number);
+    if (added) w.code.pieces.push_back({.name = "THIS", .shape = shape_number(w, own)});
+    return it->second;
+}
+
 std::uint32_t piece_number(Writing& w, const Variable& variable) {
-    const auto number = static_cast<std::uint32_t>(w.pieces.size());
+    const auto number = static_cast<std::uint32_t>(w.code.pieces.size());
     const auto [it, added] = w.pieces.emplace(&variable, number);
     if (!added) return it->second;
     const Routine* routine = w.routine;
@@ -74,14 +82,14 @@ Location given_reference(Writing& w, const Expression& root) {
 }
 
 Slot refer_to_variable(Writing& w, const Expression& root) {
-    const Variable& variable = *root.variable;
+    const Variable* variable = root.variable;
     const Slot address = address_of(w, locate(w, root));
     const Slot made = w.new_temporary(reference_slots);
     w.put(Op::lasting, made, address);
-    const std::uint64_t piece = piece_number(w, variable);
+    const std::uint64_t piece = variable ? piece_number(w, *variable) : piece_number(w, *root.type);
     w.put(Op::move, made + 1, w.constant_slot((piece + 1) << 32));
-    w.put(Op::move, made + 2,
-          variable.ends_with_call() ? w.routine->activation : w.constant_slot(0));
+    const bool ends = variable && variable->ends_with_call();
+    w.put(Op::move, made + 2, ends ? w.routine->activation : w.constant_slot(0));
     return made;
 }
 
@@ -142,7 +150,7 @@ Slot reference_to(Writing& w, const Expression& place) {
     const Expression& root = root_of(place);
     if (root.kind == E::deref)
         return refer_to_part(w, reference(w, *root.operands[0]), place, root);
-    if (root.variable->space == Space::reference)
+    if (root.variable && root.variable->space == Space::reference)
         return refer_to_part(w, copied(w, given_reference(w, root)), place, root);
     return refer_to_part(w, refer_to_variable(w, root), place, root);
 }

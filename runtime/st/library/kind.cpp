@@ -124,17 +124,19 @@ bool is_at(const Type& type, std::size_t slot, const Type& wanted);
 
 /// A part of an instance that outlives a scan.
 bool is_in_block(const Type& block, std::size_t slot, const Type& wanted) {
-    return std::ranges::any_of(block.routine->variables, [&](const Variable& variable) {
-        const bool stays = variable.type && variable.section != Section::temp &&
-                           variable.space == Space::frame && !variable.constant;
-        return stays && slot >= variable.slot &&
-               is_at(*variable.type, slot - variable.slot, wanted);
+    return std::ranges::any_of(all_variables(*block.routine), [&](const Variable* variable) {
+        const bool stays = variable->type && variable->section != Section::temp &&
+                           variable->space == Space::frame && !variable->constant;
+        return stays && slot >= variable->slot &&
+               is_at(*variable->type, slot - variable->slot, wanted);
     });
 }
 
 /// A value of that type, or an instance, begins there.
 bool is_at(const Type& type, std::size_t slot, const Type& wanted) {
-    if (slot == 0 && same_type(type, wanted)) return true;
+    const bool is_derived = type.kind == Kind::block && wanted.kind == Kind::block &&
+                            is_a(*type.routine, *wanted.routine);
+    if (slot == 0 && (is_derived || same_type(type, wanted))) return true;
     switch (type.kind) {
         case Kind::array: {
             const auto count = static_cast<std::size_t>(type.upper - type.lower + 1);
