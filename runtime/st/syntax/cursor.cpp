@@ -67,9 +67,10 @@ bool Cursor::at_negated_output() const {
 }
 
 bool Cursor::at_chart() const {
-    if (!is(Word::name) || !here().first_in_line || !is_name(1)) return false;
-    return says("transition") ||
-           ((says("step") || says("initial_step")) && next(2).word == Word::colon);
+    if (!is(Word::name) || !here().first_in_line) return false;
+    const bool has_priority = next().word == Word::open && same_name(next(2).text, "priority");
+    if (says("transition")) return has_priority || is_name(1);
+    return (says("step") || says("initial_step")) && is_name(1) && next(2).word == Word::colon;
 }
 
 }  // namespace lineshaft::st

@@ -68,9 +68,10 @@ void parse_transition(Parsing& p, Chart& chart) {
     ChartTransition& made = chart.transitions.emplace_back();
     made.place = opener.place;
     if (p.is_name() && !p.says("from")) p.take();
-    if (p.is(Word::open) && p.next(2).word == Word::assign) {
-        p.at += 3;
-        made.priority = p.is(Word::integer) ? p.take() : Token{};
+    if (p.accept(Word::open)) {
+        if (p.says("priority")) p.take();
+        expect(p, Word::assign, "after PRIORITY");
+        if (p.is(Word::integer)) made.priority = p.take();
         expect(p, Word::close, "after the priority");
     }
     if (p.says("from"))
