@@ -16,6 +16,7 @@
 #include "blocks/group/group_reads.hpp"
 #include "blocks/group/group_valid.hpp"
 #include "blocks/group/path_table.hpp"
+#include "blocks/libraries/libraries.hpp"
 #include "blocks/logic/arithmetic.hpp"
 #include "blocks/logic/bistable.hpp"
 #include "blocks/logic/boolean.hpp"
@@ -166,6 +167,7 @@ Catalog make_catalog() {
                     "an axis is led by its position here and has no torque: move it with "
                     "MC_MoveVelocity within Acceleration and Jerk, or wire a servo_drive, whose "
                     "mechanics have forces");
+    blocks.add_libraries(vendor_libraries());
     return blocks;
 }
 

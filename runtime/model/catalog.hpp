@@ -128,6 +128,12 @@ concept PlainData = std::is_trivially_copyable_v<Block> && requires {
     typename std::bool_constant<detail::copied_as_bytes<Block>()>;
 };
 
+/// A file of a vendor's library: Structured Text that a program takes along by the names it uses.
+struct LibraryFile {
+    std::string_view library;  ///< `Util`, `System.Timer`: the namespace that all of it stands in
+    std::string_view path, text;
+};
+
 /// The kinds of block a program may use, by name.
 class Catalog {
   public:
@@ -183,11 +189,18 @@ class Catalog {
         return *this;
     }
 
+    /// Where two libraries have a name, the first that has it is meant. Static.
+    Catalog& add_libraries(std::span<const LibraryFile> files) {
+        libraries_ = files;
+        return *this;
+    }
+
     const BlockType* find(std::string_view name) const;
     /// Of a kind that the catalogue lacks on purpose what to do instead; empty for any other.
     std::string_view instead_of(std::string_view name) const;
     const std::vector<BlockType>& types() const { return types_; }
     std::vector<std::string> names() const;
+    std::span<const LibraryFile> libraries() const { return libraries_; }
 
   private:
     template <class Block>
@@ -330,6 +343,7 @@ class Catalog {
 
     std::vector<BlockType> types_;
     std::vector<Lacking> lacking_;
+    std::span<const LibraryFile> libraries_;
 };
 
 }  // namespace lineshaft

@@ -9,7 +9,7 @@ std::nullptr_t Checking::fail(const char* code, Place place, std::string message
 }
 
 void Checking::warn(const char* code, Place place, std::string message, std::string help) {
-    out.warn(code, place.mark(), std::move(message), std::move(help));
+    if (place.source->is_users()) out.warn(code, place.mark(), std::move(message), std::move(help));
 }
 
 const Prefixes* Checking::prefixes_at(Place place) const {

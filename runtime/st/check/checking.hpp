@@ -40,6 +40,10 @@ inline bool is_prelude(const Token& name) {
     return name.place.source && name.place.source->is_prelude();
 }
 
+inline bool is_library(const Token& name) {
+    return name.place.source && name.place.source->is_library();
+}
+
 /// Siemens' structure of a date and a time.
 inline bool is_dtl(const Type& type) {
     return type.kind == Kind::structure && type.name == "DTL" &&
@@ -69,6 +73,8 @@ struct Checking {
     NameMap<bool> namespaces = {};  ///< `a`, `a.b`; false: there is none of that name, told once
     std::unordered_map<const Source*, std::vector<Prefixes>> prefixes =
         {};  ///< as the tree's scopes
+    std::vector<std::string_view> open_libraries =
+        {};  ///< whose names are seen behind all others without theirs
     NameMap<Variable*> globals = {};
     /// One of VAR_GLOBAL CONSTANT, and where it stands.
     struct GlobalConstant {
@@ -94,8 +100,8 @@ struct Checking {
     std::nullptr_t fail(const char* code, Place place, std::string message, std::string help = {});
     void warn(const char* code, Place place, std::string message, std::string help);
 
-    /// What a name is. The prelude sees nothing of the user's; what it declares he sees where he
-    /// has no such name.
+    /// What a name is. The prelude and libraries see nothing of the user's; what they declare he
+    /// sees where he has no such name.
     template <class T>
     T* look_up(NameMap<T> Names::*map, const Token& name) {
         if (!is_prelude(name))
@@ -103,7 +109,8 @@ struct Checking {
         const auto it = (prelude.*map).find(name.text);
         return it == (prelude.*map).end() ? nullptr : &it->second;
     }
-    /// In the namespaces around the name, in those that are used there, then beside all.
+    /// In the namespaces around the name, in those that are used there, beside all, then in
+    /// libraries.
     template <class T>
     static T* find_in(NameMap<T>& map, std::string_view name) {
         const auto it = map.find(name);
@@ -114,7 +121,11 @@ struct Checking {
         if (const Prefixes* here = prefixes_at(name.place))
             for (const std::string_view path : here->paths)
                 if (T* found = find_in(map, fmt::format("{}.{}", path, name.text))) return found;
-        return find_in(map, name.text);
+        if (!is_library(name) || name.text.find('.') != name.text.npos)
+            if (T* found = find_in(map, name.text)) return found;
+        for (const std::string_view library : open_libraries)
+            if (T* found = find_in(map, fmt::format("{}.{}", library, name.text))) return found;
+        return nullptr;
     }
     /// Null: there is no namespace, and none is used.
     const Prefixes* prefixes_at(Place place) const;

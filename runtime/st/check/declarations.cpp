@@ -270,14 +270,11 @@ Variable* add(Checking& c, std::deque<Variable>& to, const Declaration& declared
     return &variable;
 }
 
-Variable* declare_early(Checking& c, std::string_view name) {
+Variable* declare_early(Checking& c, const Checking::GlobalConstant& constant) {
     constexpr int most_hops = 200;
-    const auto it = c.constants.find(name);
-    if (it == c.constants.end() || c.hops == most_hops ||
-        !c.begun_constants.insert(it->second.declared).second)
-        return nullptr;
+    const auto [block, declared] = constant;
+    if (c.hops == most_hops || !c.begun_constants.insert(declared).second) return nullptr;
     ++c.hops;
-    const auto [block, declared] = it->second;
     Variable* variable = declare_global(c, *block, *declared);
     --c.hops;
     return variable;

@@ -9,9 +9,9 @@ void collect_names(Checking& c);
 
 /// A variable in `to`, with its unit, which is checked.
 Variable* add(Checking& c, std::deque<Variable>& to, const Declaration& declared, const Type* type);
-/// One that a type or another constant asks for, wherever it is declared; null when there is none,
-/// or it asks for itself, or over too many others.
-Variable* declare_early(Checking& c, std::string_view name);
+/// One that a type or another constant asks for, wherever it is declared; null when it asks for
+/// itself, or over too many others.
+Variable* declare_early(Checking& c, const Checking::GlobalConstant& constant);
 
 /// VAR_GLOBAL and data blocks.
 void declare_globals(Checking& c);

@@ -44,8 +44,9 @@ Variable* find_variable(Checking& c, const Token& token) {
         if (const auto it = r->names.find(token.text); it != r->names.end()) return it->second;
     if (token.local) return nullptr;
     if (!is_prelude(token)) {
-        if (const auto it = c.globals.find(token.text); it != c.globals.end()) return it->second;
-        if (Variable* constant = declare_early(c, token.text)) return constant;
+        if (Variable** global = c.find_inside_out(c.globals, token)) return *global;
+        if (auto* constant = c.find_inside_out(c.constants, token))
+            if (Variable* variable = declare_early(c, *constant)) return variable;
     }
     return token.quoted && c.routine && c.routine->names.contains(token.text)
                ? c.routine->names.at(token.text)

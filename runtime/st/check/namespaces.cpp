@@ -64,6 +64,15 @@ const Expression* root_of(Checking& c, const Expression& member) {
 }  // namespace
 
 void collect_namespaces(Checking& c) {
+    for (const LibraryFile& file : c.catalog.libraries()) {
+        const bool is_taken = std::ranges::any_of(c.tree.sources, [&](const auto& source) {
+            return source->is_library() && source->file->path == file.path;
+        });
+        const bool is_known =
+            std::ranges::find(c.open_libraries, file.library) != c.open_libraries.end();
+        if (is_taken && !is_known && file.library.find('.') == file.library.npos)
+            c.open_libraries.push_back(file.library);
+    }
     for (const auto& [source, scopes] : c.tree.scopes)
         for (const Scope& scope : scopes)
             for (std::string_view path = scope.path; !path.empty(); path = before_last_point(path))

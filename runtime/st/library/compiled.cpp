@@ -10,6 +10,7 @@
 #include "runtime/st/code/native/native.hpp"
 #include "runtime/st/library/coverage.hpp"
 #include "runtime/st/library/evaluate.hpp"
+#include "runtime/st/library/library_names.hpp"
 #include "runtime/st/prelude/standard_source.hpp"
 #include "runtime/st/syntax/parser.hpp"
 
@@ -23,17 +24,20 @@ bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOption
              const SourceFile* tests) {
     bool uses_standard = false;
     std::set<const BlockType*> used;
+    LibraryNames libraries(standard);
     for (const auto& source : to.sources) {
         const bool is_tests = source.get() == tests;
         Tokens tokens =
             read_tokens(source, out, is_tests ? SourceKind::tests : SourceKind::program);
         uses_standard = uses_standard || uses_standard_source(tokens);
+        libraries.note_names(tokens);
         for (const BlockType& type : standard.types())
             if (uses_source_of(type, tokens)) used.insert(&type);
         parse(std::move(tokens), to.tree, out);
     }
     to.tree.leave_lost_out();
-    if (uses_standard)
+    libraries.add_files(to.tree, out);
+    if (uses_standard || libraries.use_standard_source())
         parse(read_tokens(standard_source(), out, SourceKind::prelude), to.tree, out);
     for (const BlockType& type : standard.types())
         if (used.contains(&type))

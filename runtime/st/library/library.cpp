@@ -56,7 +56,7 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     for (const Routine* routine : made->checked.order) codes.emplace(routine, code++);
     for (const Routine& routine : made->checked.routines)
         if (routine.has_instances() && !routine.owner && !routine.pou->is_abstract &&
-            !routine.pou->place.source->is_prelude())
+            routine.pou->place.source->is_users())
             add_routine(*made, routine, *codes.at(&routine), options);
     for (const Global& global : made->checked.globals)
         if (!global.object && global.name != image_name) add_global(*made, global, options);

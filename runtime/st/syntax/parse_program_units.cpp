@@ -123,8 +123,9 @@ std::string_view name_of_list(const Source& source) {
 void parse_globals(Parsing& p) {
     const bool is_qualified_only = has_attribute(p, p.at, "qualified_only");
     DeclarationBlock block = parse_section(p, Section::global);
-    block.list = name_of_list(*p.source);
-    block.is_qualified_only = is_qualified_only;
+    const bool is_library = p.source->is_library() && p.scope;
+    block.list = is_library ? p.scope->path : name_of_list(*p.source);
+    block.is_qualified_only = is_qualified_only || is_library;
     p.tree.globals.push_back(std::move(block));
 }
 

@@ -15,7 +15,8 @@ namespace lineshaft::st {
 enum class SourceKind : std::uint8_t {
     program,  ///< a user's
     tests,    ///< a user's, with TEST, SETUP and TEARDOWN beside blocks
-    prelude,  ///< comes with lineshaft
+    prelude,  ///< the standard's, which comes with lineshaft
+    library,  ///< a vendor's, which comes with lineshaft
 };
 
 /// A text that is compiled, and what was decided about it once, when it was read.
@@ -26,6 +27,8 @@ struct Source {
 
     std::string_view text() const { return file->text; }
     bool is_prelude() const { return kind == SourceKind::prelude; }
+    bool is_library() const { return kind == SourceKind::library; }
+    bool is_users() const { return !is_prelude() && !is_library(); }
 };
 
 /// Part of a source: bytes [begin, end) of its text.

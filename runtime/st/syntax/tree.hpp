@@ -198,7 +198,8 @@ struct DeclarationBlock {
     bool constant = false, retain = false;
     Access access = Access::unsaid;
     bool is_lost = false;            ///< not understood
-    std::string_view list = {};      ///< of VAR_GLOBAL: its file's name, without the ending
+    std::string_view list = {};      ///< of VAR_GLOBAL: its file's name, without the ending, or
+                                     ///< the library's
     bool is_qualified_only = false;  ///< named as `list.x` alone
     std::vector<Declaration*> declarations = {};
 };

@@ -1,0 +1,93 @@
+#include "runtime/st/library/library_names.hpp"
+
+#include <algorithm>
+
+#include <catch2/catch.hpp>
+
+#include "blocks/catalog.hpp"
+#include "runtime/st/library/library.hpp"
+#include "runtime/st/syntax/parser.hpp"
+#include "tests/runtime/st/instance.hpp"
+
+using namespace lineshaft;
+
+namespace {
+
+std::shared_ptr<const SourceFile> file(const std::string& path, const std::string& text) {
+    return std::make_shared<const SourceFile>(SourceFile{path, text});
+}
+
+/// What the parser finds declared in a file of a library, for others.
+std::vector<std::string> parsed_names(const LibraryFile& library) {
+    Diagnostics out;
+    st::Tree tree;
+    st::parse(st::read_tokens(file(std::string(library.path), std::string(library.text)), out,
+                              st::SourceKind::library),
+              tree, out);
+    INFO(out.render());
+    CHECK(out.empty());
+    std::vector<std::string> names;
+    for (const st::TypeDeclaration& type : tree.types) {
+        names.emplace_back(type.name.text);
+        for (const st::Argument& value : type.type->values) names.emplace_back(value.name.text);
+    }
+    for (const st::Pou* unit : tree.units)
+        if (!std::islower(static_cast<unsigned char>(unit->name.text.front())))
+            names.emplace_back(unit->name.text);
+    for (const st::DeclarationBlock& block : tree.globals)
+        for (const st::Declaration* variable : block.declarations)
+            names.emplace_back(variable->name.text);
+    for (const auto& [source, scopes] : tree.scopes)
+        for (const st::Scope& scope : scopes) CHECK(scope.path == library.library);
+    std::ranges::sort(names);
+    return names;
+}
+
+/// The kinds that sources bring along, or what is wrong.
+std::string compiled(std::vector<std::shared_ptr<const SourceFile>> sources) {
+    Diagnostics out;
+    const auto library = st::compile(sources, standard_blocks(), out);
+    std::string all;
+    if (library)
+        for (const BlockType& kind : library->kinds()) all += std::string(kind.name) + ' ';
+    return out.render() + all;
+}
+
+}  // namespace
+
+TEST_CASE("libraries declare for others what their lines say", "[st][libraries]") {
+    for (const LibraryFile& library : standard_blocks().libraries()) {
+        INFO(library.path);
+        auto names = st::LibraryNames::declared_in(library);
+        std::ranges::sort(names);
+        const auto parsed = parsed_names(library);
+        CHECK(std::ranges::equal(names, parsed));
+    }
+}
+
+TEST_CASE("each library compiles, and none has a kind of its own", "[st][libraries]") {
+    for (const LibraryFile& library : standard_blocks().libraries()) {
+        INFO(library.path);
+        CHECK(compiled({file("use.st", "USING " + std::string(library.library) + ";\n")}) == "");
+    }
+}
+
+TEST_CASE("a program takes of libraries what nobody else has", "[st][libraries]") {
+    const std::string use = "PROGRAM p VAR b : BLINK; END_VAR b(ENABLE := TRUE); END_PROGRAM\n";
+    CHECK(compiled({file("a.st", use)}) == "P ");
+    const std::string own = "FUNCTION_BLOCK Blink VAR_INPUT x : INT; END_VAR END_FUNCTION_BLOCK\n";
+    CHECK(compiled({file("a.st", own + "PROGRAM p VAR b : BLINK; c : Util.BLINK; END_VAR\n"
+                                       "b(x := 1); c(ENABLE := TRUE); END_PROGRAM\n")}) ==
+          "Blink P ");
+    CHECK(compiled({file("a.st", use), file("b.st", own)}).find("has no argument 'ENABLE'") !=
+          std::string::npos);
+    CHECK(compiled({file("a.scl", use)}).find("'BLINK' is not a type") != std::string::npos);
+}
+
+TEST_CASE("a library whose namespace the sources declare is theirs", "[st][libraries]") {
+    CHECK(compiled({file("a.st",
+                         "NAMESPACE Util\nTYPE T : INT; END_TYPE\nEND_NAMESPACE\n"
+                         "PROGRAM p VAR a : Util.T; b : Util.BLINK; END_VAR\n"
+                         "a := 1; b(); END_PROGRAM\n")})
+              .find("the namespace 'Util' has no 'BLINK'") != std::string::npos);
+}
