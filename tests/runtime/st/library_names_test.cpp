@@ -74,11 +74,11 @@ TEST_CASE("each library compiles, and none has a kind of its own", "[st][librari
 
 TEST_CASE("a program takes of libraries what nobody else has", "[st][libraries]") {
     const std::string use = "PROGRAM p VAR b : BLINK; END_VAR b(ENABLE := TRUE); END_PROGRAM\n";
-    CHECK(compiled({file("a.st", use)}) == "P ");
+    CHECK(compiled({file("a.st", use)}) == "p ");
     const std::string own = "FUNCTION_BLOCK Blink VAR_INPUT x : INT; END_VAR END_FUNCTION_BLOCK\n";
     CHECK(compiled({file("a.st", own + "PROGRAM p VAR b : BLINK; c : Util.BLINK; END_VAR\n"
                                        "b(x := 1); c(ENABLE := TRUE); END_PROGRAM\n")}) ==
-          "Blink P ");
+          "Blink p ");
     CHECK(compiled({file("a.st", use), file("b.st", own)}).find("has no argument 'ENABLE'") !=
           std::string::npos);
     CHECK(compiled({file("a.scl", use)}).find("'BLINK' is not a type") != std::string::npos);
