@@ -51,13 +51,22 @@ void Excerpts::copy(const PlacedFile& from, Part part) {
     if (part.begin == part.end) return;
     Mark place = from.mark(part);
     place.length = 1;
+    place.drawn = drawn_;
     excerpts_.push_back({text_.size(), std::move(place), true});
     text_ += from.text(part);
 }
 
 void Excerpts::write(std::string_view words, const Mark& place) {
+    if (words.empty()) return;
     excerpts_.push_back({text_.size(), place, false});
+    if (drawn_) excerpts_.back().place.drawn = drawn_;
     text_ += words;
+}
+
+void Excerpts::append(const Excerpts& other) {
+    for (const Excerpt& excerpt : other.excerpts_)
+        excerpts_.push_back({text_.size() + excerpt.begin, excerpt.place, excerpt.is_copied});
+    text_ += other.text_;
 }
 
 std::shared_ptr<const SourceFile> Excerpts::finish(std::string path, std::string part) {

@@ -39,14 +39,20 @@ class Excerpts {
     void copy(const PlacedFile& from, Part part);
     /// Words for what is at `place`.
     void write(std::string_view words, const Mark& place);
+    /// What another has put together, behind what is there.
+    void append(const Excerpts& other);
+    /// What is drawn where the next pieces come from, which messages name.
+    void draw(std::shared_ptr<const std::string> element) { drawn_ = std::move(element); }
 
     bool is_empty() const { return text_.empty(); }
+    std::string_view text() const { return text_; }
     /// The text, under the path of the file; `part` names it among several of the file.
     std::shared_ptr<const SourceFile> finish(std::string path, std::string part = {});
 
   private:
     std::string text_;
     std::vector<Excerpt> excerpts_;
+    std::shared_ptr<const std::string> drawn_;
 };
 
 }  // namespace lineshaft::projects

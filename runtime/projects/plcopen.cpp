@@ -19,7 +19,8 @@ namespace {
 /// One project of PLCopen XML.
 class PlcopenProject {
   public:
-    PlcopenProject(const XmlFile& file, const Reading& to) : file_(file), to_(to) {}
+    PlcopenProject(const XmlFile& file, const Reading& to)
+        : file_(file), declared_(declared_types(file)), to_(to) {}
 
     void read() {
         const pugi::xml_node root = file_.root();
@@ -42,7 +43,7 @@ class PlcopenProject {
 
   private:
     void add(pugi::xml_node element, void (PlcopenText::*add_to)(pugi::xml_node)) {
-        PlcopenText text(file_, to_.out);
+        PlcopenText text(file_, declared_, to_.out);
         (text.*add_to)(element);
         to_.project.add(text.finish(element));
     }
@@ -96,6 +97,7 @@ class PlcopenProject {
     static std::int64_t interval_of(std::string_view text);
 
     const XmlFile& file_;
+    const DeclaredTypes declared_;
     const Reading& to_;
 };
 

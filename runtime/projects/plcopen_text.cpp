@@ -1,6 +1,8 @@
 #include "runtime/projects/plcopen_text.hpp"
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -210,39 +212,55 @@ void PlcopenText::add_list(pugi::xml_node values, const char* key, int depth) {
 }
 
 void PlcopenText::add_body(pugi::xml_node owner, pugi::xml_node named) {
+    BodyContext context{file_, out_, NetworkTypes(declared_, pou_), *variables_, is_kept_};
     for (const pugi::xml_node body : owner.children("body")) {
-        const pugi::xml_node text = first_element(body);
-        const std::string_view form = text.name();
-        if (form == "ST") {
-            file_.copy(text_, text);
-            write("\n", text);
-        } else if (text && form != "documentation") {
-            const bool is_written = form == "IL";
-            out_.add(code::not_supported, file_.mark_of_tag(text),
-                     fmt::format("the body of '{}' is {} ({}), and only Structured Text is read",
-                                 file_.plain(named.attribute("name")),
-                                 is_written ? "an instruction list" : "drawn",
-                                 form == "addData" ? "CFC" : form),
-                     "convert it to Structured Text, or leave it out");
-        }
+        const BodyText made = body_text(context, body, file_.plain(named.attribute("name")));
+        text_.append(made.members);
+        text_.append(made.statements);
     }
+}
+
+/// `rest` stands behind the declarations, which those of its networks follow.
+void PlcopenText::add_variables(const MadeVariables& made, Excerpts rest, pugi::xml_node owner) {
+    if (!made.declarations().empty())
+        write(fmt::format("VAR\n{}END_VAR\n", made.declarations()), owner);
+    text_.append(rest);
 }
 
 void PlcopenText::add_member(pugi::xml_node member) {
     const bool is_method = std::string_view(member.name()) == "Method";
     const pugi::xml_node interface = member.child("interface");
-    if (!is_method || !add_plain(interface)) {
-        write(is_method ? "METHOD " : "ACTION ", member);
+    if (!is_method) {
+        write("ACTION ", member);
+        file_.copy(text_, member.attribute("name"));
+        write(":\n", member);
+        add_body(member, member);
+        return write("END_ACTION\n", member);
+    }
+    if (!add_plain(interface)) {
+        write("METHOD ", member);
         file_.copy(text_, member.attribute("name"));
         if (const pugi::xml_node result = interface.child("returnType")) {
             write(" : ", result);
             add_type_of(result, 0);
         }
-        write(is_method ? "\n" : ":\n", member);
+        write("\n", member);
         add_interface(interface);
     }
-    add_body(member, member);
-    write(is_method ? "END_METHOD\n" : "END_ACTION\n", member);
+    add_own_body(member, member);
+    write("END_METHOD\n", member);
+}
+
+/// Of what declares variables that are gone when it returns.
+void PlcopenText::add_own_body(pugi::xml_node owner, pugi::xml_node named) {
+    MadeVariables variables;
+    const auto outer =
+        std::make_pair(std::exchange(variables_, &variables), std::exchange(is_kept_, false));
+    Excerpts head = std::exchange(text_, {});
+    add_body(owner, named);
+    Excerpts rest = std::exchange(text_, std::move(head));
+    add_variables(variables, std::move(rest), owner);
+    std::tie(variables_, is_kept_) = outer;
 }
 
 void PlcopenText::add_property(pugi::xml_node property) {
@@ -259,7 +277,7 @@ void PlcopenText::add_property(pugi::xml_node property) {
         if (!accessor) continue;
         write(fmt::format("{}\n", word), accessor);
         if (!add_plain(accessor.child("interface"))) add_interface(accessor.child("interface"));
-        add_body(accessor, property);
+        add_own_body(accessor, property);
         write(fmt::format("END_{}\n", word), accessor);
     }
     write("END_PROPERTY\n", property);
@@ -292,9 +310,16 @@ void PlcopenText::add_pou(pugi::xml_node pou) {
         write("\n", pou);
         add_interface(interface);
     }
+    MadeVariables variables;
+    variables_ = &variables;
+    is_kept_ = kind != "FUNCTION";
+    pou_ = file_.plain(pou.attribute("name"));
+    Excerpts head = std::exchange(text_, {});
     add_data(pou);
     for (const pugi::xml_node action : pou.child("actions").children("action")) add_member(action);
     add_body(pou, pou);
+    Excerpts rest = std::exchange(text_, std::move(head));
+    add_variables(variables, std::move(rest), pou);
     write(fmt::format("END_{}\n", kind), pou);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "runtime/projects/drawings/bodies.hpp"
 #include "runtime/projects/project.hpp"
 #include "runtime/projects/xml.hpp"
 
@@ -8,7 +9,9 @@ namespace lineshaft::projects {
 /// Writes what PLCopen XML has in elements as Structured Text.
 class PlcopenText {
   public:
-    PlcopenText(const XmlFile& file, Diagnostics& out) : file_(file), out_(out) {}
+    /// `declared` stays where it is.
+    PlcopenText(const XmlFile& file, const DeclaredTypes& declared, Diagnostics& out)
+        : file_(file), declared_(declared), out_(out) {}
 
     void add_pou(pugi::xml_node pou);
     void add_type(pugi::xml_node type);
@@ -35,13 +38,19 @@ class PlcopenText {
     void add_value(pugi::xml_node value, int depth);
     void add_list(pugi::xml_node values, const char* key, int depth);
     void add_body(pugi::xml_node owner, pugi::xml_node named);
+    void add_own_body(pugi::xml_node owner, pugi::xml_node named);
+    void add_variables(const MadeVariables& made, Excerpts rest, pugi::xml_node owner);
     void add_member(pugi::xml_node member);
     void add_property(pugi::xml_node property);
     void add_data(pugi::xml_node owner);
 
     const XmlFile& file_;
+    const DeclaredTypes& declared_;
     Diagnostics& out_;
     Excerpts text_;
+    std::string pou_;                     ///< whose bodies are read
+    MadeVariables* variables_ = nullptr;  ///< of bodies, where they are declared
+    bool is_kept_ = true;                 ///< from scan to scan
 };
 
 }  // namespace lineshaft::projects

@@ -251,6 +251,10 @@ std::string Diagnostics::render(std::size_t limit) const {
     return out;
 }
 
+std::string Diagnostic::whole_message() const {
+    return mark.drawn ? fmt::format("{} ({})", message, *mark.drawn) : message;
+}
+
 std::string render(const Diagnostic& diagnostic) {
     const Mark& mark = diagnostic.mark;
     const bool placed = mark.file && mark.line > 0;
@@ -261,7 +265,7 @@ std::string render(const Diagnostic& diagnostic) {
 
     std::string out =
         fmt::format("{}{}[{}]: {}\n", place, diagnostic.is_warning ? "warning" : "error",
-                    diagnostic.code, printable_text(diagnostic.message));
+                    diagnostic.code, printable_text(diagnostic.whole_message()));
     if (placed) {
         out += snippet(diagnostic);
     } else if (!diagnostic.help.empty()) {

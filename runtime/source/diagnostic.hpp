@@ -16,6 +16,8 @@ struct Mark {
     int line = 0;
     int column = 0;
     int length = 1;
+    /// What is drawn there, of a network: `network 2, contact 7`. None: it is text.
+    std::shared_ptr<const std::string> drawn = nullptr;
 };
 
 /// Where a part of a text that was put together of others comes from: it ends where the next
@@ -54,6 +56,9 @@ struct Diagnostic {
     std::string message;  ///< one line, lower case, no full stop
     std::string help;     ///< shown under the caret: "did you mean 'shaft.velocity'?"; may be empty
     bool is_warning = false;  ///< of what is allowed and hardly meant
+
+    /// With the element of a network that it is about, if any.
+    std::string whole_message() const;
 };
 
 /// Collects diagnostics so that all are shown at once, sorted by place when rendered. A file may

@@ -30,7 +30,7 @@ nlohmann::ordered_json to_json(const Diagnostic& d) {
             {"file", d.mark.file ? d.mark.file->path : ""},
             {"line", d.mark.line},
             {"column", d.mark.column},
-            {"message", d.message},
+            {"message", d.whole_message()},
             {"help", d.help}};
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -197,9 +198,30 @@ nlohmann::ordered_json to_json(const Drawing& drawing) {
     return {{"title", drawing.program.title}, {"tasks", tasks}, {"signals", signals}};
 }
 
+/// What is read of a project, as one would write it in files of Structured Text.
+Exit print_sources(const ShowCommand& command, const LoadOptions& options, Diagnostics& out) {
+    const auto project = read_project(command.program, options.include_dirs, out);
+    for (const auto& source : project.sources) {
+        if (command.common.json) continue;
+        fmt::print("{}", source->text);
+        if (!source->text.ends_with('\n')) fmt::print("\n");
+    }
+    if (command.common.json) {
+        auto texts = nlohmann::ordered_json::array();
+        for (const auto& source : project.sources)
+            texts.push_back(
+                {{"file", source->path}, {"name", source->part}, {"text", source->text}});
+        fmt::print("{}\n", nlohmann::ordered_json{{"sources", texts}}.dump(2));
+    }
+    return out.empty() ? Exit::fine : report(out, false);
+}
+
 Exit execute(const ShowCommand& command) {
     Diagnostics out;
     const LoadOptions options = command.common.load_options(out);
+    if (std::error_code error; projects::is_source(command.program) ||
+                               std::filesystem::is_directory(command.program, error))
+        return print_sources(command, options, out);
     const auto loaded = load_program(command.program, options, standard_blocks(), out);
     if (!out.empty()) return report(out, command.common.json);
     const Drawing drawing(*loaded);
@@ -218,8 +240,11 @@ Exit execute(const ShowCommand& command) {
 
 void add_show(CLI::App& app, Exit& result) {
     auto command = std::make_shared<ShowCommand>();
-    CLI::App* sub = app.add_subcommand("show", "Show a program's tasks, scan order and wires");
-    sub->add_option("program", command->program, "The program, a YAML file")->required();
+    CLI::App* sub = app.add_subcommand(
+        "show", "Show a program's tasks, scan order and wires, or the text of a project's sources");
+    sub->add_option("program", command->program,
+                    "The program, a YAML file; a project of others, or a file of one")
+        ->required();
     CLI::Option* dot =
         sub->add_flag("--dot", command->dot, "Print a graph: ... --dot | dot -Tsvg -o program.svg");
     sub->add_flag("--signals", command->signals, "List the signals with types and units")

@@ -1,0 +1,47 @@
+#include "runtime/projects/drawings/bodies.hpp"
+
+#include <fmt/format.h>
+
+#include "runtime/source/codes.hpp"
+
+namespace lineshaft::projects {
+
+namespace {
+
+pugi::xml_node owner_of(pugi::xml_node body) {
+    pugi::xml_node pou = body;
+    while (pou && std::string_view(pou.name()) != "pou") pou = pou.parent();
+    return pou;
+}
+
+}  // namespace
+
+BodyText body_text(BodyContext& context, pugi::xml_node body, const std::string& name) {
+    BodyText made;
+    for (const pugi::xml_node language : body.children()) {
+        const std::string_view form = language.name();
+        if (language.type() != pugi::node_element || form == "documentation") continue;
+        const Mark place = context.file.mark_of_tag(language);
+        if (form == "ST") {
+            context.file.copy(made.statements, language);
+            made.statements.write("\n", place);
+        } else if (form == "FBD" || form == "LD") {
+            made.statements.append(NetworkText(context, language).statements());
+        } else if (form == "SFC") {
+            BodyText chart = chart_text(context, language, owner_of(language));
+            made.members.append(chart.members);
+            made.statements.append(chart.statements);
+        } else {
+            const bool is_list = form == "IL";
+            context.out.add(code::not_supported, place,
+                            fmt::format("the body of '{}' is {} ({}), which is not read", name,
+                                        is_list ? "an instruction list" : "drawn",
+                                        form == "addData" ? "CFC" : form),
+                            "convert it to Structured Text, or leave it out");
+        }
+        break;
+    }
+    return made;
+}
+
+}  // namespace lineshaft::projects

@@ -1,0 +1,433 @@
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "runtime/projects/drawings/networks.hpp"
+#include "runtime/source/codes.hpp"
+#include "runtime/st/syntax/token.hpp"
+
+namespace lineshaft::projects {
+
+namespace {
+
+/// Functions that are written between their arguments.
+struct Operator {
+    std::string_view name, written;
+    bool takes_many;
+    Value::Form form;
+};
+constexpr Operator operators[] = {
+    {"and", " AND ", true, Value::Form::and_},  {"or", " OR ", true, Value::Form::or_},
+    {"xor", " XOR ", true, Value::Form::other}, {"add", " + ", true, Value::Form::other},
+    {"mul", " * ", true, Value::Form::other},   {"sub", " - ", false, Value::Form::other},
+    {"div", " / ", false, Value::Form::other},  {"mod", " MOD ", false, Value::Form::other},
+    {"gt", " > ", false, Value::Form::other},   {"ge", " >= ", false, Value::Form::other},
+    {"eq", " = ", false, Value::Form::other},   {"le", " <= ", false, Value::Form::other},
+    {"lt", " < ", false, Value::Form::other},   {"ne", " <> ", false, Value::Form::other}};
+/// Written as `NOT a`, and as the argument itself.
+constexpr std::string_view prefixes[] = {"not", "move"};
+constexpr int deepest_type = 20;
+
+bool is_en(const Pin& pin) {
+    return st::same_name(pin.name, "EN");
+}
+bool is_eno(const Pin& pin) {
+    return st::same_name(pin.name, "ENO");
+}
+
+}  // namespace
+
+std::string NetworkText::type_name_of(const Element& box) const {
+    return attribute(box, "typeName");
+}
+
+/// What CODESYS says that a box calls: `operator`, `function`, `functionblock`, `execute`, ...
+std::string NetworkText::call_type(const Element& box) const {
+    for (const pugi::xml_node data : box.node.child("addData").children("data"))
+        if (const pugi::xml_node type = data.child("CallType")) return file_.plain(type);
+    return {};
+}
+
+bool NetworkText::is_operator(const Element& box) const {
+    const std::string name = lower(type_name_of(box));
+    return std::ranges::find(operators, name, &Operator::name) != std::end(operators) ||
+           std::ranges::find(prefixes, name) != std::end(prefixes) || call_type(box) == "operator";
+}
+
+bool NetworkText::is_used(const State& state, const Pin& pin) const {
+    return pin.expression || std::ranges::any_of(state.uses, [&](const Use& use) {
+               return use.pin == lower(pin.name);
+           });
+}
+
+/// The output that a line without a name comes from.
+const Pin* NetworkText::result_of(const Element& box) const {
+    const auto result =
+        std::ranges::find_if(box.outputs, [](const Pin& pin) { return !is_eno(pin); });
+    return result == box.outputs.end() ? nullptr : &*result;
+}
+
+const Pin* NetworkText::find_output(const Element& box, std::string_view name) const {
+    const auto found = std::ranges::find_if(
+        box.outputs, [&](const Pin& pin) { return st::same_name(pin.name, name); });
+    return found == box.outputs.end() ? nullptr : &*found;
+}
+
+/// A function is evaluated where its result is taken, unless its turn is said.
+bool NetworkText::waits_for_use(std::size_t i) const {
+    const Element& box = drawing_.elements[i];
+    const bool is_function = attribute(box, "instanceName").empty() && call_type(box) != "execute";
+    return is_function && box.order <= 0 && !states_[i].uses.empty();
+}
+
+void NetworkText::evaluate_box(std::size_t i) {
+    const Element& box = drawing_.elements[i];
+    State& state = states_[i];
+    if (state.is_done || state.is_active) return;
+    state.is_active = true;
+    if (call_type(box) == "execute")
+        execute(box, state);
+    else if (!attribute(box, "instanceName").empty())
+        call_block(box, state);
+    else
+        call_function(i);
+    state.is_active = false;
+    state.is_done = true;
+}
+
+/// A variable for ENO, if a line comes from there.
+std::string NetworkText::variable_of_eno(const Element& box, State& state) {
+    const auto eno = std::ranges::find_if(box.outputs, is_eno);
+    if (eno == box.outputs.end() || !is_used(state, *eno)) return {};
+    std::string name = context_.variables.make("_wire", "BOOL");
+    state.enabled = words(name, place_of(box), "BOOL");
+    return name;
+}
+
+/// `instance(EN := a, IN := b, Q => c, ENO => d);`
+void NetworkText::call_block(const Element& box, State& state) {
+    const Mark place = place_of(box);
+    const std::string eno = variable_of_eno(box, state);
+    Excerpts call = instance_of(box).text;
+    std::string_view before = "(";
+    const auto add = [&](const Pin& pin, std::string_view sign, const Excerpts& value) {
+        call.write(fmt::format("{}{}{}", before, pin.name, sign), place);
+        call.append(value);
+        before = ", ";
+    };
+    for (const auto* pins : {&box.inputs, &box.in_outs})
+        for (const Pin& pin : *pins) {
+            const Value value = value_of(box, pin);
+            const bool is_nothing = value.is_empty() || (is_en(pin) && value.is_always);
+            if (!is_nothing) add(pin, " := ", value.text);
+        }
+    for (const Pin& pin : box.outputs) {
+        if (is_eno(pin) && !eno.empty()) add(pin, " => ", state.enabled.text);
+        if (pin.expression && !is_eno(pin) && !pin.is_negated)
+            add(pin, " => ", written(box, pin.expression).text);
+    }
+    now_.append(call);
+    now_.write(before == "(" ? "();\n" : ");\n", place);
+    for (const Pin& pin : box.outputs)
+        if (pin.expression && pin.is_negated)
+            write_assignment(written(box, pin.expression), negated(member_of(box, pin.name), place),
+                             place);
+}
+
+Value NetworkText::instance_of(const Element& box) {
+    Value made;
+    made.text.draw(std::make_shared<const std::string>(name_of(box)));
+    file_.copy(made.text, box.node.attribute("instanceName"));
+    return made;
+}
+
+Value NetworkText::member_of(const Element& box, const std::string& pin) {
+    Value made = instance_of(box);
+    made.text.write("." + pin, place_of(box));
+    made.type = context_.types.of_output(attribute(box, "instanceName"), pin);
+    return made;
+}
+
+/// A box of CODESYS with Structured Text in it.
+void NetworkText::execute(const Element& box, State& state) {
+    const Mark place = place_of(box);
+    const Value enabled = enabled_of(box, state);
+    const bool is_always = enabled.is_empty() || enabled.is_always;
+    if (!is_always) {
+        now_.write("IF ", place);
+        now_.append(enabled.text);
+        now_.write(" THEN\n", place);
+    }
+    for (const pugi::xml_node data : box.node.child("addData").children("data"))
+        if (const pugi::xml_node code = data.child("STCode")) file_.copy(now_, code);
+    now_.write(is_always ? "\n" : "\nEND_IF\n", place);
+}
+
+/// EN, kept if a line comes from ENO. Empty: the box has none.
+Value NetworkText::enabled_of(const Element& box, State& state) {
+    const auto en = std::ranges::find_if(box.inputs, is_en);
+    Value enabled;
+    if (en != box.inputs.end()) enabled = value_of(box, *en);
+    const auto eno = std::ranges::find_if(box.outputs, is_eno);
+    const bool is_kept = eno != box.outputs.end() && is_used(state, *eno);
+    const Mark place = place_of(box);
+    if (is_kept && !enabled.is_empty() && !enabled.is_always)
+        enabled = kept_in(context_.variables.make("_wire", "BOOL"), enabled, place);
+    state.enabled = enabled;
+    return enabled;
+}
+
+/// The call as an expression, without EN and ENO.
+Value NetworkText::call_of(std::size_t i) {
+    const Element& box = drawing_.elements[i];
+    const Mark place = place_of(box);
+    const std::string name = lower(type_name_of(box));
+    Arguments arguments;
+    bool is_named = !box.in_outs.empty(), has_gap = false;
+    for (const auto* pins : {&box.inputs, &box.in_outs})
+        for (const Pin& pin : *pins) {
+            if (is_en(pin)) continue;
+            Value value = value_of(box, pin);
+            is_named = is_named || (has_gap && !value.is_empty());
+            has_gap = has_gap || value.is_empty();
+            if (!value.is_empty()) arguments.emplace_back(&pin, std::move(value));
+        }
+    std::vector<std::string> types;
+    for (const auto& [pin, value] : arguments) types.push_back(value.type);
+    std::string type = context_.types.of_call(name, types);
+    Value made = in_between(box, arguments);
+    if (!made.is_empty()) {
+        made.type = std::move(type);
+        return made;
+    }
+    made.type = std::move(type);
+    made.text.draw(std::make_shared<const std::string>(name_of(box)));
+    file_.copy(made.text, box.node.attribute("typeName"));
+    std::string_view before = "(";
+    const auto add = [&](const Pin& pin, std::string_view sign, const Value& value) {
+        const bool has_name = !pin.name.empty() && (is_named || sign == " => ");
+        made.text.write(
+            fmt::format("{}{}{}", before, has_name ? pin.name : "", has_name ? sign : ""), place);
+        made.text.append(value.text);
+        before = ", ";
+    };
+    for (const auto& [pin, value] : arguments) add(*pin, " := ", value);
+    for (const auto& [pin, value] : other_outputs(i)) add(*pin, " => ", value);
+    made.text.write(before == "(" ? "()" : ")", place);
+    return made;
+}
+
+/// `a + b`, `NOT a`, `a`; empty: no such operator.
+Value NetworkText::in_between(const Element& box, const Arguments& arguments) {
+    const Mark place = place_of(box);
+    const std::string name = lower(type_name_of(box));
+    if (arguments.size() == 1 && name == "not") return negated(arguments.front().second, place);
+    if (arguments.size() == 1 && name == "move") return arguments.front().second;
+    const auto* known = std::ranges::find(operators, name, &Operator::name);
+    if (known == std::end(operators) || arguments.empty()) return {};
+    if (arguments.size() == 1) return known->takes_many ? arguments.front().second : Value{};
+    if (arguments.size() > 2 && !known->takes_many) return {};
+    Value made{.text = {}, .form = known->form};
+    std::string_view before;
+    for (const auto& [pin, value] : arguments) {
+        made.text.write(before, place);
+        const bool is_plain = value.form == known->form && known->form != Value::Form::other;
+        made.text.append(is_plain ? value.text : enclosed(value, place));
+        before = known->written;
+    }
+    return made;
+}
+
+/// What a function gives beside its result, and the variables that take it.
+NetworkText::Arguments NetworkText::other_outputs(std::size_t i) {
+    const Element& box = drawing_.elements[i];
+    State& state = states_[i];
+    Arguments made;
+    for (const Pin& pin : box.outputs) {
+        if (&pin == result_of(box) || is_eno(pin) || !is_used(state, pin)) continue;
+        Value target;
+        if (pin.expression) {
+            target = written(box, pin.expression);
+        } else {
+            const std::string type = context_.types.of_declared(type_name_of(box), pin.name);
+            if (type.empty()) {
+                refuse(box, fmt::format("the type of '{}' is not known here", pin.name),
+                       "connect it to a variable beside the box");
+                continue;
+            }
+            target = words(context_.variables.make("_wire", type), place_of(box), type);
+        }
+        state.outputs.emplace_back(lower(pin.name), target);
+        made.emplace_back(&pin, target);
+    }
+    return made;
+}
+
+/// The one variable that takes a function's result and nothing else does.
+std::optional<std::size_t> NetworkText::only_target(std::size_t i) const {
+    const State& state = states_[i];
+    std::optional<std::size_t> target;
+    for (const Use& use : state.uses) {
+        if (use.pin == "eno") continue;
+        const Element& to = drawing_.elements[use.by];
+        const bool is_plain = to.kind == Drawn::out_variable && to.inputs.size() == 1 &&
+                              to.inputs.front().lines.size() == 1 &&
+                              attribute(to, "negated") != "true" &&
+                              edge_of_attribute(to) == Edge::none && !is_stored(to);
+        if (target || !is_plain || states_[use.by].is_done) return std::nullopt;
+        target = use.by;
+    }
+    return target;
+}
+
+/// Whether other elements are evaluated between the box and the one that takes its result.
+bool NetworkText::has_own_turn(std::size_t i) const {
+    const State& state = states_[i];
+    if (drawing_.elements[i].order <= 0 || state.uses.empty()) return false;
+    return states_[state.uses.front().by].turn != state.turn + 1;
+}
+
+/// A function's result: as an expression where one element takes it, else in a variable.
+void NetworkText::call_function(std::size_t i) {
+    const Element& box = drawing_.elements[i];
+    State& state = states_[i];
+    const Mark place = place_of(box);
+    const Value enabled = enabled_of(box, state);
+    Value value = call_of(i);
+    const bool is_guarded = !enabled.is_empty() && !enabled.is_always;
+    const Pin* result = result_of(box);
+    const bool has_eno = std::ranges::any_of(box.outputs, is_eno);
+    if (is_guarded && !has_eno && value.type == "BOOL") {
+        state.value = both(enabled, value, place);
+        return;
+    }
+    const bool is_variable = result && result->expression;
+    const bool is_taken =
+        std::ranges::any_of(state.uses, [](const Use& use) { return use.pin != "eno"; });
+    if (!is_taken && !is_variable) {
+        const bool does_nothing = is_operator(box) || !value.type.empty();
+        if (!does_nothing) write_guarded(is_guarded ? enabled : Value{}, Value{}, value, place);
+        return;
+    }
+    const bool must_be_kept = is_guarded || !state.outputs.empty();
+    const bool is_better_kept = state.uses.size() > 1 || has_own_turn(i);
+    if (!is_variable && !must_be_kept && state.loop.empty() && !is_better_kept) {
+        state.value = value;
+        return;
+    }
+    const Value target = target_of(i, value.type);
+    if (target.is_empty() && must_be_kept)
+        refuse(box, fmt::format("the type of what '{}' gives is not known here", type_name_of(box)),
+               "connect it to a variable, and take its value from there");
+    if (!target.is_empty()) write_guarded(is_guarded ? enabled : Value{}, target, value, place);
+    state.value = target.is_empty() ? value : target;
+    if (is_variable && !takes_result(box, state))
+        write_assignment(written(box, result->expression),
+                         result->is_negated ? negated(*state.value, place) : *state.value, place);
+}
+
+/// Whether the variable beside the output is what the result goes into.
+bool NetworkText::takes_result(const Element& box, const State& state) const {
+    const Pin* result = result_of(box);
+    return result && result->expression && !result->is_negated && state.loop.empty();
+}
+
+/// What takes a result. Empty: it needs a variable, and its type is not known.
+Value NetworkText::target_of(std::size_t i, const std::string& type) {
+    const Element& box = drawing_.elements[i];
+    State& state = states_[i];
+    const Pin* result = result_of(box);
+    if (takes_result(box, state)) return written(box, result->expression);
+    if (!state.loop.empty()) return words(state.loop, place_of(box), type);
+    if (const auto to = only_target(i); to && !(result && result->is_negated)) {
+        states_[*to].is_done = true;
+        const Element& variable = drawing_.elements[*to];
+        return written(variable, variable.node.child("expression"));
+    }
+    if (type.empty() || type == "#") return {};
+    return words(context_.variables.make("_wire", type), place_of(box), type);
+}
+
+/// `IF enabled THEN target := value; END_IF`
+void NetworkText::write_guarded(const Value& enabled, const Value& target, const Value& value,
+                                const Mark& place) {
+    if (!enabled.is_empty()) {
+        now_.write("IF ", place);
+        now_.append(enabled.text);
+        now_.write(" THEN ", place);
+    }
+    if (target.is_empty()) {
+        now_.append(value.text);
+        now_.write(";", place);
+    } else {
+        now_.append(target.text);
+        now_.write(" := ", place);
+        now_.append(value.text);
+        now_.write(";", place);
+    }
+    now_.write(enabled.is_empty() ? "\n" : " END_IF\n", place);
+}
+
+/// What a line takes from a box.
+Value NetworkText::value_of_box(std::size_t i, const std::string& name) {
+    const Element& box = drawing_.elements[i];
+    State& state = states_[i];
+    const Mark place = place_of(box);
+    const Pin* pin = name.empty() ? result_of(box) : find_output(box, name);
+    const bool is_block = !attribute(box, "instanceName").empty();
+    if (!pin && is_block && !name.empty()) {
+        if (!state.is_active && !state.is_done && !comes_later(box)) evaluate_box(i);
+        return member_of(box, name);
+    }
+    if (!pin) {
+        refuse(box, fmt::format("this box has no output '{}'", name), "");
+        return words("FALSE", place);
+    }
+    const bool waits = is_block && comes_later(box);
+    if (!state.is_active && !state.is_done && !waits) evaluate_box(i);
+    Value value;
+    if (is_eno(*pin)) {
+        value = state.enabled;
+        if (value.is_empty()) value = words("TRUE", place, "BOOL"), value.is_always = true;
+    } else if (is_block) {
+        value = member_of(box, pin->name);
+    } else if (state.is_active) {
+        value = value_of_loop(i, type_of_result(i, 0));
+    } else {
+        const auto other = std::ranges::find(state.outputs, lower(pin->name),
+                                             &std::pair<std::string, Value>::first);
+        if (other != state.outputs.end())
+            value = other->second;
+        else if (state.value)
+            value = *state.value;
+        else
+            value = words("FALSE", place);
+    }
+    return pin->is_negated ? negated(value, place) : value;
+}
+
+/// While its arguments are evaluated still.
+std::string NetworkText::type_of_result(std::size_t i, int depth) const {
+    const Element& box = drawing_.elements[i];
+    if (depth > deepest_type) return {};
+    std::vector<std::string> types;
+    for (const Pin& pin : box.inputs) {
+        if (is_en(pin) || pin.lines.empty()) continue;
+        const Line& line = pin.lines.front();
+        const Element& from = drawing_.elements[line.from];
+        std::string type;
+        if (from.kind == Drawn::contact || from.kind == Drawn::left_rail)
+            type = "BOOL";
+        else if (from.kind == Drawn::block && attribute(from, "instanceName").empty())
+            type = line.from == i ? "#" : type_of_result(line.from, depth + 1);
+        else if (from.kind == Drawn::block)
+            type = context_.types.of_output(attribute(from, "instanceName"), line.pin);
+        else
+            type = context_.types.of_expression(file_.plain(from.node.child("expression")));
+        types.push_back(type.empty() ? "#" : type);
+    }
+    return context_.types.of_call(type_name_of(box), types);
+}
+
+}  // namespace lineshaft::projects

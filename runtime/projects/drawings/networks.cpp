@@ -1,0 +1,315 @@
+#include "runtime/projects/drawings/networks.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "runtime/source/codes.hpp"
+
+namespace lineshaft::projects {
+
+namespace {
+
+constexpr int deepest_line = 400;
+constexpr std::size_t longest_value = 1U << 16;
+
+}  // namespace
+
+std::string MadeVariables::make(std::string_view prefix, std::string_view type) {
+    std::string name = fmt::format("{}{}", prefix, ++count_);
+    declarations_ += fmt::format("    {} : {};\n", name, type);
+    return name;
+}
+
+NetworkText::NetworkText(BodyContext& context, pugi::xml_node body)
+    : context_(context),
+      file_(context.file),
+      drawing_(read_drawing(context.file, body, context.out)),
+      states_(drawing_.elements.size()) {
+    for (std::size_t i = 0; i < drawing_.elements.size(); ++i) {
+        const Element& element = drawing_.elements[i];
+        if (element.kind == Drawn::right_rail) continue;
+        for (const auto* pins : {&element.inputs, &element.in_outs})
+            for (const Pin& pin : *pins)
+                for (const Line& line : pin.lines)
+                    states_[line.from].uses.push_back({i, lower(line.pin)});
+    }
+    for (std::size_t turn = 0; turn < drawing_.order.size(); ++turn)
+        states_[drawing_.order[turn]].turn = turn;
+}
+
+Excerpts NetworkText::statements() {
+    for (const std::size_t i : drawing_.order) {
+        turn_ = drawing_.elements[i].order;
+        evaluate(i);
+    }
+    return with_jumps();
+}
+
+Value NetworkText::condition(pugi::xml_node connection_point) {
+    Value value;
+    const Mark place = file_.mark_of_tag(connection_point);
+    for (const pugi::xml_node connection : connection_point.children("connection")) {
+        const std::string id = file_.plain(connection.attribute("refLocalId"));
+        for (std::size_t i = 0; i < drawing_.elements.size(); ++i)
+            if (drawing_.elements[i].id == id)
+                value = either(
+                    std::move(value),
+                    value_of(Line{i, file_.plain(connection.attribute("formalParameter"))}), place);
+    }
+    return value;
+}
+
+std::string NetworkText::name_of(const Element& element) const {
+    return fmt::format("network {}, {} {}", element.network, word_of(element.kind), element.id);
+}
+
+/// Where the element stands, with what it is called.
+Mark NetworkText::place_of(const Element& element) const {
+    Mark place = file_.mark_of_tag(element.node);
+    place.drawn = std::make_shared<const std::string>(name_of(element));
+    return place;
+}
+
+void NetworkText::refuse(const Element& element, std::string_view why, std::string_view help) {
+    context_.out.add(code::not_supported, place_of(element), std::string(why), std::string(help));
+}
+
+Value NetworkText::words(std::string_view text, const Mark& place, std::string type) const {
+    Value made{.text = {}, .type = std::move(type)};
+    made.text.write(text, place);
+    return made;
+}
+
+/// What stands at an element, as it is written.
+Value NetworkText::written(const Element& element, pugi::xml_node text) {
+    const std::string plain = file_.plain(text);
+    if (plain.empty()) {
+        refuse(element, fmt::format("this {} has no variable", word_of(element.kind)),
+               "name one, or remove it");
+        return words("FALSE", place_of(element), "BOOL");
+    }
+    Value made{.text = {}, .form = shape_of(plain), .type = context_.types.of_expression(plain)};
+    made.text.draw(std::make_shared<const std::string>(name_of(element)));
+    file_.copy(made.text, text);
+    return made;
+}
+
+Value NetworkText::edge_of(const Value& value, Edge edge, const Element& element) {
+    if (edge == Edge::none) return value;
+    const Mark place = place_of(element);
+    if (!context_.is_kept)
+        refuse(element, "an edge needs a variable that is kept from scan to scan",
+               "draw it in a function block or a program");
+    const std::string name =
+        context_.variables.make("_edge", edge == Edge::rising ? "R_TRIG" : "F_TRIG");
+    now_.write(name + "(CLK := ", place);
+    now_.append(value.text);
+    now_.write(");\n", place);
+    return words(name + ".Q", place, "BOOL");
+}
+
+Value NetworkText::kept_in(const std::string& variable, const Value& value, const Mark& place) {
+    now_.write(variable + " := ", place);
+    now_.append(value.text);
+    now_.write(";\n", place);
+    return words(variable, place, value.type);
+}
+
+Value NetworkText::value_of(const Element& element, const Pin& pin) {
+    const Mark place = place_of(element);
+    Value value;
+    for (const Line& line : pin.lines) value = either(std::move(value), value_of(line), place);
+    if (value.is_empty() && pin.expression) value = written(element, pin.expression);
+    if (value.is_empty()) return value;
+    if (pin.is_negated) value = negated(value, place);
+    value = edge_of(value, pin.edge, element);
+    if (value.text.text().size() > longest_value) {
+        context_.out.add(code::too_deep_or_large, place,
+                         fmt::format("what this takes is longer than {} characters as an "
+                                     "expression",
+                                     longest_value),
+                         "put a variable between");
+        return words("FALSE", place, "BOOL");
+    }
+    return value;
+}
+
+Value NetworkText::value_of(const Line& line) {
+    const Element& from = drawing_.elements[line.from];
+    if (depth_ > deepest_line) {
+        if (!is_too_deep_)
+            context_.out.add(
+                code::too_deep_or_large, place_of(from),
+                fmt::format("more than {} elements stand one behind the other", deepest_line),
+                "put a variable between");
+        is_too_deep_ = true;
+        return words("FALSE", place_of(from), "BOOL");
+    }
+    ++depth_;
+    Value value =
+        from.kind == Drawn::block ? value_of_box(line.from, line.pin) : value_of_element(line.from);
+    --depth_;
+    return value;
+}
+
+/// Of what is no box.
+Value NetworkText::value_of_element(std::size_t i) {
+    const Element& element = drawing_.elements[i];
+    State& state = states_[i];
+    const Mark place = place_of(element);
+    switch (element.kind) {
+        case Drawn::left_rail: {
+            Value always = words("TRUE", place, "BOOL");
+            always.is_always = true;
+            return always;
+        }
+        case Drawn::in_variable: {
+            Value value = written(element, element.node.child("expression"));
+            if (attribute(element, "negated") == "true") value = negated(value, place);
+            return edge_of(value, edge_of_attribute(element), element);
+        }
+        case Drawn::in_out_variable: {
+            if (!state.is_done && !comes_later(element)) evaluate(i);
+            Value value = written(element, element.node.child("expression"));
+            return attribute(element, "negatedOut") == "true" ? negated(value, place) : value;
+        }
+        case Drawn::contact:
+        case Drawn::connector:
+        case Drawn::continuation:
+            return value_of_wire(i);
+        case Drawn::coil:
+            if (!state.is_done) evaluate(i);
+            if (state.value) return *state.value;
+            break;
+        default:
+            break;
+    }
+    refuse(element, fmt::format("nothing comes out of a {}", word_of(element.kind)), "");
+    return words("FALSE", place, "BOOL");
+}
+
+/// What goes on behind a contact or a connector; into a variable, if to several.
+Value NetworkText::value_of_wire(std::size_t i) {
+    const Element& element = drawing_.elements[i];
+    State& state = states_[i];
+    const Mark place = place_of(element);
+    if (state.value) return *state.value;
+    if (state.is_active) return value_of_loop(i, element.kind == Drawn::contact ? "BOOL" : "");
+    state.is_active = true;
+    Value value;
+    if (!element.inputs.empty()) value = value_of(element, element.inputs.front());
+    if (element.kind == Drawn::contact) {
+        Value own = written(element, element.node.child("variable"));
+        own = edge_of(own, edge_of_attribute(element), element);
+        if (attribute(element, "negated") == "true") own = negated(own, place);
+        value =
+            value.is_empty() ? words("FALSE", place, "BOOL") : both(std::move(value), own, place);
+        value.type = "BOOL";
+    }
+    state.is_active = false;
+    if (value.is_empty()) {
+        refuse(element, "nothing leads here", "draw a line to it");
+        return words("FALSE", place, "BOOL");
+    }
+    if (!state.loop.empty())
+        state.value = kept_in(state.loop, value, place);
+    else if (state.uses.size() > 1 && !value.type.empty() && value.type != "#")
+        state.value = kept_in(context_.variables.make("_wire", value.type), value, place);
+    return state.value.value_or(value);
+}
+
+/// A line that goes around: the value of the last scan.
+Value NetworkText::value_of_loop(std::size_t i, const std::string& type) {
+    const Element& element = drawing_.elements[i];
+    State& state = states_[i];
+    if (type.empty() || !context_.is_kept) {
+        refuse(element,
+               type.empty() ? "a line goes around through this element, and its type is not known"
+                            : "a line goes around, and a function keeps no value of the last scan",
+               "connect it to a variable, and take its value from there");
+        return words("FALSE", place_of(element), "BOOL");
+    }
+    if (state.loop.empty()) state.loop = context_.variables.make("_wire", type);
+    return words(state.loop, place_of(element), type);
+}
+
+/// Its turn comes behind that of the element which is evaluated, so it has the value of the last
+/// scan.
+bool NetworkText::comes_later(const Element& element) const {
+    return turn_ > 0 && element.order > turn_;
+}
+
+/// It is set or reset by what comes.
+bool NetworkText::is_stored(const Element& element) const {
+    const std::string storage = attribute(element, "storage");
+    return storage == "set" || storage == "reset";
+}
+
+Edge NetworkText::edge_of_attribute(const Element& element) const {
+    const std::string edge = attribute(element, "edge");
+    return edge == "rising" ? Edge::rising : edge == "falling" ? Edge::falling : Edge::none;
+}
+
+void NetworkText::evaluate(std::size_t i) {
+    const Element& element = drawing_.elements[i];
+    State& state = states_[i];
+    if (state.is_done) return;
+    switch (element.kind) {
+        case Drawn::coil:
+        case Drawn::out_variable:
+        case Drawn::in_out_variable:
+            state.is_done = true;
+            return assign(i);
+        case Drawn::block:
+            return waits_for_use(i) ? void() : evaluate_box(i);
+        case Drawn::label:
+            state.is_done = true;
+            return end_stretch(attribute(element, "label"), place_of(element));
+        case Drawn::jump:
+        case Drawn::return_:
+            state.is_done = true;
+            return leave(element);
+        default:
+            return;
+    }
+}
+
+/// A coil or a variable takes what comes to it, negated, at an edge, or set or reset by it.
+void NetworkText::assign(std::size_t i) {
+    const Element& element = drawing_.elements[i];
+    const Mark place = place_of(element);
+    const bool is_coil = element.kind == Drawn::coil;
+    if (element.inputs.empty() && element.kind == Drawn::in_out_variable) return;
+    Value value;
+    if (!element.inputs.empty()) value = value_of(element, element.inputs.front());
+    if (value.is_empty())
+        return refuse(element, fmt::format("nothing leads to this {}", word_of(element.kind)),
+                      "draw a line to it, or remove it");
+    if (is_coil && !states_[i].uses.empty())
+        states_[i].value = value =
+            value.is_always ? value
+                            : kept_in(context_.variables.make("_wire", "BOOL"), value, place);
+    if (element.kind != Drawn::in_out_variable) {
+        value = edge_of(value, edge_of_attribute(element), element);
+        if (attribute(element, "negated") == "true") value = negated(value, place);
+    }
+    const Value target = written(element, element.node.child(is_coil ? "variable" : "expression"));
+    if (!is_stored(element)) return write_assignment(target, value, place);
+    now_.write("IF ", place);
+    now_.append(value.text);
+    now_.write(" THEN ", place);
+    now_.append(target.text);
+    now_.write(
+        attribute(element, "storage") == "set" ? " := TRUE; END_IF\n" : " := FALSE; END_IF\n",
+        place);
+}
+
+void NetworkText::write_assignment(const Value& target, const Value& value, const Mark& place) {
+    now_.append(target.text);
+    now_.write(" := ", place);
+    now_.append(value.text);
+    now_.write(";\n", place);
+}
+
+}  // namespace lineshaft::projects

@@ -1,0 +1,144 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/projects/drawings/drawing.hpp"
+#include "runtime/projects/drawings/types.hpp"
+#include "runtime/projects/drawings/values.hpp"
+
+namespace lineshaft::projects {
+
+/// Variables that the bodies of a POU have beside those which it declares.
+class MadeVariables {
+  public:
+    /// A new one: `_wire1`.
+    std::string make(std::string_view prefix, std::string_view type);
+    /// `_wire1 : BOOL;` and so on; empty: none.
+    const std::string& declarations() const { return declarations_; }
+
+  private:
+    std::string declarations_;
+    int count_ = 0;
+};
+
+/// What the bodies of a POU are read with.
+struct BodyContext {
+    const XmlFile& file;
+    Diagnostics& out;
+    NetworkTypes types;
+    MadeVariables& variables;
+    bool is_kept = true;  ///< variables keep their values from scan to scan
+};
+
+/// A body of networks as statements.
+///
+/// Elements are evaluated in the order of `Drawing::order`, each behind those that it takes values
+/// from. A line that goes around takes the value of the last scan. What several lines take, or what
+/// must be evaluated before something else is, goes into a variable, if its type can be told.
+class NetworkText {
+  public:
+    NetworkText(BodyContext& context, pugi::xml_node body);
+
+    /// All that the body does.
+    Excerpts statements();
+    /// What lines carry that end in a chart's transition, and what is done for it before.
+    Value condition(pugi::xml_node connection_point);
+    const Excerpts& before() const { return now_; }
+
+  private:
+    /// An element that takes something from another's output `pin`, in small letters.
+    struct Use {
+        std::size_t by;
+        std::string pin;
+    };
+    /// What is known of an element's evaluation.
+    struct State {
+        bool is_done = false, is_active = false;
+        std::size_t turn = 0;  ///< its place in the order
+        std::vector<Use> uses = {};
+        std::optional<Value> value = {};  ///< of its first output, from now on
+        std::string loop = {};            ///< the variable of a line that goes around
+        Value enabled = {};               ///< what comes out at ENO
+        std::vector<std::pair<std::string, Value>> outputs = {};  ///< of a function, beside that
+    };
+    /// Statements, or a label, or where a jump goes away, in a row.
+    struct Stretch {
+        Excerpts statements = {};
+        std::string label = {};
+        std::string target = {};
+        Mark place = {};
+    };
+    using Arguments = std::vector<std::pair<const Pin*, Value>>;
+
+    // networks.cpp
+    void evaluate(std::size_t i);
+    void assign(std::size_t i);
+    Value value_of(const Line& line);
+    Value value_of(const Element& element, const Pin& pin);
+    Value value_of_element(std::size_t i);
+    Value value_of_wire(std::size_t i);
+    Value value_of_loop(std::size_t i, const std::string& type);
+    Value edge_of(const Value& value, Edge edge, const Element& element);
+    Value kept_in(const std::string& variable, const Value& value, const Mark& place);
+    void write_assignment(const Value& target, const Value& value, const Mark& place);
+    Value written(const Element& element, pugi::xml_node text);
+    Value words(std::string_view text, const Mark& place, std::string type = {}) const;
+    bool comes_later(const Element& element) const;
+    bool is_stored(const Element& element) const;
+    Edge edge_of_attribute(const Element& element) const;
+    Mark place_of(const Element& element) const;
+    std::string name_of(const Element& element) const;
+    void refuse(const Element& element, std::string_view why, std::string_view help);
+    std::string attribute(const Element& element, const char* name) const {
+        return file_.plain(element.node.attribute(name));
+    }
+
+    // boxes.cpp
+    bool waits_for_use(std::size_t i) const;
+    void evaluate_box(std::size_t i);
+    void execute(const Element& box, State& state);
+    void call_block(const Element& box, State& state);
+    void call_function(std::size_t i);
+    Value call_of(std::size_t i);
+    Value in_between(const Element& box, const Arguments& arguments);
+    Arguments other_outputs(std::size_t i);
+    Value target_of(std::size_t i, const std::string& type);
+    void write_guarded(const Value& enabled, const Value& target, const Value& value,
+                       const Mark& place);
+    Value enabled_of(const Element& box, State& state);
+    std::string variable_of_eno(const Element& box, State& state);
+    Value value_of_box(std::size_t i, const std::string& name);
+    Value instance_of(const Element& box);
+    Value member_of(const Element& box, const std::string& pin);
+    const Pin* result_of(const Element& box) const;
+    const Pin* find_output(const Element& box, std::string_view name) const;
+    bool is_used(const State& state, const Pin& pin) const;
+    bool is_operator(const Element& box) const;
+    bool takes_result(const Element& box, const State& state) const;
+    bool has_own_turn(std::size_t i) const;
+    std::optional<std::size_t> only_target(std::size_t i) const;
+    std::string type_name_of(const Element& box) const;
+    std::string call_type(const Element& box) const;
+    std::string type_of_result(std::size_t i, int depth) const;
+
+    // jumps.cpp
+    void leave(const Element& element);
+    std::size_t number_of_label(std::string_view name) const;
+    void end_stretch(std::string label, const Mark& place);
+    Excerpts with_jumps();
+
+    BodyContext& context_;
+    const XmlFile& file_;
+    Drawing drawing_;
+    std::vector<State> states_;
+    std::vector<Stretch> stretches_;
+    Excerpts now_;           ///< statements since the last label or jump
+    std::string jump_;       ///< the variable that has the label which is jumped to
+    std::int64_t turn_ = 0;  ///< `executionOrderId` of the element whose turn it is
+    int depth_ = 0;
+    bool is_too_deep_ = false;  ///< which was told
+};
+
+}  // namespace lineshaft::projects

@@ -1,0 +1,63 @@
+#include "runtime/projects/drawings/values.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "runtime/source/letters.hpp"
+
+namespace lineshaft::projects {
+
+namespace {
+
+/// As an operand of AND or OR, of which `form` is the one.
+Excerpts operand(const Value& a, Value::Form form, const Mark& place) {
+    return a.form == form || a.form == Value::Form::not_ ? a.text : enclosed(a, place);
+}
+
+Value joined(const Value& a, std::string_view word, const Value& b, Value::Form form,
+             const Mark& place) {
+    Value made{.text = operand(a, form, place), .form = form, .type = "BOOL"};
+    made.text.write(word, place);
+    made.text.append(operand(b, form, place));
+    return made;
+}
+
+}  // namespace
+
+Excerpts enclosed(const Value& a, const Mark& place) {
+    if (a.form == Value::Form::atom) return a.text;
+    Excerpts made;
+    made.write("(", place);
+    made.append(a.text);
+    made.write(")", place);
+    return made;
+}
+
+Value both(Value a, Value b, const Mark& place) {
+    if (a.is_empty() || a.is_always) return b;
+    if (b.is_empty() || b.is_always) return a;
+    return joined(a, " AND ", b, Value::Form::and_, place);
+}
+
+Value either(Value a, Value b, const Mark& place) {
+    if (a.is_empty()) return b;
+    if (b.is_empty()) return a;
+    return joined(a, " OR ", b, Value::Form::or_, place);
+}
+
+Value negated(const Value& a, const Mark& place) {
+    Value made{.text = {}, .form = Value::Form::not_, .type = a.type};
+    made.text.write("NOT ", place);
+    made.text.append(enclosed(a, place));
+    return made;
+}
+
+Value::Form shape_of(std::string_view expression) {
+    constexpr std::string_view more = "_.%#^:$'";
+    const bool is_atom = std::ranges::all_of(expression, [&](char c) {
+        return is_letter(c) || is_digit(c) || more.find(c) != more.npos;
+    });
+    return is_atom ? Value::Form::atom : Value::Form::other;
+}
+
+}  // namespace lineshaft::projects

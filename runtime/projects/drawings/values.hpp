@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "runtime/projects/excerpts.hpp"
+
+namespace lineshaft::projects {
+
+/// An expression that a line of a network carries.
+struct Value {
+    /// What stands outermost in it, so that no more parentheses are written than are needed.
+    enum class Form : std::uint8_t { atom, not_, and_, or_, other };
+
+    Excerpts text;
+    Form form = Form::atom;
+    std::string type = {};   ///< empty: not known
+    bool is_always = false;  ///< TRUE, as from a power rail
+
+    bool is_empty() const { return text.is_empty(); }
+};
+
+/// `a` as an operand.
+Excerpts enclosed(const Value& a, const Mark& place);
+/// Either may be empty; what is always TRUE does nothing to an AND.
+Value both(Value a, Value b, const Mark& place);
+Value either(Value a, Value b, const Mark& place);
+Value negated(const Value& a, const Mark& place);
+
+/// Of an expression as it is written at an element.
+Value::Form shape_of(std::string_view expression);
+
+}  // namespace lineshaft::projects

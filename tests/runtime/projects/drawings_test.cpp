@@ -1,0 +1,278 @@
+#include <fstream>
+
+#include <catch2/catch.hpp>
+
+#include "blocks/catalog.hpp"
+#include "runtime/program/program.hpp"
+#include "runtime/st/library/library.hpp"
+#include "tests/folder.hpp"
+
+namespace lineshaft::projects {
+namespace {
+
+std::string in(const std::string& lines) {
+    return "<connectionPointIn>" + lines + "</connectionPointIn>";
+}
+
+/// A line from an element.
+std::string from(int id, const std::string& pin = "") {
+    return "<connection refLocalId=\"" + std::to_string(id) + "\"" +
+           (pin.empty() ? "" : " formalParameter=\"" + pin + "\"") + "/>";
+}
+
+std::string element(const std::string& tag, int id, int y, const std::string& inside,
+                    const std::string& more = "") {
+    return "<" + tag + " localId=\"" + std::to_string(id) + "\" " + more + "><position x=\"" +
+           std::to_string(id) + "\" y=\"" + std::to_string(y) + "\"/>" + inside + "</" + tag +
+           ">\n";
+}
+
+std::string contact(int id, int y, const std::string& variable, const std::string& lines,
+                    const std::string& more = "") {
+    return element("contact", id, y, in(lines) + "<variable>" + variable + "</variable>", more);
+}
+
+std::string coil(int id, int y, const std::string& variable, const std::string& lines,
+                 const std::string& more = "") {
+    return element("coil", id, y, in(lines) + "<variable>" + variable + "</variable>", more);
+}
+
+std::string in_variable(int id, const std::string& expression) {
+    return element("inVariable", id, 0, "<expression>" + expression + "</expression>");
+}
+
+std::string out_variable(int id, int y, const std::string& expression, const std::string& lines,
+                         const std::string& more = "") {
+    return element("outVariable", id, y, in(lines) + "<expression>" + expression + "</expression>",
+                   more);
+}
+
+std::string input(const std::string& name, const std::string& lines, const std::string& more = "") {
+    return "<variable formalParameter=\"" + name + "\" " + more + ">" + in(lines) + "</variable>";
+}
+
+std::string box(int id, int y, const std::string& type, const std::string& inputs,
+                const std::vector<std::string>& outputs, const std::string& more = "") {
+    std::string pins;
+    for (const std::string& output : outputs)
+        pins += "<variable formalParameter=\"" + output + "\"><connectionPointOut/></variable>";
+    return element("block", id, y,
+                   "<inputVariables>" + inputs + "</inputVariables><outputVariables>" + pins +
+                       "</outputVariables>",
+                   "typeName=\"" + type + "\" " + more);
+}
+
+std::string variable(const std::string& name, const std::string& type) {
+    return "<variable name=\"" + name + "\"><type>" + type + "</type></variable>";
+}
+
+/// A program with variables a to d (BOOL), x to z (INT) and a timer.
+std::string program(const std::string& language, const std::string& body,
+                    const std::string& more = "", const std::string& kind = "program") {
+    std::string variables = variable("timer", "<derived name=\"TON\"/>");
+    for (const std::string name : {"a", "b", "c", "d"}) variables += variable(name, "<BOOL/>");
+    for (const std::string name : {"x", "y", "z"}) variables += variable(name, "<INT/>");
+    if (kind == "function") variables = variables.substr(variables.find("<variable name=\"a\""));
+    return "<project xmlns=\"http://www.plcopen.org/xml/tc6_0201\"><types><pous>\n"
+           "<pou name=\"P\" pouType=\"" +
+           kind + "\"><interface>" +
+           (kind == "function" ? "<returnType><BOOL/></returnType>" : "") + "<localVars>" +
+           variables + "</localVars></interface>" + more + "<body><" + language + ">\n" + body +
+           "</" + language + "></body></pou></pous></types></project>\n";
+}
+
+struct Read {
+    std::string text, messages;
+};
+
+/// The text behind the program's own variables, and what compiling it says.
+Read read(const std::string& xml) {
+    const test::Folder folder;
+    const std::string path = folder / "project.xml";
+    std::ofstream(path, std::ios::binary) << xml;
+    Diagnostics out;
+    const Project project = read_project(path, {}, out);
+    if (out.empty()) st::compile(project.sources, standard_blocks(), out);
+    Read made;
+    for (const auto& source : project.sources) made.text += source->text;
+    const std::size_t end = made.text.find("END_VAR\n");
+    if (end != std::string::npos) made.text.erase(0, end + 8);
+    for (const Diagnostic& diagnostic : out.list()) {
+        REQUIRE(diagnostic.mark.file);
+        REQUIRE(diagnostic.mark.line > 0);
+        made.messages += std::to_string(diagnostic.mark.line) + ":" +
+                         std::to_string(diagnostic.mark.column) + ": " +
+                         diagnostic.whole_message() + "\n";
+    }
+    return made;
+}
+
+std::string ladder(const std::string& body) {
+    const Read made = read(program("LD", element("leftPowerRail", 0, 0, "") + body));
+    CHECK(made.messages == "");
+    return made.text;
+}
+
+std::string diagram(const std::string& body) {
+    const Read made = read(program("FBD", body));
+    CHECK(made.messages == "");
+    return made.text;
+}
+
+}  // namespace
+
+TEST_CASE("contacts in series are AND, lines that meet are OR, coils take what comes") {
+    CHECK(ladder(contact(1, 10, "a", from(0)) + contact(2, 20, "b", from(0), "negated=\"true\"") +
+                 contact(3, 10, "c", from(1) + from(2)) + coil(4, 10, "d", from(3))) ==
+          "d := (a OR NOT b) AND c;\nEND_PROGRAM\n");
+    CHECK(ladder(contact(1, 10, "a", from(0)) + coil(2, 10, "b", from(1), "negated=\"true\"") +
+                 contact(3, 20, "c", from(0)) + coil(4, 20, "d", from(3), "storage=\"set\"") +
+                 contact(5, 30, "b", from(0)) + coil(6, 30, "d", from(5), "storage=\"reset\"")) ==
+          "b := NOT a;\nIF c THEN d := TRUE; END_IF\nIF b THEN d := FALSE; END_IF\n"
+          "END_PROGRAM\n");
+}
+
+TEST_CASE("networks are evaluated from top to bottom, or as executionOrderId says") {
+    const auto body = [](const std::string& first, const std::string& second) {
+        return contact(1, 50, "a", from(0)) + coil(2, 50, "b", from(1), first) +
+               contact(3, 10, "b", from(0)) + coil(4, 10, "c", from(3), second);
+    };
+    CHECK(ladder(body("", "")) == "c := b;\nb := a;\nEND_PROGRAM\n");
+    CHECK(ladder(body("executionOrderId=\"1\"", "executionOrderId=\"2\"")) ==
+          "b := a;\nc := b;\nEND_PROGRAM\n");
+}
+
+TEST_CASE("what several coils take is evaluated once") {
+    CHECK(ladder(contact(1, 10, "a", from(0)) + contact(2, 10, "b", from(1)) +
+                 coil(3, 10, "a", from(2)) + coil(4, 20, "c", from(2))) ==
+          "VAR\n    _wire1 : BOOL;\nEND_VAR\n_wire1 := a AND b;\na := _wire1;\nc := _wire1;\n"
+          "END_PROGRAM\n");
+}
+
+TEST_CASE("edges of contacts and coils are R_TRIG and F_TRIG") {
+    CHECK(ladder(contact(1, 10, "a", from(0), "edge=\"rising\"") +
+                 coil(2, 10, "b", from(1), "edge=\"falling\"")) ==
+          "VAR\n    _edge1 : R_TRIG;\n    _edge2 : F_TRIG;\nEND_VAR\n_edge1(CLK := a);\n"
+          "_edge2(CLK := _edge1.Q);\nb := _edge2.Q;\nEND_PROGRAM\n");
+}
+
+TEST_CASE("boxes are operators, calls of functions, and calls of blocks") {
+    CHECK(diagram(in_variable(1, "x") + in_variable(2, "y") + in_variable(3, "3") +
+                  box(4, 0, "ADD", input("IN1", from(1)) + input("IN2", from(2)), {"OUT"}) +
+                  box(5, 0, "MAX", input("IN1", from(4, "OUT")) + input("IN2", from(3)), {"OUT"}) +
+                  out_variable(6, 0, "z", from(5, "OUT"))) == "z := MAX(x + y, 3);\nEND_PROGRAM\n");
+    CHECK(diagram(in_variable(1, "a") + in_variable(2, "T#1s") +
+                  box(3, 0, "TON", input("IN", from(1), "negated=\"true\"") + input("PT", from(2)),
+                      {"Q", "ET"}, "instanceName=\"timer\"") +
+                  out_variable(4, 0, "b", from(3, "Q"), "negated=\"true\"")) ==
+          "timer(IN := NOT a, PT := T#1s);\nb := NOT timer.Q;\nEND_PROGRAM\n");
+}
+
+TEST_CASE("a box with EN is called while it is TRUE, and ENO says so") {
+    CHECK(diagram(
+              in_variable(1, "a") + in_variable(2, "x") + in_variable(3, "y") +
+              box(4, 0, "ADD", input("EN", from(1)) + input("IN1", from(2)) + input("IN2", from(3)),
+                  {"ENO", "OUT"}) +
+              out_variable(5, 0, "z", from(4, "OUT")) + out_variable(6, 5, "b", from(4, "ENO"))) ==
+          "VAR\n    _wire1 : BOOL;\nEND_VAR\n_wire1 := a;\nIF _wire1 THEN z := x + y; END_IF\n"
+          "b := _wire1;\nEND_PROGRAM\n");
+}
+
+TEST_CASE("a line that goes around has the value of the last scan") {
+    CHECK(diagram(in_variable(1, "x") +
+                  box(2, 0, "ADD", input("IN1", from(1)) + input("IN2", from(2, "OUT")), {"OUT"}) +
+                  out_variable(3, 0, "z", from(2, "OUT"))) ==
+          "VAR\n    _wire1 : INT;\nEND_VAR\n_wire1 := x + _wire1;\nz := _wire1;\nEND_PROGRAM\n");
+    CHECK(diagram(box(1, 0, "TON", input("IN", from(1, "Q"), "negated=\"true\""), {"Q"},
+                      "instanceName=\"timer\"")) == "timer(IN := NOT timer.Q);\nEND_PROGRAM\n");
+}
+
+TEST_CASE("jumps, labels and returns of networks") {
+    CHECK(diagram(in_variable(1, "a") + element("jump", 2, 0, in(from(1)), "label=\"L\"") +
+                  in_variable(3, "x") + out_variable(4, 10, "y", from(3)) +
+                  element("label", 5, 20, "", "label=\"L\"") + in_variable(6, "y") +
+                  out_variable(7, 30, "z", from(6)) + in_variable(8, "b") +
+                  element("return", 9, 40, in(from(8)))) ==
+          "VAR\n    _jump1 : INT;\nEND_VAR\n_jump1 := 0;\nIF a THEN _jump1 := 1; END_IF\n"
+          "IF _jump1 = 0 THEN\ny := x;\nEND_IF\nIF _jump1 = 1 THEN _jump1 := 0; END_IF\n"
+          "IF _jump1 = 0 THEN\nz := y;\nIF b THEN RETURN; END_IF\nEND_IF\nEND_PROGRAM\n");
+}
+
+TEST_CASE("a message about a network names it and its element") {
+    CHECK(read(program("LD", element("leftPowerRail", 0, 0, "") + contact(1, 10, "a", from(0)) +
+                                 coil(2, 10, "b", from(1)) + contact(3, 20, "nobody", from(0)) +
+                                 coil(4, 20, "c", from(3))))
+              .messages == "6:104: 'nobody' is not declared (network 2, contact 3)\n");
+    CHECK(read(program("FBD", out_variable(1, 0, "x", from(7)))).messages ==
+          "3:82: a line comes from '7', which is no element of this body\n"
+          "3:1: nothing leads to this variable (network 1, variable 1)\n");
+    CHECK(read(program("FBD", in_variable(1, "x") + "<spiral localId=\"2\"/>\n")).messages ==
+          "4:1: <spiral> is no element of a network\n");
+}
+
+TEST_CASE("a function keeps nothing that an edge could be told by") {
+    CHECK(
+        read(program("LD",
+                     element("leftPowerRail", 0, 0, "") +
+                         contact(1, 0, "a", from(0), "edge=\"rising\"") + coil(2, 0, "P", from(1)),
+                     "", "function"))
+            .messages ==
+        "4:1: an edge needs a variable that is kept from scan to scan (network 1, contact 1)\n");
+}
+
+TEST_CASE("a chart's divergences and convergences, actions and conditions") {
+    const auto step = [](int id, const std::string& name, const std::string& lines,
+                         const std::string& more = "") {
+        return element("step", id, id, lines.empty() ? "" : in(lines),
+                       "name=\"" + name + "\" " + more);
+    };
+    const auto transition = [](int id, const std::string& condition, const std::string& lines) {
+        return element("transition", id, id,
+                       in(lines) + "<condition>" + condition + "</condition>");
+    };
+    const auto inline_st = [](const std::string& text) {
+        return "<inline name=\"\"><ST><p>" + text + "</p></ST></inline>";
+    };
+    const std::string body =
+        step(1, "Begin", from(9), "initialStep=\"true\"") + transition(2, inline_st("a"), from(1)) +
+        element("simultaneousDivergence", 3, 3, in(from(2))) + step(4, "Left", from(3)) +
+        step(5, "Right", from(3)) +
+        element("actionBlock", 6, 6,
+                in(from(4)) +
+                    "<action qualifier=\"L\" duration=\"T#1s\"><reference name=\"b\"/></action>" +
+                    "<action><inline><ST><p>x := x + 1;</p></ST></inline></action>") +
+        element("simultaneousConvergence", 7, 7, in(from(4)) + in(from(5))) +
+        transition(8, "<reference name=\"Ready\"/>", from(7)) +
+        element("selectionConvergence", 9, 9, in(from(8))) +
+        element("selectionDivergence", 10, 10, in(from(1))) +
+        transition(11, "<connectionPointIn>" + from(12) + "</connectionPointIn>", from(10)) +
+        contact(12, 12, "c", from(13)) + element("leftPowerRail", 13, 13, "") +
+        element("jumpStep", 14, 14, in(from(11)), "targetName=\"Begin\"");
+    const Read made =
+        read(program("SFC", body,
+                     "<transitions><transition name=\"Ready\"><body><ST><p>:= Left.T > T#2s;</p>"
+                     "</ST></body></transition></transitions>"));
+    CHECK(made.messages == "");
+    CHECK(made.text == R"(ACTION _action1:
+x := x + 1;
+
+END_ACTION
+INITIAL_STEP Begin:
+END_STEP
+STEP Left:
+    b(L, T#1s);
+    _action1;
+END_STEP
+STEP Right:
+END_STEP
+TRANSITION FROM Begin TO (Left, Right) := a;
+END_TRANSITION
+TRANSITION FROM (Left, Right) TO Begin :=  Left.T > T#2s;
+END_TRANSITION
+TRANSITION FROM Begin TO Begin := c;
+END_TRANSITION
+END_PROGRAM
+)");
+}
+
+}  // namespace lineshaft::projects
