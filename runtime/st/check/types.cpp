@@ -67,7 +67,8 @@ bool has_packed_form(Checking& c, const TypeText& text, const Type& made) {
         if (!member->type) return false;
         if (packed_bits(*member->type, text.place.dialect()) > 0) continue;
         c.fail(code::type_does_not_fit, member->name.place,
-               fmt::format("a UNION has no {}", describe(*member->type)),
+               fmt::format("a UNION has no {}",
+                           member->type->is_reference() ? "reference" : describe(*member->type)),
                "its members are numbers, times, texts, and structures and arrays of such");
         return false;
     }
