@@ -113,9 +113,13 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
         return;
     }
     if (parameter.section == Section::in_out && is_packed(*value)) {
-        c.fail(code::wrong_arguments, value->place,
-               fmt::format("'{}' takes a variable, not bytes of the process image", parameter.text),
-               "copy it to a variable, give that, and copy it back");
+        c.fail(
+            code::wrong_arguments, value->place,
+            fmt::format("'{}' takes a variable, not bytes of {}", parameter.text,
+                        root_of(*value).variable && root_of(*value).variable->space == Space::image
+                            ? "the process image"
+                            : "a UNION"),
+            "copy it to a variable, give that, and copy it back");
         return;
     }
     const bool texts = given->kind == Kind::text && type->kind == Kind::text;

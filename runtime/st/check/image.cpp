@@ -52,7 +52,7 @@ bool fits(Checking& c, const Variable& variable, const ImageAddress& address, co
     if (bits == 0) {
         c.fail(code::type_does_not_fit, at.place,
                fmt::format("{} stands at no address", describe(type)),
-               "numbers, times, and structures and arrays of such do");
+               "numbers, times, texts, and structures and arrays of such do");
         return false;
     }
     const bool is_bit = type.kind == Kind::boolean;

@@ -145,7 +145,8 @@ void check_initial(Checking& c, Expression*& value, const Type& type) {
         value->type = &type;
         const bool is_structure = value->is_structure();
         if (type.kind == Kind::array && !is_structure) return check_elements(c, *value, type);
-        if ((type.kind == Kind::structure || type.is_instance()) && is_structure)
+        const bool has_members = type.kind == Kind::structure || type.kind == Kind::union_;
+        if ((has_members || type.is_instance()) && is_structure)
             return check_members(c, *value, type);
         c.fail(code::type_does_not_fit, value->place,
                fmt::format("this is not a value of {}", describe(type)),

@@ -35,7 +35,7 @@ void visit(Checking& c, Routine& routine, std::vector<const Routine*>& path) {
 void depend(Checking& c, const Type* type, Place place) {
     if (!type || !c.routine) return;
     if (type->kind == Kind::array) return depend(c, type->element, place);
-    if (type->kind == Kind::structure)
+    if (type->kind == Kind::structure || type->kind == Kind::union_)
         for (const Variable* member : type->members) depend(c, member->type, place);
     if (type->kind != Kind::block) return;
     const auto add_call = [&](Routine* routine) {

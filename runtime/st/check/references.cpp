@@ -43,6 +43,7 @@ std::string_view why_no_place(const Expression& e) {
     if (e.kind == E::self) return {};
     if (e.kind != E::name && e.kind != E::member && e.kind != E::index && e.kind != E::deref)
         return "a value has no place";
+    if (is_packed(e)) return "what is packed has no place of its own";
     const Expression& root = root_of(e);
     if (root.kind == E::deref) return {};
     if (root.kind != E::name && root.kind != E::member) return "a value has no place";

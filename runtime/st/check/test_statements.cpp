@@ -120,7 +120,8 @@ bool check_compared(Checking& c, Expression& call) {
     if (!first || !second) return false;
     unite_texts(c, a, b);
     first = a->type, second = b->type;
-    const bool parts = first->kind == Kind::array || first->kind == Kind::structure;
+    const bool parts =
+        first->kind == Kind::array || first->kind == Kind::structure || first->kind == Kind::union_;
     const auto refuse = [&](std::string help) {
         c.fail(code::type_does_not_fit, call.place,
                fmt::format("{} does not go with {} and {}", known.name, describe(*first),

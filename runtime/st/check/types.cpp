@@ -12,6 +12,7 @@
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/references.hpp"
+#include "runtime/st/types/packed.hpp"
 #include "runtime/st/vendors/instead.hpp"
 #include "runtime/st/vendors/names.hpp"
 
@@ -60,8 +61,27 @@ void inherit_members(Checking& c, const Token& name, Type& to, NameMap<Place>& n
     }
 }
 
+/// A UNION keeps what has a packed form, and something.
+bool has_packed_form(Checking& c, const TypeText& text, const Type& made) {
+    for (const Variable* member : made.members) {
+        if (!member->type) return false;
+        if (packed_bits(*member->type, text.place.dialect()) > 0) continue;
+        c.fail(code::type_does_not_fit, member->name.place,
+               fmt::format("a UNION has no {}",
+                           member->type->is_reference() ? "reference" : describe(*member->type)),
+               "its members are numbers, times, texts, and structures and arrays of such");
+        return false;
+    }
+    if (made.members.empty())
+        c.fail(code::value_out_of_range, text.place, "the UNION has no member",
+               "declare the variables that share its bytes");
+    return !made.members.empty();
+}
+
 const Type* resolve_structure(Checking& c, const TypeText& text) {
-    Type& type = c.make_type(Kind::structure, "STRUCT");
+    const bool is_union = text.kind == TypeText::Kind::union_;
+    Type& type =
+        c.make_type(is_union ? Kind::union_ : Kind::structure, is_union ? "UNION" : "STRUCT");
     type.is_unnamed = true;
     NameMap<Place> names;
     if (text.base.word != Word::end_of_file) inherit_members(c, text.base, type, names);
@@ -70,7 +90,7 @@ const Type* resolve_structure(Checking& c, const TypeText& text) {
         if (is_new_name(c, declared->name, names))
             type.members.push_back(add(c, c.checked.variables, *declared, member));
     }
-    return &type;
+    return is_union && !has_packed_form(c, text, type) ? nullptr : &type;
 }
 
 const Type* resolve_enumeration(Checking& c, const TypeText& text) {
@@ -151,6 +171,7 @@ const Type* resolve(Checking& c, const TypeText& text) {
         case TypeText::Kind::array:
             return resolve_array(c, text);
         case TypeText::Kind::structure:
+        case TypeText::Kind::union_:
             return resolve_structure(c, text);
         case TypeText::Kind::enumeration:
             return resolve_enumeration(c, text);

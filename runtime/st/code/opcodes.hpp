@@ -51,6 +51,8 @@
     OP(copy_to, move, "rsn-", copy_slots(target(U(a)), at(b), c))                                    \
     OP(load_packed, move, "wrnr", put(a, load_packed(target(U(b)), c + U(d), PackedFormat::of_number(UPPER_C)))) \
     OP(store_packed, move, "rrnr", store_packed(target(U(b)), c + U(d), PackedFormat::of_number(UPPER_C), U(a))) \
+    OP(load_packed_text, text, "rrnr", load_packed_text(target(U(a)), target(U(b)), c + U(d), PackedText::of_number(UPPER_C))) \
+    OP(store_packed_text, text, "rrnr", if (word(target(U(a)), 0) > PackedText::of_number(UPPER_C).length) frames.note_cut(pc); store_packed_text(target(U(b)), c + U(d), PackedText::of_number(UPPER_C), target(U(a)))) \
     OP(initialise, move, "snn-", std::memcpy(at(a), &code.images[b], 8 * std::size_t{c}))            \
     OP(index, integer, "wrx-", ELEMENT(b, c); put(a, element))                                       \
     OP(index_more, integer, "wrx-", ELEMENT(b, c); put(a, U(a) + element))                           \

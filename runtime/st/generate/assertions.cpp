@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runtime/st/generate/layout.hpp"
+#include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/texts.hpp"
 #include "runtime/st/generate/values.hpp"
@@ -130,6 +131,16 @@ void write_equal(Writing& w, const Expression& e, const Type& type, const Locati
         for (const Variable* member : type.members)
             write_equal(w, e, *member->type, part(w, a, *member), part(w, b, *member),
                         fmt::format("{}.{}", path, member->text));
+        return;
+    }
+    if (type.kind == Kind::union_) {
+        const Location first = as_packed(w, a, type), second = as_packed(w, b, type);
+        for (const RawBytes& bytes : raw_parts(type)) {
+            const Slot found = load_raw(w, first, bytes), wanted = load_raw(w, second, bytes);
+            const Type& number = bits_type(8 * bytes.bytes);
+            write_assertion(w, e, {compare(w, Word::equal, number, found, wanted), found, wanted},
+                            &number, fmt::format("{} from byte {} on", path, bytes.first));
+        }
         return;
     }
     const std::uint32_t kept = w.temporaries;

@@ -6,6 +6,7 @@
 #include "runtime/st/generate/conversions.hpp"
 #include "runtime/st/generate/dispatch.hpp"
 #include "runtime/st/generate/layout.hpp"
+#include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/references.hpp"
 #include "runtime/st/generate/standard_functions.hpp"
@@ -153,7 +154,9 @@ void take(Writing& w, const Location& frame, const Expression& e) {
             continue;
         }
         const Location to = locate(w, *argument.value);
-        if (given.kind == Kind::text)
+        if (given.kind == Kind::text && to.packed)
+            store_packed_text(w, to, address_of(w, from));
+        else if (given.kind == Kind::text)
             w.put(Op::text_copy, address_of(w, to), address_of(w, from),
                   capacity_of(w, to, wanted));
         else if (!given.is_scalar())

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "runtime/st/generate/layout.hpp"
+#include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/places.hpp"
 
 namespace lineshaft::st {
@@ -40,6 +41,18 @@ void fill_elements(Writing& w, Writing::Image& image, std::uint32_t at, const Ty
     }
 }
 
+/// What is 0 says nothing of the bytes that other members share.
+void fill_member_of_union(Writing& w, Writing::Image& image, std::uint32_t at,
+                          const Variable& member, const Expression* value) {
+    const Type& type = *member.type;
+    Writing::Image slots(slots_of(w, type), 0);
+    fill_default(w, slots, 0, type);
+    if (value) fill(w, slots, 0, type, *value);
+    if (value || std::ranges::any_of(slots, [](std::uint64_t slot) { return slot != 0; }))
+        fill_packed(reinterpret_cast<std::byte*>(&image[at]), 0, type, member.name.place.dialect(),
+                    slots.data());
+}
+
 }  // namespace
 
 void fill(Writing& w, Writing::Image& image, std::uint32_t at, const Variable& variable) {
@@ -58,6 +71,10 @@ void fill_default(Writing& w, Writing::Image& image, std::uint32_t at, const Typ
             break;
         case Kind::structure:
             for (const Variable* member : type.members) fill(w, image, at + member->slot, *member);
+            break;
+        case Kind::union_:
+            for (const Variable* member : type.members)
+                fill_member_of_union(w, image, at, *member, member->initial);
             break;
         case Kind::block:
             std::ranges::copy(w.images[&type], image.begin() + at);
@@ -89,7 +106,9 @@ void fill(Writing& w, Writing::Image& image, std::uint32_t at, const Type& type,
         for (const Argument& argument : value.arguments) {
             const Variable* member = argument.variable;
             if (!member || !member->type) continue;
-            if (member->is_byte)
+            if (type.kind == Kind::union_)
+                fill_member_of_union(w, image, at, *member, argument.value);
+            else if (member->is_byte)
                 reinterpret_cast<char*>(&image[at])[member->byte] =
                     static_cast<char>(argument.value->constant.integer);
             else

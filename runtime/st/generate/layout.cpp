@@ -88,6 +88,10 @@ std::uint32_t slots_of(Writing& w, const Type& type) {
             member->slot = static_cast<std::uint32_t>(slots);
             slots += slots_of(w, *member->type);
         }
+    if (type.kind == Kind::union_) {
+        for (const Variable* member : type.members) slots_of(w, *member->type);
+        slots = (bytes_of(type) + 7) / 8;
+    }
     if (slots > most_slots) check_size(w, slots, w.place, type.name);
     const_cast<Type&>(type).slots = static_cast<std::uint32_t>(std::min(slots, most_slots));
     return type.slots;

@@ -1,5 +1,8 @@
 #include "runtime/st/generate/packed.hpp"
 
+#include <bit>
+#include <cstring>
+
 #include "runtime/st/generate/images.hpp"
 #include "runtime/st/generate/layout.hpp"
 #include "runtime/st/generate/values.hpp"
@@ -25,13 +28,13 @@ PackedFormat format_of(const Location::Packed& packed) {
 }
 
 /// The instruction of which c is put together here.
-void put(Writing& w, Op op, Slot value, const Location& at) {
+void put(Writing& w, Op op, Slot value, const Location& at, std::uint32_t form) {
     const Location::Packed& packed = *at.packed;
     const Location base = as_address(w, at);
     const std::uint64_t first = packed.first + std::uint64_t{64} * base.offset;
     const Slot index = packed.index == none ? w.constant_slot(0) : packed.index;
     w.put(op, value, base.index, 0, index);
-    w.code.instructions.back().c = first | std::uint64_t{format_of(packed).number()} << 32;
+    w.code.instructions.back().c = first | std::uint64_t{form} << 32;
 }
 
 /// The same place as a value of a part of it.
@@ -41,23 +44,22 @@ Location at_bit(Location of, std::uint64_t bit, const Type& type) {
     return of;
 }
 
-void fill_packed(std::byte* bytes, std::uint64_t bit, const Type& type, const Dialect& dialect,
-                 const std::uint64_t* slots) {
-    if (type.is_scalar())
-        return st::store_packed(bytes, bit, packed_format(type, dialect).value(), *slots);
-    if (type.kind == Kind::structure)
-        for (const Variable* member : type.members)
-            fill_packed(bytes, bit + packed_offset(type, *member, dialect), *member->type, dialect,
-                        slots + member->slot);
-    if (type.kind != Kind::array) return;
-    for (std::int64_t i = type.lower; i <= type.upper; ++i) {
-        fill_packed(bytes, bit, *type.element, dialect, slots);
-        bit += packed_stride(type, dialect);
-        slots += type.element->slots;
-    }
+}  // namespace
+
+/// A number that has the bytes as they are.
+static PackedFormat raw_format(RawBytes part) {
+    return {PackedFormat::Coding::whole, part.bytes, false, 0};
 }
 
-}  // namespace
+static const Dialect& dialect_of_union(const Type& type) {
+    return type.members.front()->name.place.dialect();
+}
+
+Location as_packed(Writing& w, const Location& of, const Type& type) {
+    Location made = as_address(w, of);
+    made.packed = {0, none, &dialect_of_union(type), &type, false};
+    return made;
+}
 
 Location locate_in_image(Writing& w, const Variable& variable) {
     const Slot address = w.emit(Op::set_global, none, static_cast<Slot>(w.checked.image.global));
@@ -96,7 +98,7 @@ Location packed_element(Writing& w, Location at, const Expression& e) {
 
 Slot load_packed(Writing& w, const Location& from, Slot wanted) {
     const Slot to = w.result(wanted);
-    put(w, Op::load_packed, to, from);
+    put(w, Op::load_packed, to, from, format_of(*from.packed).number());
     const Type& type = *from.packed->type;
     if (type.kind == Kind::enumeration)
         w.put(Op::within, 0, to, w.table({0, type.values.size(), 1}));
@@ -104,11 +106,56 @@ Slot load_packed(Writing& w, const Location& from, Slot wanted) {
 }
 
 void store_packed(Writing& w, const Location& to, Slot from) {
-    put(w, Op::store_packed, from, to);
+    put(w, Op::store_packed, from, to, format_of(*to.packed).number());
+}
+
+Slot load_packed_text(Writing& w, const Location& from) {
+    const Type& type = *from.packed->type;
+    const Slot text = w.emit(Op::set_address, none, w.new_temporary(slots_of(w, type)));
+    put(w, Op::load_packed_text, text, from, packed_text(type, *from.packed->dialect).number());
+    return text;
+}
+
+void store_packed_text(Writing& w, const Location& to, Slot text) {
+    put(w, Op::store_packed_text, text, to,
+        packed_text(*to.packed->type, *to.packed->dialect).number());
+}
+
+std::vector<RawBytes> raw_parts(const Type& of_union) {
+    std::vector<RawBytes> parts;
+    std::uint64_t first = 0, end = packed_bits(of_union, dialect_of_union(of_union)) / 8;
+    while (first < end) {
+        const std::uint64_t bytes = std::bit_floor(std::min<std::uint64_t>(end - first, 8));
+        parts.push_back({first, static_cast<std::uint8_t>(bytes)});
+        first += bytes;
+    }
+    return parts;
+}
+
+Slot load_raw(Writing& w, const Location& from, RawBytes part) {
+    const Slot slot = w.new_temporary();
+    put(w, Op::load_packed, slot, at_bit(from, 8 * part.first, *from.packed->type),
+        raw_format(part).number());
+    return slot;
+}
+
+/// A UNION is packed on either side.
+static void copy_bytes(Writing& w, Location to, Location from, const Type& type) {
+    if (!to.packed) to = as_packed(w, to, type);
+    if (!from.packed) from = as_packed(w, from, type);
+    for (const RawBytes& part : raw_parts(type))
+        put(w, Op::store_packed, load_raw(w, from, part), at_bit(to, 8 * part.first, type),
+            raw_format(part).number());
 }
 
 void copy_packed(Writing& w, const Location& to, const Location& from, const Type& type) {
     if (type.is_scalar()) return store(w, to, load(w, from));
+    if (type.kind == Kind::union_) return copy_bytes(w, to, from, type);
+    if (type.kind == Kind::text) {
+        const Slot text = from.packed ? load_packed_text(w, from) : address_of(w, from);
+        if (to.packed) return store_packed_text(w, to, text);
+        return w.put(Op::text_copy, address_of(w, to), text, capacity_of(w, to, type));
+    }
     const auto element = [&](const Location& of, const Type& array, std::int64_t i) {
         const auto place = static_cast<std::uint64_t>(i - array.lower);
         if (of.packed)
@@ -123,6 +170,27 @@ void copy_packed(Writing& w, const Location& to, const Location& from, const Typ
             copy_packed(w, member(to, *part), member(from, *part), *part->type);
     for (std::int64_t i = type.lower; type.kind == Kind::array && i <= type.upper; ++i)
         copy_packed(w, element(to, type, i), element(from, type, i), *type.element);
+}
+
+void fill_packed(std::byte* bytes, std::uint64_t bit, const Type& type, const Dialect& dialect,
+                 const std::uint64_t* slots) {
+    const auto* const whole = reinterpret_cast<const std::byte*>(slots);
+    if (type.is_scalar())
+        return st::store_packed(bytes, bit, packed_format(type, dialect).value(), *slots);
+    if (type.kind == Kind::text)
+        return st::store_packed_text(bytes, bit, packed_text(type, dialect), whole);
+    if (type.kind == Kind::union_)
+        std::memcpy(bytes + bit / 8, whole, packed_bits(type, dialect) / 8);
+    if (type.kind == Kind::structure)
+        for (const Variable* member : type.members)
+            fill_packed(bytes, bit + packed_offset(type, *member, dialect), *member->type, dialect,
+                        slots + member->slot);
+    if (type.kind != Kind::array) return;
+    for (std::int64_t i = type.lower; i <= type.upper; ++i) {
+        fill_packed(bytes, bit, *type.element, dialect, slots);
+        bit += packed_stride(type, dialect);
+        slots += type.element->slots;
+    }
 }
 
 void fill_process_image(Writing& w, Writing::Image& image) {

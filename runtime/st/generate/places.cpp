@@ -27,6 +27,7 @@ Location locate_object(Writing& w, const Expression& e) {
 void copy_value(Writing& w, const Location& to, const Type& type, const Expression& from) {
     if (type.kind == Kind::text) {
         const Slot text = text_address(w, from);
+        if (to.packed) return store_packed_text(w, to, text);
         return w.put(Op::text_copy, address_of(w, to), text, capacity_of(w, to, type));
     }
     if (type.is_reference()) return copy(w, to, {Mode::slot, reference(w, from)}, reference_slots);
@@ -53,7 +54,9 @@ void store_bits(Writing& w, const Expression& target, Slot bits) {
 Location locate(Writing& w, const Expression& e) {
     if (e.variable && e.variable->space == Space::image) return locate_in_image(w, *e.variable);
     if (e.kind == E::member) {
-        const Location of = locate(w, *e.operands[0]);
+        Location of = locate(w, *e.operands[0]);
+        const Type& whole = *e.operands[0]->type;
+        if (whole.kind == Kind::union_ && !of.packed) of = as_packed(w, of, whole);
         return of.packed ? packed_member(of, *e.variable) : part(w, of, *e.variable);
     }
     if (e.kind == E::index) {

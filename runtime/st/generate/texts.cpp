@@ -5,6 +5,7 @@
 #include "runtime/st/functions/standard.hpp"
 #include "runtime/st/generate/calls.hpp"
 #include "runtime/st/generate/conversions.hpp"
+#include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/standard_functions.hpp"
 #include "runtime/st/generate/values.hpp"
@@ -63,7 +64,8 @@ Slot text_address(Writing& w, const Expression& e) {
     if (e.kind == E::call && e.routine) return w.emit(Op::set_address, none, call(w, e, none));
     if (e.kind == E::call) return standard(w, e, none);
     if (e.kind == E::converted) return text_conversion(w, e);
-    return address_of(w, locate(w, e));
+    const Location at = locate(w, e);
+    return at.packed ? load_packed_text(w, at) : address_of(w, at);
 }
 
 }  // namespace lineshaft::st

@@ -114,8 +114,8 @@ class FieldWriter {
                         write(*member, slot, name + ".", inner(direction));
                 return;
             case Kind::interface:
-                return;
             case Kind::reference:
+            case Kind::union_:
                 return;
             case Kind::text:
                 if (kind_.texts.size() < Library::most_parts)

@@ -146,13 +146,6 @@ void refuse_any_length(Parsing& p) {
          "write its bounds: ARRAY[0..9] OF ...");
 }
 
-bool refuse_union(Parsing& p) {
-    if (!p.is(Word::union_) || !p.is_name(1)) return false;
-    tell(p, code::not_supported, p.take().place, "unions are not supported",
-         "declare a STRUCT, and convert: DWORD_TO_REAL and its like keep the bits");
-    return true;
-}
-
 void refuse_comparison(Parsing& p) {
     tell(p, code::something_else_expected, p.here().place, "'=' compares and does not assign",
          "write ':='");

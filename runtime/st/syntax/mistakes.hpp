@@ -35,8 +35,6 @@ void refuse_statement(Parsing& p);
 void refuse_reserved_name(Parsing& p);
 /// ARRAY[*]
 void refuse_any_length(Parsing& p);
-/// UNION, whose members are read all the same. False: it is none.
-bool refuse_union(Parsing& p);
 
 // In statements and expressions.
 

@@ -29,8 +29,11 @@ void parse_array(Parsing& p, TypeText& type) {
 }
 
 /// Struct_Decl : 'STRUCT' Var_Decl * 'END_STRUCT'
-void parse_structure(Parsing& p, TypeText& type, const Token& opener, Word end) {
-    type.kind = TypeText::Kind::structure;
+/// Union_Decl : 'UNION' Var_Decl * 'END_UNION'
+void parse_structure(Parsing& p, TypeText& type, TypeText::Kind kind) {
+    const Token opener = p.take();
+    type.kind = kind;
+    const Word end = kind == TypeText::Kind::union_ ? Word::end_union_ : Word::end_struct_;
     while (!p.panic && !p.is_spoiled && !is_end(p.here().word) && !p.is(Word::end_of_file) &&
            (!p.at_pou() || p.is_declared())) {
         if (p.here().word < Word::end_of_file && p.is_declared()) p.tokens[p.at].word = Word::name;
@@ -106,7 +109,7 @@ void parse_reference(Parsing& p, TypeText& type) {
 
 /// Data_Type_Decl : 'TYPE' Access_Spec * ( Type_Decl ( ';' Type_Decl ) * ';' ? ) ? 'END_TYPE' ';' ?
 /// Type_Decl : Name ( 'EXTENDS' Qualified_Name ) ? Attribute *
-///             ( ':' Data_Type | Struct_Decl ) ( ':=' Init ) ?
+///             ( ':' Data_Type | Struct_Decl | Union_Decl ) ( ':=' Init ) ?
 void parse_type_declarations(Parsing& p) {
     const Token opener = p.take();
     while (accept_access(p)) continue;
@@ -116,7 +119,7 @@ void parse_type_declarations(Parsing& p) {
         Token base;
         if (p.accept(Word::extends_)) base = parse_qualified_name(p, "a structure");
         parse_attributes(p);
-        if (!p.is(Word::struct_)) expect(p, Word::colon, "after the name");
+        if (!p.is(Word::struct_) && !p.is(Word::union_)) expect(p, Word::colon, "after the name");
         declared.type = parse_type(p);
         declared.type->base = base;
         if (p.accept(Word::assign)) declared.initial = parse_initial(p);
@@ -128,17 +131,17 @@ void parse_type_declarations(Parsing& p) {
     p.accept(Word::semicolon);
 }
 
-/// Data_Type : Array_Spec | Struct_Decl | Enum_Spec | Ref_Spec | Type_Access
+/// Data_Type : Array_Spec | Struct_Decl | Union_Decl | Enum_Spec | Ref_Spec | Type_Access
 TypeText* parse_type(Parsing& p) {
     const Level level(p);
     TypeText& type = p.tree.type_texts.emplace_back();
     const Token first = p.here();
     if (p.accept(Word::array_))
         parse_array(p, type);
-    else if (p.accept(Word::struct_))
-        parse_structure(p, type, first, Word::end_struct_);
-    else if (refuse_union(p))
-        parse_structure(p, type, first, Word::end_union_);
+    else if (p.is(Word::struct_))
+        parse_structure(p, type, TypeText::Kind::structure);
+    else if (p.is(Word::union_) && (p.is_name(1) || p.next().word == Word::end_union_))
+        parse_structure(p, type, TypeText::Kind::union_);
     else if (p.is(Word::open))
         parse_enumeration(p, type);
     else if (at_reference(p))

@@ -149,6 +149,7 @@ struct TypeText {
         name,
         array,
         structure,
+        union_,
         enumeration,
         subrange,
         text,
@@ -171,7 +172,7 @@ struct Declaration {
     Token name = {};
     TypeText* type = nullptr;  ///< null: of CONST, whose value has one
     Expression* initial = nullptr;
-    Token at = {};    ///< `%QW4` behind AT; else `end_of_file`
+    Token at = {};    ///< `%QW4`, or another variable, behind AT; else `end_of_file`
     Token edge = {};  ///< R_EDGE or F_EDGE behind the type; else `end_of_file`
     std::string_view unit = {};
     Place unit_place = {};

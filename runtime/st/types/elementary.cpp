@@ -195,6 +195,7 @@ bool same_type(const Type& a, const Type& b) {
         case Kind::reference:
             return refer_to_the_same(&a, &b);
         case Kind::structure:
+        case Kind::union_:
             return a.is_unnamed && b.is_unnamed &&
                    std::ranges::equal(a.members, b.members,
                                       [](const Variable* x, const Variable* y) {

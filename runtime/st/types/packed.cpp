@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 namespace lineshaft::st {
 
@@ -94,12 +95,14 @@ std::uint64_t packed_bits(const Type& type, const Dialect& dialect) {
         const std::uint64_t bits = stride * static_cast<std::uint64_t>(type.upper - type.lower + 1);
         return dialect.packs_as_s7 ? aligned(bits, 16) : bits;
     }
-    if (type.kind != Kind::structure) return 0;
+    if (type.kind == Kind::text) return 8 * (type.length + (dialect.packs_as_s7 ? 2 : 1));
+    if (type.kind != Kind::structure && type.kind != Kind::union_) return 0;
     std::uint64_t end = 0;
     for (const Variable* member : type.members) {
         const std::uint64_t bits = member->type ? packed_bits(*member->type, dialect) : 0;
         if (bits == 0) return 0;
-        end = begin_of(*member->type, end, dialect) + bits;
+        const bool is_union = type.kind == Kind::union_;
+        end = is_union ? std::max(end, bits) : begin_of(*member->type, end, dialect) + bits;
     }
     return aligned(end, dialect.packs_as_s7 ? 16 : 8);
 }
@@ -111,6 +114,7 @@ std::uint64_t packed_stride(const Type& array, const Dialect& dialect) {
 
 std::uint64_t packed_offset(const Type& structure, const Variable& wanted, const Dialect& dialect) {
     std::uint64_t end = 0;
+    if (structure.kind == Kind::union_) return 0;
     for (const Variable* member : structure.members) {
         const std::uint64_t begin = begin_of(*member->type, end, dialect);
         if (member == &wanted) return begin;
@@ -160,6 +164,38 @@ void store_packed(std::byte* bytes, std::uint64_t bit, PackedFormat format, std:
         value = static_cast<std::uint64_t>(quotient_down(number, scales[in_days]) - day_of_1990);
     for (std::size_t i = 0; i < format.bytes; ++i, value >>= 8)
         bytes[format.is_big ? format.bytes - 1 - i : i] = static_cast<std::byte>(value);
+}
+
+PackedText packed_text(const Type& text, const Dialect& dialect) {
+    return {static_cast<std::uint16_t>(text.length), dialect.packs_as_s7};
+}
+
+void load_packed_text(std::byte* slots, const std::byte* bytes, std::uint64_t bit,
+                      PackedText form) {
+    const std::byte* first = bytes + bit / 8;
+    std::uint64_t length = 0;
+    if (form.is_s7)
+        length = std::min<std::uint64_t>(std::to_integer<std::uint64_t>(first[1]), form.length);
+    else
+        length =
+            static_cast<std::uint64_t>(std::find(first, first + form.length, std::byte{0}) - first);
+    std::memcpy(slots, &length, sizeof length);
+    std::memcpy(slots + sizeof length, first + (form.is_s7 ? 2 : 0), length);
+}
+
+void store_packed_text(std::byte* bytes, std::uint64_t bit, PackedText form,
+                       const std::byte* slots) {
+    std::uint64_t length = 0;
+    std::memcpy(&length, slots, sizeof length);
+    length = std::min<std::uint64_t>(length, form.length);
+    std::byte* first = bytes + bit / 8;
+    if (form.is_s7) {
+        first[0] = static_cast<std::byte>(std::min<std::uint64_t>(form.length, 254));
+        first[1] = static_cast<std::byte>(std::min<std::uint64_t>(length, 254));
+    } else {
+        first[length] = std::byte{0};
+    }
+    std::memcpy(first + (form.is_s7 ? 2 : 0), slots + sizeof length, length);
 }
 
 }  // namespace lineshaft::st

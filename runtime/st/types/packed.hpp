@@ -40,8 +40,8 @@ struct PackedFormat {
 /// for what has no packed form: a reference, an enumeration whose numbers are not 0, 1, 2, ...
 std::optional<PackedFormat> packed_format(const Type& type, const Dialect& dialect);
 
-/// Bits that a value takes; 0 for a type without a packed form: a text, an instance, and what has
-/// such parts.
+/// Bits that a value takes; 0 for a type without a packed form: an instance, a reference, and what
+/// has such parts.
 std::uint64_t packed_bits(const Type& type, const Dialect& dialect);
 
 /// From the beginning of one element to that of the next.
@@ -53,5 +53,24 @@ std::uint64_t packed_offset(const Type& structure, const Variable& member, const
 /// What a slot has, from `bit` of `bytes` on, and back. A number loses the bits that have no room.
 std::uint64_t load_packed(const std::byte* bytes, std::uint64_t bit, PackedFormat format);
 void store_packed(std::byte* bytes, std::uint64_t bit, PackedFormat format, std::uint64_t value);
+
+/// A text: its characters and a 0, as in C, or as on an S7 its longest and its own length, a byte
+/// each, and its characters. An instruction has it as a number.
+struct PackedText {
+    std::uint16_t length = 0;  ///< the longest
+    bool is_s7 = false;
+
+    constexpr std::uint32_t number() const { return length | std::uint32_t{is_s7} << 31; }
+    static constexpr PackedText of_number(std::uint32_t number) {
+        return {static_cast<std::uint16_t>(number), number >> 31 != 0};
+    }
+};
+
+PackedText packed_text(const Type& text, const Dialect& dialect);
+
+/// To and from its slots: the length, then the characters. What is too long is cut.
+void load_packed_text(std::byte* slots, const std::byte* bytes, std::uint64_t bit, PackedText form);
+void store_packed_text(std::byte* bytes, std::uint64_t bit, PackedText form,
+                       const std::byte* slots);
 
 }  // namespace lineshaft::st

@@ -32,6 +32,10 @@ std::uint64_t bytes_of(const Type& type) {
         case Kind::structure:
             for (const Variable* member : type.members) bytes += bytes_of(*member->type);
             return bytes;
+        case Kind::union_:
+            for (const Variable* member : type.members)
+                bytes = std::max(bytes, bytes_of(*member->type));
+            return bytes;
         case Kind::block:
             for (const Variable& variable : type.routine->variables)
                 if (variable.type && variable.space == Space::frame)
@@ -49,7 +53,11 @@ std::uint64_t bytes_of(const Type& type) {
 
 bool is_packed(const Expression& place) {
     if (place.variable && place.variable->space == Space::image) return true;
-    return place.operands[0] && is_packed(*place.operands[0]);
+    const Expression* of = place.operands[0];
+    if (!of) return false;
+    const bool of_union =
+        place.kind == Expression::Kind::member && of->type && of->type->kind == Kind::union_;
+    return of_union || is_packed(*of);
 }
 
 bool has_call(const Expression& e) {

@@ -43,6 +43,7 @@ struct Type {
         enumeration,
         array,
         structure,
+        union_,       ///< its members share bytes, which are packed: types/packed.hpp
         reference,    ///< REFERENCE TO, REF_TO, POINTER TO: `Piece` in code/code.hpp
         block,        ///< an instance of a FUNCTION_BLOCK or PROGRAM of the sources
         standard,     ///< an instance of a kind of the catalogue
@@ -67,7 +68,7 @@ struct Type {
     bool has_inner = false;                  ///< of an array: its element is its next dimension
     std::uint32_t length = 0;                ///< of a text, in characters
     bool is_open = false;                    ///< VAR_IN_OUT STRING: of what length is given
-    std::vector<Variable*> members = {};     ///< of a structure
+    std::vector<Variable*> members = {};     ///< of a structure, a union
     std::vector<std::string> values = {};    ///< of an enumeration
     std::vector<std::int64_t> numbers = {};  ///< of its values
     bool counted = true;                     ///< those are 0, 1, 2, ...
@@ -117,7 +118,7 @@ const Expression& root_of(const Expression& place);
 /// is, and what a POINTER is reckoned in.
 std::uint64_t bytes_of(const Type& type);
 
-/// It is a part of the process image.
+/// It is a part of the process image, or of a UNION.
 bool is_packed(const Expression& place);
 
 /// A function or a method is called in it, which may write variables.

@@ -34,7 +34,8 @@ const std::map<std::uint64_t, Width> widths{{R_X86_64_32, Width::absolute_32},
                                             {R_X86_64_PC32, Width::relative_32},
                                             {R_X86_64_PLT32, Width::relative_32}};
 
-constexpr unsigned char jump_byte = 0xE9, call_byte = 0xE8, return_byte = 0xC3;
+constexpr unsigned char jump_byte = 0xE9, call_byte = 0xE8, return_byte = 0xC3,
+                        short_jump_byte = 0xEB;
 constexpr std::uint32_t jump_size = 5;
 
 bool is_way(Hole hole) {
@@ -156,10 +157,16 @@ class Table {
         std::puts("0");
     }
 
+    /// A short jump may be that far.
+    static bool ends_with_return(const Bytes& code) {
+        return code.back() == return_byte &&
+               (code.size() < 2 || code[code.size() - 2] != short_jump_byte);
+    }
+
     void add_code() {
         Bytes hot = object_.content(hot_);
         std::vector<Filling> found = fillings(hot_, hot);
-        if (hot.empty() || hot.back() == return_byte) throw std::runtime_error("returns");
+        if (hot.empty() || ends_with_return(hot)) throw std::runtime_error("returns");
         const auto last = static_cast<std::uint32_t>(hot.size()) - jump_size;
         if (hot.size() >= jump_size && hot[last] == jump_byte)
             if (std::erase_if(found, [&](const Filling& f) {
