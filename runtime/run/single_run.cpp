@@ -36,6 +36,20 @@ bool RunReport::expectations_hold() const {
 
 namespace {
 
+/// Tells two, one after the other.
+class BothSinks final : public EventSink {
+  public:
+    BothSinks(EventSink* first, EventSink* second) : first_(first), second_(second) {}
+
+    void happened(const RunEvent& event) override {
+        if (first_) first_->happened(event);
+        if (second_) second_->happened(event);
+    }
+
+  private:
+    EventSink *first_, *second_;
+};
+
 /// The errors of blocks that a run goes on after: the first of each block, and how many they were.
 class BlockErrors final : public EventSink {
   public:
@@ -138,6 +152,7 @@ class SingleRun {
     OutputSet outputs_{options_.flush};
     std::deque<Tracing> traces_;
     std::optional<EventWriter> events_;
+    std::optional<BothSinks> both_;
     std::optional<BlockErrors> errors_;  ///< where the run goes on after them
     std::optional<PulseWriter> pulses_;
     std::optional<Executive> executive_;
@@ -189,9 +204,10 @@ void SingleRun::warn_of_cut_texts() {
 bool SingleRun::begin() {
     if (!restart() || !open_files()) return false;
     executive_.emplace(machine_);
-    if (events_) executive_->report_to(*events_);
-    if (machine_.continue_on_error)
-        executive_->report_to(errors_.emplace(events_ ? &*events_ : nullptr));
+    EventSink* told = events_ ? &*events_ : nullptr;
+    if (options_.events) told = &both_.emplace(told, options_.events);
+    if (told) executive_->report_to(*told);
+    if (machine_.continue_on_error) executive_->report_to(errors_.emplace(told));
     if (begun_ && !resume()) return false;
     tell_restart();
     if (options_.checkpoint_every > 0)

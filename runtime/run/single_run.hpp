@@ -36,6 +36,7 @@ struct RunOptions {
     const std::atomic<bool>* interrupt = nullptr;
     std::function<void(std::int64_t time)> progress;  ///< called now and then [ns]
     Observer* observer = nullptr;                     ///< sees the run, besides the trace
+    EventSink* events = nullptr;                      ///< is told what the events' file is told
     /// Steps it, and may ask for a checkpoint between two steps; else it runs to its end at once.
     /// False: it could not begin, so that files of runs before stay as they are.
     std::function<bool(Executive&, const std::function<std::string()>& checkpoint)> drive = {};

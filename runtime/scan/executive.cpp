@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -148,11 +149,12 @@ bool Executive::run_until(std::int64_t time) {
             save_(now_);
             next_save_ = later((next - 1) / save_every_ * save_every_, save_every_);
         }
-        if (--until_look_ == 0) look();
+        if (--until_look_ == 0 && !look()) break;
     }
     result_.time = now_;
-    if (!ended_) known_until_ = std::max(known_until_, last + 1);
-    return !ended_ && last < machine_.duration;
+    const bool is_held = !ended_ && next <= last;
+    if (!ended_ && !is_held) known_until_ = std::max(known_until_, last + 1);
+    return is_held || (!ended_ && last < machine_.duration);
 }
 
 /// Nothing changes up to `last`.
@@ -161,8 +163,23 @@ void Executive::settle(std::int64_t last) {
     known_until_ = last + 1;
 }
 
+void Executive::hold() {
+    held_ = true;
+    until_look_ = 1;
+}
+
+void Executive::interrupt() {
+    stop(Outcome::interrupted, "interrupted at " + format_time(now_));
+    ended_ = true;
+}
+
 /// A quarter of a millisecond of wall time after the last look, as far as that can be foreseen.
-void Executive::look() {
+/// False: this step is over.
+bool Executive::look() {
+    if (std::exchange(held_, false)) {
+        until_look_ = 1;
+        return false;
+    }
     constexpr std::chrono::duration<double> wanted = std::chrono::microseconds(250);
     const auto now = Clock::now();
     const double factor = wanted / std::max<std::chrono::duration<double>>(
@@ -171,10 +188,10 @@ void Executive::look() {
     stride_ = std::clamp(stride_ * factor, 1.0, std::min(2 * stride_, 1e6));
     until_look_ = static_cast<std::uint32_t>(stride_);
     if (progress_) progress_(now_);
-    if (!interrupt_ || !*interrupt_) return;
+    if (!interrupt_ || !*interrupt_) return true;
     if (save_) save_(now_);
-    stop(Outcome::interrupted, "interrupted at " + format_time(now_));
-    ended_ = true;
+    interrupt();
+    return true;
 }
 
 RunResult Executive::finish() {

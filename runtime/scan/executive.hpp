@@ -99,6 +99,13 @@ class Executive {
     bool run_until(std::int64_t time);
     RunResult finish();
 
+    /// Of an observer, or of a block that is looked at: run_until() is to return when the instant
+    /// under way has passed; asked again, it goes on.
+    void hold();
+
+    /// Between two steps: the run ends here, as it does by the interrupt of look_out().
+    void interrupt();
+
     /// Before begin() or between two steps.
     void add(Observer& observer);
     void remove(Observer& observer);
@@ -132,6 +139,10 @@ class Executive {
     /// fits: nothing in it is believed, every number is looked at that the run rests on.
     void save(StateWriter& out) const;
     void restore(StateReader& in);
+
+    /// restore() of what this very machine has saved: what a scan does not leave to the next one is
+    /// as it was, too, so that the bytes of the memory are.
+    void recall(StateReader& in);
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -171,7 +182,7 @@ class Executive {
     void restore_states(StateReader& in);
     bool is_possible(const State& state, const State& fresh, const Task& task) const;
     void settle(std::int64_t last);
-    [[gnu::cold]] void look();
+    [[gnu::cold]] bool look();
     std::int64_t next_event();
     std::int64_t next_end();
     void look_ahead();
@@ -238,6 +249,7 @@ class Executive {
     std::int64_t known_until_ = 0;  ///< observers know that nothing changes before [ns]
     bool has_run_ = false;          ///< at least one instant
     bool ended_ = false;
+    bool held_ = false;
     const std::atomic<bool>* interrupt_ = nullptr;
     std::function<void(std::int64_t)> progress_;
     Clock::time_point looked_;      ///< at the interrupt, in wall time

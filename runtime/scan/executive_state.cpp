@@ -148,6 +148,12 @@ void Executive::restore(StateReader& in) {
     for (Replay& replay : machine_.replays) replay.skip_to(now_);
 }
 
+void Executive::recall(StateReader& in) {
+    StateReader memory = in;
+    restore(in);
+    memory.get(machine_.memory);
+}
+
 void Executive::restore_memory(StateReader& in, KeptMemory& memory, const std::byte* kept) {
     const std::byte* const first = machine_.memory.data();
     for (const Signal& signal : machine_.signals) {

@@ -92,6 +92,7 @@ using AddCommand = void (*)(CLI::App& app, Exit& result);
 void add_new(CLI::App& app, Exit& result);
 void add_run(CLI::App& app, Exit& result);
 void add_serve(CLI::App& app, Exit& result);
+void add_debug(CLI::App& app, Exit& result);
 void add_check(CLI::App& app, Exit& result);
 void add_test(CLI::App& app, Exit& result);
 void add_study(CLI::App& app, Exit& result);

@@ -63,6 +63,13 @@ struct CoverPoint {
     std::string name = {};     ///< of a function
 };
 
+/// Where a statement of a user's source begins.
+struct StatementStart {
+    std::uint32_t instruction = 0;
+    bool is_inner = false;  ///< with the second half of what was fused to that instruction
+    Place place = {};
+};
+
 /// An instance begins with these slots. Then come the numbers of the data blocks among the
 /// program's instances, where there are references the Piece that one of them left (plus 1, or 0),
 /// its kind where calls find routines by it, two slots for each call that runs (where it goes on,
@@ -80,11 +87,13 @@ enum HeaderSlot : std::uint32_t {
 };
 
 struct Native;
+class Probe;
 
 /// What all the sources together are compiled to.
 struct Code {
     std::vector<Instruction> instructions;
-    std::vector<Place> places;  ///< of each instruction
+    std::vector<Place> places;               ///< of each instruction
+    std::vector<StatementStart> statements;  ///< by their instructions
     std::vector<CodeRoutine> routines;
     std::vector<IndexTable> tables;
     std::vector<std::int64_t> numbers;       ///< of enumerations; addresses of jumps
@@ -101,6 +110,7 @@ struct Code {
     std::vector<CoverPoint> points;    ///< only with coverage
     std::unique_ptr<std::atomic<std::uint64_t>[]> hits;  ///< of each of them
     std::shared_ptr<const Native> native;                ///< null: the machine interprets it
+    mutable Probe* probe = nullptr;                      ///< a debugger's that looks at scans
 
     std::uint32_t left_slot() const { return globals_slot + globals; }
     std::uint32_t kind_slot() const { return left_slot() + (has_references ? 1 : 0); }

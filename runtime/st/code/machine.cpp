@@ -11,7 +11,78 @@ namespace {
 
 using namespace meaning;
 
-template <bool counts>
+/// `IF a < b THEN x := y; END_IF` as one instruction: whether the condition holds.
+bool is_met(const Instruction& in, const std::byte* base) {
+    const std::uint64_t a = word(base, in.a), b = word(base, in.b);
+    const auto signed_a = static_cast<std::int64_t>(a), signed_b = static_cast<std::int64_t>(b);
+    const auto real_a = std::bit_cast<double>(a), real_b = std::bit_cast<double>(b);
+    switch (in.op) {
+        case Op::move_if_lt_signed:
+            return signed_a < signed_b;
+        case Op::move_if_le_signed:
+            return signed_a <= signed_b;
+        case Op::move_if_lt_unsigned:
+            return a < b;
+        case Op::move_if_le_unsigned:
+            return a <= b;
+        case Op::move_if_lt_float:
+            return real_a < real_b;
+        case Op::move_if_le_float:
+            return real_a <= real_b;
+        case Op::move_if_eq_word:
+            return a == b;
+        case Op::move_if_ne_word:
+            return a != b;
+        case Op::move_if_eq_float:
+            return real_a == real_b;
+        default:
+            return real_a != real_b;
+    }
+}
+
+/// Executes an instruction of two statements, and looks between them. Gives the next one.
+const Instruction* step_twice(const Instruction* pc, std::byte* base, const auto& look) {
+    const Instruction& in = *pc;
+    if (in.op == Op::move_twice) {
+        set_word(base, in.a, word(base, in.b));
+        look();
+        set_word(base, in.c, word(base, in.d));
+    } else if (in.op == Op::move_and_jump) {
+        set_word(base, in.a, word(base, in.b));
+        look();
+        return reinterpret_cast<const Instruction*>(static_cast<std::uintptr_t>(in.c));
+    } else if (is_met(in, base)) {
+        look();
+        set_word(base, in.c, word(base, in.d));
+    }
+    return pc + 1;
+}
+
+/// Lets the probe look before the statements that begin with an instruction. Gives the instruction
+/// that is to be executed: a later one, where two statements are one instruction.
+const Instruction* look(const Frames& frames, const Instruction* pc, std::byte* base) {
+    const Code& code = frames.code;
+    Probe& probe = *code.probe;
+    for (;;) {
+        const auto at = static_cast<std::size_t>(pc - code.instructions.data());
+        std::size_t next = probe.marks()[at];
+        if (next == 0) return pc;
+        const auto tell = [&] {
+            probe.at({code, next - 1, frames.root, frames.context, frames.now,
+                      static_cast<std::uint32_t>((frames.top - frames.bottom) / 16), frames.base});
+        };
+        if (!code.statements[next - 1].is_inner) {
+            tell();
+            ++next;
+        }
+        const bool is_split =
+            next <= code.statements.size() && code.statements[next - 1].instruction == at;
+        if (!is_split) return pc;
+        pc = step_twice(pc, base, tell);
+    }
+}
+
+template <bool counts, bool steps>
 Fault run(Frames& frames, const CodeRoutine& routine) {
     const Code& code = frames.code;
     const Instruction* const first = code.instructions.data();
@@ -69,7 +140,9 @@ Fault run(Frames& frames, const CodeRoutine& routine) {
 #define OP(name, class, operands, ...) &&at_##name,
     static const void* const places[] = {LINESHAFT_ST_OPCODES(OP)};
 #undef OP
-#define NEXT goto* places[static_cast<std::size_t>(pc->op)]
+#define NEXT                                          \
+    if constexpr (steps) pc = look(frames, pc, base); \
+    goto* places[static_cast<std::size_t>(pc->op)]
     NEXT;
 #define OP(name, class, operands, ...)                                                    \
     at_##name : {                                                                         \
@@ -90,15 +163,23 @@ ended:
 
 }  // namespace
 
+Probe::Probe(const Code& code) : marks_(code.instructions.size()) {
+    for (std::size_t i = code.statements.size(); i > 0; --i)
+        marks_[code.statements[i - 1].instruction] = static_cast<std::uint32_t>(i);
+}
+
 Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, Scan& now,
               const Context& context, std::int64_t fuel, const std::int64_t* times) {
     Frames frames{code, now, context, fuel, instance, routine.levels};
-    if (!times && code.native)
+    const bool steps = code.probe && code.probe->steps(routine, now);
+    if (!times && code.native && !steps)
         return code.native->entry(routine.entry)(instance, frames, frames.fuel);
-    if (!times) return run<false>(frames, routine);
+    if (!times && !steps) return run<false, false>(frames, routine);
     std::uint64_t counted[op_classes + 1] = {};
     frames.counted = counted;
-    const Fault fault = run<true>(frames, routine);
+    const Fault fault =
+        steps ? run<true, true>(frames, routine) : run<true, false>(frames, routine);
+    if (!times) return fault;
     std::memcpy(instance + 8 * counts_slot, counted, 8 * op_classes);
     const Wide taken = std::inner_product(times, times + op_classes, counted, Wide{0});
     set_word(instance, time_slot, static_cast<std::uint64_t>(std::min<Wide>(taken, never)));

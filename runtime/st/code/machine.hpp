@@ -25,11 +25,44 @@ inline constexpr std::string_view fault_names[] = {
     "none",   "array_bounds", "division_by_zero",    "out_of_range",  "no_reference",
     "no_end", "runs_already", "outside_of_variable", "call_has_ended"};
 
+/// A scan between two statements. What ran before stands in the instance as in a machine that is
+/// not looked at; `base` is the address of the frame that runs.
+struct Halt {
+    const Code& code;
+    std::size_t statement = 0;  ///< the one that comes next, in Code::statements
+    std::byte* root = nullptr;  ///< the instance that is scanned
+    const Context& context;
+    const Scan& now;
+    std::uint32_t depth = 0;  ///< of calls
+    std::uint64_t base = 0;
+};
+
+/// Looks at scans of a code from inside. It changes nothing there: a scan that is looked at leaves
+/// the same bytes as one that is not.
+class Probe {
+  public:
+    explicit Probe(const Code& code);
+    virtual ~Probe() = default;
+
+    /// Before a scan: whether it is to be stepped; else it runs as without a probe.
+    virtual bool steps(const CodeRoutine& routine, const Scan& now) = 0;
+
+    /// Before each statement of one that is stepped.
+    virtual void at(const Halt& halt) = 0;
+
+    /// Of each instruction the first of the statements that begin there, plus 1; or 0.
+    const std::vector<std::uint32_t>& marks() const { return marks_; }
+
+  private:
+    std::vector<std::uint32_t> marks_;
+};
+
 /// Executes the routine on an instance. Its header then says how that ended: the fault, and the
 /// instruction; the return addresses of the calls that ran are left for messages. Allocates
 /// nothing, throws nothing, and ends after at most `fuel` passes of loops and calls. With `times`
 /// of an instruction of each class [ns] the header has how many were executed and what they took.
-/// ADVANCE_TIME of a test changes `now`.
+/// ADVANCE_TIME of a test changes `now`. Where Code::probe wants to step the scan, it is
+/// interpreted.
 Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, Scan& now,
               const Context& context, std::int64_t fuel, const std::int64_t* times);
 

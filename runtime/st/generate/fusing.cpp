@@ -58,6 +58,7 @@ void Writing::note_use(const Instruction& in) {
 void Writing::fuse() {
     Instruction &first = code.instructions[next() - 2], &second = code.instructions.back();
     const auto replace = [&](Instruction by) {
+        join_statement();
         first = by;
         code.instructions.pop_back();
         code.places.pop_back();
@@ -95,6 +96,7 @@ void Writing::fuse_guarded_move(Jumps& skip) {
     if (move.op != Op::move || !info(op).name.starts_with("move_if")) return;
     test = {op, test.a, test.b, move.b, move.a};
     skip.pop_back();
+    join_statement();
     code.instructions.pop_back();
     code.places.pop_back();
 }

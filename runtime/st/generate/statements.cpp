@@ -51,7 +51,7 @@ void write_if(Writing& w, const Statement& s) {
     for (const Branch& branch : s.branches) {
         const std::uint32_t kept = w.temporaries;
         w.place = branch.condition->place;
-        if (&branch != &s.branches.front()) w.cover(CoverPoint::Kind::statement, w.place);
+        if (&branch != &s.branches.front()) w.begin_statement(w.place);
         jump_unless(w, *branch.condition, skip);
         w.temporaries = kept;
         w.cover_branch(s, static_cast<std::size_t>(&branch - s.branches.data()));
@@ -272,7 +272,7 @@ void write_statement(Writing& w, const Statement& s) {
 void write_block(Writing& w, const Block& block) {
     for (const Statement* statement : block) {
         const std::uint32_t kept = w.temporaries;
-        w.cover(CoverPoint::Kind::statement, statement->place);
+        w.begin_statement(statement->place);
         write_statement(w, *statement);
         w.temporaries = kept;
     }

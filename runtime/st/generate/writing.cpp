@@ -86,6 +86,23 @@ std::uint32_t Writing::standard_number(const BlockType& kind) {
     return it->second;
 }
 
+void Writing::begin_statement(Place at) {
+    if (at.source && !at.source->is_prelude()) {
+        // A statement without an instruction of its own is none that can be stopped at.
+        if (!code.statements.empty() && code.statements.back().instruction == next())
+            code.statements.back().place = at;
+        else
+            code.statements.push_back({next(), false, at});
+    }
+    cover(CoverPoint::Kind::statement, at);
+}
+
+void Writing::join_statement() {
+    if (code.statements.empty() || code.statements.back().instruction != next() - 1) return;
+    code.statements.back().instruction = next() - 2;
+    code.statements.back().is_inner = true;
+}
+
 void Writing::cover(CoverPoint::Kind kind, Place at, std::size_t branch) {
     if (!options.covered || at.source->kind != SourceKind::program) return;
     const bool is_function = kind == CoverPoint::Kind::function;

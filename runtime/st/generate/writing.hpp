@@ -46,6 +46,11 @@ struct Writing {
 
     void leave();
 
+    /// A statement, or the condition of an ELSIF, begins with the next instruction.
+    void begin_statement(Place at);
+    /// The last instruction becomes a part of the one before.
+    void join_statement();
+
     void cover(CoverPoint::Kind kind, Place at, std::size_t branch = 0);
     void cover_branch(const Statement& s, std::size_t branch) {
         cover(CoverPoint::Kind::branch, s.place, branch);

@@ -323,6 +323,11 @@ BlockType block_type(const KindContext& kind, const std::shared_ptr<const Librar
     return type;
 }
 
+const Library::Made* made_of(const BlockType& kind) {
+    if (kind.scan_blocks != scan_blocks) return nullptr;
+    return static_cast<const Library::Made*>(kind.owner.get());
+}
+
 std::string_view find_text(const BlockType& kind, std::string_view name) {
     if (kind.scan_blocks != scan_blocks) return {};
     const auto& texts = static_cast<const KindContext*>(kind.context)->texts;

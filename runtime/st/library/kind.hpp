@@ -58,6 +58,9 @@ std::size_t element_slots(const Type& array);
 /// Notes which instances of the catalogue the kind's have in them.
 void find_moments(KindContext& kind);
 
+/// What the kind is compiled from; null of one that is not Structured Text, and of the image.
+const Library::Made* made_of(const BlockType& kind);
+
 BlockType block_type(const KindContext& kind, const std::shared_ptr<const Library::Made>& made);
 
 }  // namespace lineshaft::st

@@ -1,0 +1,383 @@
+#include "runtime/debug/adapter.hpp"
+
+#include <filesystem>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "runtime/source/units.hpp"
+
+namespace lineshaft::debug {
+
+namespace {
+
+/// What a request cannot have: the text is for the user.
+struct Refused : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Of tasks, whose frames stand behind those of routines.
+constexpr std::int64_t first_task_frame = 1'000'000;
+
+std::string text_in(const Json& from, const char* key, const std::string& otherwise = {}) {
+    const auto it = from.find(key);
+    return it != from.end() && it->is_string() ? it->get<std::string>() : otherwise;
+}
+
+std::int64_t number_in(const Json& from, const char* key, std::int64_t otherwise = 0) {
+    const auto it = from.find(key);
+    return it != from.end() && it->is_number() ? it->get<std::int64_t>() : otherwise;
+}
+
+bool flag_in(const Json& from, const char* key, bool otherwise = false) {
+    const auto it = from.find(key);
+    return it != from.end() && it->is_boolean() ? it->get<bool>() : otherwise;
+}
+
+Json source_of(const std::string& path) {
+    std::error_code unknown;
+    const auto whole = std::filesystem::absolute(path, unknown);
+    return {{"name", std::filesystem::path(path).filename().string()},
+            {"path", unknown ? path : whole.lexically_normal().string()}};
+}
+
+}  // namespace
+
+Adapter::Adapter(Messages& messages, Launcher launcher)
+    : messages_(messages), launcher_(std::move(launcher)) {}
+
+int Adapter::serve() {
+    while (!is_gone_) {
+        const auto message = messages_.next();
+        if (!message) break;
+        handle(*message);
+        if (is_configured_ && !has_run_) run();
+    }
+    return exit_code_;
+}
+
+void Adapter::run() {
+    has_run_ = true;
+    const RunReport report = session_->run(launched_->how);
+    exit_code_ = launched_->tell(report);
+    for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
+        const Verdict& verdict = report.verdicts[i];
+        tell("console", fmt::format("{}  {}{}\n",
+                                    verdict.ok          ? "ok    "
+                                    : verdict.undecided ? "UNDECIDED"
+                                                        : "FAILED",
+                                    launched_->loaded.linked.expectations[i].text,
+                                    verdict.ok ? "" : ": " + verdict.deviation));
+    }
+    if (!report.refused.empty()) tell("stderr", report.refused.render());
+    if (!report.result.message.empty()) tell("stderr", report.result.message + "\n");
+    send_event("exited", {{"exitCode", exit_code_}});
+    send_event("terminated", Json::object());
+}
+
+const std::map<std::string, Adapter::Handler>& Adapter::handlers() {
+    static const std::map<std::string, Handler> all{
+        {"initialize", &Adapter::initialize},
+        {"launch", &Adapter::launch},
+        {"setBreakpoints", &Adapter::set_breakpoints},
+        {"setExceptionBreakpoints", &Adapter::set_exceptions},
+        {"configurationDone", &Adapter::configuration_done},
+        {"threads", &Adapter::threads},
+        {"stackTrace", &Adapter::stack_trace},
+        {"scopes", &Adapter::scopes},
+        {"variables", &Adapter::variables},
+        {"pause", &Adapter::pause},
+        {"disconnect", &Adapter::disconnect},
+        {"terminate", &Adapter::terminate}};
+    return all;
+}
+
+const std::map<std::string, Way>& Adapter::ways() {
+    static const std::map<std::string, Way> all{{"continue", Way::go},
+                                                {"next", Way::next},
+                                                {"stepIn", Way::into},
+                                                {"stepOut", Way::out},
+                                                {"stepBack", Way::back},
+                                                {"reverseContinue", Way::back_go},
+                                                {"lineshaft/nextScan", Way::next_scan}};
+    return all;
+}
+
+void Adapter::handle(const Json& message) {
+    const std::string command = text_in(message, "command");
+    if (text_in(message, "type") != "request") return;
+    const auto it = message.find("arguments");
+    const Json arguments = it != message.end() && it->is_object() ? *it : Json::object();
+    try {
+        if (const auto way = ways().find(command); way != ways().end())
+            return answer(message, go_on(arguments, way->second));
+        const auto handler = handlers().find(command);
+        if (handler == handlers().end())
+            throw Refused(fmt::format("there is no request '{}' here", command));
+        answer(message, (this->*handler->second)(arguments));
+        if (command == "launch") send_event("initialized", Json::object());
+    } catch (const Refused& why) {
+        refuse(message, why.what());
+    }
+}
+
+void Adapter::answer(const Json& request, const Json& body) {
+    Json response{{"seq", ++sequence_},
+                  {"type", "response"},
+                  {"request_seq", number_in(request, "seq")},
+                  {"success", true},
+                  {"command", text_in(request, "command")}};
+    if (!body.empty()) response["body"] = body;
+    messages_.send(response);
+}
+
+void Adapter::refuse(const Json& request, const std::string& why) {
+    messages_.send({{"seq", ++sequence_},
+                    {"type", "response"},
+                    {"request_seq", number_in(request, "seq")},
+                    {"success", false},
+                    {"command", text_in(request, "command")},
+                    {"message", why},
+                    {"body", {{"error", {{"id", 1}, {"format", why}, {"showUser", true}}}}}});
+}
+
+void Adapter::send_event(const char* name, Json body) {
+    messages_.send(
+        {{"seq", ++sequence_}, {"type", "event"}, {"event", name}, {"body", std::move(body)}});
+}
+
+void Adapter::tell(const char* category, const std::string& text) {
+    send_event("output", {{"category", category}, {"output", text}});
+}
+
+void Adapter::happened(const RunEvent& event) {
+    const auto& tasks = launched_->loaded.linked.machine.tasks;
+    const std::string task =
+        event.task < 0 ? "" : " " + tasks[static_cast<std::size_t>(event.task)].name + ":";
+    tell("console", fmt::format("{} {}:{} {}\n", format_time(event.time), name_of(event.kind), task,
+                                event.text));
+}
+
+void Adapter::stopped(const Stop& stop) {
+    stands_ = true;
+    goes_on_ = false;
+    Json body{{"reason", stop.reason}, {"threadId", stop.task + 1}, {"allThreadsStopped", true}};
+    if (!stop.text.empty()) body["description"] = body["text"] = stop.text;
+    if (!stop.breakpoints.empty()) body["hitBreakpointIds"] = stop.breakpoints;
+    send_event("stopped", std::move(body));
+    while (!goes_on_) {
+        const auto message = messages_.next();
+        if (!message) is_gone_ = goes_on_ = true;
+        if (!message) session_->end();
+        if (message) handle(*message);
+    }
+    stands_ = false;
+    forget();
+}
+
+void Adapter::look() {
+    while (messages_.waits() && !is_gone_) {
+        const auto message = messages_.next();
+        if (!message) is_gone_ = true;
+        if (!message) return session_->end();
+        handle(*message);
+    }
+}
+
+Session& Adapter::session() {
+    if (!session_) throw Refused("nothing is launched");
+    return *session_;
+}
+
+Session& Adapter::standing() {
+    if (!stands_) throw Refused("the machine runs; pause it first");
+    return session();
+}
+
+Json Adapter::initialize(const Json& arguments) {
+    first_line_is_0_ = !flag_in(arguments, "linesStartAt1", true);
+    return {{"supportsConfigurationDoneRequest", true},
+            {"supportsStepBack", true},
+            {"supportsTerminateRequest", true},
+            {"supportTerminateDebuggee", true}};
+}
+
+Json Adapter::launch(const Json& arguments) {
+    if (session_) throw Refused("a program is launched already");
+    std::vector<std::string> args;
+    if (const auto it = arguments.find("args"); it != arguments.end() && it->is_array())
+        for (const Json& arg : *it)
+            if (arg.is_string()) args.push_back(arg.get<std::string>());
+    if (const std::string folder = text_in(arguments, "cwd"); !folder.empty()) {
+        std::error_code error;
+        std::filesystem::current_path(folder, error);
+        if (error) throw Refused(fmt::format("there is no folder '{}'", folder));
+    }
+    std::string error;
+    launched_ = launcher_(text_in(arguments, "program"), args, error);
+    if (!launched_) throw Refused(error);
+    Front& front = *this;
+    session_ = std::make_unique<Session>(launched_->loaded, front);
+    session_->stop_on_entry = flag_in(arguments, "stopOnEntry");
+    session_->stop_at_end = flag_in(arguments, "stopAtEnd");
+    return Json::object();
+}
+
+Json Adapter::set_breakpoints(const Json& arguments) {
+    const int first = first_line_is_0_ ? 1 : 0;
+    std::vector<Wanted> wanted;
+    if (const auto it = arguments.find("breakpoints"); it != arguments.end() && it->is_array())
+        for (const Json& each : *it)
+            wanted.push_back({static_cast<int>(number_in(each, "line")) + first});
+    const std::string path = text_in(arguments.value("source", Json::object()), "path");
+    Json all = Json::array();
+    for (const Breakpoint& breakpoint : session().breakpoints().set(path, wanted)) {
+        Json one{{"id", breakpoint.id},
+                 {"verified", breakpoint.is_verified},
+                 {"line", breakpoint.line - first},
+                 {"source", source_of(path)}};
+        if (!breakpoint.is_verified)
+            one["message"] = "no statement of the program's Structured Text begins here or behind";
+        all.push_back(std::move(one));
+    }
+    return {{"breakpoints", all}};
+}
+
+Json Adapter::set_exceptions(const Json&) {
+    return Json::object();
+}
+
+Json Adapter::configuration_done(const Json&) {
+    session();
+    is_configured_ = true;
+    return Json::object();
+}
+
+Json Adapter::threads(const Json&) {
+    Json threads = Json::array();
+    if (launched_)
+        for (const Task& task : launched_->loaded.linked.machine.tasks)
+            threads.push_back({{"id", threads.size() + 1}, {"name", task.name}});
+    return {{"threads", threads}};
+}
+
+void Adapter::add_task_frame(Json& frames, int task) {
+    const Loaded& loaded = session_->loaded();
+    const auto index = static_cast<std::size_t>(task);
+    if (index >= loaded.linked.machine.tasks.size()) throw Refused("there is no such task");
+    frames.push_back(
+        {{"id", first_task_frame + task},
+         {"name", fmt::format("task {} at {}", loaded.linked.machine.tasks[index].name,
+                              format_time(std::max<std::int64_t>(session_->here().time, 0)))},
+         {"source", source_of(loaded.program.file->path)},
+         {"line", first_line_is_0_ ? 0 : 1},
+         {"column", 1},
+         {"presentationHint", "subtle"}});
+}
+
+Json Adapter::stack_trace(const Json& arguments) {
+    Session& session = standing();
+    const int task = static_cast<int>(number_in(arguments, "threadId", 1)) - 1;
+    const st::Halt* halt = session.halt();
+    Json frames = Json::array();
+    if (halt && halt->context.task == task) {
+        if (frames_.empty())
+            frames_ = frames_of(*halt, *session.made(), session.loaded().linked.machine);
+        for (const Frame& frame : frames_)
+            frames.push_back({{"id", frames.size() + 1},
+                              {"name", frame.name},
+                              {"source", source_of(frame.mark.file->path)},
+                              {"line", frame.mark.line - (first_line_is_0_ ? 1 : 0)},
+                              {"column", frame.mark.column}});
+    }
+    add_task_frame(frames, task);
+    const auto total = frames.size();
+    const auto first = static_cast<std::size_t>(number_in(arguments, "startFrame"));
+    const auto levels = static_cast<std::size_t>(number_in(arguments, "levels"));
+    Json wanted = Json::array();
+    for (std::size_t i = first; i < total && (levels == 0 || i < first + levels); ++i)
+        wanted.push_back(frames[i]);
+    return {{"stackFrames", wanted}, {"totalFrames", total}};
+}
+
+std::int64_t Adapter::keep(const Shown& shown) {
+    if (!shown.inside) return 0;
+    kept_.push_back(shown);
+    return std::ssize(kept_);
+}
+
+void Adapter::forget() {
+    frames_.clear();
+    kept_.clear();
+}
+
+Json Adapter::scopes(const Json& arguments) {
+    Session& session = standing();
+    const Linked& linked = session.loaded().linked;
+    const std::int64_t id = number_in(arguments, "frameId");
+    std::vector<Shown> shown;
+    if (id >= first_task_frame) {
+        const int task = static_cast<int>(id - first_task_frame);
+        shown.push_back({.name = "Blocks", .value = "", .inside = [&linked, task](auto, auto) {
+                             return blocks_of(linked, task);
+                         }});
+        shown.push_back(show_inputs(linked));
+        shown.push_back(show_forces(linked, session.time()));
+    } else if (id > 0 && id <= std::ssize(frames_)) {
+        shown = scopes_of(frames_[static_cast<std::size_t>(id - 1)]);
+    } else {
+        throw Refused("there is no such frame any more");
+    }
+    Json scopes = Json::array();
+    for (const Shown& scope : shown)
+        scopes.push_back(
+            {{"name", scope.name}, {"variablesReference", keep(scope)}, {"expensive", false}});
+    return {{"scopes", scopes}};
+}
+
+Json Adapter::to_json(const Shown& shown) {
+    Json variable{{"name", shown.name}, {"value", shown.value}};
+    if (!shown.type.empty()) variable["type"] = shown.type;
+    if (!shown.signal.empty()) variable["evaluateName"] = shown.signal;
+    variable["variablesReference"] = keep(shown);
+    if (shown.elements > 0) variable["indexedVariables"] = shown.elements;
+    return variable;
+}
+
+Json Adapter::variables(const Json& arguments) {
+    standing();
+    const std::int64_t reference = number_in(arguments, "variablesReference");
+    if (reference <= 0 || reference > std::ssize(kept_))
+        throw Refused("there is no such variable any more");
+    const auto inside = kept_[static_cast<std::size_t>(reference - 1)].inside;
+    Json variables = Json::array();
+    for (const Shown& shown : inside(static_cast<std::size_t>(number_in(arguments, "start")),
+                                     static_cast<std::size_t>(number_in(arguments, "count"))))
+        variables.push_back(to_json(shown));
+    return {{"variables", variables}};
+}
+
+Json Adapter::pause(const Json&) {
+    if (!stands_) session().pause();
+    return Json::object();
+}
+
+Json Adapter::go_on(const Json& arguments, Way way) {
+    const int task = static_cast<int>(number_in(arguments, "threadId", 1)) - 1;
+    standing().command({way, task});
+    goes_on_ = true;
+    return way == Way::go ? Json{{"allThreadsContinued", true}} : Json::object();
+}
+
+Json Adapter::terminate(const Json&) {
+    if (session_) session_->end();
+    goes_on_ = true;
+    return Json::object();
+}
+
+Json Adapter::disconnect(const Json& arguments) {
+    is_gone_ = true;
+    return terminate(arguments);
+}
+
+}  // namespace lineshaft::debug

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/st/library/kind.hpp"
+
+namespace lineshaft::debug {
+
+/// Where somebody wants to stop.
+struct Wanted {
+    int line = 0;
+};
+
+struct Breakpoint {
+    int id = 0;
+    int line = 0;  ///< with code, or as it was wanted
+    bool is_verified = false;
+    std::string path = {};  ///< of the file
+    Wanted wanted = {};
+};
+
+/// Breakpoints at lines of Structured Text.
+class Breakpoints {
+  public:
+    /// Null: there is no Structured Text.
+    explicit Breakpoints(const st::Library::Made* made);
+
+    /// In place of those that the file had. One that is at a line without code is at the next line
+    /// that has some.
+    std::vector<Breakpoint> set(const std::string& path, const std::vector<Wanted>& wanted);
+
+    bool empty() const { return count_ == 0; }
+
+    /// Those before a statement, by its number.
+    const std::vector<const Breakpoint*>& at(std::size_t statement) const { return at_[statement]; }
+
+    /// Whether a scan that begins with the routine may come to one.
+    bool are_reached_by(const st::CodeRoutine& routine) const {
+        return reached_[static_cast<std::size_t>(&routine - routines_)];
+    }
+
+  private:
+    struct Line {
+        std::string path;
+        int line = 0;
+    };
+
+    void arrange();
+    bool place(Breakpoint& breakpoint) const;
+
+    const st::Library::Made* made_;
+    const st::CodeRoutine* routines_ = nullptr;
+    std::vector<Line> lines_;  ///< of each statement
+    std::vector<Breakpoint> breakpoints_;
+    std::vector<std::vector<const Breakpoint*>> at_;
+    std::vector<bool> reached_;  ///< from each routine
+    std::size_t count_ = 0;
+    int last_id_ = 0;
+};
+
+}  // namespace lineshaft::debug

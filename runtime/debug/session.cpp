@@ -1,0 +1,234 @@
+#include "runtime/debug/session.hpp"
+
+#include <algorithm>
+
+namespace lineshaft::debug {
+
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+
+const st::Library::Made* find_made(const Machine& machine) {
+    for (const BlockType* type : machine.types)
+        if (const st::Library::Made* made = type ? st::made_of(*type) : nullptr) return made;
+    return nullptr;
+}
+
+}  // namespace
+
+class Session::Looking final : public st::Probe {
+  public:
+    Looking(const st::Code& code, Session& session) : Probe(code), session_(session) {}
+    bool steps(const st::CodeRoutine& routine, const Scan& now) override {
+        return session_.steps(routine, now);
+    }
+    void at(const st::Halt& halt) override { session_.look(halt); }
+
+  private:
+    Session& session_;
+};
+
+Session::Session(Loaded& loaded, Front& front)
+    : loaded_(loaded),
+      machine_(loaded.linked.machine),
+      front_(front),
+      made_(find_made(machine_)),
+      breakpoints_(made_),
+      has_code_(machine_.tasks.size()) {
+    if (made_) looking_ = std::make_unique<Looking>(made_->generated.code, *this);
+    for (std::size_t i = 0; i < machine_.blocks.size(); ++i)
+        if (st::made_of(*machine_.blocks[i].type) && !machine_.blocks[i].type->single)
+            has_code_[static_cast<std::size_t>(loaded.linked.net.instances[i].task)] = true;
+}
+
+Session::~Session() {
+    if (made_) made_->generated.code.probe = nullptr;
+}
+
+bool Session::has_code(int task) const {
+    return task < 0 ? std::ranges::count(has_code_, true) > 0
+                    : has_code_[static_cast<std::size_t>(task)];
+}
+
+std::int64_t Session::end_of_run() const {
+    return std::min(machine_.end, machine_.duration);
+}
+
+RunReport Session::run(RunOptions how) {
+    const RunOptions again = how;
+    how.events = this;
+    how.drive = [this](Executive& executive, const auto&) {
+        executive_ = &executive;
+        note_beginning();
+        if (stop_on_entry && has_code(-1))
+            plan_ = Plan{{Way::into, -1}, here_};
+        else if (stop_on_entry)
+            between_ = Stop{"entry"};
+        return play(executive);
+    };
+    RunReport report = lineshaft::run(loaded_, how);
+    if (!jump_) return report;
+    while (jump_) wander();
+    return repeat(again);
+}
+
+/// Forwards, until the run or the session ends. False: it is to go on in the past.
+bool Session::play(Executive& executive) {
+    begin(executive);
+    bool goes_on = true;
+    while (!jump_ && !ending_) {
+        if (between_) {
+            here_ = {instant_};
+            stand(*std::exchange(between_, {}), nullptr);
+        } else if (!goes_on || executive.time() >= end_of_run()) {
+            here_ = {instant_};
+            if (stop_at_end) stand({"exit", "the end of the run"}, nullptr);
+            if (!jump_) break;
+        } else {
+            attach();
+            goes_on = run_freely(end_of_run(), false);
+            if (std::exchange(pausing_, false) && !jump_ && !ending_ && !between_)
+                between_ = Stop{"pause"};
+        }
+    }
+    executive.remove(*this);
+    if (made_) made_->generated.code.probe = nullptr;
+    if (ending_ && goes_on && executive.time() < end_of_run()) executive.interrupt();
+    end_ = executive.time();
+    has_ended_ = !jump_ && !ending_;
+    executive_ = nullptr;
+    return !jump_;
+}
+
+void Session::begin(Executive& executive) {
+    executive_ = &executive;
+    quiet_ = false;
+    executive.add(*this);
+}
+
+/// A piece of the way, as long as a look at the front may wait. False at the end of the run.
+bool Session::run_freely(std::int64_t limit, bool is_quiet) {
+    constexpr auto wanted = std::chrono::milliseconds(2);
+    const auto begun = Clock::now();
+    const bool goes_on = executive_->run_until(std::min(limit, later(executive_->time(), chunk_)));
+    const auto took = Clock::now() - begun;
+    chunk_ = std::clamp<std::int64_t>(took > wanted ? chunk_ / 2 : chunk_ * 2, 1000, never / 4);
+    if (!jump_ && !ending_) keep();
+    if (!is_quiet) front_.look();
+    return goes_on;
+}
+
+/// Who runs without a stop in it runs as without a debugger.
+void Session::attach() {
+    if (!made_) return;
+    const bool is_wanted = plan_ || goal_ || search_ || !breakpoints_.empty();
+    made_->generated.code.probe = is_wanted ? looking_.get() : nullptr;
+}
+
+bool Session::steps(const st::CodeRoutine& routine, const Scan& now) {
+    if (now.time != instant_) scans_ = 0;
+    instant_ = now.time;
+    ++scans_;
+    statements_ = 0;
+    if (quiet_) return false;
+    if (goal_ || plan_) return true;
+    if (search_ && search_->plan.command.way != Way::back_go) return true;
+    return breakpoints_.are_reached_by(routine);
+}
+
+void Session::look(const st::Halt& halt) {
+    constexpr std::uint32_t often = 1024;
+    const Position now{instant_, scans_, ++statements_};
+    if (quiet_) return;
+    here_ = now;
+    if (search_) {
+        if (now < search_->end && matches(*search_, halt.context.task, halt.depth, halt.statement))
+            search_->found = now;
+        return;
+    }
+    if (goal_ && now != *goal_) return;
+    Stop stop{.reason = goal_ ? "step" : "", .task = halt.context.task};
+    if (!goal_ && plan_ && is_reached(*plan_, stop.task, halt.depth, halt.now.index))
+        stop.reason = plan_->from.time < 0 && stop_on_entry ? "entry" : "step";
+    goal_.reset();
+    if (++polls_ % often == 0) front_.look();
+    if (ending_) return obey(&halt);
+    hits(halt.statement, stop);
+    if (std::exchange(pausing_, false) && stop.reason.empty()) stop.reason = "pause";
+    if (!stop.reason.empty()) stand(stop, &halt);
+}
+
+bool Session::is_reached(const Plan& plan, int task, std::uint32_t depth, std::int64_t scan) const {
+    const auto& [way, wanted] = plan.command;
+    if (wanted >= 0 && task != wanted) return false;
+    const bool is_same_scan = here_.time == plan.from.time && here_.scan == plan.from.scan;
+    switch (way) {
+        case Way::into:
+            return true;
+        case Way::next:
+            return !is_same_scan || depth <= plan.depth;
+        case Way::out:
+            return !is_same_scan || depth < plan.depth;
+        case Way::next_scan:
+            return scan != plan.scan;
+        default:
+            return false;
+    }
+}
+
+/// Tells which breakpoints it is that the statement stops at.
+bool Session::hits(std::size_t statement, Stop& stop) const {
+    for (const Breakpoint* breakpoint : breakpoints_.at(statement))
+        stop.breakpoints.push_back(breakpoint->id);
+    if (stop.breakpoints.empty()) return false;
+    stop.reason = "breakpoint";
+    return true;
+}
+
+/// A task without Structured Text is stepped scan by scan.
+void Session::scanned(int task, const Scan&) {
+    if (!quiet_ && !goal_ && !has_code(task)) plain_scan_ = task;
+}
+
+void Session::settled(std::int64_t time, std::int64_t) {
+    instant_ = time;
+    const int task = std::exchange(plain_scan_, -1);
+    if (task < 0 || between_) return;
+    const Position now{time};
+    if (search_ && now < search_->end && search_->plan.command.way == Way::back &&
+        search_->plan.command.task == task)
+        search_->found = now;
+    if (!plan_ || plan_->command.task != task) return;
+    between_ = Stop{.reason = "step", .task = task};
+    executive_->hold();
+}
+
+void Session::happened(const RunEvent& event) {
+    if (!quiet_ && !search_ && !goal_) front_.happened(event);
+}
+
+void Session::stand(Stop stop, const st::Halt* halt) {
+    plan_.reset();
+    halt_ = halt;
+    command_ = {};
+    front_.stopped(stop);
+    halt_ = nullptr;
+    obey(halt);
+}
+
+/// Within a scan all that comes in the instant still runs, and is not told, when it is left.
+void Session::obey(const st::Halt* halt) {
+    const Plan plan{command_, here_, halt ? halt->depth : 0, halt ? halt->now.index : -1};
+    if (ending_ || command_.way == Way::end || command_.way == Way::none) {
+        ending_ = quiet_ = true;
+    } else if (command_.way == Way::back || command_.way == Way::back_go) {
+        jump_ = plan;
+        quiet_ = true;
+    } else if (command_.way != Way::go) {
+        plan_ = plan;
+    }
+    plain_scan_ = -1;
+    executive_->hold();
+}
+
+}  // namespace lineshaft::debug

@@ -1,0 +1,297 @@
+#include "runtime/debug/values.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "runtime/st/types/value_text.hpp"
+
+namespace lineshaft::debug {
+
+namespace {
+
+using st::Section;
+using Kind = st::Type::Kind;
+using List = std::vector<Shown>;
+
+std::string with_unit(std::string value, const std::string& unit) {
+    return unit.empty() ? value : value + " " + unit;
+}
+
+std::vector<const st::Variable*> variables_of(const st::Routine& routine) {
+    std::vector<const st::Variable*> all;
+    if (routine.owner || routine.is_function())
+        for (const st::Variable& variable : routine.variables) all.push_back(&variable);
+    else
+        for (const st::Variable* variable : st::all_variables(routine)) all.push_back(variable);
+    return all;
+}
+
+Shown show_variable(const st::Variable& variable, std::byte* base, const Frame& frame) {
+    const std::string name(variable.text);
+    if (variable.space == st::Space::constant && variable.type && variable.type->is_scalar()) {
+        const std::uint64_t bits = variable.type->is_real()
+                                       ? std::bit_cast<std::uint64_t>(variable.value.real)
+                                       : static_cast<std::uint64_t>(variable.value.integer);
+        return {.name = name,
+                .value = with_unit(st::value_text(*variable.type, bits), variable.unit),
+                .type = variable.type->name};
+    }
+    const Seat seat = seat_of(variable, base, frame);
+    if (!seat.at) return {.name = name, .value = "not in the machine's memory"};
+    return show(name, seat, variable.unit);
+}
+
+/// The groups of a block's or a routine's variables that have any.
+List groups_of(const std::vector<const st::Variable*>& variables, std::byte* base,
+               const Frame& frame) {
+    struct Group {
+        const char* name;
+        std::vector<Section> sections;
+        bool constant = false;
+    };
+    static const Group groups[] = {
+        {"Inputs", {Section::input}},      {"Outputs", {Section::output, Section::result}},
+        {"In and out", {Section::in_out}}, {"Locals", {Section::local, Section::kept}},
+        {"Temporaries", {Section::temp}},  {"Globals", {Section::external, Section::global}}};
+    List shown;
+    for (const Group& group : groups) {
+        List of_group;
+        for (const st::Variable* variable : variables)
+            if (variable->type && !variable->text.empty() &&
+                std::ranges::find(group.sections, variable->section) != group.sections.end())
+                of_group.push_back(show_variable(*variable, base, frame));
+        if (!of_group.empty())
+            shown.push_back({.name = group.name, .value = "", .inside = [of_group](auto, auto) {
+                                 return of_group;
+                             }});
+    }
+    return shown;
+}
+
+List elements_of(const Seat& seat, std::size_t first, std::size_t count) {
+    const st::Type& array = *seat.type;
+    const auto size = static_cast<std::size_t>(array.upper - array.lower + 1);
+    const std::size_t end =
+        first + std::min(count == 0 ? size : count, size - std::min(first, size));
+    List elements;
+    for (std::size_t i = first; i < end; ++i)
+        elements.push_back(
+            show(fmt::format("[{}]", array.lower + static_cast<std::int64_t>(i)),
+                 {array.element, seat.at + 8 * i * st::element_slots(array), seat.frame}));
+    return elements;
+}
+
+/// What a reference is to, if it is the whole of a variable of its type.
+List referred(const Seat& seat) {
+    const auto address = read<std::uint64_t>(seat.at);
+    const auto offset = static_cast<std::int32_t>(read<std::uint64_t>(seat.at + 8) & 0xFFFF'FFFF);
+    if (address == 0 || offset != 0 || !seat.type->element) return {};
+    return {show("^", {seat.type->element,
+                       place_of(address, seat.frame->root, *seat.frame->context), seat.frame})};
+}
+
+std::string field_text(const Field& field, const std::byte* block) {
+    return describe(load(field.type, block + field.offset), field.type, field.names,
+                    field.unit.find('{') == std::string_view::npos ? field.unit : "");
+}
+
+List fields_inside(const BlockType& kind, const std::byte* block) {
+    List fields;
+    for (const Field& field : kind.fields)
+        fields.push_back({.name = std::string(field.name),
+                          .value = field_text(field, block),
+                          .type = std::string(name_of(field.direction))});
+    return fields;
+}
+
+std::string handle_text(const Seat& seat) {
+    const auto number = read<std::int64_t>(seat.at);
+    return number < 0 ? "none" : fmt::format("{} number {}", seat.type->name, number);
+}
+
+void show_parts(Shown& shown, const Seat& seat) {
+    switch (seat.type->kind) {
+        case Kind::array:
+            shown.elements = static_cast<std::size_t>(seat.type->upper - seat.type->lower + 1);
+            shown.inside = [seat](std::size_t first, std::size_t count) {
+                return elements_of(seat, first, count);
+            };
+            break;
+        case Kind::structure:
+            shown.inside = [seat](auto, auto) {
+                List members;
+                for (const st::Variable* member : seat.type->members)
+                    members.push_back(
+                        show(std::string(member->text),
+                             {member->type, seat.at + 8 * std::size_t{member->slot}, seat.frame},
+                             member->unit));
+                return members;
+            };
+            break;
+        case Kind::block:
+            shown.inside = [seat](auto, auto) {
+                return groups_of(variables_of(*seat.type->routine), seat.at, *seat.frame);
+            };
+            break;
+        case Kind::standard:
+            shown.inside = [seat](auto, auto) {
+                return fields_inside(*seat.type->standard, seat.at);
+            };
+            break;
+        case Kind::reference:
+            if (read<std::uint64_t>(seat.at) != 0)
+                shown.inside = [seat](auto, auto) { return referred(seat); };
+            break;
+        default:
+            break;
+    }
+}
+
+std::string text_of(const Seat& seat) {
+    switch (seat.type->kind) {
+        case Kind::array:
+        case Kind::structure:
+        case Kind::block:
+        case Kind::standard:
+            return seat.type->name;
+        case Kind::reference:
+        case Kind::interface:
+            return read<std::uint64_t>(seat.at) == 0 ? "NULL" : seat.type->name;
+        case Kind::handle:
+            return handle_text(seat);
+        case Kind::text: {
+            const auto length = std::min<std::uint64_t>(
+                read<std::uint64_t>(seat.at), seat.type->is_open ? 1 << 16 : seat.type->length);
+            return st::text_literal(
+                {reinterpret_cast<const char*>(seat.at + 8), static_cast<std::size_t>(length)});
+        }
+        default:
+            return st::value_text(*seat.type, read<std::uint64_t>(seat.at));
+    }
+}
+
+}  // namespace
+
+Shown show(std::string name, const Seat& seat, const std::string& unit) {
+    if (!seat.type) return {.name = std::move(name), .value = "of no type"};
+    Shown shown{
+        .name = std::move(name), .value = with_unit(text_of(seat), unit), .type = seat.type->name};
+    show_parts(shown, seat);
+    return shown;
+}
+
+Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame) {
+    const std::size_t offset = 8 * std::size_t{variable.slot};
+    switch (variable.space) {
+        case st::Space::frame:
+            return {variable.type, base + offset, &frame};
+        case st::Space::reference: {
+            const auto address = read<std::uint64_t>(base + offset);
+            if (address == 0) return {};
+            return {variable.type, place_of(address, frame.root, *frame.context), &frame};
+        }
+        case st::Space::global: {
+            const auto number = read<std::uint64_t>(
+                frame.root + 8 * (st::globals_slot + static_cast<std::size_t>(variable.global)));
+            return {variable.type, frame.context->instances[number] + offset, &frame};
+        }
+        default:
+            return {};
+    }
+}
+
+List scopes_of(const Frame& frame) {
+    List scopes = groups_of(variables_of(*frame.routine), frame.base, frame);
+    if (const st::Routine* owner = frame.routine->owner)
+        scopes.push_back(
+            {.name = "THIS", .value = owner->name, .inside = [owner, &frame](auto, auto) {
+                 return groups_of(variables_of(*owner), frame.base, frame);
+             }});
+    return scopes;
+}
+
+namespace {
+
+/// `, from slave.velocity` of an input that a wire feeds.
+std::string origin_of(const Linked& linked, Port port) {
+    for (const Wire& wire : linked.net.wires_to(port.instance))
+        if (wire.to.field == port.field)
+            return fmt::format(", from {}{}", wire.negated ? "NOT " : "",
+                               linked.net.signal(wire.from).name);
+    return "";
+}
+
+Shown show_field(const Linked& linked, Port port, const std::byte* block) {
+    const Field& field = linked.net.field(port);
+    const Signal signal = linked.net.signal(port);
+    std::string type(name_of(field.type));
+    if (field.direction == Direction::input) type += origin_of(linked, port);
+    if (field.direction == Direction::in_out) {
+        const auto other = read<std::int64_t>(block + field.offset);
+        const bool is_there = other >= 0 && other < std::ssize(linked.net.instances);
+        return {.name = std::string(field.name),
+                .value = is_there ? linked.net.instance(static_cast<int>(other)).name : "none",
+                .type = std::string(field.refers)};
+    }
+    return {.name = std::string(field.name),
+            .value = signal.describe(load(field.type, block + field.offset)),
+            .type = std::move(type),
+            .signal = signal.name};
+}
+
+}  // namespace
+
+Shown show_block(const Linked& linked, int number) {
+    const BlockPlace& block = linked.machine.blocks[static_cast<std::size_t>(number)];
+    const auto inside = [&linked, number, &block](auto, auto) {
+        constexpr std::pair<Direction, const char*> groups[] = {
+            {Direction::input, "Inputs"},         {Direction::output, "Outputs"},
+            {Direction::in_out, "References"},    {Direction::local, "Locals"},
+            {Direction::parameter, "Parameters"},
+        };
+        List shown;
+        for (const auto& [direction, name] : groups) {
+            List fields;
+            for (std::size_t i = 0; i < block.type->fields.size(); ++i)
+                if (block.type->fields[i].direction == direction)
+                    fields.push_back(show_field(linked, {number, static_cast<int>(i)}, block.live));
+            if (!fields.empty())
+                shown.push_back(
+                    {.name = name, .value = "", .inside = [fields](auto, auto) { return fields; }});
+        }
+        return shown;
+    };
+    return {.name = block.name, .value = std::string(block.type->name), .inside = inside};
+}
+
+List blocks_of(const Linked& linked, int task) {
+    List blocks;
+    for (std::size_t i = 0; i < linked.machine.blocks.size(); ++i)
+        if (linked.net.instances[i].task == task)
+            blocks.push_back(show_block(linked, static_cast<int>(i)));
+    return blocks;
+}
+
+Shown show_inputs(const Linked& linked) {
+    List inputs;
+    for (const Signal& signal : linked.machine.signals)
+        if (signal.port.instance < 0)
+            inputs.push_back({.name = signal.name,
+                              .value = signal.describe(signal.value()),
+                              .type = std::string(name_of(signal.type)),
+                              .signal = signal.name});
+    return {.name = "Inputs of the program", .value = "", .inside = [inputs](auto, auto) {
+                return inputs;
+            }};
+}
+
+Shown show_forces(const Linked& linked, std::int64_t now) {
+    List forces;
+    for (const Force& force : linked.machine.forces)
+        if (force.from <= now && now < force.until)
+            forces.push_back({.name = force.name, .value = force.value_text});
+    return {.name = "Forced", .value = "", .inside = [forces](auto, auto) { return forces; }};
+}
+
+}  // namespace lineshaft::debug

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "runtime/debug/frames.hpp"
+#include "runtime/run/link.hpp"
+
+namespace lineshaft::debug {
+
+/// A value as it is shown, or a group of them. What is in it is made when somebody asks.
+struct Shown {
+    std::string name, value, type = {};
+    std::string signal = {};   ///< as a program names it, if it can
+    std::size_t elements = 0;  ///< of an array
+    /// So many from the one numbered `first` on, of an array; of all else all.
+    std::function<std::vector<Shown>(std::size_t first, std::size_t count)> inside = {};
+};
+
+/// A value of Structured Text in memory, and how what it refers to is found.
+struct Seat {
+    const st::Type* type = nullptr;
+    std::byte* at = nullptr;
+    const Frame* frame = nullptr;
+};
+
+Shown show(std::string name, const Seat& seat, const std::string& unit = {});
+
+/// Where a variable of a routine's frame is; `at` null: nowhere.
+Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame);
+
+/// What a routine that runs sees: its variables by direction. The frame outlives what is shown.
+std::vector<Shown> scopes_of(const Frame& frame);
+
+/// What a program's file has: a block's fields by direction with where its inputs come from; the
+/// blocks of a task; inputs of the program, and what is forced.
+Shown show_block(const Linked& linked, int instance);
+std::vector<Shown> blocks_of(const Linked& linked, int task);
+Shown show_inputs(const Linked& linked);
+Shown show_forces(const Linked& linked, std::int64_t now);
+
+}  // namespace lineshaft::debug

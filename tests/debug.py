@@ -1,0 +1,201 @@
+#!/usr/bin/python3
+"""`lineshaft debug`: a client of the protocol steps a program forwards and back; what it writes is what `run` writes.
+
+usage: debug.py LINESHAFT SOURCE_DIR
+"""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from dap_client import Client, Refused
+
+lineshaft = str(pathlib.Path(sys.argv[1]).resolve())
+source = pathlib.Path(sys.argv[2]).resolve()
+motor, program = source / "tests/debug/motor.st", source / "tests/debug/motor.yaml"
+folder = pathlib.Path(tempfile.mkdtemp())
+lines = {}
+for number, text in enumerate(motor.read_text().splitlines(), 1):
+    lines.setdefault(text.strip(), number)
+
+
+def line(text):
+    return lines[text]
+
+
+def run(path, *arguments):
+    """The bytes of the trace and its events of a run in a piece."""
+    trace = folder / "run.csv"
+    subprocess.run([lineshaft, "run", path, "--trace", trace, "--quiet", *arguments], check=True, capture_output=True)
+    return trace.read_bytes(), (folder / "run.events.csv").read_bytes()
+
+
+def traced(name):
+    return (folder / f"{name}.csv").read_bytes(), (folder / f"{name}.events.csv").read_bytes()
+
+
+def test_run_without_breakpoints():
+    client = Client(lineshaft)
+    client.launch(program, args=["--trace", str(folder / "free.csv")])
+    assert client.event("exited") == {"exitCode": 0}
+    client.event("terminated")
+    assert client.end() == 0
+    assert traced("free") == run(program)
+
+
+def test_capabilities():
+    client = Client(lineshaft, program)
+    client.launch()
+    for name in ("supportsConfigurationDoneRequest", "supportsStepBack", "supportsTerminateRequest"):
+        assert client.capabilities[name] is True, name
+    client.end()
+
+
+def test_lines():
+    client = Client(lineshaft)
+    blank = line("steps : INT;")
+    placed = client.launch(program, {motor: [line("b := a;"), blank, 10_000], program: [3]}, stopOnEntry=True)
+    first, second, behind = placed[motor]
+    assert first["verified"] and first["line"] == line("b := a;")
+    assert second["verified"] and second["line"] == line("steps := steps + 1;")
+    assert not behind["verified"] and not placed[program][0]["verified"]
+    assert client.event("stopped")["reason"] == "entry"
+    client.end()
+
+
+def test_stops_and_values():
+    client = Client(lineshaft)
+    client.launch(program, {motor: [line("mode := Mode#running;")]})
+    stop = client.event("stopped")
+    assert stop["reason"] == "breakpoint" and stop["threadId"] == 2, stop
+    assert [t["name"] for t in client.request("threads")["threads"]] == ["fast", "main"]
+    assert client.line(2) == ("Motor (motor)", line("mode := Mode#running;"))
+    assert client.stack(2)[-1]["name"] == "task main at 0.03 s"
+    assert [f["name"] for f in client.stack(1)] == ["task fast at 0.03 s"]
+    assert client.value("Inputs", "start", 2) == "TRUE"
+    assert client.value("Outputs", "speed", 2) == "1.5 mm/s"
+    assert client.value("Locals", "mode", 2) == "Mode#idle"
+    table = client.inside(client.scopes(client.stack(2)[0]["id"])["Locals"])["table"]
+    assert table["indexedVariables"] == 300
+    page = client.inside(table["variablesReference"], start=1, count=2)
+    assert {n: v["value"] for n, v in page.items()} == {"[2]": "6", "[3]": "9"}
+    ramp = client.inside(client.scopes(client.stack(2)[0]["id"])["Locals"])["ramp"]
+    outputs = client.inside(ramp["variablesReference"])["Outputs"]
+    assert client.inside(outputs["variablesReference"])["speed"]["value"] == "1.5 mm/s"
+    blocks = client.inside(client.scopes(client.stack(1)[0]["id"])["Blocks"])
+    inputs = client.inside(client.inside(blocks["delay"]["variablesReference"])["Inputs"]["variablesReference"])
+    assert inputs["in"]["type"] == "boolean, from motor.running", inputs
+    client.end()
+
+
+def test_steps():
+    client = Client(lineshaft)
+    client.launch(program, {motor: [line("ramp(goal := 3.0, speed => speed);")]})
+    client.event("stopped")
+    client.breakpoints(motor)
+    client.step("stepIn", 2)
+    assert client.line(2) == ("Ramp", line("steps := steps + 1;"))
+    assert client.stack(2)[1]["name"] == "Motor (motor)"
+    client.step("next", 2)
+    client.step("stepIn", 2)
+    assert client.line(2) == ("Clamp", line("IF x > most THEN"))
+    assert client.value("Inputs", "x", 2) == "0.5"
+    client.step("stepOut", 2)
+    assert client.line(2) == ("Motor (motor)", line("FOR i := 1 TO 3 DO"))
+    client.step("stepBack", 2)
+    assert client.line(2) == ("Motor (motor)", line("ramp(goal := 3.0, speed => speed);"))
+    client.step("next", 2)
+    assert client.value("Outputs", "speed", 2) == "0.5 mm/s"
+    client.step("lineshaft/nextScan", 2)
+    assert client.line(2) == ("Motor (motor)", line("a := count;"))
+    assert client.value("Outputs", "count", 2) == "1"
+    client.step("next", 2)
+    assert client.line(2) == ("Motor (motor)", line("b := a;"))
+    assert (client.value("Locals", "a", 2), client.value("Locals", "b", 2)) == ("1", "0")
+    client.step("stepBack", 2)
+    client.step("stepBack", 2)
+    assert client.line(2) == ("Motor (motor)", line("count := count + 1;"))
+    assert client.value("Outputs", "count", 2) == "0"
+    client.end()
+
+
+def test_guarded_moves():
+    """`IF b < 5 THEN b := a; END_IF` is one instruction; both of its statements are stopped at."""
+    client = Client(lineshaft)
+    client.launch(program, {motor: [line("IF b < 5 THEN")]})
+    client.event("stopped")
+    client.step("next", 2)
+    assert client.line(2)[1] == line("IF b < 5 THEN") + 1
+    client.step("next", 2)
+    assert client.line(2)[1] == line("ramp(goal := 3.0, speed => speed);")
+    client.end()
+
+
+def test_back_and_forth():
+    client = Client(lineshaft)
+    trace = folder / "back.csv"
+    client.launch(program, {motor: [line("count := count + 1;")]}, args=["--trace", str(trace)])
+    client.event("stopped")
+    for _ in range(20):
+        client.step("continue", 2)
+    assert client.value("Outputs", "count", 2) == "20"
+    for count in (19, 18, 17):
+        assert client.step("reverseContinue", 2)["reason"] == "breakpoint"
+        assert client.value("Outputs", "count", 2) == str(count)
+    client.step("continue", 2)
+    assert client.value("Outputs", "count", 2) == "18"
+    client.breakpoints(motor)
+    assert client.step("reverseContinue", 2)["reason"] == "entry"
+    client.request("continue", threadId=2)
+    client.event("exited")
+    assert client.end() == 0
+    assert traced("back") == run(program)
+
+
+def test_plain_tasks():
+    """A task without Structured Text is stepped scan by scan."""
+    client = Client(lineshaft)
+    client.launch(program, stopOnEntry=True)
+    client.event("stopped")
+    for time in ("0.004", "0.008", "0.012"):
+        client.step("next", 1)
+        assert client.stack(1)[0]["name"] == f"task fast at {time} s", client.stack(1)
+    client.step("stepBack", 1)
+    assert client.stack(1)[0]["name"] == "task fast at 0.008 s", client.stack(1)
+    client.end()
+
+
+def test_pause_and_terminate():
+    long = folder / "long.yaml"
+    long.write_text(program.read_text().replace("for: 1 s", "for: 100 h").replace("sources: ", f"sources: {source}/tests/debug/"))
+    client = Client(lineshaft)
+    client.launch(long, args=["--include-dir", str(source)])
+    try:
+        client.request("stackTrace", threadId=1)
+        raise AssertionError("a stack of a machine that runs")
+    except Refused as why:
+        assert "runs" in str(why)
+    assert client.step("pause", 1)["reason"] == "pause"
+    client.request("terminate")
+    client.event("terminated")
+    assert client.end() == 130
+
+
+def test_refusals():
+    client = Client(lineshaft)
+    client.request("initialize")
+    for arguments, wanted in (({}, "no program is named"), ({"program": "none.yaml"}, "none.yaml"),
+                              ({"program": str(program), "args": ["--nothing"]}, "--nothing")):
+        try:
+            client.request("launch", **arguments)
+            raise AssertionError(arguments)
+        except Refused as why:
+            assert wanted in str(why), why
+    client.end()
+
+
+for name, test in list(globals().items()):
+    if name.startswith("test_"):
+        test()
+        print("ok", name[5:])

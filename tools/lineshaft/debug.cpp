@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <arpa/inet.h>
+#include <fmt/core.h>
+#include <netinet/in.h>
+#include <spdlog/spdlog.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "runtime/debug/adapter.hpp"
+#include "runtime/source/codes.hpp"
+#include "tools/lineshaft/run_command.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+constexpr const char* debug_help =
+    "Speaks the Debug Adapter Protocol on its standard streams, or with one client at --port: an\n"
+    "editor starts it. Arguments of 'launch': program, the file (else the one of this command\n"
+    "line); args, options as of this command, ['--set', 'x=1', '--trace', 'FILE.csv']; cwd;\n"
+    "stopOnEntry; stopAtEnd. Breakpoints stand in Structured Text; tasks are threads; stepBack "
+    "and\n"
+    "reverseContinue go back. The run is that of 'lineshaft run', to the same bytes.\n"
+    "runtime/debug/README.md says how an editor connects.";
+
+struct DebugCommand {
+    RunCommand run;
+    int port = -1;
+};
+
+/// One client's socket; -1, and said, if there is none.
+int accept_one(int port) {
+    const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    const int one = 1;
+    ::setsockopt(listener, SOL_SOCKET, SO_REUSEADDR, &one, sizeof one);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    auto* const plain = reinterpret_cast<sockaddr*>(&address);
+    int client = -1;
+    if (::bind(listener, plain, size) == 0 && ::listen(listener, 1) == 0 &&
+        ::getsockname(listener, plain, &size) == 0) {
+        fmt::print(stderr, "waiting for a debugger at 127.0.0.1:{}\n", ntohs(address.sin_port));
+        client = ::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC);
+    }
+    if (client < 0) spdlog::error("cannot wait at port {}: {}", port, std::strerror(errno));
+    ::close(listener);
+    return client;
+}
+
+void add_options(CLI::App& app, RunCommand& command) {
+    command.add_to(app);
+    app.get_option("program")->required(false);
+    app.add_option("--recording", command.recording,
+                   "Do again what was done from outside, as a recording has it")
+        ->type_name("FILE.yaml");
+}
+
+/// What `launch` says, in place of what the command line does.
+void take_arguments(RunCommand& command, const std::string& program, std::vector<std::string> args,
+                    Diagnostics& out) {
+    CLI::App app;
+    add_options(app, command);
+    std::ranges::reverse(args);
+    try {
+        app.parse(args);
+    } catch (const CLI::ParseError& wrong) {
+        out.add(code::unusable_option, {}, fmt::format("in the launch's 'args': {}", wrong.what()));
+    }
+    if (!program.empty()) command.program = program;
+    if (command.program.empty())
+        out.add(code::unusable_option, {}, "no program is named",
+                "say \"program\": \"FILE.yaml\" in the launch's arguments");
+    if (command.common.json || command.resume || command.restart == Restart::hot ||
+        !command.checkpoint_every.empty())
+        out.add(code::unusable_option, {}, "--json and checkpoints are not for a debugger",
+                "leave --json, --resume and --checkpoint-every out");
+}
+
+std::unique_ptr<debug::Launched> launch(RunCommand command, const std::string& program,
+                                        const std::vector<std::string>& args, std::string& error) {
+    Diagnostics out;
+    take_arguments(command, program, args, out);
+    RunOptions how = run_options(command, out);
+    auto loaded = out.empty() ? load(command, {}, out) : std::nullopt;
+    if (!loaded || !out.empty()) {
+        error = out.render();
+        return {};
+    }
+    auto made =
+        std::make_unique<debug::Launched>(debug::Launched{std::move(*loaded), std::move(how), {}});
+    made->tell = [command, &program_run = made->loaded](const RunReport& report) {
+        return static_cast<int>(tell(command, program_run, report));
+    };
+    return made;
+}
+
+Exit execute(const DebugCommand& command) {
+    int in = STDIN_FILENO, out = -1;
+    if (command.port >= 0) {
+        in = out = accept_one(command.port);
+        if (in < 0) return Exit::fault;
+    } else {
+        out = ::dup(STDOUT_FILENO);
+    }
+    // What the run prints is not for the protocol's stream.
+    ::dup2(STDERR_FILENO, STDOUT_FILENO);
+    debug::Messages messages(in, out);
+    debug::Adapter adapter(messages,
+                           [&](const std::string& program, const auto& args, std::string& error) {
+                               return launch(command.run, program, args, error);
+                           });
+    return static_cast<Exit>(adapter.serve());
+}
+
+}  // namespace
+
+void add_debug(CLI::App& app, Exit& result) {
+    auto command = std::make_shared<DebugCommand>();
+    CLI::App* sub = app.add_subcommand("debug", "Run a program under an editor's debugger");
+    sub->footer(debug_help);
+    add_options(*sub, command->run);
+    sub->add_option("--port", command->port,
+                    "Wait for one client at this port of 127.0.0.1 (0: any, which is told), not at "
+                    "the standard streams")
+        ->check(CLI::Range(0, 65535))
+        ->type_name("PORT");
+    sub->callback([command, &result] { result = execute(*command); });
+}
+
+}  // namespace lineshaft
