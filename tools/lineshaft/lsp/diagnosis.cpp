@@ -23,11 +23,11 @@ Json to_json(const Session& session, const Diagnostic& d) {
               {"severity", d.is_warning ? warning_severity : error_severity},
               {"code", d.code},
               {"source", "lineshaft"},
-              {"message", d.message}};
+              {"message", d.whole_message()}};
     if (d.help.empty()) return made;
     made["data"] = d.help;
     if (!session.takes_related_information)
-        made["message"] = d.message + "\n" + d.help;
+        made["message"] = d.whole_message() + "\n" + d.help;
     else if (d.mark.file)
         made["relatedInformation"] = Json::array(
             {{{"location", {{"uri", session.documents.uri(d.mark.file->path)}, {"range", range}}},
