@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 namespace lineshaft {
@@ -40,6 +41,10 @@ class InputFile {
 /// Whether a regular file, by whatever name, is one that an InputFile of this process was opened
 /// for.
 bool was_read(const std::string& path);
+
+/// From now on read_bytes() gives these for a file, whatever its name, be it there or not: the text
+/// that an editor has open. Empty: those of the disk again. Not while another thread reads.
+void lay_over(const std::string& path, std::optional<std::string> bytes);
 
 /// All bytes of a file, at most `most`; `error` is an errno, or 0.
 std::string read_bytes(const std::string& path, std::size_t most, int& error);

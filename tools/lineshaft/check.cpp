@@ -5,10 +5,8 @@
 #include <fmt/core.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/fit/fit.hpp"
-#include "runtime/run/link.hpp"
 #include "runtime/source/encoding.hpp"
-#include "runtime/study/study_reader.hpp"
+#include "tools/lineshaft/check_file.hpp"
 #include "tools/lineshaft/check_project.hpp"
 #include "tools/lineshaft/command.hpp"
 #include "tools/lineshaft/test_files.hpp"
@@ -22,25 +20,6 @@ struct CheckCommand {
     std::vector<std::string> files;
     bool strict = false;
 };
-
-/// `sources` gets the paths of what a program has of Structured Text.
-void check(const std::string& path, const LoadOptions& options, Diagnostics& out,
-           std::set<std::string>* sources = nullptr) {
-    const auto file = read_source(path, out);
-    if (!file) return;
-    const Catalog& catalog = standard_blocks();
-    if (is_study(*file))
-        read_study(file, options, catalog, out);
-    else if (is_fit(*file))
-        read_fit(file, options, catalog, out);
-    else {
-        const Program program = read_program(file, options, out);
-        link(program, catalog, out);
-        for (const auto& text : program.texts)
-            if (sources)
-                sources->insert(std::filesystem::path(text->path).lexically_normal().string());
-    }
-}
 
 /// Tells once what several programs find in a source that they share.
 class Once {
@@ -79,8 +58,10 @@ std::size_t check_folder(const std::string& folder, const LoadOptions& options, 
         const auto source = is_structured_text(test.path) ? read_source(test.path, found) : nullptr;
         if (source)
             compile_tests(test, source, found);
-        else if (found.empty())
-            check(test.path, options, found, &seen);
+        else if (const auto checked =
+                     found.empty() ? check_file(test.path, options, found) : std::nullopt)
+            for (const auto& text : checked->program.texts)
+                seen.insert(std::filesystem::path(text->path).lexically_normal().string());
         once.add(found);
     }
     const auto texts = read_project(folder, options.include_dirs, out).sources;
@@ -140,7 +121,7 @@ Exit execute(const CheckCommand& command) {
         else if (projects::is_source(path) || std::filesystem::is_directory(path, error))
             sources.push_back(path);
         else
-            check(path, options, out);
+            check_file(path, options, out);
     }
     check_sources(sources, options, out);
     if (command.strict) out.be_strict();

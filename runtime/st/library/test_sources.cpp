@@ -71,6 +71,11 @@ void SourcePool::add(const std::shared_ptr<const SourceFile>& file) {
     entries_.push_back(entry_of(file));
 }
 
+void SourcePool::replace(const std::shared_ptr<const SourceFile>& file) {
+    std::erase_if(entries_, [&](const Entry& entry) { return entry.file->is_same_text(*file); });
+    add(file);
+}
+
 const SourcePool::Entry* SourcePool::nearest(const std::string& name, const Entry& user,
                                              const std::string& to) const {
     const Entry* found = nullptr;

@@ -17,6 +17,8 @@ class SourcePool {
   public:
     /// A file, once; a file of tests is none of the sources.
     void add(const std::shared_ptr<const SourceFile>& file);
+    /// What stands in a file now, in place of what stood there.
+    void replace(const std::shared_ptr<const SourceFile>& file);
 
     /// What `tests` needs: `x.st` of the same folder for `test_x.st` and `x_test.st`, and then
     /// every file that declares a name which the tests or a file found so far use and do not

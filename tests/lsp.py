@@ -1,0 +1,239 @@
+#!/usr/bin/python3
+"""The language server by its protocol: what it says of every file of tests/bad and tests/st/bad is what `lineshaft check`
+says, also behind random edits; messages that are none are answered as the protocol has it.
+
+usage: lsp.py LINESHAFT SOURCE_DIR [EDITS] [SEED]
+"""
+
+import json
+import pathlib
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+from language_client import Client, framed, uri_of
+
+lineshaft, source = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
+edits = int(sys.argv[3]) if len(sys.argv) > 3 else 60
+seed = int(sys.argv[4]) if len(sys.argv) > 4 else 1
+checks = []
+
+
+def check(function):
+    checks.append(function)
+    return function
+
+
+def told_by_command(path):
+    """(line, column, code, message, help) of one file, as `lineshaft check` has them."""
+    answer = subprocess.run([lineshaft, "check", "--json", path], capture_output=True, check=False)
+    if not answer.stdout.startswith(b"{"):
+        return set()
+    return {(max(d["line"], 1), max(d["column"], 1), d["code"], d["message"], d["help"])
+            for d in json.loads(answer.stdout)["diagnostics"] if d["file"] in (str(path), "")}
+
+
+def told_by_server(client, path, text):
+    """Likewise; columns in characters."""
+    lines = text.replace("\r\n", "\n").split("\n")
+    found = set()
+    for d in client.diagnosed(path):
+        start = d["range"]["start"]
+        line = lines[start["line"]] if start["line"] < len(lines) else ""
+        before = line.encode("utf-16-le")[:2 * start["character"]].decode("utf-16-le")
+        related = d.get("relatedInformation")
+        found.add((start["line"] + 1, len(before) + 1, d["code"], d["message"], related[0]["message"] if related else ""))
+    return found
+
+
+def bad_files():
+    for folder in sorted((source / "tests/bad").iterdir()):
+        yield from sorted(folder.glob("*.yaml"))
+    yield from sorted(p for p in (source / "tests/st/bad").iterdir() if p.suffix in (".st", ".scl"))
+
+
+def readable(path):
+    try:
+        text = path.read_bytes().decode("utf-8")
+    except UnicodeDecodeError:
+        return None
+    return None if "\0" in text or len(text) > 1 << 19 else text
+
+
+@check
+def golden_messages_are_diagnostics():
+    client, count = Client(lineshaft), 0
+    for path in bad_files():
+        text = readable(path)
+        if text is None or "\r" in text.replace("\r\n", ""):
+            continue
+        wanted = told_by_command(path)
+        client.open(path, text.removeprefix("\ufeff"))
+        got = told_by_server(client, path, text.removeprefix("\ufeff"))
+        assert got == wanted, f"{path}\n  server only: {got - wanted}\n  command only: {wanted - got}"
+        client.close(path)
+        count += bool(got)
+    assert count > 300, count
+    assert client.end() == 0
+    return f"{count} files with mistakes"
+
+
+def random_edit(text, rng):
+    """(text, change) of an edit as people type: a piece removed, put in or put elsewhere."""
+    begin = rng.randrange(len(text) + 1)
+    end = min(len(text), begin + rng.choice((0, 0, 1, 1, 2, 5, 40)))
+    piece = rng.choice(("", "x", " ", "\n", ":", ";", "END_IF", "'", "(*", "{", "é", "𝄞", "  - ", text[-30:], "1.5 mm"))
+    where = [{"line": text.count("\n", 0, at), "character": len(text[text.rfind("\n", 0, at) + 1:at].encode("utf-16-le")) // 2}
+             for at in (begin, end)]
+    return text[:begin] + piece + text[end:], {"range": {"start": where[0], "end": where[1]}, "text": piece}
+
+
+@check
+def random_edits_are_checked_as_if_fresh():
+    rng = random.Random(seed)
+    names = ("programs/01_axis.yaml", "programs/08_state_machine.yaml", "programs/08_state_machine.scl", "programs/02_gear.yaml",
+             "tests/st/blocks.st", "tests/st/charts.st", "tests/st/classes.st", "tests/st/texts.st", "tests/st/siemens.scl",
+             "programs/paper/wei2025_table1.yaml", "config/s7_1515.yaml")
+    files = [source / name for name in names if (source / name).exists()]
+    assert len(files) >= 8, files
+    client, times = Client(lineshaft), []
+    with tempfile.TemporaryDirectory() as folder:
+        for file in files:
+            start = text = file.read_text(encoding="utf-8")
+            beside = file.with_name(f".edited_{file.name}")  # what it names is found from there
+            try:
+                client.open(file, text)
+                for i in range(edits // len(files) + 1):
+                    if i % 8 == 0:
+                        client.change(file, start)
+                        text = start
+                    text, change = random_edit(text, rng)
+                    begun = time.perf_counter()
+                    client.change(file, text, change)
+                    got = told_by_server(client, file, text)
+                    times.append(time.perf_counter() - begun)
+                    beside.write_text(text, encoding="utf-8", newline="")
+                    wanted = {(l, c, code, m.replace(str(beside), str(file)), h.replace(str(beside), str(file)))
+                              for l, c, code, m, h in told_by_command(beside)}
+                    assert got == wanted, f"{file}\n{text}\n  server: {got - wanted}\n  command: {wanted - got}"
+                client.close(file)
+            finally:
+                beside.unlink(missing_ok=True)
+    assert client.end() == 0
+    times.sort()
+    return f"{len(times)} edits, 95 % told within {times[int(0.95 * len(times))] * 1000:.1f} ms"
+
+
+@check
+def sources_are_read_as_the_editor_has_them():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        program, block = folder / "line.yaml", folder / "job.st"
+        block.write_text("FUNCTION_BLOCK Job\nVAR_INPUT go : BOOL; END_VAR\nVAR_OUTPUT done : BOOL; END_VAR\ndone := go;\n"
+                         "END_FUNCTION_BLOCK\n", encoding="utf-8")
+        program.write_text("lineshaft: 1\ntasks: {main: {every: 2 ms}}\nsources: [job.st]\ninputs: {go: true}\nblocks:\n"
+                           "  job: {type: Job, task: main, go: inputs.go}\noutputs: {done: job.done}\nrun: {for: 10 ms}\n",
+                           encoding="utf-8")
+        client = Client(lineshaft, folder)
+        client.open(program)
+        client.open(block)
+        assert client.diagnosed(program) == [], client.diagnosed(program)
+        assert client.diagnosed(block) == [], client.diagnosed(block)
+        client.change(block, client.texts[str(block)].replace("go : BOOL", "begin : BOOL").replace(":= go", ":= begin"))
+        assert client.diagnosed(block) == []
+        while not client.diagnostics[str(program)]["diagnostics"]:
+            client.read()
+        [told] = client.diagnostics[str(program)]["diagnostics"]
+        assert told["code"] == "L0203" and told["range"]["start"] == {"line": 5, "character": 31}, told
+        client.change(block, client.texts[str(block)].replace("done := begin;", "done := wrong;"))
+        [told] = client.diagnosed(block)
+        assert told["code"] == "L0904" and told["range"] == {"start": {"line": 3, "character": 8}, "end": {"line": 3, "character": 13}}
+        client.close(block)  # what stands on the disk counts again
+        while client.diagnostics[str(block)]["diagnostics"] or client.diagnostics[str(program)]["diagnostics"]:
+            client.read()
+        assert client.end() == 0
+
+
+@check
+def positions_count_as_agreed():
+    text = "FUNCTION_BLOCK a\nVAR x : INT; END_VAR\n(* 𝄞é *) y := 1;\nx := 1;\nEND_FUNCTION_BLOCK\n"
+    for encodings, column in ((None, 10), (["utf-16"], 10), (["utf-8", "utf-16"], 13)):
+        client = Client(lineshaft, encodings=encodings)
+        assert client.about["capabilities"]["positionEncoding"] == ("utf-8" if column == 13 else "utf-16")
+        path = source / "tests/no_such_file.st"
+        client.open(path, text)
+        [told] = client.diagnosed(path)
+        assert told["range"]["start"] == {"line": 2, "character": column}, told
+        end = {"line": 2, "character": column + 1}
+        client.change(path, text.replace("y :=", "x :="), {"range": {"start": told["range"]["start"], "end": end}, "text": "x"})
+        assert client.diagnosed(path) == []
+        assert client.end() == 0
+
+
+@check
+def without_related_information_the_help_is_in_the_message():
+    client, path = Client(lineshaft, related=False), source / "tests/st/no_such_file.st"
+    client.open(path, "FUNCTION_BLOCK a\nVAR speed : INT; END_VAR\nspede := 1;\nEND_FUNCTION_BLOCK\n")
+    [told] = client.diagnosed(path)
+    assert told["message"] == "'spede' is not declared\ndid you mean 'speed'?", told
+    assert client.end() == 0
+
+
+@check
+def messages_that_are_none_are_refused():
+    process = subprocess.Popen([lineshaft, "lsp"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    client = Client.__new__(Client)
+    client.process, client.count, client.diagnostics = process, 0, {}
+    refused = [
+        (b"{", -32700, None), (b"[]", -32600, None), (b"1", -32600, None), (b'{"id": 7}', -32600, 7),
+        (b'{"id": null, "method": "initialize"}', -32600, None), (b'{"id": 1.5, "method": "initialize"}', -32600, None),
+        (b'{"id": "a", "method": "textDocument/hover", "params": {}}', -32002, "a"),
+    ]
+    for body, code, identity in refused:
+        client.write(body)
+        message = client.read()
+        assert message["error"]["code"] == code and message["id"] == identity, (body, message)
+    client.write(b'{"method": "textDocument/didOpen", "params": {"textDocument": {}}}')  # before 'initialize': dropped
+    process.stdin.write(b"Nonsense\r\n\r\n" + framed({"id": 1, "method": "initialize", "params": {"capabilities": {}}}))
+    process.stdin.flush()
+    assert "capabilities" in client.read()["result"]
+    for body, code in ((b'{"id": 2, "method": "initialize", "params": {}}', -32600), (b'{"id": 3, "method": "x/y"}', -32601),
+                       (b'{"id": 4, "method": "$/x"}', -32601)):
+        client.write(body)
+        assert client.read()["error"]["code"] == code
+    for body in (b'{"method": "textDocument/didOpen"}', b'{"method": "textDocument/didChange", "params": {"textDocument": 3}}',
+                 b'{"method": "$/cancelRequest", "params": {"id": 3}}', b'{"id": 9, "result": null}', b'{"method": "x/y", "params": []}'):
+        client.write(body)
+    assert client.ask("shutdown", None) is None
+    client.write(b'{"id": 5, "method": "shutdown"}')
+    assert client.read()["error"]["code"] == -32600
+    client.tell("exit", None)
+    process.stdin.close()
+    assert process.wait(timeout=10) == 0
+    for last, wanted in ((b'{"method": "exit"}', 1), (b'{"id": 1, "method": "initialize", "params": {}}', 1)):
+        answer = subprocess.run([lineshaft, "lsp"], input=framed(last), capture_output=True, timeout=10, check=False)
+        assert answer.returncode == wanted, answer
+
+
+def main():
+    failed = 0
+    for function in checks:
+        start = time.monotonic()
+        signal.alarm(300)  # nobody waits for ever
+        try:
+            said = function() or ""
+            print(f"ok    {function.__name__} ({time.monotonic() - start:.1f} s) {said}")
+        except Exception as failure:
+            failed += 1
+            print(f"wrong {function.__name__}: {type(failure).__name__} {failure}")
+            if not isinstance(failure, AssertionError):
+                import traceback
+                traceback.print_exc()
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,133 @@
+#include "tools/lineshaft/lsp/project.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "blocks/catalog.hpp"
+#include "runtime/source/encoding.hpp"
+#include "runtime/st/library/library.hpp"
+#include "runtime/study/study_reader.hpp"
+#include "tools/lineshaft/test_files.hpp"
+
+namespace lineshaft::lsp {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_below(const fs::path& path, const fs::path& folder) {
+    const auto relative = path.lexically_relative(folder);
+    return !relative.empty() && *relative.begin() != "..";
+}
+
+std::string normal(const std::string& path) {
+    return fs::path(path).lexically_normal().string();
+}
+
+}  // namespace
+
+bool Project::lies_in_folders(const std::string& path) const {
+    return std::ranges::any_of(folders_, [&](const auto& f) { return is_below(path, f); });
+}
+
+void Project::forget() {
+    is_read_ = has_pool_ = false;
+}
+
+void Project::read_folders() {
+    if (is_read_) return;
+    is_read_ = true;
+    yaml_files_.clear();
+    sources_.clear();
+    programs_.clear();
+    std::error_code error;
+    for (const std::string& folder : folders_) {
+        constexpr auto options = fs::directory_options::skip_permission_denied;
+        for (fs::recursive_directory_iterator entry(folder, options, error), end;
+             !error && entry != end; entry.increment(error)) {
+            if (entry->path().filename().string().starts_with(".")) {
+                entry.disable_recursion_pending();
+                continue;
+            }
+            const std::string path = entry->path().lexically_normal().string();
+            if (entry->path().extension() == ".yaml") yaml_files_.insert(path);
+            if (is_structured_text(entry->path())) sources_.insert(path);
+        }
+    }
+    for (const std::string& path : yaml_files_) index(path);
+}
+
+void Project::index(const std::string& program) {
+    Diagnostics untold;
+    programs_.erase(program);
+    const auto file = read_source(program, untold);
+    if (!file || !is_program(*file) || file->text.find("sources:") == std::string::npos) return;
+    for (const auto& text : read_program(file, {}, untold).texts)
+        programs_[program].insert(normal(text->path));
+}
+
+const st::SourcePool& Project::pool() {
+    if (has_pool_) return pool_;
+    has_pool_ = true;
+    pool_ = {};
+    Diagnostics untold;
+    for (const std::string& folder : folders_)
+        for (const auto& source : read_project(folder, {}, untold).sources) pool_.add(source);
+    return pool_;
+}
+
+void Project::change(const std::string& path) {
+    if (is_read_ && !is_structured_text(path)) index(path);
+    Diagnostics untold;
+    if (!has_pool_ || !is_structured_text(path)) return;
+    if (const auto file = read_source(path, untold)) pool_.replace(file);
+}
+
+std::vector<std::string> Project::roots_of(const std::string& path) {
+    if (!is_structured_text(path)) return {path};
+    read_folders();
+    std::vector<std::string> roots;
+    for (const auto& [program, texts] : programs_)
+        if (texts.contains(path)) roots.push_back(program);
+    return roots.empty() ? std::vector{path} : roots;
+}
+
+std::vector<std::string> Project::roots() {
+    read_folders();
+    std::vector<std::string> all(yaml_files_.begin(), yaml_files_.end());
+    for (const std::string& path : sources_)
+        if (roots_of(path).front() == path) all.push_back(path);
+    return all;
+}
+
+std::vector<std::shared_ptr<const SourceFile>> Project::sources_of(const std::string& root) {
+    Diagnostics untold;
+    const auto file = read_source(root, untold);
+    if (!file) return {};
+    if (!is_structured_text(root))
+        return is_program(*file) ? read_program(file, {}, untold).texts
+                                 : std::vector<std::shared_ptr<const SourceFile>>();
+    std::vector<std::shared_ptr<const SourceFile>> together;
+    if (lies_in_folders(root))
+        together = pool().needed_by(file);
+    else if (st::is_test_file(file))
+        together = find_tests(root, {}).front().sources->needed_by(file);
+    together.push_back(file);
+    return together;
+}
+
+std::optional<CheckedProgram> Project::check(const std::string& root, Diagnostics& out) {
+    if (!is_structured_text(root)) return check_file(root, {}, out);
+    const auto file = read_source(root, out);
+    if (!file) return {};
+    auto together = sources_of(root);
+    if (!st::is_test_file(file)) {
+        st::compile(together, standard_blocks(), out);
+        return {};
+    }
+    together.pop_back();
+    st::compile_tests(file, together, standard_blocks(), out);
+    return {};
+}
+
+}  // namespace lineshaft::lsp
