@@ -87,7 +87,7 @@ std::uint32_t Writing::standard_number(const BlockType& kind) {
 }
 
 void Writing::begin_statement(Place at) {
-    if (at.source && !at.source->is_prelude()) {
+    if (at.source && at.source->is_users()) {
         // A statement without an instruction of its own is none that can be stopped at.
         if (!code.statements.empty() && code.statements.back().instruction == next())
             code.statements.back().place = at;
