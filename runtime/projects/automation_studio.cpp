@@ -54,7 +54,11 @@ class IecProgram {
         const std::string first = fs::path(text).begin()->string();
         fs::path root = folder();
         while (root != root.root_path() && root.filename() != first) root = root.parent_path();
-        return (root.parent_path() / text).lexically_normal().string();
+        fs::path made = (root.parent_path() / text).lexically_normal();
+        std::error_code unknown;
+        if (fs::path(list_.file()->path).is_relative())
+            made = made.lexically_proximate(fs::current_path(unknown));
+        return made.string();
     }
 
     void add(pugi::xml_node file) {

@@ -272,6 +272,7 @@ bool NetworkText::is_evaluated(const State& state) {
 /// The one variable that takes a function's result and nothing else does.
 std::optional<std::size_t> NetworkText::only_target(std::size_t i) const {
     const State& state = states_[i];
+    if (has_own_turn(i)) return std::nullopt;
     std::optional<std::size_t> target;
     for (const Use& use : state.uses) {
         if (use.pin == "eno") continue;
@@ -300,12 +301,12 @@ void NetworkText::call_function(std::size_t i) {
     const Mark place = place_of(box);
     const Value enabled = enabled_of(box, state);
     Value value = call_of(i);
-    const bool is_guarded = !enabled.is_empty() && !enabled.is_always;
+    bool is_guarded = !enabled.is_empty() && !enabled.is_always;
     const Pin* result = result_of(box);
     const bool has_eno = std::ranges::any_of(box.outputs, is_eno);
     if (is_guarded && !has_eno && value.type == "BOOL") {
-        state.value = both(enabled, value, place);
-        return;
+        value = both(enabled, value, place);
+        is_guarded = false;
     }
     const bool is_variable = result && result->expression;
     const bool is_taken =
@@ -350,8 +351,20 @@ Value NetworkText::target_of(std::size_t i, const std::string& type) {
         const Element& variable = drawing_.elements[*to];
         return written(variable, variable.node.child("expression"));
     }
-    if (type.empty() || type == "#") return {};
-    return words(context_.variables.make("_wire", type), place_of(box), type);
+    const std::string known = type.empty() || type == "#" ? type_of_takers(i) : type;
+    if (known.empty()) return {};
+    return words(context_.variables.make("_wire", known), place_of(box), known);
+}
+
+/// Of the variables that a result goes to.
+std::string NetworkText::type_of_takers(std::size_t i) const {
+    for (const Use& use : states_[i].uses) {
+        const Element& to = drawing_.elements[use.by];
+        if (use.pin == "eno" || to.kind != Drawn::out_variable) continue;
+        std::string type = context_.types.of_expression(file_.plain(to.node.child("expression")));
+        if (!type.empty() && type != "#") return type;
+    }
+    return {};
 }
 
 /// `IF enabled THEN target := value; END_IF`
@@ -399,7 +412,8 @@ Value NetworkText::value_of_box(std::size_t i, const std::string& name) {
         value = member_of(box, pin->name);
     } else if (state.is_active || waits) {
         std::set<std::size_t> seen;
-        value = value_of_loop(i, type_of_result(i, seen));
+        const std::string type = type_of_result(i, seen);
+        value = value_of_loop(i, type.empty() ? type_of_takers(i) : type);
     } else {
         const auto other = std::ranges::find(state.outputs, lower(pin->name),
                                              &std::pair<std::string, Value>::first);
