@@ -307,14 +307,17 @@ projects::Project read_project(const std::string& path,
                                const std::vector<std::string>& include_dirs, Diagnostics& out) {
     projects::Project project;
     std::error_code error;
-    std::vector<std::string> files{path};
-    if (fs::is_directory(path, error)) files = projects::sources_below(path, error);
+    std::vector<std::string> files{path}, allowed = include_dirs;
+    if (fs::is_directory(path, error)) {
+        files = projects::sources_below(path, error);
+        allowed.push_back(path);
+    }
     if (error) files = {path};
     for (const std::string& file : files) {
         const fs::path own = fs::path(file).parent_path();
         const auto resolve = [&](const std::string& named, const Mark& where) {
-            return resolve_path(fs::path(named).lexically_proximate(own).string(), file,
-                                include_dirs, where, out);
+            return resolve_path(fs::path(named).lexically_proximate(own).string(), file, allowed,
+                                where, out);
         };
         projects::read_sources({project, out, resolve}, file);
     }

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 
+#include <fmt/format.h>
+
+#include "runtime/projects/automation_studio.hpp"
 #include "runtime/projects/plcopen.hpp"
 #include "runtime/projects/twincat.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/yaml.hpp"
@@ -28,7 +32,7 @@ struct Form {
 constexpr Form forms[] = {{".tcpou", read_twincat_object}, {".tcdut", read_twincat_object},
                           {".tcgvl", read_twincat_object}, {".tcio", read_twincat_object},
                           {".tctto", read_twincat_object}, {".plcproj", read_plcproj},
-                          {".xml", read_plcopen}};
+                          {".xml", read_plcopen},          {".prg", read_iec_program}};
 
 const Form* form_of(const fs::path& file) {
     const std::string ending = lower(file.extension().string());
@@ -36,8 +40,25 @@ const Form* form_of(const fs::path& file) {
     return form == std::end(forms) ? nullptr : form;
 }
 
-bool is_plcproj(const std::string& file) {
-    return lower(fs::path(file).extension().string()) == ".plcproj";
+bool ends_with(const std::string& file, std::string_view ending) {
+    return lower(fs::path(file).extension().string()) == ending;
+}
+
+/// The sources of a package of SIMATIC AX, which `apax.yml` stands beside.
+void read_apax(const Reading& to, const std::string& path, const Mark& where) {
+    const std::string folder = (fs::path(path).parent_path() / "src").lexically_normal().string();
+    std::error_code error;
+    const std::vector<std::string> files = sources_below(folder, error);
+    if (error)
+        to.out.add(code::file_cannot_be_read, where,
+                   fmt::format("cannot read the folder '{}': {}", folder, error.message()),
+                   "a package of SIMATIC AX has its sources there");
+    for (const std::string& file : files)
+        if (const auto allowed = to.resolve(file, where)) read_sources(to, *allowed, where);
+}
+
+bool is_apax(const fs::path& file) {
+    return lower(file.filename().string()) == "apax.yml";
 }
 
 bool is_test_file(const std::string& file) {
@@ -47,15 +68,20 @@ bool is_test_file(const std::string& file) {
     return source && st::is_test_file(source);
 }
 
-/// What projects list themselves.
+/// What projects list themselves: all below a `.plcproj`, all beside a `.prg`.
 void leave_to_projects(std::vector<std::string>& files) {
-    std::vector<std::string> folders;
-    for (const std::string& file : files)
-        if (is_plcproj(file)) folders.push_back((fs::path(file).parent_path() / "").string());
+    std::vector<std::string> folders, programs;
+    for (const std::string& file : files) {
+        const std::string folder = (fs::path(file).parent_path() / "").string();
+        if (ends_with(file, ".plcproj")) folders.push_back(folder);
+        if (ends_with(file, ".prg")) programs.push_back(folder);
+    }
     std::erase_if(files, [&](const std::string& file) {
         const Form* form = form_of(file);
-        return form && form->read == read_twincat_object &&
-               std::ranges::any_of(folders, [&](const auto& f) { return file.starts_with(f); });
+        if (form && form->read == read_twincat_object)
+            return std::ranges::any_of(folders, [&](const auto& f) { return file.starts_with(f); });
+        const std::string folder = (fs::path(file).parent_path() / "").string();
+        return !form && std::ranges::find(programs, folder) != programs.end();
     });
 }
 
@@ -69,7 +95,8 @@ void Project::add(std::shared_ptr<const SourceFile> source) {
 bool is_source(const fs::path& file) {
     const Form* form = form_of(file);
     if (form && form->read == read_plcopen) return is_plcopen(file);
-    return form || is_structured_text(file);
+    if (form && form->read == read_iec_program) return is_iec_program(file);
+    return is_apax(file) || form || is_structured_text(file);
 }
 
 std::vector<std::string> sources_below(const std::string& folder, std::error_code& error) {
@@ -78,7 +105,7 @@ std::vector<std::string> sources_below(const std::string& folder, std::error_cod
     constexpr auto options = fs::directory_options::skip_permission_denied;
     for (fs::recursive_directory_iterator entry(folder, options, error), end;
          !error && entry != end; entry.increment(error))
-        if (is_source(entry->path()) && entry->is_regular_file(unknown))
+        if (is_source(entry->path()) && !is_apax(entry->path()) && entry->is_regular_file(unknown))
             files.push_back(entry->path().string());
     std::erase_if(files, is_test_file);
     leave_to_projects(files);
@@ -88,6 +115,7 @@ std::vector<std::string> sources_below(const std::string& folder, std::error_cod
 
 void read_sources(const Reading& to, const std::string& path, const Mark& where) {
     const Form* form = form_of(path);
+    if (is_apax(path)) return read_apax(to, path, where);
     return form ? form->read(to, path, where) : read_text(to, path, where);
 }
 

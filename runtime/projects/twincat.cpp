@@ -79,11 +79,28 @@ class ObjectText {
         const std::string_view kind = part.name();
         if (kind == "Method") return add_routine(part, part, "END_METHOD");
         if (kind == "Property") return add_property(part);
+        if (kind == "Transition") return add_transition(part);
         if (kind != "Action") return;
         text_.write("ACTION ", file_.mark_of_tag(part));
         file_.copy(text_, part.attribute("Name"));
         text_.write(":\n", file_.mark_of_tag(part));
         add_routine(part, part, "END_ACTION");
+    }
+
+    /// A condition, as a method that says whether it holds.
+    void add_transition(pugi::xml_node transition) {
+        const Mark place = file_.mark_of_tag(transition);
+        text_.write("METHOD ", place);
+        file_.copy(text_, transition.attribute("Name"));
+        text_.write(" : BOOL\n", place);
+        const std::string body = file_.plain(transition.child("Implementation").child("ST"));
+        const bool is_expression = !body.empty() && body.find(":=") == std::string::npos;
+        if (is_expression) {
+            file_.copy(text_, transition.attribute("Name"));
+            text_.write(" := ", place);
+        }
+        add_body(transition, transition);
+        add_end(is_expression && !body.ends_with(';') ? ";\nEND_METHOD" : "END_METHOD", transition);
     }
 
     void add_routine(pugi::xml_node routine, pugi::xml_node named, std::string_view end) {

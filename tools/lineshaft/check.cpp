@@ -116,9 +116,10 @@ Exit execute(const CheckCommand& command) {
             Once(out).add(found);
             continue;
         }
-        if (std::error_code error; has_programs(path))
-            checked.back() += fmt::format(": {} files", check_folder(path, options, out));
-        else if (projects::is_source(path) || std::filesystem::is_directory(path, error))
+        if (std::error_code error; has_programs(path)) {
+            const std::size_t files = check_folder(path, options, out);
+            checked.back() += fmt::format(": {} {}", files, files == 1 ? "file" : "files");
+        } else if (projects::is_source(path) || std::filesystem::is_directory(path, error))
             sources.push_back(path);
         else
             check_file(path, options, out);

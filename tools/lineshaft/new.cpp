@@ -68,6 +68,8 @@ Exit execute(const NewCommand& command) {
                                  ? fmt::format(program_text, path.stem().string())
                                  : program_around(command.project, path, out);
     if (!out.empty()) return report(out, false);
+    const std::string option =
+        command.project.empty() ? std::string() : include_option(command.project, path);
     OutputFile file(path.string());
     file.write(text);
     if (!file.commit()) {
@@ -75,7 +77,7 @@ Exit execute(const NewCommand& command) {
         return Exit::fault;
     }
     if (!command.quiet)
-        fmt::print("{0}: a program that runs; try: lineshaft run {0}\n", path.string());
+        fmt::print("{0}: a program that runs; try: lineshaft run {0}{1}\n", path.string(), option);
     return Exit::fine;
 }
 

@@ -131,7 +131,34 @@ std::string text_of(const std::vector<NewTask>& tasks, const std::vector<NewBloc
     return text;
 }
 
+/// From the folder of `file`.
+std::string path_from(const std::filesystem::path& file, const std::string& path) {
+    return std::filesystem::absolute(path)
+        .lexically_normal()
+        .lexically_proximate(std::filesystem::absolute(file).lexically_normal().parent_path())
+        .string();
+}
+
+std::string quoted(const std::string& word) {
+    const bool is_plain = std::ranges::all_of(word, [](char c) {
+        return is_letter(c) || is_digit(c) || std::string_view("_-./").find(c) != std::string::npos;
+    });
+    if (is_plain) return word;
+    std::string made = "'";
+    for (const char c : word) made += c == '\'' ? "'\\''" : std::string(1, c);
+    return made + "'";
+}
+
 }  // namespace
+
+std::string include_option(const std::string& project, const std::filesystem::path& program) {
+    Diagnostics unread;
+    if (resolve_path(path_from(program, project), program.string(), {}, {}, unread)) return {};
+    std::error_code error;
+    std::filesystem::path folder = std::filesystem::absolute(project).lexically_normal();
+    if (!std::filesystem::is_directory(folder, error)) folder = folder.parent_path();
+    return " --include-dir " + quoted(folder.string());
+}
 
 std::string program_around(const std::string& path, const std::filesystem::path& file,
                            Diagnostics& out) {
@@ -149,18 +176,13 @@ std::string program_around(const std::string& path, const std::filesystem::path&
     }
     std::vector<NewBlock> blocks = named_blocks(*library, programs);
     blocks.insert(blocks.end(), programs.begin(), programs.end());
-    const std::string source =
-        std::filesystem::absolute(path)
-            .lexically_normal()
-            .lexically_proximate(std::filesystem::absolute(file).lexically_normal().parent_path())
-            .string();
     const std::string name = file.stem().string();
     std::string text = fmt::format(
         "# Around a project of another tool. Try, and then change:\n"
-        "#   lineshaft run {0}.yaml --trace {0}.csv\n"
-        "#   lineshaft check {0}.yaml\n"
-        "lineshaft: 1\ntitle: {0}\nsources: [\"{1}\"]\n{2}run: {{for: 1 s}}\n",
-        name, source, text_of(tasks, blocks));
+        "#   lineshaft run {0}.yaml --trace {0}.csv{1}\n"
+        "#   lineshaft check {0}.yaml{1}\n"
+        "lineshaft: 1\ntitle: {0}\nsources: [\"{2}\"]\n{3}run: {{for: 1 s}}\n",
+        name, include_option(path, file), path_from(file, path), text_of(tasks, blocks));
     const std::vector<std::string> signals = signals_of(*library, programs.front());
     if (!signals.empty())
         text += fmt::format("trace: {{task: {}, signals: [{}]}}\n", programs.front().task,

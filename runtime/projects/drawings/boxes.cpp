@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -27,7 +28,7 @@ constexpr Operator operators[] = {
     {"lt", " < ", false, Value::Form::other},   {"ne", " <> ", false, Value::Form::other}};
 /// Written as `NOT a`, and as the argument itself.
 constexpr std::string_view prefixes[] = {"not", "move"};
-constexpr int deepest_type = 20;
+constexpr std::size_t most_typed = 200;  // elements that are looked at for one type
 
 bool is_en(const Pin& pin) {
     return st::same_name(pin.name, "EN");
@@ -264,9 +265,14 @@ NetworkText::Arguments NetworkText::other_outputs(std::size_t i) {
     return made;
 }
 
+bool NetworkText::is_evaluated(const State& state) {
+    return state.is_done && !state.is_active;
+}
+
 /// The one variable that takes a function's result and nothing else does.
 std::optional<std::size_t> NetworkText::only_target(std::size_t i) const {
     const State& state = states_[i];
+    if (has_own_turn(i)) return std::nullopt;
     std::optional<std::size_t> target;
     for (const Use& use : state.uses) {
         if (use.pin == "eno") continue;
@@ -275,7 +281,7 @@ std::optional<std::size_t> NetworkText::only_target(std::size_t i) const {
                               to.inputs.front().lines.size() == 1 &&
                               attribute(to, "negated") != "true" &&
                               edge_of_attribute(to) == Edge::none && !is_stored(to);
-        if (target || !is_plain || states_[use.by].is_done) return std::nullopt;
+        if (target || !is_plain || is_evaluated(states_[use.by])) return std::nullopt;
         target = use.by;
     }
     return target;
@@ -295,12 +301,12 @@ void NetworkText::call_function(std::size_t i) {
     const Mark place = place_of(box);
     const Value enabled = enabled_of(box, state);
     Value value = call_of(i);
-    const bool is_guarded = !enabled.is_empty() && !enabled.is_always;
+    bool is_guarded = !enabled.is_empty() && !enabled.is_always;
     const Pin* result = result_of(box);
     const bool has_eno = std::ranges::any_of(box.outputs, is_eno);
     if (is_guarded && !has_eno && value.type == "BOOL") {
-        state.value = both(enabled, value, place);
-        return;
+        value = both(enabled, value, place);
+        is_guarded = false;
     }
     const bool is_variable = result && result->expression;
     const bool is_taken =
@@ -341,12 +347,24 @@ Value NetworkText::target_of(std::size_t i, const std::string& type) {
     if (takes_result(box, state)) return written(box, result->expression);
     if (!state.loop.empty()) return words(state.loop, place_of(box), type);
     if (const auto to = only_target(i); to && !(result && result->is_negated)) {
-        states_[*to].is_done = true;
+        states_[*to].is_done = states_[*to].is_written = true;
         const Element& variable = drawing_.elements[*to];
         return written(variable, variable.node.child("expression"));
     }
-    if (type.empty() || type == "#") return {};
-    return words(context_.variables.make("_wire", type), place_of(box), type);
+    const std::string known = type.empty() || type == "#" ? type_of_takers(i) : type;
+    if (known.empty()) return {};
+    return words(context_.variables.make("_wire", known), place_of(box), known);
+}
+
+/// Of the variables that a result goes to.
+std::string NetworkText::type_of_takers(std::size_t i) const {
+    for (const Use& use : states_[i].uses) {
+        const Element& to = drawing_.elements[use.by];
+        if (use.pin == "eno" || to.kind != Drawn::out_variable) continue;
+        std::string type = context_.types.of_expression(file_.plain(to.node.child("expression")));
+        if (!type.empty() && type != "#") return type;
+    }
+    return {};
 }
 
 /// `IF enabled THEN target := value; END_IF`
@@ -384,7 +402,7 @@ Value NetworkText::value_of_box(std::size_t i, const std::string& name) {
         refuse(box, fmt::format("this box has no output '{}'", name), "");
         return words("FALSE", place);
     }
-    const bool waits = is_block && comes_later(box);
+    const bool waits = !state.is_done && comes_later(box);
     if (!state.is_active && !state.is_done && !waits) evaluate_box(i);
     Value value;
     if (is_eno(*pin)) {
@@ -392,8 +410,10 @@ Value NetworkText::value_of_box(std::size_t i, const std::string& name) {
         if (value.is_empty()) value = words("TRUE", place, "BOOL"), value.is_always = true;
     } else if (is_block) {
         value = member_of(box, pin->name);
-    } else if (state.is_active) {
-        value = value_of_loop(i, type_of_result(i, 0));
+    } else if (state.is_active || waits) {
+        std::set<std::size_t> seen;
+        const std::string type = type_of_result(i, seen);
+        value = value_of_loop(i, type.empty() ? type_of_takers(i) : type);
     } else {
         const auto other = std::ranges::find(state.outputs, lower(pin->name),
                                              &std::pair<std::string, Value>::first);
@@ -407,27 +427,30 @@ Value NetworkText::value_of_box(std::size_t i, const std::string& name) {
     return pin->is_negated ? negated(value, place) : value;
 }
 
-/// While its arguments are evaluated still.
-std::string NetworkText::type_of_result(std::size_t i, int depth) const {
+/// While its arguments are not evaluated yet. `seen` keeps lines that go around from doing so
+/// without end.
+std::string NetworkText::type_of_result(std::size_t i, std::set<std::size_t>& seen) const {
     const Element& box = drawing_.elements[i];
-    if (depth > deepest_type) return {};
+    if (!seen.insert(i).second || seen.size() > most_typed) return {};
     std::vector<std::string> types;
     for (const Pin& pin : box.inputs) {
-        if (is_en(pin) || pin.lines.empty()) continue;
-        const Line& line = pin.lines.front();
-        const Element& from = drawing_.elements[line.from];
-        std::string type;
-        if (from.kind == Drawn::contact || from.kind == Drawn::left_rail)
-            type = "BOOL";
-        else if (from.kind == Drawn::block && attribute(from, "instanceName").empty())
-            type = line.from == i ? "#" : type_of_result(line.from, depth + 1);
-        else if (from.kind == Drawn::block)
-            type = context_.types.of_output(attribute(from, "instanceName"), line.pin);
-        else
-            type = context_.types.of_expression(file_.plain(from.node.child("expression")));
+        if (is_en(pin) || (pin.lines.empty() && !pin.expression)) continue;
+        const std::string type = pin.lines.empty()
+                                     ? context_.types.of_expression(file_.plain(pin.expression))
+                                     : type_of(pin.lines.front(), seen);
         types.push_back(type.empty() ? "#" : type);
     }
     return context_.types.of_call(type_name_of(box), types);
+}
+
+std::string NetworkText::type_of(const Line& line, std::set<std::size_t>& seen) const {
+    const Element& from = drawing_.elements[line.from];
+    if (from.kind == Drawn::contact || from.kind == Drawn::left_rail) return "BOOL";
+    if (from.kind != Drawn::block)
+        return context_.types.of_expression(file_.plain(from.node.child("expression")));
+    const std::string instance = attribute(from, "instanceName");
+    return instance.empty() ? type_of_result(line.from, seen)
+                            : context_.types.of_output(instance, line.pin);
 }
 
 }  // namespace lineshaft::projects

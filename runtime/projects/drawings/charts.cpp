@@ -13,7 +13,7 @@ namespace lineshaft::projects {
 
 namespace {
 
-constexpr int deepest_branch = 200;
+constexpr std::size_t most_branches = 1000;  // that one transition may go through
 
 /// One chart of PLCopen XML as the text of it.
 class ChartText {
@@ -25,11 +25,12 @@ class ChartText {
 
   private:
     using Nodes = std::vector<pugi::xml_node>;
+    using Seen = std::set<std::string>;  ///< what was gone through, by `localId`
 
     // what leads where
     std::vector<pugi::xml_node> sources_of(pugi::xml_node node) const;
-    void add_steps_before(pugi::xml_node node, Nodes& steps, int depth);
-    void add_steps_behind(pugi::xml_node node, Nodes& steps, int depth);
+    void add_steps_before(pugi::xml_node node, Nodes& steps, Seen& seen);
+    void add_steps_behind(pugi::xml_node node, Nodes& steps, Seen& seen);
 
     void add_step(pugi::xml_node step);
     void add_action(pugi::xml_node action);
@@ -88,13 +89,14 @@ std::vector<pugi::xml_node> ChartText::sources_of(pugi::xml_node node) const {
 }
 
 /// Those that a transition leaves: all that a simultaneous convergence joins, one otherwise.
-void ChartText::add_steps_before(pugi::xml_node node, Nodes& steps, int depth) {
+void ChartText::add_steps_before(pugi::xml_node node, Nodes& steps, Seen& seen) {
     for (const pugi::xml_node source : sources_of(node)) {
+        if (!seen.insert(text(source, "localId")).second) continue;
         if (is(source, "step")) {
             steps.push_back(source);
-        } else if (depth < deepest_branch &&
+        } else if (seen.size() < most_branches &&
                    (is(source, "selectionDivergence") || is(source, "simultaneousConvergence"))) {
-            add_steps_before(source, steps, depth + 1);
+            add_steps_before(source, steps, seen);
         } else {
             refuse(source, fmt::format("a transition does not follow a {} here", source.name()),
                    "draw a step between");
@@ -103,15 +105,16 @@ void ChartText::add_steps_before(pugi::xml_node node, Nodes& steps, int depth) {
 }
 
 /// Those that it enters.
-void ChartText::add_steps_behind(pugi::xml_node node, Nodes& steps, int depth) {
+void ChartText::add_steps_behind(pugi::xml_node node, Nodes& steps, Seen& seen) {
     const auto found = behind_.find(text(node, "localId"));
     if (found == behind_.end()) return;
     for (const pugi::xml_node next : found->second) {
+        if (!seen.insert(text(next, "localId")).second) continue;
         if (is(next, "step") || is(next, "jumpStep")) {
             steps.push_back(next);
-        } else if (depth < deepest_branch &&
+        } else if (seen.size() < most_branches &&
                    (is(next, "simultaneousDivergence") || is(next, "selectionConvergence"))) {
-            add_steps_behind(next, steps, depth + 1);
+            add_steps_behind(next, steps, seen);
         } else {
             refuse(next, fmt::format("a {} does not follow a transition here", next.name()),
                    "draw a step between");
@@ -193,8 +196,9 @@ void ChartText::add_steps(const Nodes& steps, pugi::xml_node transition) {
 
 void ChartText::add_transition(pugi::xml_node transition) {
     Nodes before, behind;
-    add_steps_before(transition, before, 0);
-    add_steps_behind(transition, behind, 0);
+    Seen seen_before, seen_behind;
+    add_steps_before(transition, before, seen_before);
+    add_steps_behind(transition, behind, seen_behind);
     if (before.empty() || behind.empty())
         return refuse(
             transition,

@@ -282,7 +282,10 @@ void NetworkText::assign(std::size_t i) {
     const bool is_coil = element.kind == Drawn::coil;
     if (element.inputs.empty() && element.kind == Drawn::in_out_variable) return;
     Value value;
+    states_[i].is_active = true;
     if (!element.inputs.empty()) value = value_of(element, element.inputs.front());
+    states_[i].is_active = false;
+    if (states_[i].is_written) return;
     if (value.is_empty())
         return refuse(element, fmt::format("nothing leads to this {}", word_of(element.kind)),
                       "draw a line to it, or remove it");
@@ -291,8 +294,8 @@ void NetworkText::assign(std::size_t i) {
             value.is_always ? value
                             : kept_in(context_.variables.make("_wire", "BOOL"), value, place);
     if (element.kind != Drawn::in_out_variable) {
-        value = edge_of(value, edge_of_attribute(element), element);
         if (attribute(element, "negated") == "true") value = negated(value, place);
+        value = edge_of(value, edge_of_attribute(element), element);
     }
     const Value target = written(element, element.node.child(is_coil ? "variable" : "expression"));
     if (!is_stored(element)) return write_assignment(target, value, place);

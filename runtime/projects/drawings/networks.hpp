@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -56,7 +57,8 @@ class NetworkText {
     /// What is known of an element's evaluation.
     struct State {
         bool is_done = false, is_active = false;
-        std::size_t turn = 0;  ///< its place in the order
+        bool is_written = false;  ///< of a variable that a box has assigned its result to
+        std::size_t turn = 0;     ///< its place in the order
         std::vector<Use> uses = {};
         std::optional<Value> value = {};  ///< of its first output, from now on
         std::string loop = {};            ///< the variable of a line that goes around
@@ -116,12 +118,15 @@ class NetworkText {
     const Pin* find_output(const Element& box, std::string_view name) const;
     bool is_used(const State& state, const Pin& pin) const;
     bool is_operator(const Element& box) const;
+    static bool is_evaluated(const State& state);
     bool takes_result(const Element& box, const State& state) const;
     bool has_own_turn(std::size_t i) const;
     std::optional<std::size_t> only_target(std::size_t i) const;
     std::string type_name_of(const Element& box) const;
     std::string call_type(const Element& box) const;
-    std::string type_of_result(std::size_t i, int depth) const;
+    std::string type_of_result(std::size_t i, std::set<std::size_t>& seen) const;
+    std::string type_of_takers(std::size_t i) const;
+    std::string type_of(const Line& line, std::set<std::size_t>& seen) const;
 
     // jumps.cpp
     void leave(const Element& element);

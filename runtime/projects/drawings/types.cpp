@@ -22,6 +22,8 @@ constexpr LikeArguments like_arguments[] = {
     {"sin"},          {"cos"},          {"tan"},          {"asin"},         {"acos"},
     {"atan"},         {"shl", 0, true}, {"shr", 0, true}, {"rol", 0, true}, {"ror", 0, true},
     {"expt", 0, true}};
+/// Of truth values, unless something is known to be otherwise.
+constexpr std::string_view of_bits[] = {"and", "or", "xor", "not"};
 struct Fixed {
     std::string_view name, type;
 };
@@ -186,6 +188,7 @@ std::string NetworkTypes::of_call(std::string_view function,
         if (arguments.empty()) return {};
         std::string type = like->is_first ? common_type({arguments.front()}, 0)
                                           : common_type(arguments, like->skipped);
+        if (type.empty() && has(of_bits, name)) return "BOOL";
         return is_kept_by(name, lower(type)) ? type : std::string();
     }
     const std::size_t to = name.rfind("to_");

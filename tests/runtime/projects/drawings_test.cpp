@@ -202,9 +202,9 @@ TEST_CASE("a message about a network names it and its element") {
     CHECK(read(program("LD", element("leftPowerRail", 0, 0, "") + contact(1, 10, "a", from(0)) +
                                  coil(2, 10, "b", from(1)) + contact(3, 20, "nobody", from(0)) +
                                  coil(4, 20, "c", from(3))))
-              .messages == "6:104: 'nobody' is not declared (network 2, contact 3)\n");
+              .messages == "6:124: 'nobody' is not declared (network 2, contact 3)\n");
     CHECK(read(program("FBD", out_variable(1, 0, "x", from(7)))).messages ==
-          "3:82: a line comes from '7', which is no element of this body\n"
+          "3:93: a line comes from '7', which is no element of this body\n"
           "3:1: nothing leads to this variable (network 1, variable 1)\n");
     CHECK(read(program("FBD", in_variable(1, "x") + "<spiral localId=\"2\"/>\n")).messages ==
           "4:1: <spiral> is no element of a network\n");
@@ -273,6 +273,28 @@ TRANSITION FROM Begin TO Begin := c;
 END_TRANSITION
 END_PROGRAM
 )");
+}
+
+TEST_CASE("a drawn body that is cut, or lacks an element, is read or told at a place") {
+    const std::string body =
+        element("leftPowerRail", 0, 0, "") + contact(1, 10, "a", from(0)) + in_variable(2, "T#1s") +
+        box(3, 10, "TON", input("IN", from(1)) + input("PT", from(2)), {"Q"},
+            "instanceName=\"timer\"") +
+        coil(4, 10, "b", from(3, "Q")) + element("jump", 5, 20, in(from(4)), "label=\"L\"") +
+        element("label", 6, 30, "", "label=\"L\"");
+    const std::string whole = program("LD", body);
+    CHECK(read(whole).messages == "");
+    for (std::size_t size = 0; size < whole.rfind('>'); ++size)
+        CHECK(read(whole.substr(0, size)).messages.find("this file is not XML") !=
+              std::string::npos);
+    std::size_t refused = 0;
+    for (std::size_t begin = whole.find("<LD>"); begin < whole.find("</LD>"); ++begin) {
+        const std::size_t end = whole.find('"', begin + 1);
+        std::string text = whole;
+        text.erase(begin, end - begin);
+        refused += read(text).messages.empty() ? 0U : 1U;
+    }
+    CHECK(refused > 100);
 }
 
 }  // namespace lineshaft::projects

@@ -188,6 +188,26 @@ TEST_CASE("a drawn body is told by the POU's name") {
                                          "and only Structured Text is read\n"));
 }
 
+TEST_CASE("a transition is a method that says whether it holds") {
+    const test::Folder folder;
+    std::string text = pou("IF Done() AND Half() THEN value := 0; END_IF");
+    const auto transition = [](const std::string& name, const std::string& body) {
+        return "<Transition Name=\"" + name + "\"><Implementation><ST><![CDATA[" + body +
+               "]]></ST></Implementation></Transition>";
+    };
+    text.insert(text.find("    <Method"),
+                transition("Done", "value > 10") + transition("Half", "Half := value > 5;"));
+    Diagnostics out;
+    const Project project = read_project(write(folder, "Ramp.TcPOU", text), {}, out);
+    CHECK(out.render() == "");
+    REQUIRE(project.sources.size() == 1);
+    CHECK(project.sources[0]->text.find("METHOD Done : BOOL\nDone := value > 10\n;\nEND_METHOD\n"
+                                        "METHOD Half : BOOL\nHalf := value > 5;\nEND_METHOD\n") !=
+          std::string::npos);
+    CHECK(st::compile(project.sources, standard_blocks(), out));
+    CHECK(out.render() == "");
+}
+
 TEST_CASE("XML that is cut, grows or is no XML is refused at a place") {
     const test::Folder folder;
     const std::string whole = pou("value := step;");

@@ -1,0 +1,158 @@
+#include "runtime/projects/automation_studio.hpp"
+
+#include <algorithm>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "runtime/projects/xml.hpp"
+#include "runtime/source/codes.hpp"
+#include "runtime/source/encoding.hpp"
+#include "runtime/source/letters.hpp"
+#include "runtime/source/yaml.hpp"
+#include "runtime/st/syntax/lexer.hpp"
+
+namespace lineshaft::projects {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One program of Automation Studio.
+class IecProgram {
+  public:
+    IecProgram(const XmlFile& list, const Reading& to) : list_(list), to_(to) {}
+
+    void read() {
+        for (const pugi::xml_node file : list_.root().child("Files").children("File")) add(file);
+        const Mark place = list_.mark_of_tag(list_.root());
+        const std::string name = folder().filename().string();
+        Excerpts text;
+        text.write(fmt::format("PROGRAM {}\n", name), place);
+        text.append(variables_);
+        if (has_start_) text.write("VAR _has_started : BOOL; END_VAR\n", place);
+        text.append(actions_);
+        if (has_start_)
+            text.write("IF NOT _has_started THEN _has_started := TRUE; _INIT(); END_IF\n", place);
+        text.append(body_);
+        text.write("END_PROGRAM\n", place);
+        to_.project.add(text.finish(list_.file()->path, name));
+    }
+
+  private:
+    fs::path folder() const {
+        std::error_code unknown;
+        return fs::absolute(list_.file()->path, unknown).lexically_normal().parent_path();
+    }
+
+    /// `Cyclic.st`, or `\Logical\Other\Cyclic.st` from the folder of the whole project.
+    std::string path_of(std::string text) const {
+        std::ranges::replace(text, '\\', '/');
+        if (!text.starts_with('/'))
+            return (fs::path(list_.file()->path).parent_path() / text).lexically_normal().string();
+        text.erase(0, 1);
+        const std::string first = fs::path(text).begin()->string();
+        fs::path root = folder();
+        while (root != root.root_path() && root.filename() != first) root = root.parent_path();
+        fs::path made = (root.parent_path() / text).lexically_normal();
+        std::error_code unknown;
+        if (fs::path(list_.file()->path).is_relative())
+            made = made.lexically_proximate(fs::current_path(unknown));
+        return made.string();
+    }
+
+    void add(pugi::xml_node file) {
+        const std::string named = list_.plain(file);
+        const Mark mark = list_.mark_of_tag(file);
+        const std::string ending = lower(fs::path(named).extension().string());
+        if (ending != ".st" && ending != ".var") {
+            if (!is_structured_text(named)) return refuse(mark, named);
+            if (const auto path = to_.resolve(path_of(named), mark)) read_sources(to_, *path, mark);
+            return;
+        }
+        const auto path = to_.resolve(path_of(named), mark);
+        auto source = path ? read_source(*path, to_.out, mark) : nullptr;
+        if (!source) return;
+        const PlacedFile text(source);
+        if (ending == ".var") {
+            variables_.copy(text, {0, text.text().size()});
+            variables_.write("\n", mark);
+        } else {
+            add_bodies(text);
+        }
+    }
+
+    void refuse(const Mark& mark, const std::string& named) {
+        to_.out.add(code::not_supported, mark,
+                    fmt::format("'{}' is not Structured Text, and nothing else is read of a "
+                                "program of Automation Studio",
+                                named),
+                    "convert it to Structured Text, or leave it out");
+    }
+
+    /// Each PROGRAM and ACTION of a file.
+    void add_bodies(const PlacedFile& file) {
+        Diagnostics unread;
+        const st::Tokens found = st::read_tokens(file.file(), unread);
+        const auto& tokens = found.tokens;
+        for (std::size_t i = 0; i + 1 < tokens.size(); ++i) {
+            const bool is_program = st::same_name(tokens[i].place.text(), "program");
+            if (!is_program && !st::same_name(tokens[i].place.text(), "action")) continue;
+            const std::string_view end = is_program ? "end_program" : "end_action";
+            std::size_t last = i + 1;
+            while (last < tokens.size() && !st::same_name(tokens[last].place.text(), end)) ++last;
+            const std::size_t begin = tokens[i].place.begin;
+            const bool is_closed = last < tokens.size();
+            if (!is_program)
+                copy(actions_, file, begin,
+                     is_closed ? tokens[last].place.end : file.text().size());
+            else
+                add_program(file, tokens[i + 1],
+                            is_closed ? tokens[last].place.begin : file.text().size());
+            i = last;
+        }
+    }
+
+    void add_program(const PlacedFile& file, const st::Token& name, std::size_t end) {
+        const std::size_t begin = name.place.end;
+        if (st::same_name(name.place.text(), "_exit")) return;
+        if (!st::same_name(name.place.text(), "_init")) return copy(body_, file, begin, end);
+        has_start_ = true;
+        const Mark place = file.mark({name.place.begin, name.place.end});
+        actions_.write("ACTION _INIT:\n", place);
+        copy(actions_, file, begin, end);
+        actions_.write("END_ACTION\n", place);
+    }
+
+    static void copy(Excerpts& to, const PlacedFile& file, std::size_t begin, std::size_t end) {
+        to.copy(file, {begin, end});
+        to.write("\n", file.mark({begin, begin}));
+    }
+
+    const XmlFile& list_;
+    const Reading& to_;
+    Excerpts variables_, actions_, body_;
+    bool has_start_ = false;
+};
+
+}  // namespace
+
+bool is_iec_program(const fs::path& file) {
+    std::string start(4096, '\0');
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+    return start.find("<Program SubType=\"IEC\"") != std::string::npos;
+}
+
+void read_iec_program(const Reading& to, const std::string& path, const Mark& where) {
+    const auto file = XmlFile::read(path, to.out, where);
+    if (!file) return;
+    if (std::string_view(file->root().name()) != "Program")
+        return to.out.add(
+            code::not_an_object, file->mark_of_tag(file->root()),
+            fmt::format("<{}> is no program of Automation Studio", file->root().name()),
+            "its files begin with <Program SubType=\"IEC\">");
+    IecProgram(*file, to).read();
+}
+
+}  // namespace lineshaft::projects

@@ -1,0 +1,330 @@
+#!/usr/bin/python3
+"""Random networks of LD and FBD, written as PLCopen XML and as Structured Text by rules of their own: both runs write
+the same bytes.
+
+usage: drawings.py LINESHAFT [NETWORKS [SEED]]
+"""
+
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+
+lineshaft = str(pathlib.Path(sys.argv[1]).resolve())
+networks = int(sys.argv[2]) if len(sys.argv) > 2 else 200
+seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1
+
+BOOLS = [f"g{i}" for i in range(5)]  # globals that change from scan to scan
+NUMBERS = [f"n{i}" for i in range(3)]
+DRIVER = f"""VAR_GLOBAL {', '.join(BOOLS)} : BOOL; {', '.join(NUMBERS)} : INT; END_VAR
+PROGRAM Driver
+VAR r : UDINT := 12345; END_VAR
+r := r * 1664525 + 1013904223;
+{' '.join(f"{name} := ((r / {2 ** (8 + i)}) MOD 2) = 1;" for i, name in enumerate(BOOLS))}
+{' '.join(f"{name} := UDINT_TO_INT((r / {2 ** (10 + 3 * i)}) MOD 7);" for i, name in enumerate(NUMBERS))}
+END_PROGRAM
+"""
+
+
+class Network:
+    """A PROGRAM in both forms: elements of a body, and statements."""
+
+    def __init__(self, draw, name):
+        self.draw, self.name = draw, name
+        self.elements, self.statements, self.declared = [], [], []
+        self.count = 0
+        for i in range(3):
+            self.declare(f"b{i}", "BOOL")
+            self.declare(f"v{i}", "INT")
+
+    def declare(self, name, kind):
+        self.declared.append((name, kind))
+        return name
+
+    def own(self, kind):
+        """A variable or an instance that only the text has."""
+        self.count += 1
+        name = f"t{self.count}"
+        self.text_only = getattr(self, "text_only", []) + [(name, kind)]
+        return name
+
+    def instance(self, kind):
+        self.count += 1
+        return self.declare(f"i{self.count}", kind)
+
+    def element(self, tag, inside, y=0, **attributes):
+        number = len(self.elements) + 1
+        more = "".join(f' {key}="{value}"' for key, value in attributes.items())
+        self.elements.append(f'<{tag} localId="{number}"{more}><position x="{number}" y="{y}"/>{inside}</{tag}>')
+        return number
+
+    def xml(self, language):
+        kinds = {"BOOL": "<BOOL/>", "INT": "<INT/>"}
+        def variables(of):
+            return "".join(f'<variable name="{n}"><type>{kinds.get(k) or f"""<derived name="{k}"/>"""}</type></variable>' for n, k in of)
+        outside = variables([(n, "BOOL") for n in BOOLS] + [(n, "INT") for n in NUMBERS])
+        elements = self.elements[:]
+        self.draw.shuffle(elements)
+        return (f'<pou name="{self.name}" pouType="program"><interface><externalVars>{outside}</externalVars>'
+                f'<localVars>{variables(self.declared)}</localVars></interface><body><{language}>'
+                + "\n".join(elements) + f"</{language}></body></pou>\n")
+
+    def text(self):
+        own = "".join(f"{n} : {k}; " for n, k in self.declared + getattr(self, "text_only", []))
+        return f"PROGRAM {self.name}\nVAR {own}END_VAR\n" + "\n".join(self.statements) + "\nEND_PROGRAM\n"
+
+
+def lines(ids):
+    return "".join(f'<connection refLocalId="{i}"' + (f' formalParameter="{pin}"' if pin else "") + "/>" for i, pin in ids)
+
+
+def point(ids):
+    return f"<connectionPointIn>{lines(ids)}</connectionPointIn>"
+
+
+def pin(name, ids, **attributes):
+    more = "".join(f' {key}="{value}"' for key, value in attributes.items())
+    return f'<variable formalParameter="{name}"{more}>{point(ids)}</variable>'
+
+
+def outputs(*names):
+    return "<outputVariables>" + "".join(f'<variable formalParameter="{n}"><connectionPointOut/></variable>' for n in names) + "</outputVariables>"
+
+
+# ---- ladder: a tree of contacts in series and parallel, coils at its end
+
+def tree(draw, depth):
+    kind = draw.random()
+    if depth == 0 or kind < 0.35:
+        return ("contact", draw.choice(BOOLS + ["b0", "b1", "b2"]), draw.choice(["", "", "", "negated", "rising", "falling"]))
+    if kind < 0.45:
+        return ("timer", draw.choice(["TON", "TOF", "TP"]), draw.choice([10, 25, 40]))
+    if kind < 0.52:
+        return ("compare", draw.choice(["GT", "LE", "EQ", "NE"]), draw.choice(NUMBERS), draw.choice(NUMBERS + ["3"]))
+    return (draw.choice(["series", "parallel"]), [tree(draw, depth - 1) for _ in range(draw.randint(2, 3))])
+
+
+def drawn(net, part, before, y):
+    """The elements behind `before`, as XML."""
+    kind = part[0]
+    if kind == "contact":
+        more = {"negated": {"negated": "true"}, "rising": {"edge": "rising"}, "falling": {"edge": "falling"}}.get(part[2], {})
+        return [(net.element("contact", point(before) + f"<variable>{part[1]}</variable>", y, **more), "")]
+    if kind == "timer":
+        time = net.element("inVariable", f"<expression>T#{part[2]}ms</expression>", y)
+        number = net.element("block", "<inputVariables>" + pin("IN", before) + pin("PT", [(time, "")]) + "</inputVariables>" + outputs("Q", "ET"),
+                             y, typeName=part[1], instanceName=part[3])
+        return [(number, "Q")]
+    if kind == "compare":
+        sides = [net.element("inVariable", f"<expression>{name}</expression>", y) for name in part[2:4]]
+        number = net.element("block", "<inputVariables>" + pin("EN", before) + pin("IN1", [(sides[0], "")]) + pin("IN2", [(sides[1], "")])
+                             + "</inputVariables>" + outputs("OUT"), y, typeName=part[1])
+        return [(number, "OUT")]
+    if kind == "series":
+        for each in part[1]:
+            before = drawn(net, each, before, y)
+        return before
+    return [end for each in part[1] for end in drawn(net, each, before, y)]
+
+
+SIGNS = {"GT": ">", "LE": "<=", "EQ": "=", "NE": "<>", "GE": ">=", "LT": "<"}
+
+
+def said(net, part, before):
+    """What comes behind `before`, as an expression; edges and timers are statements."""
+    kind = part[0]
+    if kind == "contact":
+        value = part[1]
+        if part[2] in ("rising", "falling"):
+            trigger = net.own("R_TRIG" if part[2] == "rising" else "F_TRIG")
+            net.statements.append(f"{trigger}(CLK := {value});")
+            value = f"{trigger}.Q"
+        return f"({before} AND {'NOT ' if part[2] == 'negated' else ''}{value})"
+    if kind == "timer":
+        net.statements.append(f"{part[3]}(IN := {before}, PT := T#{part[2]}ms);")
+        return f"{part[3]}.Q"
+    if kind == "compare":
+        return f"({before} AND ({part[2]} {SIGNS[part[1]]} {part[3]}))"
+    if kind == "series":
+        for each in part[1]:
+            before = said(net, each, before)
+        return before
+    return "(" + " OR ".join(said(net, each, before) for each in part[1]) + ")"
+
+
+def with_instances(net, part):
+    if part[0] == "timer":
+        return part + (net.instance(part[1]),)
+    if part[0] in ("series", "parallel"):
+        return (part[0], [with_instances(net, each) for each in part[1]])
+    return part
+
+
+def ladder(draw, name):
+    net = Network(draw, name)
+    rail = net.element("leftPowerRail", "")
+    rungs = []
+    for number in range(draw.randint(1, 4)):
+        part = with_instances(net, tree(draw, draw.randint(0, 3)))
+        coils = [(draw.choice(["b0", "b1", "b2"]), draw.choice(["", "", "negated", "set", "reset", "rising", "falling"]))
+                 for _ in range(draw.randint(1, 3))]
+        rungs.append((100 * number, part, coils, draw.random() < 0.3))
+    for y, part, coils, in_series in rungs:
+        value = net.own("BOOL")
+        net.statements.append(f"{value} := {said(net, part, 'TRUE')};")
+        for target, kind in coils:
+            if kind in ("rising", "falling"):
+                trigger = net.own("R_TRIG" if kind == "rising" else "F_TRIG")
+                net.statements.append(f"{trigger}(CLK := {value}); {target} := {trigger}.Q;")
+            elif kind in ("set", "reset"):
+                net.statements.append(f"IF {value} THEN {target} := {'TRUE' if kind == 'set' else 'FALSE'}; END_IF")
+            else:
+                net.statements.append(f"{target} := {'NOT ' if kind else ''}{value};")
+    for y, part, coils, in_series in draw.sample(rungs, len(rungs)):
+        ends = drawn(net, part, [(rail, "")], y)
+        for place, (target, kind) in enumerate(coils):
+            more = {"negated": {"negated": "true"}, "": {}}.get(kind) if kind in ("negated", "") else (
+                {"storage": kind} if kind in ("set", "reset") else {"edge": kind})
+            number = net.element("coil", point(ends) + f"<variable>{target}</variable>", y + place, **more)
+            if in_series:
+                ends = [(number, "")]
+    return net
+
+
+# ---- function block diagrams: elements in an order of their own, each into a variable in the text
+
+FUNCTIONS = {  # name: types of the inputs, type of the result, the text
+    "ADD": (["INT", "INT"], "INT", "{0} + {1}"), "SUB": (["INT", "INT"], "INT", "{0} - {1}"),
+    "MUL": (["INT", "INT"], "INT", "{0} * {1}"), "MAX": (["INT", "INT", "INT"], "INT", "MAX({0}, {1}, {2})"),
+    "LIMIT": (["INT", "INT", "INT"], "INT", "LIMIT({0}, {1}, {2})"), "SEL": (["BOOL", "INT", "INT"], "INT", "SEL({0}, {1}, {2})"),
+    "AND": (["BOOL", "BOOL", "BOOL"], "BOOL", "{0} AND {1} AND {2}"), "OR": (["BOOL", "BOOL"], "BOOL", "{0} OR {1}"),
+    "XOR": (["BOOL", "BOOL"], "BOOL", "{0} XOR {1}"), "NOT": (["BOOL"], "BOOL", "NOT {0}"),
+    "GT": (["INT", "INT"], "BOOL", "{0} > {1}"), "EQ": (["INT", "INT"], "BOOL", "{0} = {1}"),
+    "MOVE": (["INT"], "INT", "{0}")}
+BLOCKS = {  # name: inputs, outputs
+    "TON": ([("IN", "BOOL"), ("PT", "TIME")], [("Q", "BOOL")]), "TP": ([("IN", "BOOL"), ("PT", "TIME")], [("Q", "BOOL")]),
+    "CTU": ([("CU", "BOOL"), ("R", "BOOL"), ("PV", "INT")], [("Q", "BOOL"), ("CV", "INT")]),
+    "SR": ([("S1", "BOOL"), ("R", "BOOL")], [("Q1", "BOOL")]), "R_TRIG": ([("CLK", "BOOL")], [("Q", "BOOL")])}
+
+
+def diagram(draw, name):
+    """Boxes and variables with executionOrderId: what comes from a later one is the value of the last scan."""
+    net = Network(draw, name)
+    kinds = []
+    for _ in range(draw.randint(2, 9)):
+        kinds.append(draw.choice(list(FUNCTIONS) * 2 + list(BLOCKS) * 3 + ["out"] * 12))
+    kinds.append("out")
+    plan = []  # (kind, number, result type, text of the result by pin)
+    for kind in kinds:
+        if kind in FUNCTIONS:
+            plan.append((kind, {"OUT": (FUNCTIONS[kind][1], net.own(FUNCTIONS[kind][1]))}, draw.random() < 0.2))
+        elif kind in BLOCKS:
+            instance = net.instance(kind)
+            plan.append((kind, {pin: (of, f"{instance}.{pin}") for pin, of in BLOCKS[kind][1]}, instance))
+        else:
+            plan.append((kind, {}))
+    rest = []  # variables that boxes take
+
+    def take(of, turn, negatable=True, is_typed=False):
+        """A line, its attributes, and the same as text; `is_typed`: from a variable, which says the type."""
+        found = [(i, pin, text) for i, entry in enumerate(plan) for pin, (kind, text) in entry[1].items()
+                 if kind == of and not (plan[turn][0] == "out" and entry[2] is True)]  # a box with EN may leave a variable as it is
+        earlier = [f for f in found if f[0] < turn]
+        later = [f for f in found if f[0] >= turn]
+        if earlier and not is_typed and draw.random() < 0.6:
+            i, pin, text = draw.choice(earlier)
+        elif later and not is_typed and draw.random() < 0.3:
+            i, pin, text = draw.choice(later)
+        else:
+            text = {"BOOL": lambda: draw.choice(BOOLS + ["b0", "b1", "b2"]), "TIME": lambda: "T#30ms",
+                    "INT": lambda: draw.choice(NUMBERS + ["v0", "v1", "v2"] + (["2"] if negatable and not is_typed else []))}[of]()
+            rest.append(f'<inVariable localId="{100 + len(rest)}"><position x="0" y="0"/><expression>{text}</expression></inVariable>')
+            i, pin = 100 + len(rest) - 2, ""
+        more = {}
+        if of == "BOOL" and draw.random() < 0.2:
+            more, text = {"negated": "true"}, f"NOT {text}"
+        if of == "BOOL" and negatable and draw.random() < 0.1:
+            trigger = net.own("R_TRIG")
+            net.statements.append(f"{trigger}(CLK := {text});")
+            more["edge"], text = "rising", f"{trigger}.Q"
+        return [(i + 1, pin)], more, text
+
+    for turn, entry in enumerate(plan):
+        kind = entry[0]
+        if kind in FUNCTIONS:
+            types, result, form = FUNCTIONS[kind]
+            pins, texts = "", []
+            has_en = entry[2]
+            if has_en:
+                ends, more, text = take("BOOL", turn, False)
+                pins += pin("EN", ends, **more)
+                enabled = text
+            for i, of in enumerate(types):
+                ends, more, text = take(of, turn, True, of == "INT" and i == len(types) - 1)
+                pins += pin(f"IN{i + 1}", ends, **more)
+                texts.append(text)
+            target = entry[1]["OUT"][1]
+            statement = f"{target} := {form.format(*(f'({t})' for t in texts))};"
+            net.statements.append(f"IF {enabled} THEN {statement} END_IF" if has_en else statement)
+            net.element("block", f"<inputVariables>{pins}</inputVariables>" + outputs(*(["ENO"] if has_en else []), "OUT"), 0,
+                        typeName=kind, executionOrderId=turn + 1)
+        elif kind in BLOCKS:
+            pins, texts = "", []
+            for pin_name, of in BLOCKS[kind][0]:
+                ends, more, text = take(of, turn)
+                pins += pin(pin_name, ends, **more)
+                texts.append(f"{pin_name} := {text}")
+            net.statements.append(f"{entry[2]}({', '.join(texts)});")
+            net.element("block", f"<inputVariables>{pins}</inputVariables>" + outputs(*(p for p, _ in BLOCKS[kind][1])), 0,
+                        typeName=kind, instanceName=entry[2], executionOrderId=turn + 1)
+        else:
+            of = draw.choice(["BOOL", "INT"])
+            target = draw.choice(["b0", "b1", "b2"] if of == "BOOL" else ["v0", "v1", "v2"])
+            ends, more, text = take(of, turn)
+            net.statements.append(f"{target} := {text};")
+            net.element("outVariable", point(ends) + f"<expression>{target}</expression>", 0, executionOrderId=turn + 1, **more)
+    net.elements += rest
+    return net
+
+
+def run(folder, name, sources, nets):
+    signals = [f"{net.name}.{v}" for net in nets for v in ("b0", "b1", "b2", "v0", "v1", "v2")]
+    blocks = "".join(f"  {net.name}: {{type: {net.name}, task: main}}\n" for net in nets)
+    (folder / f"{name}.yaml").write_text(
+        f"lineshaft: 1\ntitle: t\nsources: [driver.st, {sources}]\ntasks: {{main: {{every: 10 ms}}}}\nblocks:\n  d: {{type: Driver, task: main}}\n"
+        f"{blocks}run: {{for: 400 ms}}\ntrace: {{task: main, signals: [{', '.join(signals)}]}}\n")
+    done = subprocess.run([lineshaft, "run", "--quiet", f"{name}.yaml", "--trace", f"{name}.csv"], cwd=folder, capture_output=True, text=True)
+    if done.returncode:
+        print(done.stdout + done.stderr)
+        subprocess.run([lineshaft, "show", sources], cwd=folder)
+        sys.exit(f"{name} of seed {seed} gave {done.returncode}")
+    return [line for line in (folder / f"{name}.csv").read_bytes().splitlines() if not line.startswith(b"#")]
+
+
+done = 0
+batch = 50
+with tempfile.TemporaryDirectory() as temporary:
+    folder = pathlib.Path(temporary)
+    (folder / "driver.st").write_text(DRIVER)
+    while done < networks:
+        draw = random.Random(f"{seed} {done}")
+        language = ("LD", "FBD")[done // batch % 2]
+        nets = [(ladder if language == "LD" else diagram)(draw, f"Net{i}") for i in range(batch)]
+        (folder / "drawn.xml").write_text('<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><pous>\n'
+                                          + "".join(net.xml(language) for net in nets) + "</pous></types></project>\n")
+        (folder / "said.st").write_text("".join(net.text() for net in nets))
+        a, b = run(folder, "drawn", "drawn.xml", nets), run(folder, "said", "said.st", nets)
+        if a != b:
+            first = next((i for i, (x, y) in enumerate(zip(a, b)) if x != y), min(len(a), len(b)))
+            columns = [j for j, (x, y) in enumerate(zip(a[first].split(b","), b[first].split(b","))) if x != y]
+            net = nets[(columns[0] - 1) // 6]
+            print(net.xml(language), net.text(), sep="\n")
+            (folder / "one.xml").write_text('<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><pous>\n' + net.xml(language)
+                                            + "</pous></types></project>\n")
+            subprocess.run([lineshaft, "show", "one.xml"], cwd=folder)
+            sys.exit(f"seed {seed}, networks from {done} on: line {first} differs in columns {columns}: {net.name}")
+        changing = len(set(a[1:]))
+        assert changing > 10, f"the trace shows only {changing} different lines"
+        done += batch
+print(f"{done} networks, drawn and written: the same bytes")

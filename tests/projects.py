@@ -1,0 +1,176 @@
+#!/usr/bin/python3
+"""Projects of others at the prompt: `new --from`, the page of `check PROJECT`, `show`, folders of Automation Studio and SIMATIC
+AX, and XML that means harm, each within 1 s of processor time and 256 MB.
+
+usage: projects.py LINESHAFT
+"""
+
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+
+lineshaft = str(pathlib.Path(sys.argv[1]).resolve())
+MOST_SECONDS = 1
+MOST_KILOBYTES = float("inf") if os.environ.get("LINESHAFT_MEMORY_LIMITS") == "off" else 256 * 1024
+
+
+def run(*arguments, code=0, cwd=None):
+    done = subprocess.run([lineshaft, *map(str, arguments)], cwd=cwd or work, capture_output=True, text=True)
+    assert done.returncode == code, f"{arguments} gave {done.returncode}:\n{done.stdout}{done.stderr}"
+    return done.stdout + done.stderr
+
+
+def write(name, text):
+    path = work / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return path
+
+
+def drawn(body, language="LD", variables="a b"):
+    declared = "".join(f'<variable name="{name}"><type><BOOL/></type></variable>' for name in variables.split())
+    return (f'<?xml version="1.0" encoding="utf-8"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><pous>\n'
+            f'<pou name="P" pouType="program"><interface><localVars>{declared}</localVars></interface><body><{language}>\n'
+            f"{body}\n</{language}></body></pou></pous></types></project>\n")
+
+
+RUNG = ('<leftPowerRail localId="0"/>\n<contact localId="1"><connectionPointIn><connection refLocalId="0"/></connectionPointIn>'
+        '<variable>a</variable></contact>\n'
+        '<coil localId="2" negated="true"><connectionPointIn><connection refLocalId="1"/></connectionPointIn><variable>b</variable></coil>')
+
+
+def check_new_from():
+    """What `new --from` says and writes runs as it is said."""
+    for folder, project in (("beside", "beside/plant/P.xml"), ("away/here", "away/there/P.xml"), ("away/here2", "a way/P.xml")):
+        write(project, drawn(RUNG))
+        target = work / folder
+        target.mkdir(parents=True, exist_ok=True)
+        said = run("new", "machine", "--from", work / project, cwd=target)
+        command = re.search(r"try: lineshaft (.+)", said)[1]
+        run(*shlex.split(command), cwd=target)
+        in_file = re.findall(r"^#   lineshaft (.+)", (target / "machine.yaml").read_text(), re.M)
+        assert len(in_file) == 2
+        for command in in_file:
+            run(*shlex.split(command), cwd=target)
+        values = (target / "machine.csv").read_text().splitlines()[-1].lower()
+        assert values.endswith((",0,1", ",false,true")), values
+
+
+def check_page():
+    """`check PROJECT` names causes with counts and the first place."""
+    write("page/A.xml", drawn(RUNG))
+    write("page/B.xml", drawn(RUNG.replace(">a<", ">nobody<")).replace('name="P"', 'name="Q"'))
+    page = run("check", "page", code=2)
+    assert "page: 1 of 2 POUs, types and lists have no mistake; 0 tasks, 0 libraries\n" in page, page
+    assert re.search(r"\n +1 +1  L0904 '\.\.\.' is not declared\n +page/B\.xml:5:", page), page
+    assert "page/B.xml:5:99: error[L0904]: 'nobody' is not declared (network 1, contact 1)" in page, page
+    assert run("check", "page/A.xml") == "ok  page/A.xml\n"
+    assert "P.b" not in run("show", "page/A.xml") and "b := NOT a;\n" in run("show", "page/A.xml")
+    bad = write("bad.xml", drawn("").replace("<LD>\n\n</LD>", "<IL><p>LD a</p></IL>"))
+    assert "the body of 'P' is an instruction list (IL)" in run("show", bad, code=2)
+
+
+def check_yaml_folder():
+    program = ("lineshaft: 1\ntitle: t\ntasks: {main: {every: 10 ms}}\nblocks: {x: {type: axis, task: main}}\n"
+               "run: {for: 20 ms}\n")
+    write("one/a.yaml", program)
+    assert run("check", "one") == "ok  one: 1 file\n"
+    write("one/b.yaml", program)
+    assert run("check", "one") == "ok  one: 2 files\n"
+    write("one/c.yaml", program.replace("type: axis", "type: axes"))
+    assert "one/c.yaml:4:" in run("check", "one", code=2)
+
+
+def check_automation_studio():
+    program = ('<?xml version="1.0" encoding="utf-8"?>\n<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program">\n <Files>\n'
+               + "".join(f"  <File{more}>{name}</File>\n" for name, more in
+                         (("Variables.var", ""), ("Init.st", ""), ("Cyclic.st", ""), ("Actions.st", ""), ("Exit.st", ""), ("Types.typ", "")))
+               + " </Files>\n</Program>\n")
+    write("Plant/Logical/Belt/IEC.prg", program)
+    write("Plant/Logical/Belt/Variables.var", "VAR\n\tstate : State_type;\n\tn, started : INT;\nEND_VAR\n")
+    write("Plant/Logical/Belt/Types.typ", "TYPE\n\tState_type : (WAIT, GO);\nEND_TYPE\n")
+    write("Plant/Logical/Belt/Init.st", "PROGRAM _INIT\n\tstarted := started + 1;\nEND_PROGRAM\n")
+    write("Plant/Logical/Belt/Cyclic.st", "PROGRAM _CYCLIC\n\tcount;\n\tstate := GO;\nEND_PROGRAM\n")
+    write("Plant/Logical/Belt/Actions.st", "ACTION count:\n\tn := n + 1;\nEND_ACTION\n")
+    write("Plant/Logical/Belt/Exit.st", "PROGRAM _EXIT\n\tn := 0;\nEND_PROGRAM\n")
+    write("Plant/Logical/Other/IEC.prg", program.replace("<File>", '<File Reference="true">\\Logical\\Belt\\'))
+    run("check", "Plant")
+    run("new", "belt", "--from", "Plant")
+    text = (work / "belt.yaml").read_text()
+    assert "Belt: {type: Belt," in text and "Other: {type: Other," in text, text
+    write("belt.yaml", text + "expect:\n  - {at: end, Belt.n: 101}\n  - {at: end, Belt.started: 1}\n  - {at: end, Other.n: 101}\n")
+    run("run", "belt.yaml", "--quiet")
+    write("Plant/Logical/Belt/Cyclic.st", "PROGRAM _CYCLIC\n\tcount;\n\tmissing := GO;\nEND_PROGRAM\n")
+    assert "Plant/Logical/Belt/Cyclic.st:3:2: error[L0904]: 'missing' is not declared" in run("check", "Plant", code=2)
+
+
+def check_apax():
+    write("package/apax.yml", "name: p\n")
+    write("package/src/a.st", "FUNCTION_BLOCK Counter\nVAR_OUTPUT n : INT; END_VAR\nn := n + 1;\nEND_FUNCTION_BLOCK\n")
+    write("package/scraps/b.st", "this is nothing\n")
+    run("show", "package/apax.yml")
+    write("package.yaml", "lineshaft: 1\ntitle: t\nsources: [package/apax.yml]\ntasks: {main: {every: 10 ms}}\n"
+          "blocks: {c: {type: Counter, task: main}}\nrun: {for: 100 ms}\nexpect:\n  - {at: end, c.n: 11}\n")
+    run("run", "package.yaml", "--quiet")
+
+
+def check_hostile():
+    contacts = 20000
+    chain = '<leftPowerRail localId="0"/>' + "".join(
+        f'<contact localId="{i + 1}"><connectionPointIn><connection refLocalId="{i}"/></connectionPointIn><variable>a</variable></contact>'
+        for i in range(contacts)) + (f'<coil localId="{contacts + 1}"><connectionPointIn><connection refLocalId="{contacts}"/>'
+                                     "</connectionPointIn><variable>b</variable></coil>")
+    doubling = '<inVariable localId="0"><expression>unknown.x</expression></inVariable>' + "".join(
+        f'<block localId="{i + 1}" typeName="Strange"><inputVariables>' + "".join(
+            f'<variable formalParameter="{pin}"><connectionPointIn><connection refLocalId="{i}"/></connectionPointIn></variable>' for pin in "ab")
+        + '</inputVariables><outputVariables><variable formalParameter="OUT"><connectionPointOut/></variable></outputVariables></block>'
+        for i in range(60)) + ('<outVariable localId="70"><connectionPointIn><connection refLocalId="60"/></connectionPointIn>'
+                               "<expression>b</expression></outVariable>")
+    around = ('<connector localId="1" name="c"><connectionPointIn><connection refLocalId="2"/></connectionPointIn></connector>'
+              '<continuation localId="2" name="c"/><coil localId="3"><connectionPointIn><connection refLocalId="2"/></connectionPointIn>'
+              "<variable>b</variable></coil>")
+    branches = "".join(f'<selectionDivergence localId="{i}"><connectionPointIn><connection refLocalId="{(i + 1) % 50}"/><connection '
+                       f'refLocalId="{(i + 2) % 50}"/></connectionPointIn></selectionDivergence>' for i in range(50)) + (
+        '<transition localId="60"><connectionPointIn><connection refLocalId="0"/></connectionPointIn></transition>')
+    growing = "".join(f'<!ENTITY e{i + 1} "{"&e%d;" % i * 10}">' for i in range(12))
+    start = drawn(RUNG)
+    cases = {
+        "entities": start.replace("?>\n", f'?>\n<!DOCTYPE project [<!ENTITY e0 "ha">{growing}]>\n', 1).replace(">b<", ">&e12;<"),
+        "file": start.replace("?>\n", '?>\n<!DOCTYPE project [<!ENTITY f SYSTEM "/etc/passwd">]>\n', 1).replace(">b<", ">&f;<"),
+        "deep tags": start.replace("<LD>", "<LD>" + "<a>" * 400_000),
+        "deep types": start.replace("<BOOL/>", "<array><baseType>" * 100_000 + "<BOOL/>" + "</baseType></array>" * 100_000, 1),
+        "large": start + " " * (17 << 20),
+        "chain": drawn(chain), "doubling": drawn(doubling, "FBD"), "around": drawn(around, "FBD"), "branches": drawn(branches, "SFC"),
+        "jumps": drawn('<jump localId="1" label="L"/><label localId="2" label="\n// *) L"/>', "FBD"),
+        "text in a name": start.replace('name="a"', 'name="a : BOOL; END_VAR (*"'),
+    }
+    for name, text in cases.items():
+        path = write("hostile.xml", text)
+        with open(work / "said", "w+b") as said:
+            process = subprocess.Popen([lineshaft, "check", path], stdout=subprocess.DEVNULL, stderr=said)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            said.seek(0)
+            message = said.read().decode()
+        seconds = usage.ru_utime + usage.ru_stime
+        print(f"  {name}: exit {process.returncode}, {seconds:.2f} s, {usage.ru_maxrss // 1024} MB: {message.splitlines()[0][-90:] if message else ''}")
+        assert process.returncode == 2, (name, process.returncode, message)
+        place = r"hostile\.xml' has more than" if name == "large" else r"hostile\.xml:\d+:\d+: error\[L\d+\]"  # refused unread
+        assert re.search(place, message), (name, message)
+        assert seconds <= MOST_SECONDS, (name, seconds)
+        assert usage.ru_maxrss <= MOST_KILOBYTES, (name, usage.ru_maxrss)
+
+
+with tempfile.TemporaryDirectory() as temporary:
+    work = pathlib.Path(temporary)
+    check_new_from()
+    check_page()
+    check_yaml_folder()
+    check_automation_studio()
+    check_apax()
+    check_hostile()
+print("projects of others at the prompt: fine")
