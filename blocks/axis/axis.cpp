@@ -127,9 +127,20 @@ MotionState Axis::total() const {
 }
 
 void Axis::advance(const Context& context, std::int64_t now) {
+    if (goes_on(now)) return;
     while (has_ended(now)) end_motion(context);
     if (added.exists() && added_paused == 0 && added_motion.has_ended(now)) end_added(context);
     look(context, now);
+}
+
+/// What most scans are: a move goes on, with nothing on top of it. False where more than that is
+/// to be looked at.
+inline bool Axis::goes_on(std::int64_t now) {
+    if (doing != Doing::moving_to_point || added.exists()) return false;
+    const double t = point_motion.start.until(now);
+    if (Moment::is_over(point_motion.duration, t)) return false;
+    base = point_motion.later(t);
+    return true;
 }
 
 bool Axis::has_ended(std::int64_t now) const {
