@@ -383,6 +383,12 @@ struct Axis {
                           Leg& rest, const Moment& at) const;
 };
 
+/// As of any block; of many axes what the next ones' scans touch is on its way from memory
+/// meanwhile.
+template <>
+bool Catalog::scan_blocks<Axis>(std::byte* first, std::size_t count, const Scan& now,
+                                const Context& context);
+
 /// Whether PLCopen's parameter of that number is a BOOL: software limits on or off.
 bool is_bool_parameter(std::int64_t number);
 
