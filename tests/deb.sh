@@ -31,6 +31,7 @@ lineshaft --version
 lineshaft new first --quiet
 lineshaft test --strict first.yaml
 lineshaft run first.yaml --trace first.csv --quiet
+lineshaft serve first.yaml --http 127.0.0.1:18090 --for 0.1s >/dev/null
 lineshaft check --strict /usr/share/lineshaft/programs/0*.yaml >/dev/null
 lineshaft explain L0404 >/dev/null
 END

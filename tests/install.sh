@@ -10,6 +10,8 @@ lineshaft --version | grep "^lineshaft [0-9.]* (.*)$" >/dev/null
 lineshaft new first --quiet
 lineshaft test --strict first.yaml
 lineshaft check --strict "$folder"/usr/share/lineshaft/programs/0*.yaml
+port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+lineshaft serve first.yaml --http "127.0.0.1:$port" --for 0.1s >/dev/null
 if lineshaft new first; then echo "a second 'new' replaced the file"; exit 1; fi
 
 program() { printf 'lineshaft: 1\ncontroller: %s\nblocks: {n: {type: ctu, task: main, cu: inputs.part, pv: 3}}\ninputs: {part: false}\nrun: {for: 1 s}\n' "$1"; }

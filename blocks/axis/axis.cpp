@@ -6,6 +6,40 @@
 
 namespace lineshaft {
 
+namespace {
+
+constexpr std::size_t axes_ahead = 4;
+
+/// The phase of a plan is known once the line is there that says which: it is a nearer axis'.
+void prefetch(const Axis* axis) {
+    const auto ask_for = [](const void* from, const void* to) {
+        constexpr std::ptrdiff_t line = 64;
+        for (auto at = static_cast<const char*>(from); at < to; at += line) __builtin_prefetch(at);
+    };
+    const Axis& far = axis[axes_ahead];
+    ask_for(&far, &far.added.ticket);
+    ask_for(&far.point_motion, &far.point_motion.plan.end);
+    const PointMotion& near = axis[axes_ahead / 2].point_motion;
+    const MotionPlan::Phase* const phase = near.plan.phases.data() + near.phase;
+    ask_for(phase, phase + 1);
+}
+
+}  // namespace
+
+template <>
+bool Catalog::scan_blocks<Axis>(std::byte* first, std::size_t count, const Scan& now,
+                                const Context& context) {
+    constexpr std::size_t in_cache = 100;
+    bool error = false;
+    Axis* axis = std::launder(reinterpret_cast<Axis*>(first));
+    for (; count > 0; --count, ++axis) {
+        if (count > in_cache) prefetch(axis);
+        axis->scan(now, context);
+        error |= axis->error;
+    }
+    return error;
+}
+
 std::span<const Field> Axis::fields() {
     using A = Axis;
     static const Field table[] = {
@@ -127,9 +161,20 @@ MotionState Axis::total() const {
 }
 
 void Axis::advance(const Context& context, std::int64_t now) {
+    if (goes_on(now)) return;
     while (has_ended(now)) end_motion(context);
     if (added.exists() && added_paused == 0 && added_motion.has_ended(now)) end_added(context);
     look(context, now);
+}
+
+/// What most scans are: a move goes on, with nothing on top of it. False where more than that is
+/// to be looked at.
+inline bool Axis::goes_on(std::int64_t now) {
+    if (doing != Doing::moving_to_point || added.exists()) return false;
+    const double t = point_motion.start.until(now);
+    if (Moment::is_over(point_motion.duration, t)) return false;
+    base = point_motion.later(t);
+    return true;
 }
 
 bool Axis::has_ended(std::int64_t now) const {

@@ -27,24 +27,6 @@ namespace lineshaft {
 ///
 /// One struct, though large, as a block is one piece of memory: a file a matter (README.md).
 struct Axis {
-    // Parameters.
-    AxisUnit unit = AxisUnit::mm;
-    AxisProfile profile = AxisProfile::plcopen;
-    bool modulo = false, software_limits = false, has_drive = false;
-    double period = 0, lowest_position = 0, highest_position = 0;
-    double default_velocity = 100, default_acceleration = 1000, default_deceleration = 1000,
-           default_jerk = 5e4;
-    double start_position = 0;
-    double transition_quantum = 0;
-
-    double actual_position = 0;
-
-    double position = 0, velocity = 0, acceleration = 0, jerk = 0;
-    AxisState state = AxisState::standstill;
-    bool error = false;
-    MotionError error_id = MotionError::none;
-    bool homed = false;
-
     /// A job at work: a copy of what its command asked, who reads how far it is.
     struct Running {
         std::int64_t place = nowhere;  ///< of the Job, nowhere: none
@@ -102,22 +84,48 @@ struct Axis {
         bool contains(const MotionState& at) const;
     };
 
-    JobList inbox, queue;
-    Running active;      ///< on the axis' motion
-    Running added;       ///< MC_MoveSuperimposed, on top of it
-    Running overriding;  ///< the MC_SetOverride whose factors count
+    // What each scan touches, side by side: the caches hold no more of thousands of axes. First the
+    // set-point, then what may happen to it, at last the motions.
+    double position = 0, velocity = 0, acceleration = 0, jerk = 0;
+    bool error = false, homed = false;
+    bool modulo = false, software_limits = false, has_drive = false;  ///< parameters
     Doing doing = Doing::holding;
-    Running phased;  ///< MC_Phasing, on the master as the axis sees it
-    SyncMotion sync;
-    VelocityMotion velocity_motion;
+    MotionState base;   ///< of the motion beneath, without what is added (README.md)
+    double offset = 0;  ///< what the position is further than `base` and `extra`
+    MotionState extra;  ///< of what is added on top; while nothing is, at rest at added_goal
+    std::int64_t task = 0, scan_index = 0;  ///< of the scan under way, to stamp what is told
+    std::int64_t scan_time = 0, scan_interval = 0;  ///< [ns]
+    std::int64_t started = 0;
+    std::int64_t withdrawn = 0;  ///< a job has left the queue that `active` may count on
+    std::int64_t enables_positive = 1, enables_negative = 1;  ///< directions, by MC_Power
+    JobList inbox, queue;
+    Shown shown;
+    Running added;  ///< MC_MoveSuperimposed, on top of the axis' motion
     PointMotion point_motion;
+    VelocityMotion velocity_motion;
+
+    // Parameters but for those above.
+    AxisUnit unit = AxisUnit::mm;
+    AxisProfile profile = AxisProfile::plcopen;
+    double period = 0, lowest_position = 0, highest_position = 0;
+    double default_velocity = 100, default_acceleration = 1000, default_deceleration = 1000,
+           default_jerk = 5e4;
+    double start_position = 0;
+    double transition_quantum = 0;
+
+    double actual_position = 0;
+
+    AxisState state = AxisState::standstill;
+    MotionError error_id = MotionError::none;
+
+    Running active;      ///< on the axis' motion
+    Running overriding;  ///< the MC_SetOverride whose factors count
+    Running phased;      ///< MC_Phasing, on the master as the axis sees it
+    SyncMotion sync;
     ProfileMotion profile_motion;
     Leg leg;
-    PointMotion added_motion;  ///< of `extra`
-    MotionState base;          ///< of the motion beneath, without what is added (README.md)
-    MotionState extra;         ///< of what is added on top; while nothing is, at rest at added_goal
-    double offset = 0;         ///< what the position is further than both
-    double added_goal = 0;     ///< where `extra` ends, once no override of 0 holds it
+    PointMotion added_motion;        ///< of `extra`
+    double added_goal = 0;           ///< where `extra` ends, once no override of 0 holds it
     std::int64_t added_paused = 0;   ///< on the way there, by an override of 0
     std::int64_t added_counted = 0;  ///< the target of `active` counts on all of `added`
     double relocated = 0;            ///< by MC_SetPosition and MC_Home: followers do not see it
@@ -127,19 +135,13 @@ struct Axis {
     Factors factors;           ///< of MC_SetOverride
     std::int64_t paused = 0;   ///< on the way to `goal`, by an override of 0
     std::int64_t powered = 1;  ///< what MC_Power wants
-    std::int64_t enables_positive = 1, enables_negative = 1;  ///< directions, likewise
-    Shortage shortage;                                        ///< of the last sync_limits
-    double actual_velocity = 0, last_actual = 0;              ///< of the drive
-    std::int64_t renamed = 0;  ///< times that the place got another position
+    Shortage shortage;         ///< of the last sync_limits
+    double actual_velocity = 0, last_actual = 0;  ///< of the drive
+    std::int64_t renamed = 0;                     ///< times that the place got another position
     std::int64_t trigger_aborts = 0;
-    Shown shown;
     Safe safe;
     std::int64_t group = nowhere;  ///< place of the group (blocks/group/) that it is in
     std::int64_t led_at = 0;       ///< when it had the last set-point of that [ns]
-    std::int64_t withdrawn = 0;    ///< a job has left the queue that `active` may count on
-    std::int64_t started = 0;
-    std::int64_t task = 0, scan_index = 0;  ///< of the scan under way, to stamp what is told
-    std::int64_t scan_time = 0, scan_interval = 0;  ///< [ns]
 
     static constexpr std::string_view type = "axis";
     static constexpr std::string_view doc = "axis that takes commands: see the MC_ blocks";
@@ -210,6 +212,7 @@ struct Axis {
     // axis.cpp: time passes.
     void start(const Scan& now);
     void advance(const Context& context, std::int64_t now);
+    bool goes_on(std::int64_t now);
     bool has_ended(std::int64_t now) const;
     void look(const Context& context, std::int64_t now);
     std::pair<MotionState, Moment> end_of_motion(const Context& context) const;
@@ -379,6 +382,12 @@ struct Axis {
     bool plan_to_junction(const Junction& junction, double end_velocity, PointMotion& motion,
                           Leg& rest, const Moment& at) const;
 };
+
+/// As of any block; of many axes what the next ones' scans touch is on its way from memory
+/// meanwhile.
+template <>
+bool Catalog::scan_blocks<Axis>(std::byte* first, std::size_t count, const Scan& now,
+                                const Context& context);
 
 /// Whether PLCopen's parameter of that number is a BOOL: software limits on or off.
 bool is_bool_parameter(std::int64_t number);

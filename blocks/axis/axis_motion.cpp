@@ -44,11 +44,6 @@ Moment Moment::after(double duration) const {
     return {time + static_cast<std::int64_t>(whole), std::max(0.0, sum - whole / 1e9)};
 }
 
-MotionState before_start(MotionState state, double t) {
-    state.position += std::min(t, 0.0) * state.velocity;
-    return state;
-}
-
 bool Dynamics::valid() const {
     const auto good = [](double x) { return x > 0 && std::isfinite(x); };
     return good(velocity) && good(acceleration) && good(deceleration) && good(jerk);
@@ -96,11 +91,6 @@ void PointMotion::end_at(double position, double direction) {
     duration = high;
     end_state = plan.at(high);
     end_state.position = position;
-}
-
-MotionState PointMotion::at(std::int64_t now) {
-    const double t = start.until(now);
-    return before_start(plan.at(t, phase), t);
 }
 
 bool PointMotion::turns(double direction) const {

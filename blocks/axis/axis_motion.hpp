@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "blocks/profile/any_state.hpp"
@@ -20,14 +21,19 @@ struct Moment {
     /// after that it belongs to it. Virtual time counts whole nanoseconds, sums of doubles round,
     /// and a trapezoid takes a nanosecond longer a ramp, two where it turns round (effective_jerk).
     bool has_passed(double duration, std::int64_t now) const {
-        return until(now) + same_scan >= duration;
+        return is_over(duration, until(now));
     }
+    /// The same of the time that has passed since [s].
+    static bool is_over(double duration, double passed) { return passed + same_scan >= duration; }
     static constexpr double same_scan = 2e-9;  ///< [s]
 };
 
 /// Of a motion that begins t < 0 seconds ago, so soon after the scan that the one before has ended
 /// with it (Moment::has_passed): its first state, on the way there. For t >= 0 the state as it is.
-MotionState before_start(MotionState state, double t);
+inline MotionState before_start(MotionState state, double t) {
+    state.position += std::min(t, 0.0) * state.velocity;
+    return state;
+}
 
 /// How fast an axis may be in a motion: all above 0. `acceleration` where the speed grows,
 /// `deceleration` where it falls, whichever the direction; through standstill the lesser of both.
@@ -47,10 +53,10 @@ double effective_jerk(double jerk, double acceleration, double deceleration);
 /// To a position, and with the velocity that it has there on. In the least time from any state.
 struct PointMotion {
     Moment start;
-    MotionPlan plan;
     double duration = 0;    ///< the plan's, or until the position that it passes
-    MotionState end_state;  ///< then
     std::size_t phase = 0;  ///< of the plan, where the last look found it
+    MotionPlan plan;
+    MotionState end_state;  ///< at `duration`
 
     /// The sign of end_velocity says in which direction the goal is passed. not_finite when the
     /// numbers leave what doubles can hold; *this is then unchanged.
@@ -68,7 +74,8 @@ struct PointMotion {
     /// The same motion, all its positions further by so much.
     void move(double by);
 
-    MotionState at(std::int64_t now);
+    MotionState at(std::int64_t now) { return later(start.until(now)); }
+    MotionState later(double t) { return before_start(plan.at(t, phase), t); }  ///< t [s]
     bool has_ended(std::int64_t now) const { return start.has_passed(duration, now); }
     Moment end() const { return start.after(duration); }
 };

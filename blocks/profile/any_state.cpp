@@ -768,7 +768,7 @@ MotionState MotionPlan::at(double t) const {
     return at(t, phase);
 }
 
-MotionState MotionPlan::at(double t, std::size_t& phase) const {
+MotionState MotionPlan::look_up(double t, std::size_t& phase) const {
     if (!(t < duration)) {
         const double beyond = t - duration;
         return {end.position + end.velocity * beyond, end.velocity, 0, 0};
@@ -779,9 +779,7 @@ MotionState MotionPlan::at(double t, std::size_t& phase) const {
     const Phase& now = phases[phase];
     if (phase + 1 == count)
         return MotionState{end.position, end.velocity, 0, now.start.jerk}.after(t - duration);
-    MotionState s = now.start.after(t - now.begin);
-    s.position += missed * std::min(t * haste, 1.0);
-    return s;
+    return within(now, t);
 }
 
 double MotionPlan::greatest_velocity() const {

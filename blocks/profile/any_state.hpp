@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -91,21 +92,34 @@ struct MotionPlan {
     static constexpr double spread =
         1024;  ///< in this part of the duration `missed` is made up for
 
-    std::array<Phase, most_phases> phases{};
     std::size_t count = 0;
     double duration = 0;  ///< [s]
     double missed = 0;    ///< what rounding has left of the way [u] ...
     double haste = 0;     ///< ... and how fast it is made up for [1/s]
     MotionState end;      ///< exactly the goal
+    std::array<Phase, most_phases> phases{};
 
     /// State t seconds after the start; t < 0 is taken as 0; after the end: constant velocity.
     MotionState at(double t) const;
 
     /// The same for times that mostly rise: `phase` is where the last one was found, 0 at first.
-    MotionState at(double t, std::size_t& phase) const;
+    MotionState at(double t, std::size_t& phase) const {
+        const bool is_there = t > 0 && t < duration && phase + 1 < count &&
+                              t >= phases.data()[phase].begin && t < phases.data()[phase + 1].begin;
+        return is_there ? within(phases.data()[phase], t) : look_up(t, phase);
+    }
 
     double greatest_velocity() const;      ///< in either direction [u/s]
     double greatest_acceleration() const;  ///< in either direction [u/s^2]
+
+  private:
+    /// In any phase but the last.
+    MotionState within(const Phase& now, double t) const {
+        MotionState s = now.start.after(t - now.begin);
+        s.position += missed * std::min(t * haste, 1.0);
+        return s;
+    }
+    MotionState look_up(double t, std::size_t& phase) const;
 };
 
 /// From any state to the goal in the least time. not_finite: a number is NaN or infinite, what is

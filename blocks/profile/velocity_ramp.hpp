@@ -93,11 +93,11 @@ struct VelocityRamp {
         MotionState start;  ///< state at the phase's start; position counted from the ramp's start
     };
 
-    std::array<Phase, 4> phases{};
     int count = 0;        ///< phases used, at most three
     double duration = 0;  ///< of the whole ramp [s]
     MotionState end;      ///< end.velocity is exactly the wanted velocity, end.acceleration 0,
                           ///< end.position the distance travelled
+    std::array<Phase, 4> phases{};
 
     /// v0 [u/s], a0 [u/s^2] -> v1 [u/s] with limits A [u/s^2], J [u/s^3]. On failure *this is
     /// unchanged.

@@ -30,6 +30,7 @@ class Sampler : public Observer {
     }
 
     void scanned(int, const Scan&) override {}
+    bool looks_at_scans() const override { return false; }
     void settled(std::int64_t, std::int64_t next) override {
         for (; taken_ < times_.size() && times_[taken_] < next; ++taken_)
             for (const Signal& signal : signals_) values_.push_back(as_real(signal.value()));

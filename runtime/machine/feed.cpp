@@ -25,11 +25,15 @@ double scaled(const ScaledCopy& wire) {
     return value * wire.factor / wire.divisor;
 }
 
-void feed_many(const Call& call) {
+void feed_copies(const Call& call) {
     const Copy* copy = call.first_copy;
     for (std::uint32_t n = call.booleans; n > 0; --n) deliver<Transfer::boolean>(*copy++);
     for (std::uint32_t n = call.words; n > 0; --n) deliver<Transfer::word>(*copy++);
     for (std::uint32_t n = call.widened; n > 0; --n) deliver<Transfer::widened>(*copy++);
+}
+
+void feed_many(const Call& call) {
+    feed_copies(call);
     const Row* row = call.first_row;
     for (std::uint32_t n = call.rows; n > 0; --n) deliver(*row++);
     const ScaledCopy* wire = call.first_scaled;
@@ -62,6 +66,27 @@ void feed(const Call& call) {
     const Call& call = static_cast<const Call&>(block);
     feed(call);
     return call.scan(call.first, call.count, now, call.context);
+}
+
+namespace {
+
+bool scan_unfed(const FedBlock& block, const Scan& now) {
+    const Call& call = static_cast<const Call&>(block);
+    return call.scan(call.first, call.count, now, call.context);
+}
+
+[[gnu::flatten]] bool feed_copies_and_scan(const FedBlock& block, const Scan& now) {
+    const Call& call = static_cast<const Call&>(block);
+    feed_copies(call);
+    return call.scan(call.first, call.count, now, call.context);
+}
+
+}  // namespace
+
+FeedAndScan shortest_way(const Call& call) {
+    if (call.feed == Feed::no_wire) return scan_unfed;
+    const bool only_copies = call.feed == Feed::many && call.rows == 0 && call.scaled == 0;
+    return only_copies ? feed_copies_and_scan : feed_and_scan;
 }
 
 }  // namespace lineshaft

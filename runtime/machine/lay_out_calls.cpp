@@ -140,9 +140,9 @@ void append_call(const Net& net, std::span<const int> blocks, ScanBlocks scan, b
     call.first = machine.blocks[static_cast<std::size_t>(blocks.front())].live;
     call.count = blocks.size();
     call.size = first.type->size;
-    if (!fed) return;
-    append_wires(wires_of(net, blocks, task.calls.size() == 1, machine), call, task.wires);
-    feed_at_once(first.type->main_input, call);
+    if (fed) append_wires(wires_of(net, blocks, task.calls.size() == 1, machine), call, task.wires);
+    call.run = shortest_way(call);
+    if (fed) feed_at_once(first.type->main_input, call);
 }
 
 /// Once no wire of the task moves any more.

@@ -64,6 +64,10 @@ struct Call : FedBlock {
 /// Copies to the inputs of the call's blocks what they are wired to.
 void feed(const Call& call);
 
+/// How a call with these wires is fed and scanned: feed_and_scan, or what does no more than it
+/// needs.
+FeedAndScan shortest_way(const Call& call);
+
 /// A block's `error` output, looked at after each scan of its task.
 struct ErrorFlag {
     const bool* error = nullptr;

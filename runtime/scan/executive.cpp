@@ -67,6 +67,8 @@ RunResult Executive::run(const std::vector<Observer*>& observers,
 }
 
 void Executive::begin() {
+    static constexpr std::byte never_true{};
+    until_ = machine_.until ? machine_.until->slot : &never_true;
     look_ahead();
     if (save_) next_save_ = later(now_ / save_every_ * save_every_, save_every_);
     looked_ = Clock::now();
@@ -101,7 +103,7 @@ bool Executive::scan_blocks(const Task& task, const Scan& scan) {
 /// When what others see of the task's scan is in place.
 inline void Executive::conclude(int index, const State& state) {
     ++result_.scans.data()[index];
-    for (Observer* observer : observers_) observer->scanned(index, state.scan);
+    for (Observer* observer : scan_observers_) observer->scanned(index, state.scan);
     if (state.may_err) report_errors(index);
 }
 
@@ -116,16 +118,17 @@ inline void Executive::run_due() {
     if (next_due_ > now_) return;
     std::int64_t next = never;
     int index = 0;
+    const Task* task = machine_.tasks.data();
     for (State& state : states_) {
         if (state.due <= now_ && !stopped_) {
-            const Task& task = this->task(index);
-            begin(index, task, state);
-            state.may_err |= scan_blocks(task, state.scan);
+            begin(index, *task, state);
+            state.may_err |= scan_blocks(*task, state.scan);
             conclude(index, state);
-            state.set_next(task);
+            state.set_next(*task);
         }
         next = std::min(next, state.due);
         ++index;
+        ++task;
     }
     next_due_ = next;
 }
@@ -142,7 +145,7 @@ bool Executive::run_until(std::int64_t time) {
             instant();
         has_run_ = true;
         next = next_event();
-        ended_ = stopped_ || (machine_.until && read<bool>(machine_.until->slot));
+        ended_ = stopped_ || read<bool>(until_);
         settle(ended_ ? now_ : std::min(next - 1, last));
         if (ended_) break;
         if (next > next_save_) {
@@ -207,10 +210,12 @@ RunResult Executive::finish() {
 
 void Executive::add(Observer& observer) {
     observers_.push_back(&observer);
+    if (observer.looks_at_scans()) scan_observers_.push_back(&observer);
 }
 
 void Executive::remove(Observer& observer) {
     std::erase(observers_, &observer);
+    std::erase(scan_observers_, &observer);
 }
 
 std::int64_t Executive::post(Stimulus value) {

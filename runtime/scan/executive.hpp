@@ -26,6 +26,9 @@ class Observer {
     /// After the outputs of a scan of task `task` (its index) have been published.
     virtual void scanned(int task, const Scan& scan) = 0;
 
+    /// Whether scanned() ever does anything: else it is not called.
+    virtual bool looks_at_scans() const { return true; }
+
     /// Everything due at `time` has run; nothing changes before `next`, which is later, and at most
     /// one nanosecond past the end of the run.
     virtual void settled(std::int64_t time, std::int64_t next) = 0;
@@ -244,10 +247,12 @@ class Executive {
     std::int64_t next_outside_ = 0;  ///< of a force, a replay, a stimulus, a look at a device [ns]
     bool nothing_waits_ = false;     ///< no task takes time or comes from an event
     bool interpolates_ = false;      ///< a replay: then something is due in every instant
+    const std::byte* until_ = nullptr;  ///< the boolean that ends the run
     std::vector<Observer*> observers_;
-    std::vector<Stimulus> mail_;    ///< posted, counts from the same instant on
-    std::int64_t known_until_ = 0;  ///< observers know that nothing changes before [ns]
-    bool has_run_ = false;          ///< at least one instant
+    std::vector<Observer*> scan_observers_;  ///< those of them that look at scans
+    std::vector<Stimulus> mail_;             ///< posted, counts from the same instant on
+    std::int64_t known_until_ = 0;           ///< observers know that nothing changes before [ns]
+    bool has_run_ = false;                   ///< at least one instant
     bool ended_ = false;
     bool held_ = false;
     const std::atomic<bool>* interrupt_ = nullptr;

@@ -62,6 +62,7 @@ class Judge : public Observer {
     void begin();
 
     void scanned(int task, const Scan& scan) override;
+    bool looks_at_scans() const override { return !scanned_.empty(); }
     void settled(std::int64_t time, std::int64_t next) override;
     void save(StateWriter& out) const override;
     void restore(StateReader& in) override;

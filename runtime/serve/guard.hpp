@@ -5,6 +5,7 @@
 
 #include "runtime/serve/address.hpp"
 #include "runtime/serve/api.hpp"
+#include "runtime/serve/http_session.hpp"
 
 namespace lineshaft {
 
@@ -12,11 +13,6 @@ struct GuardOptions {
     bool allow_write = false;
     std::string token = {};             ///< that clients of other machines need for writing
     std::int64_t most_requests = 1000;  ///< a second, of a machine; and of who holds the token
-};
-
-/// What of a request tells whether it may come in.
-struct Visitor {
-    std::string peer, host, origin, authorization;
 };
 
 /// Decides who may do what. For any thread.

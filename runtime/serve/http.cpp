@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "runtime/run/signal_json.hpp"
-#include "runtime/serve/connection.hpp"
+#include "runtime/serve/http_session.hpp"
 
 namespace lineshaft {
 
@@ -16,7 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int most_streams = 16;
-constexpr std::size_t most_bytes = 64 << 10;  ///< of a request's body
 
 Value value_of(const Signal& signal, std::uint64_t bits) {
     std::array<std::byte, sizeof bits> slot;
@@ -114,19 +113,13 @@ ApiReply answer(Api& api, Guard& guard, Audit* audit, const Visitor& visitor,
     return reply;
 }
 
-struct HttpServer::Server : httplib::Server {
+struct HttpServer::Server {
     Server(Api& a, const HttpOptions& o, World& w, Audit* au)
-        : api(a), options(o), world(w), audit(au), guard(o.guard, w, o.tell) {
-        svr_sock_ = 0;  // a server without a port is one that ends, to the library
-    }
+        : api(a), options(o), world(w), audit(au), guard(o.guard, w, o.tell) {}
 
-    void answer_by(const httplib::Request& request, httplib::Response& response,
-                   const std::string& body);
-    void converse(Client& client);
-    void send(std::shared_ptr<Stream> stream, httplib::Response& response);
-    bool feed(Stream& stream, httplib::DataSink& sink);
-
-    static inline thread_local Client* client_of_thread = nullptr;
+    HttpReply answer(Client& client, const HttpRequest& request);
+    void send(std::shared_ptr<Stream> stream, Client& client, HttpReply& reply);
+    bool feed(Stream& stream, HttpSink& sink);
 
     Api& api;
     const HttpOptions& options;
@@ -135,67 +128,61 @@ struct HttpServer::Server : httplib::Server {
     Guard guard;
     std::atomic<int> streams = 0;
     std::atomic<bool> ends = false;
+    std::string error;
+    std::unique_ptr<HttpSession> session;
 };
 
-void HttpServer::Server::converse(Client& client) {
-    const auto answer_whole = [](httplib::Request& request) { request.ranges.clear(); };
-    Connection connection(client, world);
-    client_of_thread = &client;
-    bool closed = false;
-    for (std::size_t left = keep_alive_max_count_; left > 0 && !closed && !ends; --left)
-        if (!connection.begin() || !process_request(connection, left == 1, closed, answer_whole))
-            return;
-}
-
-void HttpServer::Server::answer_by(const httplib::Request& request, httplib::Response& response,
-                                   const std::string& body) {
-    const Visitor visitor{request.remote_addr, request.get_header_value("Host"),
-                          request.get_header_value("Origin"),
-                          request.get_header_value("Authorization")};
+HttpReply HttpServer::Server::answer(Client& client, const HttpRequest& request) {
     const bool reads = request.method == "GET" || request.method == "HEAD";
-    response.set_header("X-Content-Type-Options", "nosniff");
-    response.set_header("X-Frame-Options", "DENY");
-    response.set_header("Cache-Control", "no-store");
-    response.set_header("Content-Security-Policy",
-                        "default-src 'none'; script-src 'unsafe-inline' data:; style-src "
-                        "'unsafe-inline'; img-src data:; connect-src 'self'; frame-ancestors "
-                        "'none'; base-uri 'none'; form-action 'none'");
-    if (request.path == "/" && reads && !guard.refuse(visitor, false))
-        return response.set_content(options.page.data(), options.page.size(), "text/html");
-    ApiReply got = lineshaft::answer(api, guard, audit, visitor, request.method, request.path,
-                                     request.params, body);
+    HttpReply reply;
+    reply.headers = {{"X-Content-Type-Options", "nosniff"},
+                     {"X-Frame-Options", "DENY"},
+                     {"Cache-Control", "no-store"},
+                     {"Content-Security-Policy",
+                      "default-src 'none'; script-src 'unsafe-inline' data:; style-src "
+                      "'unsafe-inline'; img-src data:; connect-src 'self'; frame-ancestors "
+                      "'none'; base-uri 'none'; form-action 'none'"}};
+    const auto set_content = [&reply](std::string body, const char* type) {
+        reply.body = std::move(body);
+        reply.type = type;
+        return reply;
+    };
+    if (request.path == "/" && reads && !guard.refuse(request.visitor, false))
+        return set_content(std::string(options.page), "text/html");
+    ApiReply got = lineshaft::answer(api, guard, audit, request.visitor, request.method,
+                                     request.path, request.query, request.body);
     if (got.stream && streams >= most_streams) {
         got.stream->close();
         got = failure(503, "too many clients take samples", "close a page");
     }
-    response.status = got.status;
-    if (!got.allow.empty()) response.set_header("Allow", got.allow);
-    if (got.stream) return send(std::move(got.stream), response);
-    if (!got.file.empty()) return response.set_content(got.file, "application/octet-stream");
-    response.set_content(got.body.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",
-                         "application/json");
+    reply.status = got.status;
+    if (!got.allow.empty()) reply.headers.emplace_back("Allow", got.allow);
+    if (got.stream) {
+        send(std::move(got.stream), client, reply);
+        return reply;
+    }
+    if (!got.file.empty()) return set_content(std::move(got.file), "application/octet-stream");
+    return set_content(got.body.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",
+                       "application/json");
 }
 
-void HttpServer::Server::send(std::shared_ptr<Stream> stream, httplib::Response& response) {
+void HttpServer::Server::send(std::shared_ptr<Stream> stream, Client& client, HttpReply& reply) {
     ++streams;
-    client_of_thread->stays(true);
-    response.set_chunked_content_provider(
-        "text/event-stream",
-        [this, stream](std::size_t, httplib::DataSink& sink) { return feed(*stream, sink); },
-        [this, stream, client = client_of_thread](bool) {
-            stream->close();
-            client->stays(false);
-            --streams;
-        });
+    client.stays(true);
+    reply.type = "text/event-stream";
+    reply.stream = [this, stream](HttpSink& sink) { return feed(*stream, sink); };
+    reply.end_stream = [this, stream, &client] {
+        stream->close();
+        client.stays(false);
+        --streams;
+    };
 }
 
 /// Until the client goes, or the machine ends.
-bool HttpServer::Server::feed(Stream& stream, httplib::DataSink& sink) {
+bool HttpServer::Server::feed(Stream& stream, HttpSink& sink) {
     constexpr std::int64_t pause = 20'000'000;
     constexpr int rows_a_state = 20;
-    const auto write = [&](const std::string& text) {
-        return text.empty() || sink.write(text.data(), text.size());
-    };
+    const auto write = [&](const std::string& text) { return text.empty() || sink.write(text); };
     const auto write_state = [&] {
         const ApiReply state = api.state({});
         return state.status != 200 || write(event("state", state.body));
@@ -207,52 +194,30 @@ bool HttpServer::Server::feed(Stream& stream, httplib::DataSink& sink) {
         if (!sink.is_writable() || !write(rows(stream, lost))) return false;
         world.sleep_until(world.now() + pause);
     }
-    sink.done();
     return true;
 }
 
-/// The body is read here: the library allows a form, as `curl -d` sends it, 8 KiB.
 HttpServer::HttpServer(Api& api, const HttpOptions& options, World& world, Audit* audit)
     : server_(std::make_unique<Server>(api, options, world, audit)) {
-    constexpr std::size_t most_requests = 1000;
-    Server& http = *server_;
-    http.set_payload_max_length(most_bytes);
-    http.set_keep_alive_max_count(most_requests);
-    http.set_keep_alive_timeout(Connection::idle_s);
-    const auto without_body = [&http](const httplib::Request& request,
-                                      httplib::Response& response) {
-        http.answer_by(request, response, "");
+    Server& server = *server_;
+    const auto answer = [&server](Client& client, const HttpRequest& request) {
+        return server.answer(client, request);
     };
-    const auto with_body = [&http](const httplib::Request& request, httplib::Response& response,
-                                   const httplib::ContentReader& read) {
-        std::string body;
-        const auto take = [&](const char* bytes, std::size_t size) {
-            body.append(bytes, size);
-            return body.size() <= most_bytes;
-        };
-        const bool has_none =
-            !request.has_header("Content-Length") && !request.has_header("Transfer-Encoding");
-        if (has_none || read(take)) http.answer_by(request, response, body);
-    };
-    constexpr const char* any = ".*";
-    http.Get(any, without_body).Options(any, without_body).Delete(any, without_body);
-    http.Post(any, with_body).Put(any, with_body).Patch(any, with_body).Delete(any, with_body);
-    http.set_exception_handler(
-        [](const httplib::Request&, httplib::Response& response, const std::exception_ptr&) {
-            response.status = 503;
-            response.set_content("{\"error\": \"this machine has no memory for that\"}\n",
-                                 "application/json");
-        });
+    server.session = HttpSession::load(world, answer, server.ends, server.error);
 }
 
 HttpServer::~HttpServer() = default;
+
+const std::string& HttpServer::error() const {
+    return server_->error;
+}
 
 void HttpServer::end() {
     server_->ends = true;
 }
 
 void HttpServer::converse(Client& client) {
-    server_->converse(client);
+    server_->session->converse(client);
 }
 
 }  // namespace lineshaft

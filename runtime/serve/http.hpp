@@ -26,6 +26,9 @@ class HttpServer {
     HttpServer(Api& api, const HttpOptions& options, World& world, Audit* audit = nullptr);
     ~HttpServer();
 
+    /// Why nobody can be answered, empty when all is well: see HttpSession.
+    const std::string& error() const;
+
     /// Answers all requests of a client.
     void converse(Client& client);
 

@@ -62,6 +62,7 @@ class RecordingWriter : public Observer {
     std::string error() const;
 
     void scanned(int, const Scan&) override {}
+    bool looks_at_scans() const override { return false; }
     void settled(std::int64_t, std::int64_t) override {}
     void save(StateWriter& out) const override;
     void restore(StateReader& in) override;

@@ -95,11 +95,16 @@ ServeReport serve(Loaded& loaded, RunOptions how, const ServeOptions& options,
         Api api(live, desk, loaded, checkpoint);
         Audit* const noted = audit ? &*audit : nullptr;
         HttpServer http(api, options.http, world, noted);
+        if (options.http.address.port != 0 && !http.error().empty())
+            closed.add(code::unusable_address, {},
+                       "cannot serve HTTP without a part of lineshaft: " + http.error(),
+                       "install lineshaft as a whole, or serve without a page: --http off");
         ModbusDesk modbus(live, desk, loaded.linked.modbus, options.http.guard.allow_write, noted);
         std::optional<Door> http_door, modbus_door;
-        open_door(
-            http_door, HttpServer::most_clients, [&](Client& client) { http.converse(client); },
-            options.http.address, closed);
+        if (closed.empty())
+            open_door(
+                http_door, HttpServer::most_clients, [&](Client& client) { http.converse(client); },
+                options.http.address, closed);
         open_door(
             modbus_door, most_modbus_clients,
             [&](Client& client) { converse(modbus, client, world); }, options.modbus, closed);

@@ -264,6 +264,7 @@ struct Frames {
 
     void call_block(std::byte* block, std::uint32_t number) const {
         const BlockType& type = *code.standard[number];
+        if (!type.context) return void(type.scan_blocks(block, 1, now, context));
         Context inner = context;
         inner.kind = type.context;
         type.scan_blocks(block, 1, now, inner);
