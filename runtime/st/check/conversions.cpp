@@ -56,23 +56,18 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to) {
     return true;
 }
 
-/// That a source declares; those of the catalogue have no numbers here.
-bool has_numbers(const Type& type) {
-    return type.kind == Kind::enumeration && type.base && type.of_number.empty();
-}
-
 /// An enumeration's value and its number stand for each other where the one is known to be one of
 /// the other, as CODESYS has it; false where nothing was done.
 bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
     const Type& from = *e->type;
-    if (has_numbers(from) && (to.kind == Kind::integer || to.kind == Kind::bits)) {
+    if (from.has_numbers && (to.kind == Kind::integer || to.kind == Kind::bits)) {
         const bool fits = std::ranges::all_of(from.numbers, [&](std::int64_t number) {
             return number >= smallest(to) && number <= largest(to);
         });
         if (fits) convert(c, e, to);
         return fits;
     }
-    if (!has_numbers(to) || !is_constant(*e) || !from.is_integer()) return false;
+    if (!to.has_numbers || !is_constant(*e) || !from.is_integer()) return false;
     const auto it = std::ranges::find(to.numbers, e->constant.integer);
     if (it == to.numbers.end()) return false;
     e = make_constant(c, *e, to, {.integer = it - to.numbers.begin()});
@@ -284,7 +279,7 @@ void convert(Checking& c, Expression*& e, const Type& to) {
 }
 
 void enumeration_becomes_number(Checking& c, Expression*& e) {
-    if (has_numbers(*e->type)) convert(c, e, e->type->base->plain());
+    if (e->type->has_numbers) convert(c, e, e->type->base->plain());
 }
 
 void take_width(Checking& c, Expression*& e, const Type* expected) {
