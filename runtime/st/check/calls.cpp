@@ -12,6 +12,7 @@
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/order.hpp"
+#include "runtime/st/check/overloads.hpp"
 #include "runtime/st/check/places.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/rewrites.hpp"
@@ -46,6 +47,7 @@ bool is_instance(Checking& c, const Token& name) {
 
 Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std::size_t position) {
     const auto is_parameter = [](const Variable& variable) {
+        if (variable.bound_of) return false;
         return variable.section == Section::input || variable.section == Section::in_out ||
                variable.section == Section::output;
     };
@@ -150,6 +152,32 @@ Argument leave_out(Checking& c, const Expression& call, Variable& parameter) {
     return {parameter.name, false, value, &parameter, true};
 }
 
+bool is_open_array(const Variable& variable) {
+    return variable.type && variable.type->is_reference() && variable.type->is_open;
+}
+
+/// Its bounds stand behind it.
+OpenBounds bounds_of(const Routine& routine, const Variable& array) {
+    std::vector<Variable*> found;
+    for (Variable* variable : all_variables(routine))
+        if (variable->bound_of == &array) found.push_back(variable);
+    return {*found[0], *found[1]};
+}
+
+/// An ARRAY[*] takes where its first element is and two bounds.
+void give_open_arrays(Checking& c, Expression*& e, const Routine& routine) {
+    const auto is_one = [](const Argument& a) { return a.variable && is_open_array(*a.variable); };
+    if (std::ranges::none_of(e->arguments, is_one)) return;
+    std::vector<Argument> given;
+    for (const Argument& argument : e->arguments)
+        if (!is_one(argument))
+            given.push_back(argument);
+        else
+            give_open_array(c, argument, *argument.variable, bounds_of(routine, *argument.variable),
+                            given);
+    e = make_with(c, *e, std::move(given));
+}
+
 void check_arguments(Checking& c, Expression*& e, Routine& routine) {
     Expression& call = *e;
     std::size_t position = 0;
@@ -167,16 +195,17 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
             c.fail(code::wrong_arguments, argument.value->place,
                    fmt::format("'{}' is given twice", parameter->text));
         given.push_back(parameter);
-        check_argument(c, argument, *parameter);
+        if (!is_open_array(*parameter)) check_argument(c, argument, *parameter);
     }
     std::vector<Argument> left_out;
     for (Variable* declared : all_variables(routine)) {
         Variable& variable = *declared;
         const bool due =
-            variable.section == Section::in_out ||
+            variable.section == Section::in_out || is_open_array(variable) ||
             (variable.section == Section::input && !routine.has_instances() &&
              (!by_name || !call.place.dialect().named_inputs_may_be_left_out) && !variable.initial);
-        if (!due || std::ranges::find(given, &variable) != given.end()) continue;
+        if (!due || variable.bound_of || std::ranges::find(given, &variable) != given.end())
+            continue;
         const bool may_miss = c.is_in_test() && routine.has_instances();
         if (may_miss && variable.type) left_out.push_back(leave_out(c, call, variable));
         if (!may_miss)
@@ -184,9 +213,11 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
                    fmt::format("'{}' is called without '{}'", routine.name, variable.text),
                    fmt::format("write {} := ...", variable.text));
     }
-    if (left_out.empty()) return;
-    left_out.insert(left_out.begin(), call.arguments.begin(), call.arguments.end());
-    e = make_with(c, call, std::move(left_out));
+    if (!left_out.empty()) {
+        left_out.insert(left_out.begin(), call.arguments.begin(), call.arguments.end());
+        e = make_with(c, call, std::move(left_out));
+    }
+    give_open_arrays(c, e, routine);
 }
 
 /// What vendors add to a block that commands an axis; null for another input.
@@ -322,7 +353,7 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
         if (of->kind == Kind::block || of->kind == Kind::interface) {
             const auto it = of->routine->methods.find(callee.token.text);
             if (it != of->routine->methods.end()) {
-                Routine& method = *it->second;
+                Routine& method = overload_of(c, *e, of->routine->overloads, *it->second);
                 if (!is_accessible(c, method.pou->access, *method.owner, callee.token))
                     return nullptr;
                 return check_method_call(c, e, method, *callee.operands[0], as_statement);
@@ -333,11 +364,15 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
         const std::string_view name = callee.token.text;
         for (const Routine* r = c.routine; r; r = r->owner)
             if (const auto it = r->methods.find(name); it != r->methods.end()) {
-                e->is_dispatched = it->second->is_replaced;
-                return check_routine_call(c, e, *it->second, as_statement);
+                Routine& method = overload_of(c, *e, r->overloads, *it->second);
+                e->is_dispatched = method.is_replaced;
+                return check_routine_call(c, e, method, as_statement);
             }
         Routine* routine = c.find_routine(callee.token);
-        if (routine && !routine->type) return check_routine_call(c, e, *routine, as_statement);
+        if (routine && !routine->type) {
+            const auto& overloads = c.names_beside(routine->pou->name).overloads;
+            return check_routine_call(c, e, overload_of(c, *e, overloads, *routine), as_statement);
+        }
         const bool is_function = (routine || !callee.token.quoted) && !callee.token.local &&
                                  (find_standard_function(name) || !find_variable(c, callee.token));
         if (is_function && find_test_statement(name) != TestCall::none)

@@ -33,7 +33,8 @@ struct Names {
     NameMap<NamedType> types;
     NameMap<NamedValue> values;
     NameMap<Routine*> routines;
-    NameMap<Place> places;  ///< of all of them
+    NameMap<std::vector<Routine*>> overloads;  ///< functions that share a name
+    NameMap<Place> places;                     ///< of all of them
 };
 
 inline bool is_prelude(const Token& name) {

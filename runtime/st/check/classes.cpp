@@ -15,13 +15,6 @@ namespace lineshaft::st {
 
 namespace {
 
-NameMap<Routine*>& methods_like(Routine& block, const Routine& method) {
-    const Accessor accessor = method.pou->accessor;
-    return accessor == Accessor::get   ? block.getters
-           : accessor == Accessor::set ? block.setters
-                                       : block.methods;
-}
-
 /// Null where there is none of that name, which was told.
 Routine* find_base(Checking& c, const Routine& of, const Token& name, bool wants_interface) {
     const auto fits = [&](const Routine& r) {
@@ -89,6 +82,26 @@ void replace(Checking& c, Routine& method, Routine& replaced) {
                "give it another name");
 }
 
+/// What a base has under names that either of them overloads, if it was not replaced.
+void inherit_overloads(Routine& block, const Routine& base) {
+    for (const auto& [name, first] : base.methods) {
+        const auto own = block.methods.find(name);
+        const auto theirs = base.overloads.find(name);
+        const bool is_one = theirs == base.overloads.end() && !block.overloads.contains(name);
+        if (is_one) continue;
+        auto& all = block.overloads[name];
+        if (all.empty() && own != block.methods.end()) all.push_back(own->second);
+        const std::vector<Routine*> given =
+            theirs == base.overloads.end() ? std::vector{first} : theirs->second;
+        for (Routine* method : given) {
+            const auto replaces = [&](const Routine* r) {
+                return r == method || r->overrides == method;
+            };
+            if (std::ranges::none_of(all, replaces)) all.push_back(method);
+        }
+    }
+}
+
 /// `seen`: those that are linked.
 void link_methods(Checking& c, Routine& block, std::unordered_set<const Routine*>& seen) {
     if (!block.type || !seen.insert(&block).second) return;
@@ -101,20 +114,19 @@ void link_methods(Checking& c, Routine& block, std::unordered_set<const Routine*
         for (Routine* r = block.base; r; r = r->base) r->is_replaced = true;
     for (const Routine* base : bases) block.has_unknown_base |= base->has_unknown_base;
     for (Routine* method : block.own_methods) {
-        for (Routine* base : bases) {
-            const auto& known = methods_like(*base, *method);
-            if (const auto it = known.find(method->pou->name.text); it != known.end())
-                replace(c, *method, *it->second);
-        }
+        for (Routine* base : bases)
+            if (Routine* replaced = find_method(*base, *method)) replace(c, *method, *replaced);
         if (method->pou->is_override && !method->overrides && !block.has_unknown_base &&
             block.interfaces.empty())
             c.fail(code::not_declared, method->pou->name.place,
                    fmt::format("{} overrides nothing", method->name),
                    "no base has a method of that name: leave OVERRIDE out");
     }
-    for (Routine* base : bases)
+    for (const Routine* base : bases) {
+        inherit_overloads(block, *base);
         for (auto member : {&Routine::methods, &Routine::getters, &Routine::setters})
             (block.*member).insert((base->*member).begin(), (base->*member).end());
+    }
 }
 
 std::vector<const Variable*> parameters(const Routine& method) {
@@ -174,15 +186,14 @@ void check_interfaces(Checking& c, Routine& block) {
         std::vector<std::string> lacking;
         for (Routine* method : wanted) {
             method->is_dispatched = true;
-            const auto& known = methods_like(block, *method);
-            const auto it = known.find(method->pou->name.text);
-            if (it == known.end()) {
+            Routine* found = find_method(block, *method);
+            if (!found) {
                 if (std::ranges::find(lacking, shown_name(*method)) == lacking.end())
                     lacking.push_back(shown_name(*method));
                 continue;
             }
-            for (Routine* r = it->second; r; r = r->overrides) r->is_dispatched = true;
-            check_signature(c, *it->second, *method);
+            for (Routine* r = found; r; r = r->overrides) r->is_dispatched = true;
+            check_signature(c, *found, *method);
         }
         if (lacking.empty() || block.has_unknown_base || block.pou->is_abstract) continue;
         c.fail(code::not_declared, block.pou->implemented[i].place,
@@ -287,6 +298,7 @@ bool is_accessible(Checking& c, Access access, const Routine& owner, const Token
 
 bool may_be_derived(const Expression& receiver) {
     if (receiver.kind == E::self) return !same_name(receiver.token.text, "super");
+    if (receiver.kind == E::deref) return true;
     const bool is_place = receiver.kind == E::name || receiver.kind == E::member;
     return is_place && receiver.variable && receiver.variable->space == Space::reference;
 }

@@ -135,6 +135,10 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
                                   target->name),
                       "write a CASE");
     const Place place = e->place;
+    const Type& bits = from.kind == Kind::bits ? from : *target;
+    const bool counts = place.dialect().bits_count_in_reals && bits.kind == Kind::bits &&
+                        (from.is_real() || target->is_real());
+    if (counts) convert(c, value, integer_type(bits.bits, false));
     convert(c, value, *target);
     e = value;
     e->place = place;

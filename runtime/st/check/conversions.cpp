@@ -1,5 +1,6 @@
 #include "runtime/st/check/conversions.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/source/codes.hpp"
@@ -52,6 +53,24 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to) {
         return false;
     }
     e = make_constant(c, *e, to, {.integer = value});
+    return true;
+}
+
+/// An enumeration's value and its number stand for each other where the one is known to be one of
+/// the other, as CODESYS has it; false where nothing was done.
+bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
+    const Type& from = *e->type;
+    if (from.has_numbers && (to.kind == Kind::integer || to.kind == Kind::bits)) {
+        const bool fits = std::ranges::all_of(from.numbers, [&](std::int64_t number) {
+            return number >= smallest(to) && number <= largest(to);
+        });
+        if (fits) convert(c, e, to);
+        return fits;
+    }
+    if (!to.has_numbers || !is_constant(*e) || !from.is_integer()) return false;
+    const auto it = std::ranges::find(to.numbers, e->constant.integer);
+    if (it == to.numbers.end()) return false;
+    e = make_constant(c, *e, to, {.integer = it - to.numbers.begin()});
     return true;
 }
 
@@ -202,6 +221,7 @@ bool is_single(const Type& type) {
 
 bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (!e->type) return false;
+    if (coerce_enumeration(c, e, to)) return true;
     if (to.is_reference() || e->type->is_reference()) return coerce_reference(c, e, to);
     const Type& from = *e->type;
     if (from.kind == Kind::text && to.kind == Kind::text) {
@@ -256,6 +276,10 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
 void convert(Checking& c, Expression*& e, const Type& to) {
     if (is_constant(*e) && fold_conversion(c, e, to)) return;
     e = make_converted(c, e, to);
+}
+
+void enumeration_becomes_number(Checking& c, Expression*& e) {
+    if (e->type->has_numbers) convert(c, e, e->type->base->plain());
 }
 
 void take_width(Checking& c, Expression*& e, const Type* expected) {

@@ -19,6 +19,9 @@ void take_width(Checking& c, Expression*& e, const Type* expected);
 /// A bit string where a number is due.
 void become_number(Checking& c, Expression*& e);
 
+/// A value of an enumeration that a source declares where a number is due.
+void enumeration_becomes_number(Checking& c, Expression*& e);
+
 /// Integers are joined as bit strings of their width. It is reckoned with bit strings as with
 /// integers: with the wanted one, if that is wider.
 void reinterpret(Checking& c, Expression& e, Kind from, const Type* expected = nullptr);

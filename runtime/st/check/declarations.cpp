@@ -101,6 +101,28 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
     return variable;
 }
 
+/// Functions and methods of one name whose arguments are of other types.
+bool is_overload(const Pou& routine, const Routine* first,
+                 const NameMap<std::vector<Routine*>>& overloads, std::string_view name) {
+    const bool may_be = first && routine.accessor == Accessor::none && !routine.is_action &&
+                        first->pou->kind == routine.kind && !first->pou->is_action;
+    if (!may_be) return false;
+    const std::string own = signature_of(routine);
+    const auto it = overloads.find(name);
+    const std::vector<Routine*> all =
+        it == overloads.end() ? std::vector{const_cast<Routine*>(first)} : it->second;
+    return std::ranges::none_of(all,
+                                [&](const Routine* r) { return signature_of(*r->pou) == own; });
+}
+
+void add_overload(NameMap<std::vector<Routine*>>& to, std::string_view name, Routine& first,
+                  Routine& next) {
+    auto& all = to[name];
+    if (all.empty()) all.push_back(&first);
+    all.push_back(&next);
+    next.name += fmt::format("({})", signature_of(*next.pou));
+}
+
 void declare_result(Checking& c, Routine& routine) {
     const TypeText* text = routine.pou->result;
     if (!text || same_name(text->name.text, "void")) return;
@@ -141,6 +163,34 @@ void declare_edge(Checking& c, Routine& routine, Variable& variable, const Token
     variable.edge = &instance;
 }
 
+bool is_open_array(const Type* type) {
+    return type && type->is_reference() && type->is_open;
+}
+
+/// `a : ARRAY[*] OF INT` is given as where its first element is, and its bounds beside it.
+void declare_bounds(Checking& c, Routine& routine, Variable& array) {
+    const bool is_given = array.section == Section::in_out || array.section == Section::input;
+    if (!is_given) {
+        c.fail(code::wrong_place, array.name.place,
+               "an array of any length is a VAR_IN_OUT, or an input",
+               "write its bounds: ARRAY[0..9] OF ...");
+        return;
+    }
+    array.section = Section::input;
+    array.space = Space::frame;
+    for (const std::string_view bound : {"lower", "upper"}) {
+        Variable& made = routine.variables.emplace_back();
+        made.name = array.name;
+        made.text = c.checked.names.emplace_back(fmt::format("{}.{}", array.text, bound));
+        made.type = &lint_type;
+        made.section = Section::input;
+        made.of = routine.pou;
+        made.used = true;
+        made.bound_of = &array;
+        routine.names.emplace(made.text, &made);
+    }
+}
+
 void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
     for (const Declaration* declared : block.declarations) {
         const Type* type = declared->type ? resolve(c, *declared->type) : nullptr;
@@ -174,6 +224,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
             is_own || (routine.is_prototype() && type && type->kind == Kind::block);
         if (!is_only_named) depend(c, type, declared->name.place);
         locate_in_image(c, *variable, *declared);
+        if (is_open_array(type)) declare_bounds(c, routine, *variable);
         if (routine.pou->is_tests || routine.is_test()) make_object(c, *variable);
         if (!declared->type)
             make_untyped_constant(c, *variable);
@@ -189,7 +240,28 @@ void add_method(Routine& block, Routine& method) {
     auto& known = method.pou->accessor == Accessor::get   ? block.getters
                   : method.pou->accessor == Accessor::set ? block.setters
                                                           : block.methods;
-    known.emplace(method.pou->name.text, &method);
+    const auto [it, is_first] = known.emplace(method.pou->name.text, &method);
+    if (!is_first) add_overload(block.overloads, method.pou->name.text, *it->second, method);
+}
+
+void collect_methods(Checking& c, Routine& block) {
+    NameMap<Place> names;
+    const bool has_tests = block.pou->is_tests;
+    for (Pou* method : block.pou->methods) {
+        const std::string name(method->name.text);
+        Routine& made = c.make_routine(*method, has_tests ? name : block.name + "." + name);
+        made.owner = &block;
+        const bool is_test =
+            has_tests && method->name.word != Word::setup_ && method->name.word != Word::teardown_;
+        const bool is_second =
+            method->accessor == Accessor::set && block.getters.contains(method->name.text);
+        const auto known = block.methods.find(method->name.text);
+        const bool is_other =
+            known != block.methods.end() &&
+            is_overload(*method, known->second, block.overloads, method->name.text);
+        const bool is_new = is_second || is_other || is_new_name(c, method->name, names, is_test);
+        if (is_new && !is_test) add_method(block, made);
+    }
 }
 
 /// Its base first, whose variables are its own.
@@ -221,10 +293,14 @@ void collect_names(Checking& c) {
         c.has_tests |= pou->is_tests;
         const Token full_name = name_with_namespace(c, pou->name);
         Names& all = c.names_beside(full_name);
-        const bool added = is_new_name(c, full_name, all.places);
+        const auto first = all.routines.find(full_name.text);
+        const bool is_other = first != all.routines.end() && pou->kind == PouKind::function &&
+                              is_overload(*pou, first->second, all.overloads, full_name.text);
+        const bool added = !is_other && is_new_name(c, full_name, all.places);
         if (pou->kind == PouKind::data_block) continue;
         Routine& routine = c.make_routine(*pou, std::string(full_name.text));
         if (added) all.routines.emplace(full_name.text, &routine);
+        if (is_other) add_overload(all.overloads, full_name.text, *first->second, routine);
         if (routine.is_function()) continue;
         routine.type = &c.make_type(Kind::block, routine.name);
         routine.type->routine = &routine;
@@ -232,19 +308,7 @@ void collect_names(Checking& c) {
             routine.type->kind = Kind::interface;
             routine.type->slots = 1;
         }
-        NameMap<Place> names;
-        for (Pou* method : pou->methods) {
-            const std::string name(method->name.text);
-            Routine& made =
-                c.make_routine(*method, pou->is_tests ? name : routine.name + "." + name);
-            made.owner = &routine;
-            const bool is_test = pou->is_tests && method->name.word != Word::setup_ &&
-                                 method->name.word != Word::teardown_;
-            const bool is_second =
-                method->accessor == Accessor::set && routine.getters.contains(method->name.text);
-            if ((is_second || is_new_name(c, method->name, names, is_test)) && !is_test)
-                add_method(routine, made);
-        }
+        collect_methods(c, routine);
     }
     for (const DeclarationBlock& block : c.tree.globals)
         for (const Declaration* declared : block.declarations)

@@ -55,7 +55,19 @@ const Type* check_logic(Checking& c, Expression*& e) {
     return e->type;
 }
 
+bool is_numeric(const Type& type) {
+    return type.is_number() || type.is_bits();
+}
+
+/// Beside a number, and where an order is asked for, an enumeration's value is its number.
+void take_numbers(Checking& c, Expression& e, bool always) {
+    for (const int i : {0, 1})
+        if (always || is_numeric(*e.operands[1 - i]->type))
+            enumeration_becomes_number(c, e.operands[i]);
+}
+
 const Type* check_comparison(Checking& c, Expression*& e) {
+    take_numbers(c, *e, e->op != Word::equal && e->op != Word::unequal);
     unite_texts(c, e->operands[0], e->operands[1]);
     const auto is_kind = [&](Kind kind) {
         return std::ranges::any_of(e->operands,
@@ -100,6 +112,7 @@ const Type* check_comparison(Checking& c, Expression*& e) {
 const Type* check_arithmetic(Checking& c, Expression*& e, const Type* expected) {
     if (is_dtl(*e->operands[0]->type) || is_dtl(*e->operands[1]->type))
         return check_dtl_arithmetic(c, e);
+    take_numbers(c, *e, true);
     const Type &a = *e->operands[0]->type, &b = *e->operands[1]->type;
     if (a.is_time() || b.is_time()) return check_time_arithmetic(c, e);
     reinterpret(c, *e, Kind::bits, expected);

@@ -120,8 +120,9 @@ const Type* check_index(Checking& c, Expression*& node) {
             return c.fail(code::type_does_not_fit, argument.value->place,
                           fmt::format("{} has no elements", describe(*type)),
                           e.arguments.size() > 1 ? "there are more indices than dimensions" : "");
+        if (!argument.value->type) return nullptr;
+        enumeration_becomes_number(c, argument.value);
         const Type* given = argument.value->type;
-        if (!given) return nullptr;
         if (!given->is_integer() && !given->is_bits())
             return c.fail(code::type_does_not_fit, argument.value->place,
                           fmt::format("an index is a whole number, not {}", describe(*given)));
@@ -221,8 +222,10 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     const bool is_siemens_own =
         of && of->kind == Kind::block && target.place.dialect().sets_variables_of_instances &&
         (variable->section == Section::local || variable->section == Section::output);
+    const bool is_public =
+        variable->section == Section::local && variable->access == Access::public_;  // 6.6.5.10
     if (of && of->is_instance() && variable->section != Section::input && !c.is_in_test() &&
-        is_named && !is_siemens_own)
+        is_named && !is_siemens_own && !is_public)
         return refuse(fmt::format("'{}' of {}", variable->text, of->name),
                       "only inputs of an instance are set from outside");
     return of && of->is_instance() ? true : check_target(c, *target.operands[0], how);

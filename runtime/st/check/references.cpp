@@ -1,5 +1,7 @@
 #include "runtime/st/check/references.hpp"
 
+#include <fmt/format.h>
+
 #include "runtime/source/codes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
@@ -90,8 +92,13 @@ bool begins_with(const Type& whole, const Type& part) {
     return first && begins_with(*first, part);
 }
 
+/// An instance of a block that derives from the one that is referred to is one of it, too.
 bool is_target(const Type& reference, const Type& given) {
-    return reference.element && same_type(*reference.element, given);
+    if (!reference.element) return false;
+    const Type& wanted = *reference.element;
+    const bool derives = wanted.kind == Kind::block && given.kind == Kind::block &&
+                         is_a(*given.routine, *wanted.routine);
+    return derives || same_type(wanted, given);
 }
 
 bool refuse_target(Checking& c, const Expression& e, const Type& to, const Type& from) {
@@ -220,11 +227,63 @@ const Type* take_target(Checking& c, Expression*& e) {
     return target && target->is_alias() ? take_target(c, e) : target;
 }
 
+Expression* bound_of(Checking& c, const Expression& array, std::string_view which) {
+    const std::string name = fmt::format("{}.{}", array.variable->text, which);
+    Expression* made = make_name(c, array, c.checked.names.emplace_back(name));
+    check(c, made);
+    return made;
+}
+
+/// Its bounds are the sum's arguments, and the size of an element its constant.
+const Type* check_open_index(Checking& c, Expression*& e, Expression* index) {
+    Expression* array = e->operands[0];
+    const Type* target = array->type->element;
+    Expression* moved = make_binary(c, e->place, e->place, Word::plus, array, index);
+    moved->type = array->type;
+    for (const std::string_view which : {"lower", "upper"})
+        moved->arguments.push_back({.value = bound_of(c, *array, which)});
+    moved->constant.integer = Wide{bytes_of(*target)};
+    Expression* made = make(c, E::deref, *e);
+    made->operands[0] = moved;
+    depend_on_target(c, target, e->place);
+    e = made;
+    return e->type = target;
+}
+
+bool give_open_array(Checking& c, const Argument& argument, Variable& array, OpenBounds bounds,
+                     std::vector<Argument>& to) {
+    Expression* given = argument.value;
+    if (!check(c, given) || !array.type->element) return false;
+    Expression *lower = nullptr, *upper = nullptr;
+    const Type& type = *given->type;
+    if (type.is_reference() && type.is_open && same_type(*type.element, *array.type->element)) {
+        lower = bound_of(c, *given, "lower");
+        upper = bound_of(c, *given, "upper");
+        given = make_converted(c, given, *array.type);
+    } else if (type.kind == Kind::array && same_type(*type.element, *array.type->element)) {
+        lower = make_constant(c, *given, lint_type, {.integer = type.lower});
+        upper = make_constant(c, *given, lint_type, {.integer = type.upper});
+        given = make_element(c, given, type.lower);
+        if (!check(c, given) || !refer(c, given, *array.type)) return false;
+    } else {
+        c.fail(code::type_does_not_fit, given->place,
+               fmt::format("'{}' is {}, and {} is given", array.text, describe(*array.type),
+                           describe(type)),
+               "give a variable that is an array of one dimension");
+        return false;
+    }
+    to.push_back({argument.name, false, given, &array});
+    to.push_back({argument.name, false, lower, &bounds.first});
+    to.push_back({argument.name, false, upper, &bounds.second});
+    return true;
+}
+
 const Type* check_pointer_index(Checking& c, Expression*& e) {
     Expression* pointer = e->operands[0];
     const Type* target = pointer->type->element;
     Expression* index = e->arguments[0].value;
     if (!target || !index->type) return nullptr;
+    enumeration_becomes_number(c, index);
     if (e->arguments.size() > 1 || !(index->type->is_integer() || index->type->is_bits()))
         return c.fail(code::type_does_not_fit, index->place,
                       "a POINTER has one index, a whole number");
@@ -232,6 +291,7 @@ const Type* check_pointer_index(Checking& c, Expression*& e) {
         coerce(c, index, lint_type);
     else
         convert(c, index, lint_type);
+    if (pointer->type->is_open) return check_open_index(c, e, index);
     Expression* size = make_constant(c, *index, lint_type, {.integer = Wide{bytes_of(*target)}});
     Expression* bytes = make_binary(c, index->place, index->place, Word::times, index, size);
     bytes->type = &lint_type;

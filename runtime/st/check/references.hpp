@@ -29,4 +29,17 @@ const Type* check_reference_operator(Checking& c, Expression*& e, const Type* ex
 /// As coerce(), where one of both types is that of a reference.
 bool coerce_reference(Checking& c, Expression*& e, const Type& to);
 
+/// `lower` or `upper`: the bound of an ARRAY[*] that the routine was given.
+Expression* bound_of(Checking& c, const Expression& array, std::string_view which);
+
+/// The inputs that have the bounds of an ARRAY[*].
+struct OpenBounds {
+    Variable &first, &second;
+};
+
+/// What a call gives an ARRAY[*]: where the first element is, and the bounds; false for what is no
+/// such array, which was told.
+bool give_open_array(Checking& c, const Argument& argument, Variable& array, OpenBounds bounds,
+                     std::vector<Argument>& to);
+
 }  // namespace lineshaft::st

@@ -7,6 +7,7 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/references.hpp"
 #include "runtime/st/functions/standard.hpp"
 
 namespace lineshaft::st {
@@ -52,9 +53,23 @@ const Type* check_element_count(Checking& c, Expression*& e) {
     return &dint_type;
 }
 
+/// Of an ARRAY[*], which has one dimension.
+const Type* check_open_bound(Checking& c, Expression*& e) {
+    Expression*& wanted = e->arguments[1].value;
+    const auto dimension = check_whole(c, wanted, lint_type);
+    if (!dimension) return nullptr;
+    if (*dimension != 1)
+        return c.fail(code::value_out_of_range, wanted->place, "the array's dimensions are 1 to 1");
+    const bool is_lower = e->standard->typing == Typing::lower_bound;
+    e = bound_of(c, *e->arguments[0].value, is_lower ? "lower" : "upper");
+    convert(c, e, dint_type);
+    return e->type = &dint_type;
+}
+
 /// Of the dimension, which is a constant too.
 const Type* check_bound(Checking& c, Expression*& e) {
     const Type* array = e->arguments[0].value->type;
+    if (array->is_reference() && array->is_open) return check_open_bound(c, e);
     if (array->kind != Kind::array) return refuse(c, *e, "an array", *array);
     Expression*& wanted = e->arguments[1].value;
     const auto dimension = check_whole(c, wanted, lint_type);

@@ -20,7 +20,19 @@ namespace lineshaft::st {
 
 namespace {
 
+/// `ARRAY[*] OF INT` of what is given to a call.
+const Type* resolve_open_array(Checking& c, const TypeText& text) {
+    if (text.ranges.size() > 1)
+        return c.fail(code::not_supported, text.place,
+                      "arrays of any length have one dimension here", "write their bounds");
+    auto& type = const_cast<Type&>(*resolve_reference(c, text));
+    type.referring = Referring::pointer;
+    type.is_open = true;
+    return &type;
+}
+
 const Type* resolve_array(Checking& c, const TypeText& text) {
+    if (!text.ranges.front().first) return resolve_open_array(c, text);
     const Type* element = resolve(c, *text.element);
     Wide total = 1;
     for (auto it = text.ranges.rbegin(); it != text.ranges.rend(); ++it) {
@@ -97,6 +109,7 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
     Type& type = c.make_type(Kind::enumeration, "enumeration");
     type.slots = 1;
     type.base = &int_type;
+    type.has_numbers = true;
     const bool has_base = text.name.word != Word::end_of_file;
     if (has_base) type.base = resolve_name(c, text.name);
     if (type.base && type.base->kind != Kind::integer && type.base->kind != Kind::bits)

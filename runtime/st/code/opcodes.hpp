@@ -59,6 +59,7 @@
     OP(load_element, integer, "wsrx", ELEMENT(c, d); put(a, word(at(b), element)))                   \
     OP(store_element, integer, "rsrx", ELEMENT(c, d); set_word(at(b), element, U(a)))                \
     OP(within, integer, "-rx-", if (!within(U(b), c)) FAIL(out_of_range))                            \
+    OP(between, integer, "-rrr", if (I(b) < I(c) || I(b) > I(d)) FAIL(array_bounds))                 \
     OP(bound, integer, "-r--", if (U(b) == 0) FAIL(no_reference))                                     \
     OP(jump, jump, "--j-", GO(to))                                                                   \
     OP(jump_if, jump, "-rj-", if (U(b) != 0) GO(to))                                                 \

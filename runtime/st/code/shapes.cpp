@@ -18,6 +18,12 @@ const ShapeMember* member_at(const Code& code, const Shape& of, std::uint64_t Sh
     return behind == members.begin() ? nullptr : &*std::prev(behind);
 }
 
+/// It is the shape, or that of a block which derives from it and begins as it does.
+bool is_of(const Code& code, std::uint32_t shape, std::uint32_t wanted) {
+    while (shape != wanted && code.shapes[shape].base != 0) shape = code.shapes[shape].base - 1;
+    return shape == wanted;
+}
+
 }  // namespace
 
 std::optional<std::uint64_t> slot_of(const Code& code, std::uint32_t shape, std::int64_t byte,
@@ -28,7 +34,7 @@ std::optional<std::uint64_t> slot_of(const Code& code, std::uint32_t shape, std:
     for (;;) {
         const Shape& here = code.shapes[shape];
         if (at >= here.bytes && at != 0) return {};
-        if (shape == wanted) return at == 0 ? std::optional(slot) : std::nullopt;
+        if (is_of(code, shape, wanted)) return at == 0 ? std::optional(slot) : std::nullopt;
         if (here.kind == Shape::Kind::array) {
             const Shape& element = code.shapes[here.element];
             if (element.bytes == 0) return {};

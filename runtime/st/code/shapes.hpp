@@ -19,6 +19,7 @@ struct Shape {
     std::uint64_t bytes = 0, slots = 0;
     std::uint32_t element = 0;           ///< of an array
     std::uint32_t first = 0, count = 0;  ///< of a structure: its members in Code::members
+    std::uint32_t base = 0;              ///< of a block: that of its base plus 1; 0: it has none
 };
 
 struct ShapeMember {

@@ -20,11 +20,7 @@ const Routine* find_in(const Routine& block, const Routine& wanted) {
     const bool is_body = !wanted.owner;
     if (!is_a(block, is_body ? wanted : *wanted.owner)) return nullptr;
     if (is_body) return &block;
-    const auto& known = wanted.pou->accessor == Accessor::get   ? block.getters
-                        : wanted.pou->accessor == Accessor::set ? block.setters
-                                                                : block.methods;
-    const auto it = known.find(wanted.pou->name.text);
-    return it == known.end() ? nullptr : it->second;
+    return find_method(block, wanted);
 }
 
 }  // namespace

@@ -93,9 +93,20 @@ Slot refer_to_variable(Writing& w, const Expression& root) {
     return made;
 }
 
+/// How many bytes behind the first element of an ARRAY[*] the one of that index is.
+Slot bytes_of_index(Writing& w, const Expression& e) {
+    const Slot index = value(w, *e.operands[1]);
+    w.land();
+    const Slot lower = value(w, *e.arguments[0].value), upper = value(w, *e.arguments[1].value);
+    w.put(Op::between, 0, index, lower, upper);
+    const Slot place = w.emit(Op::sub_lint, none, index, lower);
+    const auto size = static_cast<std::uint64_t>(e.constant.integer);
+    return w.emit(Op::mul_lint, none, place, w.constant_slot(size));
+}
+
 Slot moved(Writing& w, const Expression& e) {
     const Slot base = reference(w, *e.operands[0]);
-    Slot by = value(w, *e.operands[1]);
+    Slot by = e.arguments.empty() ? value(w, *e.operands[1]) : bytes_of_index(w, e);
     if (e.op == Word::minus) by = w.emit(Op::neg_lint, none, by);
     const Slot made = w.new_temporary(reference_slots);
     w.put(Op::move_reference, made, base, by);
@@ -122,6 +133,8 @@ void finish_shape(Writing& w, std::uint32_t number) {
         made.count = static_cast<std::uint32_t>(members.size());
         w.code.members.insert(w.code.members.end(), members.begin(), members.end());
     }
+    if (type.kind == Kind::block && type.routine->base)
+        made.base = shape_number(w, *type.routine->base->type) + 1;
     w.code.shapes[number] = made;
 }
 

@@ -12,6 +12,7 @@
 #include "runtime/st/library/evaluate.hpp"
 #include "runtime/st/library/library_names.hpp"
 #include "runtime/st/prelude/standard_source.hpp"
+#include "runtime/st/syntax/declared_apart.hpp"
 #include "runtime/st/syntax/parser.hpp"
 
 namespace lineshaft::st {
@@ -36,6 +37,7 @@ bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOption
         parse(std::move(tokens), to.tree, out);
     }
     to.tree.leave_lost_out();
+    join_declared_apart(to.tree);
     libraries.add_files(to.tree, out);
     if (uses_standard || libraries.use_standard_source())
         parse(read_tokens(standard_source(), out, SourceKind::prelude), to.tree, out);

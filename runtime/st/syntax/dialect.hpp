@@ -16,6 +16,7 @@ struct Dialect {
     bool dint_becomes_real;             ///< although a REAL does not hold every DINT: a warning
     bool numbers_stand_for_names;       ///< 1 for `mcPositiveDirection`, as Siemens counts them
     bool texts_of_integers_have_signs;  ///< INT_TO_STRING(5) is '+5', else '5'
+    bool bits_count_in_reals = false;   ///< DWORD_TO_REAL(1) is 1.0, else the REAL of these bits
     bool packs_as_s7 = false;           ///< bytes of packed memory: the highest first, words even
 };
 

@@ -141,11 +141,6 @@ void refuse_reserved_name(Parsing& p) {
     p.unclosed_at = p.at;
 }
 
-void refuse_any_length(Parsing& p) {
-    fail(p, code::not_supported, p.here().place, "arrays of any length are not supported",
-         "write its bounds: ARRAY[0..9] OF ...");
-}
-
 void refuse_comparison(Parsing& p) {
     tell(p, code::something_else_expected, p.here().place, "'=' compares and does not assign",
          "write ':='");

@@ -33,8 +33,6 @@ void refuse_shared_place(Parsing& p);
 void refuse_statement(Parsing& p);
 /// A word of the language stands where a name is due: whatever uses it would be wrong too.
 void refuse_reserved_name(Parsing& p);
-/// ARRAY[*]
-void refuse_any_length(Parsing& p);
 
 // In statements and expressions.
 

@@ -116,7 +116,7 @@ DeclarationBlock parse_section(Parsing& p, Section section) {
     return block;
 }
 
-/// Var_Decl : ( Variable_List | Name Located_At ) ':' Data_Type ( 'R_EDGE' | 'F_EDGE' ) ?
+/// Var_Decl : ( Variable_List | Name ? Located_At ) ':' Data_Type ( 'R_EDGE' | 'F_EDGE' ) ?
 ///            ( ':=' Var_Init ) ? ';'
 /// Variable_List : Name ( ',' Name ) *
 void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
@@ -129,8 +129,12 @@ void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
     if (!p.is_name() && p.here().word < Word::end_of_file && behind == Word::colon)
         return refuse_reserved_name(p);
     std::vector<Token> names;
-    do names.push_back(expect_name(p, "the name of a variable"));
-    while (p.accept(Word::comma));
+    if (p.is(Word::at_) && p.next().word == Word::direct) {
+        names.push_back(p.next());  // it is named by its address
+    } else {
+        do names.push_back(expect_name(p, "the name of a variable"));
+        while (p.accept(Word::comma));
+    }
     const Token at = parse_location(p, names);
     expect(p, Word::colon, "after the name");
     TypeText* type = parse_type(p);

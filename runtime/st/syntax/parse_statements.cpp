@@ -49,6 +49,18 @@ void parse_latch(Parsing& p, Expression* target, Block& to) {
     end_statement(p);
 }
 
+/// Access_Stmt : Variable_Access 'ACCESS' Expression ';'
+/// Of B&R: `r ACCESS ADR(x);` is `r REF= ADR(x);`.
+void parse_access_statement(Parsing& p, Expression* target, Block& to) {
+    Statement* statement = p.make(Statement::Kind::assign, p.take());
+    statement->op = Word::reference_assign;
+    statement->target = target;
+    statement->value = parse_expression(p);
+    statement->place = target->place.to(p.last().place);
+    to.push_back(statement);
+    end_statement(p);
+}
+
 /// A value alone names an action, `a;`, or is a mistake.
 void parse_value_alone(Parsing& p, Expression* value, Block& to) {
     const bool is_name =
@@ -61,7 +73,7 @@ void parse_value_alone(Parsing& p, Expression* value, Block& to) {
     p.take();
 }
 
-/// Simple_Stmt : Assign_Stmt | Latch_Stmt | Invocation
+/// Simple_Stmt : Assign_Stmt | Latch_Stmt | Access_Stmt | Invocation
 /// Invocation : Variable_Access ';'
 /// It begins with a Name; an Invocation ends with the ')' of a call, or names an action.
 void parse_simple(Parsing& p, Block& to) {
@@ -74,6 +86,8 @@ void parse_simple(Parsing& p, Block& to) {
     if (is_assignment(op)) return parse_assignment(p, target, to);
     if (op == Word::set_assign || op == Word::reset_assign) return parse_latch(p, target, to);
     if (op == Word::equal) return refuse_comparison(p);
+    if (p.is(Word::name) && p.says("access") && p.is_name(1))
+        return parse_access_statement(p, target, to);
     if (target->kind != Expression::Kind::call) return parse_value_alone(p, target, to);
     Statement* statement = p.make(Statement::Kind::call, target->token);
     statement->place = target->place;

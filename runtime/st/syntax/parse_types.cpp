@@ -15,13 +15,18 @@ void parse_bounds(Parsing& p, TypeText& type) {
     type.ranges.emplace_back(from, parse_expression(p));
 }
 
-/// Array_Spec : 'ARRAY' '[' Subrange ( ',' Subrange ) * ']' 'OF' Data_Type
+/// Array_Spec : 'ARRAY' '[' ( Subrange ( ',' Subrange ) * | '*' ( ',' '*' ) * ) ']' 'OF' Data_Type
 void parse_array(Parsing& p, TypeText& type) {
     type.kind = TypeText::Kind::array;
     expect(p, Word::open_bracket, "after ARRAY");
+    const bool is_open = p.is(Word::times);
     do {
-        if (p.is(Word::times)) return refuse_any_length(p);
-        parse_bounds(p, type);
+        if (!is_open)
+            parse_bounds(p, type);
+        else if (p.accept(Word::times))
+            type.ranges.emplace_back(nullptr, nullptr);
+        else
+            expected(p, "*", "as in the dimension before");
     } while (p.accept(Word::comma));
     expect(p, Word::close_bracket, "after the bounds");
     expect(p, Word::of_, "before the type of the elements");

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "runtime/source/letters.hpp"
+
 namespace lineshaft::st {
 
 const Expression& root_of(const Expression& place) {
@@ -73,6 +75,38 @@ std::vector<Variable*> all_variables(const Routine& block) {
     for (const Variable& variable : block.variables)
         all.push_back(const_cast<Variable*>(&variable));
     return all;
+}
+
+std::string signature_of(const Pou& routine) {
+    std::string signature;
+    for (const Section section : {Section::input, Section::in_out, Section::output})
+        for (const DeclarationBlock& block : routine.blocks)
+            for (const Declaration* declared : block.declarations) {
+                if (block.section != section || !declared->type) continue;
+                if (!signature.empty()) signature += ',';
+                for (const char letter : declared->type->place.text())
+                    if (letter != ' ' && letter != '\t') signature += lower(letter);
+            }
+    return signature;
+}
+
+Routine* find_method(const Routine& block, const Routine& like) {
+    const Accessor accessor = like.pou->accessor;
+    const auto& known = accessor == Accessor::get   ? block.getters
+                        : accessor == Accessor::set ? block.setters
+                                                    : block.methods;
+    const auto it = known.find(like.pou->name.text);
+    if (it == known.end()) return nullptr;
+    const auto several = block.overloads.find(like.pou->name.text);
+    const bool is_one = accessor != Accessor::none ||
+                        (several == block.overloads.end() &&
+                         !(like.owner && like.owner->overloads.contains(like.pou->name.text)));
+    if (is_one) return it->second;
+    const std::string wanted = signature_of(*like.pou);
+    const auto is_like = [&](const Routine* r) { return signature_of(*r->pou) == wanted; };
+    if (several == block.overloads.end()) return is_like(it->second) ? it->second : nullptr;
+    const auto found = std::ranges::find_if(several->second, is_like);
+    return found == several->second.end() ? nullptr : *found;
 }
 
 bool is_a(const Routine& block, const Routine& other) {

@@ -60,18 +60,20 @@ struct Type {
     std::uint32_t slots = 1;
     std::int64_t lower = 0, upper = -1;  ///< of an array's index; of a subrange's values
     bool is_subrange = false;
-    bool is_unnamed = false;                 ///< STRUCT without a TYPE: any of its members is equal
-    bool counts_ns = false;                  ///< LTIME, of which a real number is in ns, not ms
-    const Type* base = nullptr;              ///< of a subrange; of an enumeration with numbers
-    const Type* element = nullptr;           ///< of an array; what a reference is to, or null
-    Referring referring = Referring::ref;    ///< of a reference
-    bool has_inner = false;                  ///< of an array: its element is its next dimension
-    std::uint32_t length = 0;                ///< of a text, in characters
-    bool is_open = false;                    ///< VAR_IN_OUT STRING: of what length is given
-    std::vector<Variable*> members = {};     ///< of a structure, a union
-    std::vector<std::string> values = {};    ///< of an enumeration
-    std::vector<std::int64_t> numbers = {};  ///< of its values
-    bool counted = true;                     ///< those are 0, 1, 2, ...
+    bool is_unnamed = false;               ///< STRUCT without a TYPE: any of its members is equal
+    bool counts_ns = false;                ///< LTIME, of which a real number is in ns, not ms
+    const Type* base = nullptr;            ///< of a subrange; of an enumeration with numbers
+    const Type* element = nullptr;         ///< of an array; what a reference is to, or null
+    Referring referring = Referring::ref;  ///< of a reference
+    bool has_inner = false;                ///< of an array: its element is its next dimension
+    std::uint32_t length = 0;              ///< of a text, in characters
+    bool is_open = false;  ///< VAR_IN_OUT STRING: of what length is given; of a reference:
+                           ///< ARRAY[*], to the first element of what is given
+    std::vector<Variable*> members = {};       ///< of a structure, a union
+    std::vector<std::string> values = {};      ///< of an enumeration
+    std::vector<std::int64_t> numbers = {};    ///< of its values
+    bool counted = true;                       ///< those are 0, 1, 2, ...
+    bool has_numbers = false;                  ///< a source declares it: its numbers are known
     std::vector<std::int64_t> of_number = {};  ///< what SCL's numbers mean; -1, or beyond: nothing
     bool is_code = false;  ///< of an enumeration: one that the standards make a WORD, as ErrorID
     Routine* routine = nullptr;  ///< of a block, of an interface
@@ -152,6 +154,7 @@ struct Variable {
     const Pou* of = nullptr;  ///< null: a member of a structure, or of the catalogue
     Access access = Access::unsaid;
     bool used = false;
+    const Variable* bound_of = nullptr;  ///< ARRAY[*] whose lower or upper bound this is
     Variable* edge = nullptr;    ///< of `x : BOOL R_EDGE`: the R_TRIG whose Q its name means inside
     std::string_view text = {};  ///< its name
     std::string_view doc = {};   ///< comments, as they are written
@@ -173,17 +176,18 @@ struct Routine {
     Routine* owner = nullptr;  ///< of a method: its block
     std::deque<Variable> variables = {};
     NameMap<Variable*> names = {};
-    std::vector<Routine*> own_methods = {};        ///< of a block, in their order
-    NameMap<Routine*> methods = {};                ///< those of its bases too
-    NameMap<Routine*> getters = {}, setters = {};  ///< of PROPERTY
-    Routine* base = nullptr;                       ///< of a block: what it EXTENDS
-    std::vector<Routine*> interfaces = {};         ///< IMPLEMENTS; of an interface its bases
-    bool has_unknown_base = false;                 ///< which was told, or is lost
-    Routine* overrides = nullptr;                  ///< of a method: that of a base
-    bool is_replaced = false;                      ///< by what derives from its block
-    bool is_declared = false;                      ///< its variables are
-    bool is_dispatched = false;                    ///< a call may find it by the instance
-    bool dispatches = false;                       ///< calls what is found by an instance
+    std::vector<Routine*> own_methods = {};         ///< of a block, in their order
+    NameMap<Routine*> methods = {};                 ///< those of its bases too
+    NameMap<Routine*> getters = {}, setters = {};   ///< of PROPERTY
+    NameMap<std::vector<Routine*>> overloads = {};  ///< methods that share a name
+    Routine* base = nullptr;                        ///< of a block: what it EXTENDS
+    std::vector<Routine*> interfaces = {};          ///< IMPLEMENTS; of an interface its bases
+    bool has_unknown_base = false;                  ///< which was told, or is lost
+    Routine* overrides = nullptr;                   ///< of a method: that of a base
+    bool is_replaced = false;                       ///< by what derives from its block
+    bool is_declared = false;                       ///< its variables are
+    bool is_dispatched = false;                     ///< a call may find it by the instance
+    bool dispatches = false;                        ///< calls what is found by an instance
     Variable* result = nullptr;
     Type* type = nullptr;  ///< of its instances, of a block
     Block body = {};       ///< as checked: what its statements stand for
@@ -221,6 +225,10 @@ struct Routine {
 
 /// Of a block: its variables, those of its bases first.
 std::vector<Variable*> all_variables(const Routine& block);
+/// What the arguments are written as: `int,real`. Those of one name differ in it.
+std::string signature_of(const Pou& routine);
+/// The method of the block that is called as `like`, one of another block, is; null: it has none.
+Routine* find_method(const Routine& block, const Routine& like);
 /// The block is the other one, or derives from it; the block or interface implements it.
 bool is_a(const Routine& block, const Routine& other);
 

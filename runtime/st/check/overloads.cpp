@@ -1,0 +1,89 @@
+#include "runtime/st/check/overloads.hpp"
+
+#include <algorithm>
+
+#include "runtime/st/check/expressions.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+/// How well a value goes where `to` is due; empty: not at all.
+std::optional<int> closeness(const Type& from, const Type& to) {
+    constexpr int same = 8, alike = 6, usual = 5, possible = 3;
+    if (same_type(from, to)) return same;
+    if (from.kind == Kind::text && to.kind == Kind::text) return alike;
+    if (from.kind == Kind::array && to.is_reference() && to.is_open)
+        return to.element && same_type(*from.element, *to.element) ? std::optional(alike)
+                                                                   : std::nullopt;
+    if (from.routine && to.routine)
+        return is_a(*from.routine, *to.routine) ? std::optional(alike) : std::nullopt;
+    if (from.is_any()) {
+        const bool is_usual = from.is_real() ? to.is_real() && to.bits == 64
+                              : from.kind == Kind::any_integer
+                                  ? to.kind == Kind::integer && to.bits == 32 && to.is_signed
+                                  : to.kind == Kind::bits;
+        const bool is_possible = from.is_real() ? to.is_real() : to.is_number() || to.is_bits();
+        return is_usual      ? std::optional(usual)
+               : is_possible ? std::optional(to.is_real() && !from.is_real() ? 1 : possible)
+                             : std::nullopt;
+    }
+    if (from.is_scalar() && to.is_scalar() && widens(from, to)) return possible - (to.bits > 32);
+    return {};
+}
+
+std::vector<const Variable*> inputs_of(const Routine& routine) {
+    std::vector<const Variable*> found;
+    for (const Variable& variable : routine.variables) {
+        const bool is_given = variable.section == Section::input ||
+                              variable.section == Section::in_out ||
+                              variable.section == Section::output;
+        if (is_given && !variable.bound_of) found.push_back(&variable);
+    }
+    return found;
+}
+
+std::optional<int> closeness(const Expression& call, const Routine& routine) {
+    const std::vector<const Variable*> inputs = inputs_of(routine);
+    int sum = 0;
+    for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+        const Argument& argument = call.arguments[i];
+        const Variable* input = i < inputs.size() ? inputs[i] : nullptr;
+        if (argument.is_named()) {
+            const auto it = std::ranges::find_if(inputs, [&](const Variable* variable) {
+                return same_name(variable->text, argument.name.text);
+            });
+            input = it == inputs.end() ? nullptr : *it;
+        }
+        if (!input || !input->type) return {};
+        if (!argument.value->type) continue;
+        const auto one = closeness(*argument.value->type, *input->type);
+        if (!one) return {};
+        sum += *one;
+    }
+    const auto missing = static_cast<int>(inputs.size()) - static_cast<int>(call.arguments.size());
+    return sum - std::max(missing, 0);
+}
+
+}  // namespace
+
+Routine& overload_of(Checking& c, Expression& call, const NameMap<std::vector<Routine*>>& overloads,
+                     Routine& first) {
+    const auto it = std::ranges::find_if(overloads, [&](const auto& entry) {
+        return std::ranges::find(entry.second, &first) != entry.second.end();
+    });
+    if (it == overloads.end()) return first;
+    for (Argument& argument : call.arguments)
+        if (!argument.is_output) check(c, argument.value);
+    Routine* best = &first;
+    std::optional<int> closest;
+    for (Routine* routine : it->second) {
+        const auto one = closeness(call, *routine);
+        if (!one || (closest && *one <= *closest)) continue;
+        closest = one;
+        best = routine;
+    }
+    return *best;
+}
+
+}  // namespace lineshaft::st
