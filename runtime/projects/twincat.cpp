@@ -184,6 +184,11 @@ std::string path_of(const fs::path& named_by, std::string text) {
     return fs::exists(found, unknown) ? found.lexically_normal().string() : path.string();
 }
 
+/// `TcUnit` of `TcUnit,1.2.0.0,www.tcunit.org`.
+std::string before_comma(const std::string& reference) {
+    return reference.substr(0, reference.find(','));
+}
+
 /// A project does not list projects.
 bool is_same_form(const fs::path& a, const fs::path& b) {
     return lower(a.extension().string()) == lower(b.extension().string());
@@ -222,7 +227,7 @@ void read_plcproj(const Reading& to, const std::string& path, const Mark& where)
             const Mark mark = file->mark(file->part(include));
             const std::string_view kind = item.name();
             if (kind == "PlaceholderReference" || kind == "LibraryReference")
-                to.project.libraries.push_back({file->plain(include), mark});
+                to.project.libraries.push_back({before_comma(file->plain(include)), mark});
             if (kind != "Compile") continue;
             const std::string named = path_of(path, file->plain(include));
             if (!is_source(named) || is_same_form(named, path)) continue;

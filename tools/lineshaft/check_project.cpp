@@ -111,6 +111,13 @@ std::string table_of(const Diagnostics& out) {
     return text;
 }
 
+std::vector<LibraryReference> references_of(const projects::Project& project) {
+    std::vector<LibraryReference> references;
+    for (const projects::Name& library : project.libraries)
+        references.push_back({library.text, library.mark});
+    return references;
+}
+
 }  // namespace
 
 bool is_project(const std::string& path) {
@@ -128,7 +135,7 @@ bool is_project(const std::string& path) {
 
 std::string check_project(const std::string& path, const LoadOptions& options, Diagnostics& out) {
     const projects::Project project = read_project(path, options.include_dirs, out);
-    st::compile(project.sources, standard_blocks(), out);
+    st::compile(project.sources, standard_blocks(), out, {.references = references_of(project)});
     const std::size_t whole = project.sources.size();
     const std::size_t wrong = with_mistakes(parts_of(project), out).size();
     std::string page =

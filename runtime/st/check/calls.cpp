@@ -11,6 +11,7 @@
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/objects.hpp"
 #include "runtime/st/check/order.hpp"
 #include "runtime/st/check/overloads.hpp"
 #include "runtime/st/check/places.hpp"
@@ -350,6 +351,10 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
             e = make_call(c, *e, callee.operands[0], e->arguments);  // `#delay.TON(...)`
             return check_instance_call(c, e, *of, as_statement);
         }
+        if (Routine* part = find_part(c, *of, callee.token.text); part && as_statement) {
+            e = e->operands[0];
+            return check_part(c, e, *part);
+        }
         if (of->kind == Kind::block || of->kind == Kind::interface) {
             const auto it = of->routine->methods.find(callee.token.text);
             if (it != of->routine->methods.end()) {
@@ -383,6 +388,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
     }
     const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
+    if (as_statement && e->arguments.empty())
+        if (Routine* part = find_part(c, *type, "ReadStatus")) return check_part(c, e, *part);
     if (type->is_instance()) return check_instance_call(c, e, *type, as_statement);
     return c.fail(code::wrong_arguments, callee.place,
                   fmt::format("{} cannot be called", describe(*type)),

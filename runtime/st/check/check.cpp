@@ -1,5 +1,8 @@
 #include "runtime/st/check/check.hpp"
 
+#include <algorithm>
+
+#include "runtime/source/codes.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/image.hpp"
@@ -9,8 +12,36 @@
 
 namespace lineshaft::st {
 
-Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out) {
+namespace {
+
+/// Once for all libraries of a project that are not here.
+void tell_missing_libraries(Checking& c) {
+    constexpr std::size_t most_shown = 12;
+    if (c.foreign.empty()) return;
+    std::vector<std::string> names, libraries;
+    for (const auto& [name, place] : c.foreign) {
+        const Mark mark = place.mark();
+        names.push_back(fmt::format("{} ({}:{})", name, mark.file->path, mark.line));
+    }
+    for (const LibraryReference& missing : c.missing_libraries) libraries.push_back(missing.name);
+    std::ranges::sort(names);
+    const std::size_t more = names.size() - std::min(names.size(), most_shown);
+    names.resize(names.size() - more);
+    if (more > 0) names.push_back(fmt::format("and {} more", more));
+    c.out.add(
+        code::library_is_missing, c.missing_libraries.front().mark,
+        fmt::format("{} that nobody declares may be of libraries that are not here: {}",
+                    c.foreign.size() == 1 ? "a name" : fmt::format("{} names", c.foreign.size()),
+                    fmt::join(libraries, ", ")),
+        fmt::format("give their sources, too; {}", fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out,
+              std::span<const LibraryReference> missing) {
     Checking c{tree, catalog, evaluate, out};
+    c.missing_libraries = missing;
     collect_names(c);
     resolve_bases(c);
     declare_globals(c);
@@ -18,6 +49,7 @@ Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics
     check_classes(c);
     check_initial_values(c);
     for (Routine& routine : c.checked.routines) check_body(c, routine);
+    tell_missing_libraries(c);
     finish_image(c);
     order_routines(c);
     if (out.empty()) warn_of_unused(c);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+
+#include "runtime/model/library_reference.hpp"
 #include "runtime/st/code/machine.hpp"
 #include "runtime/st/types/types.hpp"
 
@@ -40,6 +43,8 @@ using Evaluate = Evaluated (*)(Expression&);
 ///   L0924  warning: a block assigns its own input
 ///   L0925  warning: a step without a way out
 ///   L0926  warning: two variables at one address
-Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out);
+///   L0927  names that may be of `missing`, libraries that a project refers to
+Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out,
+              std::span<const LibraryReference> missing = {});
 
 }  // namespace lineshaft::st

@@ -32,6 +32,12 @@ bool Checking::is_lost(const Token& name) const {
     return it != tree.lost.end() && it->second && !is_prelude(name);
 }
 
+bool Checking::may_be_foreign(const Token& name) {
+    if (missing_libraries.empty()) return false;
+    foreign.emplace(name.text, name.place);
+    return true;
+}
+
 Type& Checking::make_type(Type::Kind kind, std::string name) {
     Type& type = checked.types.emplace_back();
     type.kind = kind;

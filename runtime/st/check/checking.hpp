@@ -96,6 +96,8 @@ struct Checking {
     Routine* routine = nullptr;                                   ///< that is being checked
     int loops = 0;                                                ///< around the statement
     std::unordered_map<const Routine*, NameSet> undeclared = {};  ///< names that were told
+    std::span<const LibraryReference> missing_libraries = {};     ///< that a project refers to
+    NameMap<Place> foreign = {};  ///< names that may be of a library that is not here
 
     /// An error. Null, for who returns a type, a variable or a node.
     std::nullptr_t fail(const char* code, Place place, std::string message, std::string help = {});
@@ -132,6 +134,9 @@ struct Checking {
     const Prefixes* prefixes_at(Place place) const;
     Routine* find_routine(const Token& name);
     Names& names_beside(const Token& name) { return is_prelude(name) ? prelude : users; }
+
+    /// What nobody has may be of a library that is not here: all such names are told at once.
+    bool may_be_foreign(const Token& name);
 
     /// A type, block or function of the user's that was not understood.
     bool is_lost(const Token& name) const;

@@ -37,6 +37,7 @@ Routine* find_base(Checking& c, const Routine& of, const Token& name, bool wants
         return c.fail(code::not_supported, name.place,
                       fmt::format("'{}' cannot be extended", name.text),
                       "declare an instance of it, and call that");
+    if (c.may_be_foreign(name)) return nullptr;
     return c.fail(code::not_declared, name.place, fmt::format("'{}' is not {}", name.text, wanted),
                   suggest(name.text, names));
 }

@@ -76,7 +76,7 @@ std::string_view name_in_list(Checking& c, const DeclarationBlock& block,
 }
 
 Variable* declare_global(Checking& c, const DeclarationBlock& block, const Declaration& declared) {
-    Type& all = global_variables(c);
+    if (!is_library(declared.name)) global_variables(c);
     const Type* type = resolve(c, *declared.type);
     const std::string_view in_list = name_in_list(c, block, declared);
     Token name = declared.name;
@@ -96,7 +96,7 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
     }
     refuse_abstract(c, type, declared.name.place);
     if (block.constant) make_constant(c, *variable);
-    if (variable->space == Space::global) all.members.push_back(variable);
+    if (variable->space == Space::global) global_variables(c).members.push_back(variable);
     if (!block.is_qualified_only) c.globals.emplace(declared.name.text, variable);
     return variable;
 }

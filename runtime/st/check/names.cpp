@@ -92,6 +92,7 @@ const Type* undeclared(Checking& c, const Token& name, Place place,
     const bool is_text =
         name.quoted && (!std::ranges::all_of(name.text, in_name) ||
                         (near.empty() && place.dialect().quotes_may_enclose_texts));
+    if (near.empty() && !is_text && c.may_be_foreign(name)) return nullptr;
     return c.fail(code::not_declared, place, fmt::format("'{}' is not declared", name.text),
                   is_text ? "a text stands in '...', a name in \"...\"" : suggest(name.text, near));
 }

@@ -40,6 +40,10 @@ std::vector<std::string> known_namespaces(const Checking& c) {
 void refuse_namespace(Checking& c, Place place, std::string_view path) {
     if (!c.namespaces.emplace(c.checked.names.emplace_back(path), false).second) return;
     const std::string near = suggest(path, known_namespaces(c));
+    Token name;
+    name.text = path;
+    name.place = place;
+    if (c.may_be_foreign(name)) return;
     c.fail(code::not_declared, place, fmt::format("there is no namespace '{}'", path),
            near.empty() ? "give the sources that declare it, too" : near);
 }
@@ -70,8 +74,7 @@ void collect_namespaces(Checking& c) {
         });
         const bool is_known =
             std::ranges::find(c.open_libraries, file.library) != c.open_libraries.end();
-        if (is_taken && !is_known && file.library.find('.') == file.library.npos)
-            c.open_libraries.push_back(file.library);
+        if (is_taken && !is_known && is_open(file)) c.open_libraries.push_back(file.library);
     }
     for (const auto& [source, scopes] : c.tree.scopes)
         for (const Scope& scope : scopes)

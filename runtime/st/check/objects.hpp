@@ -14,7 +14,7 @@ void make_object(Checking& c, Variable& variable);
 
 /// `e` means the block of the program that has its name.
 const Type* use_object(Checking& c, Expression*& e, const Type& type);
-/// What its kind says in Structured Text.
+/// What its kind or a library says of it in Structured Text.
 Routine* find_part(Checking& c, const Type& type, std::string_view name);
 
 /// `"Axis_1".Position`, where nothing else is called so.

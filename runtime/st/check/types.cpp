@@ -226,6 +226,7 @@ const Type* resolve_name(Checking& c, const Token& name) {
     for (const BlockType& kind : c.catalog.types()) names.emplace_back(kind.name);
     std::ranges::sort(names);
     const auto near = nearest(name.text, names);
+    if (near.empty() && c.may_be_foreign(name)) return nullptr;
     return c.fail(
         code::not_declared, name.place, fmt::format("'{}' is not a type", name.text),
         near.empty() ? "declare it with TYPE, or as a FUNCTION_BLOCK" : suggest(name.text, near));

@@ -31,7 +31,7 @@ bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOption
         Tokens tokens =
             read_tokens(source, out, is_tests ? SourceKind::tests : SourceKind::program);
         uses_standard = uses_standard || uses_standard_source(tokens);
-        libraries.note_names(tokens);
+        libraries.note_libraries(tokens);
         for (const BlockType& type : standard.types())
             if (uses_source_of(type, tokens)) used.insert(&type);
         parse(std::move(tokens), to.tree, out);
@@ -44,7 +44,7 @@ bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOption
     for (const BlockType& type : standard.types())
         if (used.contains(&type))
             parse(read_tokens(source_of(type), out, SourceKind::prelude), to.tree, out);
-    to.checked = check(to.tree, standard, evaluate, out);
+    to.checked = check(to.tree, standard, evaluate, out, to.missing_libraries);
     if (!out.empty()) return false;
     options.covered = is_covered();
     to.generated = generate(to.checked, out, options);

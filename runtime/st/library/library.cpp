@@ -1,9 +1,12 @@
 #include "runtime/st/library/library.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "runtime/st/library/fields.hpp"
 #include "runtime/st/library/image.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
@@ -40,6 +43,12 @@ void add_global(Library::Made& made, const Global& global, const Options& option
     write_fields(made, kind, global);
 }
 
+/// Of those whose names are here without them, too.
+bool is_here(const Catalog& standard, std::string_view library) {
+    const auto is_it = [&](const LibraryFile& file) { return same_name(file.library, library); };
+    return is_vendor_library(library) || std::ranges::any_of(standard.libraries(), is_it);
+}
+
 }  // namespace
 
 std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFile>>& sources,
@@ -47,6 +56,8 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     const auto made = std::make_shared<Library::Made>();
     made->sources = sources;
     made->tree.addresses = options.addresses;
+    for (const LibraryReference& reference : options.references)
+        if (!is_here(standard, reference.name)) made->missing_libraries.push_back(reference);
     const CodeOptions code_options{.overflow_faults = options.overflow_faults,
                                    .counted = options.times.has_value()};
     if (!compile(*made, standard, out, code_options)) return {};

@@ -9,6 +9,7 @@
 
 #include "runtime/model/address.hpp"
 #include "runtime/model/catalog.hpp"
+#include "runtime/model/library_reference.hpp"
 #include "runtime/st/code/machine.hpp"
 
 namespace lineshaft::st {
@@ -19,6 +20,9 @@ struct Options {
     std::optional<InstructionTimes> times = {};  ///< see `Library::counts`
     bool overflow_faults = false;  ///< an integer beyond its type is a fault: it does not wrap
     bool native = true;  ///< as the processor's code, where that is possible; see native_code()
+
+    std::vector<LibraryReference> references =
+        {};  ///< to libraries: names that nobody has may be of those that are not here
 
     std::vector<ImageAddress> addresses =
         {};  ///< of the process image, that a program's file names

@@ -3,18 +3,22 @@
 #include <algorithm>
 #include <deque>
 #include <mutex>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/prelude/standard_source.hpp"
 #include "runtime/st/syntax/parser.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
 /// Of all files.
 struct LibraryNames::Index {
-    NameMap<const LibraryFile*> by_name;  ///< those that are taken for a name alone
+    NameMap<std::vector<const LibraryFile*>> by_name;  ///< those that are looked for
     NameMap<const LibraryFile*> by_full_name;
+    NameSet of_catalog;  ///< names that are not looked for unless their library is taken
     NameMap<std::vector<const LibraryFile*>> libraries;
     NameSet firsts;  ///< what the libraries' names begin with, up to a point
     std::deque<std::string> full_names;
@@ -44,21 +48,37 @@ bool is_helper(std::string_view name) {
     return name.front() >= 'a' && name.front() <= 'z';
 }
 
+/// Kinds, their parts, and the values of these: `axis.Status` is not looked for alone.
+NameSet names_of(const Catalog& catalog) {
+    NameSet names;
+    for (const BlockType& type : catalog.types()) {
+        names.insert({type.name, type.handle});
+        for (const Field& field : type.fields) {
+            names.insert(field.name);
+            names.insert(field.names.begin(), field.names.end());
+        }
+    }
+    return names;
+}
+
+/// In one of TwinCAT's own forms.
+bool is_twincat(const Source& source) {
+    const std::string path = lower(source.file->path);
+    constexpr std::string_view endings[] = {".tcpou", ".tcdut", ".tcgvl", ".tcio"};
+    return std::ranges::any_of(endings, [&](auto ending) { return path.ends_with(ending); });
+}
+
 LibraryNames::Index make_index(const Catalog& catalog) {
     LibraryNames::Index index;
+    index.of_catalog = names_of(catalog);
     for (const LibraryFile& file : catalog.libraries()) {
         index.libraries[file.library].push_back(&file);
         index.firsts.insert(file.library.substr(0, file.library.find('.')));
-        const bool is_open = file.library.find('.') == file.library.npos;
         for (const std::string_view name : LibraryNames::declared_in(file)) {
             const std::string& full =
                 index.full_names.emplace_back(fmt::format("{}.{}", file.library, name));
             index.by_full_name.emplace(full, &file);
-            const auto is_kind = [&](const BlockType& type) {
-                return same_name(type.name, name) || same_name(type.handle, name);
-            };
-            if (is_open && std::ranges::none_of(catalog.types(), is_kind))
-                index.by_name.emplace(name, &file);
+            if (is_open(file)) index.by_name[name].push_back(&file);
         }
     }
     return index;
@@ -118,22 +138,51 @@ std::vector<std::string_view> LibraryNames::declared_in(const LibraryFile& file)
             continue;
         std::string_view name = first_word(line);
         while (is_modifier(name)) name = first_word(line);
-        if (is_type || !is_helper(name)) names.push_back(name);
+        const bool is_part = line.starts_with('.');  // of "AXIS_REF.fSetPosition"
+        if (is_part) name = first_word(line);
+        if (is_type || is_part || !is_helper(name)) names.push_back(name);
         in_values = is_type && line.ends_with("(");
     }
     return names;
 }
 
-void LibraryNames::note_names(const Tokens& tokens) {
+void LibraryNames::note_libraries(const Tokens& tokens) {
     if (catalog_.libraries().empty()) return;
-    const bool is_siemens = &tokens.source->dialect == &scl;
     for (std::size_t i = 0; i < tokens.tokens.size(); ++i) {
         const Token& token = tokens.tokens[i];
-        const bool is_name = token.word == Word::name || token.word == Word::prefix;
-        if (!is_name || token.quoted || token.local) continue;
-        const auto it = is_siemens ? index_.by_name.end() : index_.by_name.find(token.text);
-        if (it != index_.by_name.end()) names_.insert(it->first);
-        if (index_.firsts.contains(token.text)) note_qualified(tokens, i);
+        const bool is_name = token.word == Word::name && !token.quoted && !token.local;
+        if (is_name && index_.firsts.contains(token.text)) note_qualified(tokens, i);
+    }
+}
+
+void LibraryNames::note(const Token& name) {
+    const auto it = index_.by_name.find(name.text);
+    const bool is_plain = !name.quoted && !name.local && name.place.source;
+    if (it == index_.by_name.end() || !is_plain || &name.place.dialect() == &scl) return;
+    names_.insert(it->first);
+    if (is_twincat(*name.place.source)) of_twincat_.insert(it->first);
+}
+
+void LibraryNames::note_names(const Tree& tree, bool are_users) {
+    using E = Expression::Kind;
+    std::optional<NameSet> variables;
+    const auto is_variable = [&](std::string_view name) {
+        if (!are_users || !index_.by_name.contains(name)) return false;
+        if (!variables) {
+            variables.emplace();
+            for (const Declaration& declared : tree.declarations)
+                variables->insert(declared.name.text);
+        }
+        return variables->contains(name);
+    };
+    for (; types_ < tree.type_texts.size(); ++types_) note(tree.type_texts[types_].name);
+    for (; pous_ < tree.pous.size(); ++pous_)
+        for (const auto list : {&Pou::bases, &Pou::implemented})
+            for (const Token& name : tree.pous[pous_].*list) note(name);
+    for (; expressions_ < tree.expressions.size(); ++expressions_) {
+        const Expression& e = tree.expressions[expressions_];
+        const bool is_free = e.kind == E::name && !is_variable(e.token.text);
+        if (is_free || e.kind == E::typed || e.kind == E::member) note(e.token);
     }
 }
 
@@ -143,47 +192,73 @@ void LibraryNames::note_qualified(const Tokens& tokens, std::size_t at) {
     for (;;) {
         const bool goes_on = tokens.tokens[at + 1].word == Word::dot;
         if (const auto it = index_.libraries.find(path); it != index_.libraries.end()) {
-            const bool is_open = path.find('.') == path.npos;
-            if (is_used || (goes_on && !is_open)) names_.insert(it->first);
+            if (is_used || (goes_on && !is_open(*it->second.front()))) said_.insert(it->first);
         }
         if (!goes_on || tokens.tokens[at + 2].word == Word::end_of_file) return;
         at += 2;
         path += fmt::format(".{}", tokens.tokens[at].text);
         if (const auto it = index_.by_full_name.find(path); it != index_.by_full_name.end())
-            names_.insert(it->first);
+            said_.insert(it->first);
     }
 }
 
-void LibraryNames::take_named(const NameSet& declared, const NameSet& own) {
-    const auto take = [&](const LibraryFile* file) {
-        if (!own.contains(file->library)) taken_.insert(file);
-    };
-    for (const std::string_view name : names_) {
-        if (const auto it = index_.libraries.find(name); it != index_.libraries.end())
-            std::ranges::for_each(it->second, take);
-        if (const auto it = index_.by_full_name.find(name); it != index_.by_full_name.end())
-            take(it->second);
-        const auto it = index_.by_name.find(name);
-        if (it != index_.by_name.end() && !declared.contains(name)) take(it->second);
+const LibraryFile* LibraryNames::choose(std::string_view name) const {
+    const auto& files = index_.by_name.at(name);
+    for (const LibraryFile* file : files)
+        if (taken_libraries_.contains(file->library)) return file;
+    if (of_twincat_.contains(name))
+        for (const LibraryFile* file : files)
+            if (file->library.starts_with("Tc2_")) return file;
+    return index_.of_catalog.contains(name) ? nullptr : files.front();
+}
+
+void LibraryNames::take(const LibraryFile& file) {
+    if (own_.contains(file.library)) return;
+    taken_.insert(&file);
+    taken_libraries_.insert(file.library);
+}
+
+void LibraryNames::take_said() {
+    for (const std::string_view said : said_) {
+        if (const auto it = index_.libraries.find(said); it != index_.libraries.end())
+            for (const LibraryFile* file : it->second) take(*file);
+        const auto it = index_.by_full_name.find(said);
+        if (it != index_.by_full_name.end()) take(*it->second);
     }
-    names_.clear();
+    said_.clear();
+}
+
+void LibraryNames::take_named() {
+    for (const bool has_one : {true, false})
+        for (const std::string_view name : names_)
+            if ((index_.by_name.at(name).size() == 1) == has_one)
+                if (const LibraryFile* file = choose(name)) take(*file);
+}
+
+void LibraryNames::read(const LibraryFile& file, Tree& tree, Diagnostics& out) {
+    Tokens tokens = read_tokens(std::make_shared<const SourceFile>(
+                                    SourceFile{std::string(file.path), std::string(file.text)}),
+                                out, SourceKind::library);
+    uses_standard_source_ = uses_standard_source_ || st::uses_standard_source(tokens);
+    note_libraries(tokens);
+    parse(std::move(tokens), tree, out);
 }
 
 void LibraryNames::add_files(Tree& tree, Diagnostics& out) {
-    if (names_.empty()) return;
-    const NameSet own = declared_namespaces(tree);
-    take_named(declared_names(tree), own);
-    std::set<const LibraryFile*> read;
-    while (read.size() < taken_.size()) {
-        const LibraryFile* file =
-            *std::ranges::find_if(taken_, [&](const auto* f) { return read.insert(f).second; });
-        Tokens tokens = read_tokens(std::make_shared<const SourceFile>(SourceFile{
-                                        std::string(file->path), std::string(file->text)}),
-                                    out, SourceKind::library);
-        uses_standard_source_ = uses_standard_source_ || st::uses_standard_source(tokens);
-        note_names(tokens);
-        parse(std::move(tokens), tree, out);
-        take_named({}, own);
+    if (catalog_.libraries().empty()) return;
+    note_names(tree, true);
+    if (names_.empty() && said_.empty()) return;
+    own_ = declared_namespaces(tree);
+    std::erase_if(names_,
+                  [declared = declared_names(tree)](auto name) { return declared.contains(name); });
+    std::set<const LibraryFile*> is_read;
+    for (std::size_t before = 1; before != taken_.size() + taken_libraries_.size();) {
+        before = taken_.size() + taken_libraries_.size();
+        take_said();
+        take_named();
+        for (const LibraryFile& file : catalog_.libraries())
+            if (taken_.contains(&file) && is_read.insert(&file).second) read(file, tree, out);
+        note_names(tree, false);
     }
 }
 

@@ -13,20 +13,24 @@ namespace lineshaft::st {
 
 /// Which files of the catalogue's libraries a program takes along. A file is taken
 ///   - for a name of it that the sources use and nobody else has: they declare no type, unit,
-///     global variable or value of an enumeration of that name, nor has the catalogue it; the
-///     first library that has it is meant; names of a library with a point in its name, and of
-///     helpers, which begin with a small letter, are not looked for, nor names in SCL;
+///     global variable or value of an enumeration of that name, nor has the catalogue it;
+///   - for a name that the catalogue has, too, if something else of that library is taken, or if it
+///     stands in a file of TwinCAT's and the library is one of its;
 ///   - for `Util.BLINK`, where `Util` is the library, whatever else has that name;
-///   - for USING with its library, and for a name before which a library with a point stands: all;
+///   - for USING with its library, and for a name before which a library that is not open stands:
+///   all;
 ///   - for a name that a taken file uses.
-/// A library whose namespace the sources declare themselves is theirs.
+/// Of several libraries that have a name, one is meant that is taken anyway, else the first. Names
+/// of a library that is not open, and of helpers, which begin with a small letter, are not looked
+/// for, nor names in SCL, nor what is the name of a variable everywhere. A library whose namespace
+/// the sources declare themselves is theirs.
 class LibraryNames {
   public:
     explicit LibraryNames(const Catalog& catalog);
 
-    /// Those of a source.
-    void note_names(const Tokens& tokens);
-    /// Parses the files that are taken for the names that were noted.
+    /// Those that a source says.
+    void note_libraries(const Tokens& tokens);
+    /// Parses the files that are taken for what the sources of the tree use.
     void add_files(Tree& tree, Diagnostics& out);
     /// A file that was taken uses the prelude.
     bool use_standard_source() const { return uses_standard_source_; }
@@ -38,14 +42,23 @@ class LibraryNames {
     struct Index;
 
   private:
+    void note(const Token& name);
+    void note_names(const Tree& tree, bool are_users);
     void note_qualified(const Tokens& tokens, std::size_t at);
-    /// `declared` are names that others have, `own` libraries that the sources are themselves.
-    void take_named(const NameSet& declared, const NameSet& own);
+    const LibraryFile* choose(std::string_view name) const;
+    void take(const LibraryFile& file);
+    void take_said();
+    void take_named();
+    void read(const LibraryFile& file, Tree& tree, Diagnostics& out);
 
     const Catalog& catalog_;
     const Index& index_;
-    std::set<std::string_view> names_;  ///< as libraries write them
+    std::size_t types_ = 0, pous_ = 0, expressions_ = 0;  ///< of the tree that were looked at
+    std::set<std::string_view> names_, of_twincat_;       ///< as libraries write them
+    std::set<std::string_view> said_;                     ///< libraries, and names in full
+    std::set<std::string_view> taken_libraries_;
     std::set<const LibraryFile*> taken_;
+    NameSet own_;  ///< libraries that the sources are themselves
     bool uses_standard_source_ = false;
 };
 

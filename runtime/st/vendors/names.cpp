@@ -48,8 +48,9 @@ constexpr Renamed parts[] = {{"reset", "r"},
                              {"enable_positive", "enablepositive"},
                              {"enable_negative", "enablenegative"}};
 
-constexpr std::string_view libraries[] = {"standard",  "standard64",   "tc2_standard", "tc2_mc2",
-                                          "sm3_basic", "sm3_robotics", "plcopen"};
+constexpr std::string_view libraries[] = {
+    "standard", "standard64",  "tc2_standard", "tc2_mc2",        "sm3_basic",      "sm3_robotics",
+    "plcopen",  "system.math", "system.timer", "system.strings", "system.datetime"};
 
 constexpr AddedInput added_inputs[] = {
     {"StartMode"},    {"StopMode"},    {"Restart"},    {"PositionControlled"},
@@ -73,13 +74,19 @@ std::string_view standard_part_name(std::string_view name) {
     return it == std::end(parts) ? std::string_view() : it->standard;
 }
 
+bool is_vendor_library(std::string_view name) {
+    return std::ranges::any_of(libraries,
+                               [&](std::string_view known) { return same_name(known, name); });
+}
+
+bool is_open(const LibraryFile& file) {
+    return file.library.find('.') == file.library.npos && !file.text.starts_with("{attribute");
+}
+
 std::string_view without_library(std::string_view name) {
-    const std::size_t point = name.find('.');
-    if (point == name.npos) return name;
-    const auto is_first = [&](std::string_view known) {
-        return same_name(known, name.substr(0, point));
-    };
-    return std::ranges::any_of(libraries, is_first) ? name.substr(point + 1) : name;
+    const std::size_t point = name.rfind('.');
+    const bool has_library = point != name.npos && is_vendor_library(name.substr(0, point));
+    return has_library ? name.substr(point + 1) : name;
 }
 
 const AddedInput* find_added_input(std::string_view name) {

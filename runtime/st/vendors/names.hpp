@@ -5,6 +5,8 @@
 #include <span>
 #include <string_view>
 
+#include "runtime/model/catalog.hpp"
+
 namespace lineshaft::st {
 
 /// IEC 61131-3's or PLCopen's name of a type or a kind of block that vendors call otherwise:
@@ -15,8 +17,14 @@ std::string_view standard_type_name(std::string_view name);
 /// Empty for any other name.
 std::string_view standard_part_name(std::string_view name);
 
-/// `TON` of `Standard.TON`, where the first is a library of CODESYS or Beckhoff whose names are
-/// here without it; else the name as it is.
+/// A library of CODESYS, Beckhoff or SIMATIC AX whose names are here without it.
+bool is_vendor_library(std::string_view name);
+
+/// Its names are seen without its own, where nobody else has them. One is not open that has a point
+/// in its name, or `{attribute 'qualified_only'}` before all.
+bool is_open(const LibraryFile& file);
+
+/// `TON` of `Standard.TON`, where the first is such a library; else the name as it is.
 std::string_view without_library(std::string_view name);
 
 /// What Siemens' programs name by `"Axis_1"` without declaring it.

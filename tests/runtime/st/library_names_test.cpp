@@ -7,7 +7,6 @@
 #include "blocks/catalog.hpp"
 #include "runtime/st/library/library.hpp"
 #include "runtime/st/syntax/parser.hpp"
-#include "tests/runtime/st/instance.hpp"
 
 using namespace lineshaft;
 
@@ -33,7 +32,7 @@ std::vector<std::string> parsed_names(const LibraryFile& library) {
     }
     for (const st::Pou* unit : tree.units)
         if (!std::islower(static_cast<unsigned char>(unit->name.text.front())))
-            names.emplace_back(unit->name.text);
+            names.emplace_back(unit->name.text.substr(unit->name.text.rfind('.') + 1));
     for (const st::DeclarationBlock& block : tree.globals)
         for (const st::Declaration* variable : block.declarations)
             names.emplace_back(variable->name.text);
@@ -82,6 +81,8 @@ TEST_CASE("a program takes of libraries what nobody else has", "[st][libraries]"
     CHECK(compiled({file("a.st", use), file("b.st", own)}).find("has no argument 'ENABLE'") !=
           std::string::npos);
     CHECK(compiled({file("a.scl", use)}).find("'BLINK' is not a type") != std::string::npos);
+    CHECK(compiled({file("a.st", "PROGRAM p VAR t : LREAL; END_VAR t := PI; END_PROGRAM\n")}) ==
+          "p ");
 }
 
 TEST_CASE("a library whose namespace the sources declare is theirs", "[st][libraries]") {
@@ -90,4 +91,32 @@ TEST_CASE("a library whose namespace the sources declare is theirs", "[st][libra
                          "PROGRAM p VAR a : Util.T; b : Util.BLINK; END_VAR\n"
                          "a := 1; b(); END_PROGRAM\n")})
               .find("the namespace 'Util' has no 'BLINK'") != std::string::npos);
+}
+
+TEST_CASE("what the catalogue has is a library's once that is taken", "[st][libraries]") {
+    const std::string declare = "PROGRAM p VAR axis : AXIS_REF; m : MC_MoveAbsolute; b : BOOL;\n";
+    const std::string call = "END_VAR m(Axis := axis, Execute := b, Options := o); END_PROGRAM\n";
+    CHECK(compiled({file("a.st", declare + "o : BOOL; " + call)})
+              .find("MC_MOVEABSOLUTE has no argument 'Options'") != std::string::npos);
+    CHECK(compiled({file("a.st", declare + "o : ST_MoveOptions; " + call)}) == "p ");
+    CHECK(compiled({file("a.TcPOU", declare + "o : BOOL; " + call)})
+              .find("expected Tc2_MC2.ST_MoveOptions, found BOOL") != std::string::npos);
+}
+
+TEST_CASE("names that nobody has may be of libraries that are not here", "[st][libraries]") {
+    const auto project = file("a.plcproj", "one\ntwo\n");
+    const auto source = file("a.st",
+                             "PROGRAM p VAR a : FB_JsonSaxWriter; b : INT; END_VAR\n"
+                             "a.ResetDocument(); b := F_Foreign(b); b := TRUE;\n"
+                             "END_PROGRAM\n");
+    Diagnostics out;
+    st::Options options;
+    options.references = {{"Tc2_Standard", {project, 1, 1}}, {"Tc3_JsonXml", {project, 2, 1}}};
+    CHECK_FALSE(st::compile({source}, standard_blocks(), out, options));
+    const std::string told = out.render();
+    CHECK(told.find("a.plcproj:2:1: error[L0927]: 2 names that nobody declares may be of libraries "
+                    "that are not here: Tc3_JsonXml") != std::string::npos);
+    CHECK(told.find("FB_JsonSaxWriter (a.st:1), F_Foreign (a.st:2)") != std::string::npos);
+    CHECK(told.find("a.st:2:44: error[L0905]") != std::string::npos);
+    CHECK(out.count() == 2);
 }
