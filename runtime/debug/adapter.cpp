@@ -1,11 +1,13 @@
 #include "runtime/debug/adapter.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "runtime/source/units.hpp"
+#include "runtime/trace/output_file.hpp"
 
 namespace lineshaft::debug {
 
@@ -69,6 +71,12 @@ void Adapter::run() {
                                     launched_->loaded.linked.expectations[i].text,
                                     verdict.ok ? "" : ": " + verdict.deviation));
     }
+    if (const std::string text = session_->recording();
+        !text.empty() && !launched_->record.empty()) {
+        OutputFile file(launched_->record);
+        file.write(text);
+        if (!file.commit()) tell("stderr", file.error() + "\n");
+    }
     if (!report.refused.empty()) tell("stderr", report.refused.render());
     if (!report.result.message.empty()) tell("stderr", report.result.message + "\n");
     send_event("exited", {{"exitCode", exit_code_}});
@@ -86,6 +94,12 @@ const std::map<std::string, Adapter::Handler>& Adapter::handlers() {
         {"stackTrace", &Adapter::stack_trace},
         {"scopes", &Adapter::scopes},
         {"variables", &Adapter::variables},
+        {"evaluate", &Adapter::evaluate},
+        {"setVariable", &Adapter::set_variable},
+        {"setFunctionBreakpoints", &Adapter::set_function_breakpoints},
+        {"lineshaft/state", &Adapter::state},
+        {"lineshaft/lastWriter", &Adapter::last_writer},
+        {"lineshaft/goTo", &Adapter::go_to},
         {"pause", &Adapter::pause},
         {"disconnect", &Adapter::disconnect},
         {"terminate", &Adapter::terminate}};
@@ -199,6 +213,14 @@ Json Adapter::initialize(const Json& arguments) {
     return {{"supportsConfigurationDoneRequest", true},
             {"supportsStepBack", true},
             {"supportsTerminateRequest", true},
+            {"supportsConditionalBreakpoints", true},
+            {"supportsHitConditionalBreakpoints", true},
+            {"supportsLogPoints", true},
+            {"supportsFunctionBreakpoints", true},
+            {"supportsEvaluateForHovers", true},
+            {"supportsSetVariable", true},
+            {"exceptionBreakpointFilters",
+             {{{"filter", "block_error"}, {"label", "An error of a block"}, {"default", true}}}},
             {"supportTerminateDebuggee", true}};
 }
 
@@ -228,7 +250,10 @@ Json Adapter::set_breakpoints(const Json& arguments) {
     std::vector<Wanted> wanted;
     if (const auto it = arguments.find("breakpoints"); it != arguments.end() && it->is_array())
         for (const Json& each : *it)
-            wanted.push_back({static_cast<int>(number_in(each, "line")) + first});
+            wanted.push_back({.line = static_cast<int>(number_in(each, "line")) + first,
+                              .condition = text_in(each, "condition"),
+                              .hits = text_in(each, "hitCondition"),
+                              .log = text_in(each, "logMessage")});
     const std::string path = text_in(arguments.value("source", Json::object()), "path");
     Json all = Json::array();
     for (const Breakpoint& breakpoint : session().breakpoints().set(path, wanted)) {
@@ -236,14 +261,99 @@ Json Adapter::set_breakpoints(const Json& arguments) {
                  {"verified", breakpoint.is_verified},
                  {"line", breakpoint.line - first},
                  {"source", source_of(path)}};
-        if (!breakpoint.is_verified)
-            one["message"] = "no statement of the program's Structured Text begins here or behind";
+        if (!breakpoint.is_verified) one["message"] = breakpoint.error;
         all.push_back(std::move(one));
     }
     return {{"breakpoints", all}};
 }
 
-Json Adapter::set_exceptions(const Json&) {
+Json Adapter::set_exceptions(const Json& arguments) {
+    const Json filters = arguments.value("filters", Json::array());
+    session().stop_on_error = std::ranges::count(filters, "block_error") > 0;
+    return Json::object();
+}
+
+Json Adapter::set_function_breakpoints(const Json& arguments) {
+    std::vector<std::string> texts;
+    for (const Json& each : arguments.value("breakpoints", Json::array()))
+        texts.push_back(text_in(each, "name"));
+    Json all = Json::array();
+    for (const std::string& error : session().signals().set(texts)) {
+        all.push_back({{"verified", error.empty()}});
+        if (!error.empty()) all.back()["message"] = error;
+    }
+    return {{"breakpoints", all}};
+}
+
+/// A signal by its name, or an expression of Structured Text as the frame sees it.
+Json Adapter::evaluate(const Json& arguments) {
+    const Linked& linked = standing().loaded().linked;
+    const std::string text = text_in(arguments, "expression");
+    if (const Signal* signal = linked.machine.find(text))
+        return {{"result", signal->describe(signal->value())},
+                {"type", name_of(signal->type)},
+                {"variablesReference", 0}};
+    const auto number = static_cast<std::size_t>(number_in(arguments, "frameId", 1));
+    if (frames().empty() || number == 0 || number > frames_.size())
+        throw Refused(fmt::format("there is no signal '{}', and no routine runs here", text));
+    const Evaluated value = Expression(text).value(frames_[number - 1], session_->made()->checked);
+    if (!value.error.empty()) throw Refused(value.error);
+    Json body = to_json(value.shown);
+    body["result"] = body["value"];
+    return body;
+}
+
+Shown Adapter::variable_in(const Json& arguments) {
+    const std::int64_t reference = number_in(arguments, "variablesReference");
+    const std::string name = text_in(arguments, "name");
+    if (reference > 0 && reference <= std::ssize(kept_))
+        for (const Shown& shown : kept_[static_cast<std::size_t>(reference - 1)].inside(0, 0))
+            if (shown.name == name) return shown;
+    throw Refused(fmt::format("there is no variable '{}' any more", name));
+}
+
+/// As what comes from outside it counts from the next instant on.
+Json Adapter::set_variable(const Json& arguments) {
+    Session& session = standing();
+    const Shown shown = variable_in(arguments);
+    const std::string value = text_in(arguments, "value");
+    if (shown.signal.empty())
+        throw Refused(
+            fmt::format("'{}' is no signal of the program, which alone can be set from "
+                        "outside",
+                        shown.name));
+    Diagnostics out;
+    session.change(shown.signal, value, out);
+    if (!out.empty()) throw Refused(out.list().front().message);
+    return {{"value", value}};
+}
+
+Json Adapter::state(const Json&) {
+    const Session& session = standing();
+    const Position& here = session.here();
+    return {{"time", here.time},
+            {"scan", here.scan == Position::behind ? -1 : static_cast<std::int64_t>(here.scan)},
+            {"statement", here.statement},
+            {"fingerprint", session.fingerprint()},
+            {"checkpoints", session.history().size()},
+            {"bytes", session.history().bytes()}};
+}
+
+Json Adapter::go_to(const Json& arguments) {
+    const std::int64_t scan = number_in(arguments, "scan", -1);
+    const Position to{number_in(arguments, "time"),
+                      scan < 0 ? Position::behind : static_cast<std::uint64_t>(scan),
+                      static_cast<std::uint64_t>(number_in(arguments, "statement"))};
+    standing().command({.way = Way::to, .to = to});
+    goes_on_ = true;
+    return Json::object();
+}
+
+Json Adapter::last_writer(const Json& arguments) {
+    const Shown shown = variable_in(arguments);
+    if (!shown.at) throw Refused(fmt::format("'{}' is not in the memory", shown.name));
+    standing().command({.way = Way::writer, .at = shown.at, .bytes = shown.bytes});
+    goes_on_ = true;
     return Json::object();
 }
 
@@ -275,15 +385,19 @@ void Adapter::add_task_frame(Json& frames, int task) {
          {"presentationHint", "subtle"}});
 }
 
+const std::vector<Frame>& Adapter::frames() {
+    if (const st::Halt* halt = session_->halt(); halt && frames_.empty())
+        frames_ = frames_of(*halt, *session_->made(), session_->loaded().linked.machine);
+    return frames_;
+}
+
 Json Adapter::stack_trace(const Json& arguments) {
     Session& session = standing();
     const int task = static_cast<int>(number_in(arguments, "threadId", 1)) - 1;
     const st::Halt* halt = session.halt();
     Json frames = Json::array();
     if (halt && halt->context.task == task) {
-        if (frames_.empty())
-            frames_ = frames_of(*halt, *session.made(), session.loaded().linked.machine);
-        for (const Frame& frame : frames_)
+        for (const Frame& frame : this->frames())
             frames.push_back({{"id", frames.size() + 1},
                               {"name", frame.name},
                               {"source", source_of(frame.mark.file->path)},
@@ -364,7 +478,7 @@ Json Adapter::pause(const Json&) {
 
 Json Adapter::go_on(const Json& arguments, Way way) {
     const int task = static_cast<int>(number_in(arguments, "threadId", 1)) - 1;
-    standing().command({way, task});
+    standing().command({.way = way, .task = task});
     goes_on_ = true;
     return way == Way::go ? Json{{"allThreadsContinued", true}} : Json::object();
 }

@@ -14,6 +14,7 @@ struct Launched {
     Loaded loaded;
     RunOptions how;
     std::function<int(const RunReport&)> tell;  ///< what came of it; gives the exit code
+    std::string record = {};                    ///< where changes made by hand go; empty: nowhere
 };
 
 /// Loads what a client wants to run: the program's file (empty: it said none) and options as on the
@@ -43,6 +44,7 @@ class Adapter final : Front {
     void stopped(const Stop& stop) override;
     void look() override;
     void happened(const RunEvent& event) override;
+    void log(const std::string& text) override { tell("console", text); }
 
     Json initialize(const Json& arguments);
     Json launch(const Json& arguments);
@@ -53,6 +55,12 @@ class Adapter final : Front {
     Json stack_trace(const Json& arguments);
     Json scopes(const Json& arguments);
     Json variables(const Json& arguments);
+    Json evaluate(const Json& arguments);
+    Json set_variable(const Json& arguments);
+    Json set_function_breakpoints(const Json& arguments);
+    Json state(const Json& arguments);
+    Json last_writer(const Json& arguments);
+    Json go_to(const Json& arguments);
     Json pause(const Json& arguments);
     Json go_on(const Json& arguments, Way kind);
     Json terminate(const Json& arguments);
@@ -62,6 +70,8 @@ class Adapter final : Front {
 
     Session& session();
     Session& standing();
+    Shown variable_in(const Json& arguments);
+    const std::vector<Frame>& frames();
     void forget();
     Json to_json(const Shown& shown);
     std::int64_t keep(const Shown& shown);

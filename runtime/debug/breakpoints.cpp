@@ -1,8 +1,11 @@
 #include "runtime/debug/breakpoints.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <map>
+
+#include <fmt/format.h>
 
 namespace lineshaft::debug {
 
@@ -16,7 +19,82 @@ std::string whole_path(const std::string& path) {
     return unknown ? path : whole.string();
 }
 
+std::shared_ptr<const Expression> read_expression(const std::string& text, std::string& error) {
+    if (text.empty()) return {};
+    auto expression = std::make_shared<const Expression>(text);
+    if (!expression->error().empty()) error = fmt::format("'{}': {}", text, expression->error());
+    return expression;
+}
+
+std::optional<HitCount> read_hits(std::string_view text, std::string& error) {
+    using Is = HitCount::Is;
+    constexpr std::pair<std::string_view, Is> signs[] = {
+        {">=", Is::at_least}, {">", Is::above}, {"%", Is::multiple}, {"=", Is::equal}};
+    const auto trim = [&] {
+        text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    };
+    trim();
+    if (text.empty()) return {};
+    HitCount hits;
+    for (const auto& [sign, is] : signs)
+        if (text.starts_with(sign)) {
+            hits.is = is;
+            text.remove_prefix(sign.size());
+            break;
+        }
+    trim();
+    const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), hits.number);
+    if (wrong != std::errc() || end != text.data() + text.size() || hits.number < 1)
+        error = "write 3, >= 3, > 3 or % 3 for how often it is come to";
+    return hits;
+}
+
+void read_log(Breakpoint& to) {
+    std::string_view text = to.wanted.log;
+    while (!text.empty()) {
+        const std::size_t open = std::min(text.find('{'), text.size());
+        const std::size_t close = std::min(text.find('}', open), text.size());
+        const bool has_one = close < text.size();
+        to.log.emplace_back(
+            text.substr(0, has_one ? open : text.size()),
+            has_one
+                ? read_expression(std::string(text.substr(open + 1, close - open - 1)), to.error)
+                : nullptr);
+        text.remove_prefix(has_one ? close + 1 : text.size());
+    }
+}
+
 }  // namespace
+
+bool HitCount::holds(std::int64_t count) const {
+    switch (is) {
+        case Is::equal:
+            return count == number;
+        case Is::at_least:
+            return count >= number;
+        case Is::above:
+            return count > number;
+        case Is::multiple:
+            return count % number == 0;
+    }
+    return true;
+}
+
+std::string Breakpoint::logged(const Frame& frame, const st::Checked& checked) const {
+    std::string text;
+    for (const auto& [before, expression] : log) {
+        text += before;
+        if (!expression) continue;
+        const Evaluated value = expression->value(frame, checked);
+        text += value.error.empty() ? value.shown.value : "<" + value.error + ">";
+    }
+    return text + "\n";
+}
+
+bool Breakpoints::are_counted() const {
+    return std::ranges::any_of(breakpoints_,
+                               [](const Breakpoint& b) { return b.hits.has_value(); });
+}
 
 Breakpoints::Breakpoints(const st::Library::Made* made) : made_(made) {
     if (!made) return;
@@ -38,8 +116,14 @@ std::vector<Breakpoint> Breakpoints::set(const std::string& path,
     std::erase_if(breakpoints_, [&](const Breakpoint& b) { return b.path == whole; });
     const std::size_t first = breakpoints_.size();
     for (const Wanted& each : wanted) {
-        Breakpoint breakpoint{++last_id_, each.line, false, whole, each};
-        breakpoint.is_verified = place(breakpoint);
+        Breakpoint breakpoint{.id = ++last_id_, .line = each.line, .path = whole, .wanted = each};
+        breakpoint.condition = read_expression(each.condition, breakpoint.error);
+        breakpoint.hits = read_hits(each.hits, breakpoint.error);
+        read_log(breakpoint);
+        if (!place(breakpoint))
+            breakpoint.error =
+                "no statement of the program's Structured Text begins here or behind";
+        breakpoint.is_verified = breakpoint.error.empty();
         breakpoints_.push_back(std::move(breakpoint));
     }
     arrange();

@@ -5,13 +5,26 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/debug/evaluation.hpp"
 #include "runtime/st/library/kind.hpp"
 
 namespace lineshaft::debug {
 
-/// Where somebody wants to stop.
+/// Where somebody wants to stop, and when.
 struct Wanted {
     int line = 0;
+    std::string condition = {};  ///< an expression; empty: always
+    std::string hits = {};       ///< `3`: the third time; `>= 3`, `> 3`, `% 3`; empty: each time
+    std::string log = {};        ///< told instead of stopping: `speed is {speed}`; empty: it stops
+};
+
+/// How often it must have been come to.
+struct HitCount {
+    enum class Is : std::uint8_t { equal, at_least, above, multiple };
+    Is is = Is::equal;
+    std::int64_t number = 1;
+
+    bool holds(std::int64_t count) const;
 };
 
 struct Breakpoint {
@@ -20,6 +33,13 @@ struct Breakpoint {
     bool is_verified = false;
     std::string path = {};  ///< of the file
     Wanted wanted = {};
+    std::string error = {};  ///< why it is none
+    std::shared_ptr<const Expression> condition = {};
+    std::optional<HitCount> hits = {};
+    /// Text, and what is put in behind it; or null.
+    std::vector<std::pair<std::string, std::shared_ptr<const Expression>>> log = {};
+
+    std::string logged(const Frame& frame, const st::Checked& checked) const;
 };
 
 /// Breakpoints at lines of Structured Text.
@@ -33,6 +53,9 @@ class Breakpoints {
     std::vector<Breakpoint> set(const std::string& path, const std::vector<Wanted>& wanted);
 
     bool empty() const { return count_ == 0; }
+
+    /// Whether one asks how often it has been come to.
+    bool are_counted() const;
 
     /// Those before a statement, by its number.
     const std::vector<const Breakpoint*>& at(std::size_t statement) const { return at_[statement]; }

@@ -13,15 +13,31 @@ std::string name_of_instance(const Machine& machine, const std::byte* place) {
     return it == machine.blocks.end() ? "" : it->name;
 }
 
+auto routine_at(const st::Library::Made& made, std::uint64_t instruction) {
+    const auto& routines = made.generated.code.routines;
+    return std::ranges::upper_bound(routines, instruction, {}, &st::CodeRoutine::end);
+}
+
 Frame frame_at(const st::Library::Made& made, std::uint64_t instruction) {
     const auto& routines = made.generated.code.routines;
-    const auto it = std::ranges::upper_bound(routines, instruction, {}, &st::CodeRoutine::end);
+    const auto it = routine_at(made, instruction);
     return {.routine = made.checked.order[static_cast<std::size_t>(it - routines.begin())],
             .name = it->name,
             .mark = made.generated.code.places[instruction].mark()};
 }
 
 }  // namespace
+
+Frame innermost(const st::Halt& halt, const st::Library::Made& made) {
+    const auto number = routine_at(made, halt.code.statements[halt.statement].instruction) -
+                        made.generated.code.routines.begin();
+    Frame frame;
+    frame.routine = made.checked.order[static_cast<std::size_t>(number)];
+    frame.base = place_of(halt.base, halt.root, halt.context);
+    frame.root = halt.root;
+    frame.context = &halt.context;
+    return frame;
+}
 
 std::vector<Frame> frames_of(const st::Halt& halt, const st::Library::Made& made,
                              const Machine& machine) {
@@ -41,6 +57,7 @@ std::vector<Frame> frames_of(const st::Halt& halt, const st::Library::Made& made
     }
     const std::string instance = name_of_instance(machine, halt.root);
     if (!instance.empty()) frames.back().name += fmt::format(" ({})", instance);
+    frames.back().block = instance;
     return frames;
 }
 

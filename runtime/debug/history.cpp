@@ -7,7 +7,7 @@ namespace lineshaft::debug {
 namespace {
 
 std::size_t bytes_of(const History::Checkpoint& checkpoint) {
-    return checkpoint.state.size() + checkpoint.observers.size();
+    return checkpoint.state.size() + checkpoint.hits.size() * 64;
 }
 
 }  // namespace

@@ -11,9 +11,9 @@ namespace lineshaft::debug {
 class History {
   public:
     struct Checkpoint {
-        std::string state;           ///< see Executive::save()
-        std::size_t changes = 0;     ///< made by hand that it has, or has in its mail
-        std::string observers = {};  ///< what watches the run
+        std::string state;                      ///< see Executive::save()
+        std::size_t changes = 0;                ///< made by hand that it has, or has in its mail
+        std::map<int, std::int64_t> hits = {};  ///< of breakpoints, by their numbers
     };
 
     static constexpr std::size_t most_bytes = std::size_t{128} << 20, most = 4096;

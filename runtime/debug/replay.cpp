@@ -1,7 +1,12 @@
 #include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
 
 #include "runtime/debug/session.hpp"
 #include "runtime/model/state.hpp"
+#include "runtime/program/meaning.hpp"
+#include "runtime/source/text_hash.hpp"
 
 namespace lineshaft::debug {
 
@@ -27,7 +32,7 @@ void Session::keep() {
     if (now - kept_ < std::max<Clock::duration>(least, 50 * keep_cost_)) return;
     StateWriter out;
     executive_->save(out);
-    history_.keep(executive_->time(), {out.bytes()});
+    history_.keep(executive_->time(), {out.bytes(), next_change_, hits_});
     kept_ = Clock::now();
     keep_cost_ = kept_ - now;
 }
@@ -35,13 +40,19 @@ void Session::keep() {
 /// From the last checkpoint before it up to where nothing of `time` [ns] has run.
 void Session::start_at(Executive& executive, std::int64_t time) {
     executive_ = &executive;
-    StateReader in(history_.before(time).second->state);
+    const History::Checkpoint& from = *history_.before(time).second;
+    StateReader in(from.state);
     executive.recall(in);
+    next_change_ = from.changes;
+    hits_ = from.hits;
     executive.begin();
-    if (made_) made_->generated.code.probe = nullptr;
     instant_ = -1;
+    recounts_ = made_ && breakpoints_.are_counted();
+    if (made_) made_->generated.code.probe = recounts_ ? looking_.get() : nullptr;
     while (executive.time() < time - 1)
         if (!run_freely(time - 1, true)) break;
+    recounts_ = false;
+    signals_.begin(time);
 }
 
 std::optional<Position> Session::search(std::int64_t from, const Position& end, const Plan& plan) {
@@ -49,9 +60,12 @@ std::optional<Position> Session::search(std::int64_t from, const Position& end, 
     Executive executive(machine_);
     start_at(executive, from);
     begin(executive);
-    search_ = Search{end, plan};
+    const Command& command = plan.command;
+    search_ = Search{end, plan, {}, {reinterpret_cast<const char*>(command.at), command.bytes}};
     attach();
-    executive.run_until(end.scan == 0 ? end.time - 1 : end.time);
+    const std::int64_t limit = end.scan == 0 ? end.time - 1 : end.time;
+    while (executive.time() < limit)
+        if (!run_freely(limit, true)) break;
     executive.remove(*this);
     const std::optional<Position> found = search_->found;
     search_.reset();
@@ -75,22 +89,24 @@ std::optional<Position> Session::last_before(const Position& end, const Plan& pl
     return {};
 }
 
-bool Session::matches(const Search& search, int task, std::uint32_t depth,
-                      std::size_t statement) const {
+bool Session::matches(const Search& search, const st::Halt& halt) {
     const Plan& plan = search.plan;
+    if (plan.command.way == Way::writer) return false;
     if (plan.command.way == Way::back_go) {
         Stop stop;
-        return has_code(task) && hits(statement, stop);
+        return hits(halt, stop, false);
     }
-    if (plan.command.task >= 0 && task != plan.command.task) return false;
+    if (plan.command.task >= 0 && halt.context.task != plan.command.task) return false;
     const bool is_same_scan = here_.time == plan.from.time && here_.scan == plan.from.scan;
-    return depth <= (is_same_scan ? plan.depth : 0);
+    return halt.depth <= (is_same_scan ? plan.depth : 0);
 }
 
 /// Where the jump leads to.
 Position Session::target() {
     const Plan plan = *std::exchange(jump_, {});
-    if (plan.command.way == Way::back_go && breakpoints_.empty()) return {};
+    const Way way = plan.command.way;
+    if (way == Way::to) return plan.command.to;
+    if (way == Way::back_go && breakpoints_.empty() && signals_.empty()) return {};
     return last_before(plan.from, plan).value_or(Position{});
 }
 
@@ -120,11 +136,77 @@ void Session::wander() {
 RunReport Session::repeat(RunOptions how) {
     reset();
     how.drive = [this](Executive& executive, const auto&) {
-        const bool goes_on = executive.run_until(has_ended_ ? end_of_run() : end_);
+        executive_ = &executive;
+        next_change_ = 0;
+        quiet_ = true;
+        const std::int64_t end = has_ended_ ? end_of_run() : end_;
+        bool goes_on = true;
+        while (goes_on && executive.time() < end) goes_on = run_freely(end, true);
         if (!has_ended_ && goes_on) executive.interrupt();
+        executive_ = nullptr;
         return true;
     };
     return lineshaft::run(loaded_, how);
+}
+
+void Session::change(const std::string& signal, const std::string& value, Diagnostics& out) {
+    Desk desk(loaded_);
+    const auto kind = desk.is_settable(signal) ? Change::Kind::set : Change::Kind::force;
+    auto made = desk.changes(kind, {{signal, value}}, out);
+    if (!out.empty() || made.empty()) return;
+    wanted_changes_.push_back({.change = std::move(made.front())});
+    if (!halt_) post_due();
+}
+
+/// What was wanted since, and what the past has at this time.
+void Session::post_due() {
+    for (HandChange& wanted : wanted_changes_) {
+        wanted.at = executive_->time() + 1;
+        const auto task = static_cast<std::size_t>(std::max(wanted.change.force.task, 0));
+        if (wanted.change.kind == Change::Kind::force)
+            wanted.until = later(wanted.at, std::max<std::int64_t>(machine_.tasks[task].every, 1));
+        changes_.resize(next_change_);
+        history_.forget_after(executive_->time());
+        changes_.push_back(std::move(wanted));
+        apply(changes_[next_change_++]);
+        front_.log("recorded: " + text_of(changes_.back()));
+    }
+    wanted_changes_.clear();
+    while (next_change_ < changes_.size() && changes_[next_change_].at <= executive_->time() + 1)
+        apply(changes_[next_change_++]);
+}
+
+void Session::apply(const HandChange& made) {
+    if (made.change.kind == Change::Kind::set) {
+        executive_->post(made.change.stimulus);
+        return;
+    }
+    Force force = made.change.force;
+    force.until = made.until;
+    executive_->force(std::move(force));
+}
+
+std::string Session::text_of(const HandChange& made) {
+    std::string text = recorded(made.at, {&made.change, 1});
+    if (made.until == never) return text;
+    Change end{.kind = Change::Kind::lift_force, .name = made.change.name, .text = {}};
+    return text + recorded(made.until, {&end, 1});
+}
+
+std::string Session::recording() const {
+    std::string text;
+    for (const HandChange& made : changes_) text += text_of(made);
+    if (text.empty()) return text;
+    text += fmt::format("- {{at: {} ns, end: true}}\n", end_);
+    return fmt::format("lineshaft_recording: 1\nprogram: '{}'\nmeaning: '{}'\nentries:\n{}",
+                       std::filesystem::path(loaded_.program.file->path).filename().string(),
+                       meaning_of(loaded_.program).in_force, text);
+}
+
+std::string Session::fingerprint() const {
+    StateWriter out;
+    executive_->save(out);
+    return text_hash(out.bytes());
 }
 
 }  // namespace lineshaft::debug

@@ -34,6 +34,7 @@ Session::Session(Loaded& loaded, Front& front)
       front_(front),
       made_(find_made(machine_)),
       breakpoints_(made_),
+      signals_(loaded),
       has_code_(machine_.tasks.size()) {
     if (made_) looking_ = std::make_unique<Looking>(made_->generated.code, *this);
     for (std::size_t i = 0; i < machine_.blocks.size(); ++i)
@@ -60,6 +61,7 @@ RunReport Session::run(RunOptions how) {
     how.drive = [this](Executive& executive, const auto&) {
         executive_ = &executive;
         note_beginning();
+        signals_.begin(0);
         if (stop_on_entry && has_code(-1))
             plan_ = Plan{{Way::into, -1}, here_};
         else if (stop_on_entry)
@@ -80,6 +82,7 @@ bool Session::play(Executive& executive) {
         if (between_) {
             here_ = {instant_};
             stand(*std::exchange(between_, {}), nullptr);
+            post_due();
         } else if (!goes_on || executive.time() >= end_of_run()) {
             here_ = {instant_};
             if (stop_at_end) stand({"exit", "the end of the run"}, nullptr);
@@ -110,10 +113,12 @@ void Session::begin(Executive& executive) {
 bool Session::run_freely(std::int64_t limit, bool is_quiet) {
     constexpr auto wanted = std::chrono::milliseconds(2);
     const auto begun = Clock::now();
+    post_due();
+    if (next_change_ < changes_.size()) limit = std::min(limit, changes_[next_change_].at - 1);
     const bool goes_on = executive_->run_until(std::min(limit, later(executive_->time(), chunk_)));
     const auto took = Clock::now() - begun;
     chunk_ = std::clamp<std::int64_t>(took > wanted ? chunk_ / 2 : chunk_ * 2, 1000, never / 4);
-    if (!jump_ && !ending_) keep();
+    if (!jump_ && !ending_ && !search_) keep();
     if (!is_quiet) front_.look();
     return goes_on;
 }
@@ -141,25 +146,29 @@ void Session::look(const st::Halt& halt) {
     const Position now{instant_, scans_, ++statements_};
     if (quiet_) return;
     here_ = now;
+    Stop stop{.reason = {}, .task = halt.context.task};
     if (search_) {
-        if (now < search_->end && matches(*search_, halt.context.task, halt.depth, halt.statement))
-            search_->found = now;
+        watch(now, true);
+        if (now < search_->end && matches(*search_, halt)) search_->found = now;
         return;
     }
-    if (goal_ && now != *goal_) return;
-    Stop stop{.reason = goal_ ? "step" : "", .task = halt.context.task};
-    if (!goal_ && plan_ && is_reached(*plan_, stop.task, halt.depth, halt.now.index))
-        stop.reason = plan_->from.time < 0 && stop_on_entry ? "entry" : "step";
-    goal_.reset();
+    if (recounts_ || (goal_ && now < *goal_)) {
+        hits(halt, stop, false);
+        return;
+    }
+    if (std::exchange(goal_, {}) ||
+        (plan_ && is_reached(*plan_, stop.task, halt.depth, halt.now.index)))
+        stop.reason = plan_ && plan_->from.time < 0 && stop_on_entry ? "entry" : "step";
     if (++polls_ % often == 0) front_.look();
     if (ending_) return obey(&halt);
-    hits(halt.statement, stop);
+    hits(halt, stop, true);
     if (std::exchange(pausing_, false) && stop.reason.empty()) stop.reason = "pause";
     if (!stop.reason.empty()) stand(stop, &halt);
 }
 
 bool Session::is_reached(const Plan& plan, int task, std::uint32_t depth, std::int64_t scan) const {
-    const auto& [way, wanted] = plan.command;
+    const Way way = plan.command.way;
+    const int wanted = plan.command.task;
     if (wanted >= 0 && task != wanted) return false;
     const bool is_same_scan = here_.time == plan.from.time && here_.scan == plan.from.scan;
     switch (way) {
@@ -177,12 +186,43 @@ bool Session::is_reached(const Plan& plan, int task, std::uint32_t depth, std::i
 }
 
 /// Tells which breakpoints it is that the statement stops at.
-bool Session::hits(std::size_t statement, Stop& stop) const {
-    for (const Breakpoint* breakpoint : breakpoints_.at(statement))
-        stop.breakpoints.push_back(breakpoint->id);
+bool Session::hits(const st::Halt& halt, Stop& stop, bool tells) {
+    const auto& here = breakpoints_.at(halt.statement);
+    if (here.empty()) return false;
+    const Frame frame = innermost(halt, *made_);
+    for (const Breakpoint* breakpoint : here) {
+        if (breakpoint->condition) {
+            const Evaluated value = breakpoint->condition->value(frame, made_->checked);
+            if (!value.truth.value_or(true)) continue;
+            if (!value.truth) stop.text = breakpoint->wanted.condition + ": " + value.error;
+        }
+        const std::int64_t count = ++hits_[breakpoint->id];
+        if (breakpoint->hits && !breakpoint->hits->holds(count)) continue;
+        if (breakpoint->log.empty())
+            stop.breakpoints.push_back(breakpoint->id);
+        else if (tells)
+            front_.log(breakpoint->logged(frame, made_->checked));
+    }
     if (stop.breakpoints.empty()) return false;
     stop.reason = "breakpoint";
     return true;
+}
+
+/// Of a search for what changed some bytes: it was what came before this.
+void Session::watch(const Position& now, bool is_statement) {
+    Search& search = *search_;
+    if (search.plan.command.way != Way::writer) return;
+    const char* const at = reinterpret_cast<const char*>(search.plan.command.at);
+    const std::string_view bytes(at, search.plan.command.bytes);
+    const bool is_next = search.last.time == now.time && search.last.scan == now.scan;
+    if (bytes != search.bytes) {
+        search.bytes = bytes;
+        // What came in before the first statement of a scan is another block's, or a wire's.
+        const Position writer = is_next || !is_statement ? search.last : Position{now.time};
+        const Position found = writer.time == now.time ? writer : Position{now.time};
+        if (found < search.end && now <= search.end) search.found = found;
+    }
+    if (is_statement) search.last = now;
 }
 
 /// A task without Structured Text is stepped scan by scan.
@@ -193,18 +233,31 @@ void Session::scanned(int task, const Scan&) {
 void Session::settled(std::int64_t time, std::int64_t) {
     instant_ = time;
     const int task = std::exchange(plain_scan_, -1);
-    if (task < 0 || between_) return;
     const Position now{time};
-    if (search_ && now < search_->end && search_->plan.command.way == Way::back &&
-        search_->plan.command.task == task)
-        search_->found = now;
-    if (!plan_ || plan_->command.task != task) return;
-    between_ = Stop{.reason = "step", .task = task};
-    executive_->hold();
+    if (quiet_ || goal_ || recounts_) return;
+    const std::string risen = signals_.empty() ? "" : signals_.risen(time);
+    if (search_) {
+        const Way way = search_->plan.command.way;
+        watch(now, false);
+        if (now < search_->end && ((way == Way::back && search_->plan.command.task == task) ||
+                                   (way == Way::back_go && !risen.empty())))
+            search_->found = now;
+        return;
+    }
+    if (between_) return;
+    if (!risen.empty())
+        between_ = Stop{"function breakpoint", risen};
+    else if (plan_ && task >= 0 && plan_->command.task == task)
+        between_ = Stop{.reason = "step", .task = task};
+    if (between_) executive_->hold();
 }
 
 void Session::happened(const RunEvent& event) {
-    if (!quiet_ && !search_ && !goal_) front_.happened(event);
+    if (quiet_ || search_ || goal_ || recounts_) return;
+    front_.happened(event);
+    if (!stop_on_error || event.kind != EventKind::block_error) return;
+    between_ = Stop{"exception", event.text, std::max(event.task, 0)};
+    executive_->hold();
 }
 
 void Session::stand(Stop stop, const st::Halt* halt) {
@@ -219,12 +272,13 @@ void Session::stand(Stop stop, const st::Halt* halt) {
 /// Within a scan all that comes in the instant still runs, and is not told, when it is left.
 void Session::obey(const st::Halt* halt) {
     const Plan plan{command_, here_, halt ? halt->depth : 0, halt ? halt->now.index : -1};
-    if (ending_ || command_.way == Way::end || command_.way == Way::none) {
+    const Way way = command_.way;
+    if (ending_ || way == Way::end || way == Way::none) {
         ending_ = quiet_ = true;
-    } else if (command_.way == Way::back || command_.way == Way::back_go) {
+    } else if (way == Way::back || way == Way::back_go || way == Way::to || way == Way::writer) {
         jump_ = plan;
         quiet_ = true;
-    } else if (command_.way != Way::go) {
+    } else if (way != Way::go) {
         plan_ = plan;
     }
     plain_scan_ = -1;

@@ -6,7 +6,9 @@
 
 #include "runtime/debug/breakpoints.hpp"
 #include "runtime/debug/history.hpp"
+#include "runtime/debug/signal_conditions.hpp"
 #include "runtime/run/single_run.hpp"
+#include "runtime/serve/desk.hpp"
 
 namespace lineshaft::debug {
 
@@ -32,11 +34,16 @@ enum class Way : std::uint8_t {
     back,       ///< to the task's statement before, calls at once
     back_go,    ///< to the stop before
     end,        ///< of the session
+    to,         ///< to a position, in the past or to come
+    writer,     ///< back to what last changed some bytes of the memory
 };
 
 struct Command {
     Way way = Way::none;
     int task = -1;  ///< index; -1: any
+    Position to = {};
+    const std::byte* at = nullptr;  ///< of writer
+    std::size_t bytes = 0;
 };
 
 /// Why a run stands still.
@@ -58,6 +65,13 @@ class Front {
     virtual void look() = 0;
 
     virtual void happened(const RunEvent& event) = 0;
+    virtual void log(const std::string& text) = 0;
+};
+
+/// A value that was changed by hand.
+struct HandChange {
+    std::int64_t at = 0, until = never;  ///< of a force, when it ends [ns]
+    Change change;
 };
 
 /// One program under the debugger: runs it forwards as `lineshaft run` does, looks at it from
@@ -81,7 +95,20 @@ class Session final : Observer, EventSink {
     void pause() { pausing_ = true; }
     void end() { ending_ = true; }
 
+    /// A value of a signal, as a program would have it: an input keeps it, any other signal has it
+    /// for one scan of its task. It counts from the next instant on, and what was to come after
+    /// that is forgotten. What is wrong goes to `out`.
+    void change(const std::string& signal, const std::string& value, Diagnostics& out);
+
+    /// What was changed by hand, for `lineshaft run --recording`; empty: nothing was.
+    std::string recording() const;
+
+    /// Of the executive's state: the same number, the same state.
+    std::string fingerprint() const;
+
     Breakpoints& breakpoints() { return breakpoints_; }
+    SignalConditions& signals() { return signals_; }
+    bool stop_on_error = false;
     const Loaded& loaded() const { return loaded_; }
     const st::Library::Made* made() const { return made_; }
     /// The scan under way; null between two instants.
@@ -106,6 +133,8 @@ class Session final : Observer, EventSink {
         Position end;
         Plan plan;
         std::optional<Position> found = {};
+        std::string bytes = {};  ///< of writer: as they were when last looked at
+        Position last = {};      ///< of writer: then
     };
 
     // What is seen.
@@ -115,16 +144,19 @@ class Session final : Observer, EventSink {
     bool steps(const st::CodeRoutine& routine, const Scan& now);
     void look(const st::Halt& halt);
     bool is_reached(const Plan& plan, int task, std::uint32_t depth, std::int64_t scan) const;
-    bool matches(const Search& search, int task, std::uint32_t depth, std::size_t statement) const;
-    bool hits(std::size_t statement, Stop& stop) const;
+    bool matches(const Search& search, const st::Halt& halt);
+    bool hits(const st::Halt& halt, Stop& stop, bool tells);
+    void watch(const Position& now, bool is_statement);
 
     // Forwards.
     bool play(Executive& executive);
     void begin(Executive& executive);
-    bool advance(std::int64_t time);
     bool run_freely(std::int64_t limit, bool is_quiet);
     void stand(Stop stop, const st::Halt* halt);
     void obey(const st::Halt* halt);
+    void post_due();
+    void apply(const HandChange& made);
+    static std::string text_of(const HandChange& made);
     void attach();
     bool has_code(int task) const;
     std::int64_t end_of_run() const;
@@ -145,9 +177,14 @@ class Session final : Observer, EventSink {
     Front& front_;
     const st::Library::Made* made_;
     Breakpoints breakpoints_;
-    std::unique_ptr<Looking> looking_;  ///< null without Structured Text
-    std::vector<bool> has_code_;        ///< by task
-    std::vector<std::byte> fresh_;      ///< the memory as the run began
+    SignalConditions signals_;
+    std::map<int, std::int64_t> hits_;  ///< of breakpoints, by their numbers
+    std::vector<HandChange> changes_;
+    std::size_t next_change_ = 0;
+    std::vector<HandChange> wanted_changes_;  ///< of the instant under way
+    std::unique_ptr<st::Probe> looking_;      ///< null without Structured Text
+    std::vector<bool> has_code_;              ///< by task
+    std::vector<std::byte> fresh_;            ///< the memory as the run began
     std::vector<Force> fresh_forces_;
     History history_;
     Clock::time_point kept_ = {};
@@ -167,7 +204,8 @@ class Session final : Observer, EventSink {
     std::optional<Plan> jump_;     ///< back
     std::optional<Position> goal_;
     std::optional<Search> search_;
-    bool quiet_ = false;  ///< nothing is told, nothing stops
+    bool quiet_ = false;     ///< nothing is told, nothing stops
+    bool recounts_ = false;  ///< likewise, but breakpoints are counted
     bool pausing_ = false, ending_ = false, has_ended_ = false;
     std::int64_t end_ = -1;  ///< where the session left the machine [ns]
 };

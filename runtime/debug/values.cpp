@@ -39,7 +39,11 @@ Shown show_variable(const st::Variable& variable, std::byte* base, const Frame& 
     }
     const Seat seat = seat_of(variable, base, frame);
     if (!seat.at) return {.name = name, .value = "not in the machine's memory"};
-    return show(name, seat, variable.unit);
+    Shown shown = show(name, seat, variable.unit);
+    if (base == frame.root && !frame.block.empty() && variable.space == st::Space::frame &&
+        (variable.type->is_scalar() || variable.type->kind == Kind::enumeration))
+        shown.signal = frame.block + "." + name;
+    return shown;
 }
 
 /// The groups of a block's or a routine's variables that have any.
@@ -175,8 +179,13 @@ std::string text_of(const Seat& seat) {
 
 Shown show(std::string name, const Seat& seat, const std::string& unit) {
     if (!seat.type) return {.name = std::move(name), .value = "of no type"};
+    const bool is_block = seat.type->kind == Kind::block;
     Shown shown{
-        .name = std::move(name), .value = with_unit(text_of(seat), unit), .type = seat.type->name};
+        .name = std::move(name),
+        .value = with_unit(text_of(seat), unit),
+        .type = seat.type->name,
+        .at = seat.at,
+        .bytes = 8 * std::size_t{is_block ? seat.type->routine->variables_end : seat.type->slots}};
     show_parts(shown, seat);
     return shown;
 }
@@ -237,7 +246,9 @@ Shown show_field(const Linked& linked, Port port, const std::byte* block) {
     return {.name = std::string(field.name),
             .value = signal.describe(load(field.type, block + field.offset)),
             .type = std::move(type),
-            .signal = signal.name};
+            .signal = signal.name,
+            .at = block + field.offset,
+            .bytes = size_of(field.type)};
 }
 
 }  // namespace
@@ -280,7 +291,9 @@ Shown show_inputs(const Linked& linked) {
             inputs.push_back({.name = signal.name,
                               .value = signal.describe(signal.value()),
                               .type = std::string(name_of(signal.type)),
-                              .signal = signal.name});
+                              .signal = signal.name,
+                              .at = signal.slot,
+                              .bytes = size_of(signal.type)});
     return {.name = "Inputs of the program", .value = "", .inside = [inputs](auto, auto) {
                 return inputs;
             }};

@@ -12,8 +12,10 @@ namespace lineshaft::debug {
 /// A value as it is shown, or a group of them. What is in it is made when somebody asks.
 struct Shown {
     std::string name, value, type = {};
-    std::string signal = {};   ///< as a program names it, if it can
-    std::size_t elements = 0;  ///< of an array
+    std::string signal = {};        ///< as a program names it, if it can
+    std::size_t elements = 0;       ///< of an array
+    const std::byte* at = nullptr;  ///< where it stands; null: nowhere
+    std::size_t bytes = 0;          ///< there
     /// So many from the one numbered `first` on, of an array; of all else all.
     std::function<std::vector<Shown>(std::size_t first, std::size_t count)> inside = {};
 };

@@ -26,8 +26,13 @@ constexpr const char* debug_help =
     "reverseContinue go back. The run is that of 'lineshaft run', to the same bytes.\n"
     "runtime/debug/README.md says how an editor connects.";
 
-struct DebugCommand {
+struct DebugOptions {
     RunCommand run;
+    std::string record;
+};
+
+struct DebugCommand {
+    DebugOptions options;
     int port = -1;
 };
 
@@ -53,19 +58,23 @@ int accept_one(int port) {
     return client;
 }
 
-void add_options(CLI::App& app, RunCommand& command) {
-    command.add_to(app);
+void add_options(CLI::App& app, DebugOptions& options) {
+    options.run.add_to(app);
     app.get_option("program")->required(false);
-    app.add_option("--recording", command.recording,
+    app.add_option("--recording", options.run.recording,
                    "Do again what was done from outside, as a recording has it")
+        ->type_name("FILE.yaml");
+    app.add_option("--record", options.record,
+                   "Write what was changed by hand to this file, for --recording")
         ->type_name("FILE.yaml");
 }
 
 /// What `launch` says, in place of what the command line does.
-void take_arguments(RunCommand& command, const std::string& program, std::vector<std::string> args,
-                    Diagnostics& out) {
+void take_arguments(DebugOptions& options, const std::string& program,
+                    std::vector<std::string> args, Diagnostics& out) {
     CLI::App app;
-    add_options(app, command);
+    add_options(app, options);
+    RunCommand& command = options.run;
     std::ranges::reverse(args);
     try {
         app.parse(args);
@@ -82,18 +91,19 @@ void take_arguments(RunCommand& command, const std::string& program, std::vector
                 "leave --json, --resume and --checkpoint-every out");
 }
 
-std::unique_ptr<debug::Launched> launch(RunCommand command, const std::string& program,
+std::unique_ptr<debug::Launched> launch(DebugOptions options, const std::string& program,
                                         const std::vector<std::string>& args, std::string& error) {
     Diagnostics out;
-    take_arguments(command, program, args, out);
+    take_arguments(options, program, args, out);
+    const RunCommand& command = options.run;
     RunOptions how = run_options(command, out);
-    auto loaded = out.empty() ? load(command, {}, out) : std::nullopt;
+    auto loaded = out.empty() ? load(command, {options.record}, out) : std::nullopt;
     if (!loaded || !out.empty()) {
         error = out.render();
         return {};
     }
-    auto made =
-        std::make_unique<debug::Launched>(debug::Launched{std::move(*loaded), std::move(how), {}});
+    auto made = std::make_unique<debug::Launched>(
+        debug::Launched{std::move(*loaded), std::move(how), {}, options.record});
     made->tell = [command, &program_run = made->loaded](const RunReport& report) {
         return static_cast<int>(tell(command, program_run, report));
     };
@@ -113,7 +123,7 @@ Exit execute(const DebugCommand& command) {
     debug::Messages messages(in, out);
     debug::Adapter adapter(messages,
                            [&](const std::string& program, const auto& args, std::string& error) {
-                               return launch(command.run, program, args, error);
+                               return launch(command.options, program, args, error);
                            });
     return static_cast<Exit>(adapter.serve());
 }
@@ -124,7 +134,7 @@ void add_debug(CLI::App& app, Exit& result) {
     auto command = std::make_shared<DebugCommand>();
     CLI::App* sub = app.add_subcommand("debug", "Run a program under an editor's debugger");
     sub->footer(debug_help);
-    add_options(*sub, command->run);
+    add_options(*sub, command->options);
     sub->add_option("--port", command->port,
                     "Wait for one client at this port of 127.0.0.1 (0: any, which is told), not at "
                     "the standard streams")

@@ -1,0 +1,356 @@
+#include "runtime/debug/evaluation.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "runtime/st/syntax/literals.hpp"
+#include "runtime/st/syntax/parser.hpp"
+#include "runtime/st/types/value_text.hpp"
+
+namespace lineshaft::debug {
+
+struct Expression::Parsed {
+    st::Tree tree;
+    const st::Expression* root = nullptr;
+};
+
+namespace {
+
+using E = st::Expression::Kind;
+using st::Wide;
+using st::Word;
+
+struct Failed : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// A value while it is reckoned with: at its seat, if it has one.
+struct Operand {
+    enum class Of : std::uint8_t { truth, whole, real, text, name, place };
+    Of of = Of::whole;
+    Wide whole = 0;
+    double real = 0;
+    std::string text = {};  ///< of a text; of a name that is no variable
+    Seat seat = {};
+    std::string unit = {};
+
+    bool is_number() const { return of == Of::truth || of == Of::whole || of == Of::real; }
+    double as_real() const { return of == Of::real ? real : static_cast<double>(whole); }
+};
+
+Operand of_truth(bool value) {
+    return {.of = Operand::Of::truth, .whole = value};
+}
+
+Operand load(const Seat& seat, const std::string& unit) {
+    using Kind = st::Type::Kind;
+    Operand value{.seat = seat, .unit = unit};
+    const st::Type& type = *seat.type;
+    if (type.kind == Kind::text) {
+        value.of = Operand::Of::text;
+        value.text.assign(reinterpret_cast<const char*>(seat.at + 8),
+                          static_cast<std::size_t>(read<std::uint64_t>(seat.at)));
+    } else if (type.is_real()) {
+        value.of = Operand::Of::real;
+        value.real = read<double>(seat.at);
+    } else if (type.is_scalar() || type.kind == Kind::enumeration) {
+        value.of = type.kind == Kind::boolean ? Operand::Of::truth : Operand::Of::whole;
+        value.whole = type.is_unsigned_64() ? Wide{read<std::uint64_t>(seat.at)}
+                                            : Wide{read<std::int64_t>(seat.at)};
+    } else {
+        value.of = Operand::Of::place;
+    }
+    return value;
+}
+
+class Reckoning {
+  public:
+    Reckoning(const Frame& frame, const st::Checked& checked) : frame_(frame), checked_(checked) {}
+
+    Operand value(const st::Expression& e) const {
+        switch (e.kind) {
+            case E::constant:
+                return literal(e);
+            case E::name:
+                return named(e);
+            case E::member:
+                return member(e);
+            case E::index:
+                return element(e);
+            case E::typed:
+                return typed(e);
+            case E::unary:
+                return unary(e);
+            case E::binary:
+                return binary(e);
+            default:
+                throw Failed(fmt::format("'{}' is not for a debugger, which changes nothing",
+                                         e.place.text()));
+        }
+    }
+
+  private:
+    static Operand literal(const st::Expression& e) {
+        const std::string_view text = e.token.text;
+        if (e.token.word == Word::text)
+            return {.of = Operand::Of::text, .text = st::read_text(text).value_or("")};
+        if (e.token.word == Word::real)
+            return {.of = Operand::Of::real, .real = st::read_real(text).value_or(NAN)};
+        std::optional<Wide> whole;
+        if (e.token.word == Word::integer) whole = st::read_integer(text);
+        if (e.token.word == Word::duration) {
+            using Kind = st::Type::Kind;
+            for (const Kind kind : {Kind::time, Kind::date, Kind::clock, Kind::moment})
+                if (!whole) whole = st::read_time(text, kind);
+        }
+        if (!whole) throw Failed(fmt::format("'{}' is no value", e.place.text()));
+        return {.whole = *whole};
+    }
+
+    /// In the routine, or in the block that it is a method of.
+    Operand named(const st::Expression& e) const {
+        const std::string_view name = e.token.text;
+        for (const st::Routine* routine = frame_.routine; routine; routine = routine->owner) {
+            const auto it = routine->names.find(name);
+            if (it == routine->names.end()) continue;
+            const st::Variable& variable = *it->second;
+            if (variable.space == st::Space::constant && variable.type->is_real())
+                return {.of = Operand::Of::real, .real = variable.value.real};
+            if (variable.space == st::Space::constant) return {.whole = variable.value.integer};
+            const Seat seat = seat_of(variable, frame_.base, frame_);
+            if (!seat.at) throw Failed(fmt::format("'{}' is not in the memory now", name));
+            return load(seat, variable.unit);
+        }
+        if (st::same_name(name, "true") || st::same_name(name, "false"))
+            return of_truth(st::same_name(name, "true"));
+        return {.of = Operand::Of::name, .text = std::string(name)};
+    }
+
+    Operand member(const st::Expression& e) const {
+        const Operand whole = value(*e.operands[0]);
+        const std::string_view name = e.token.text;
+        if (whole.of != Operand::Of::place) throw Failed(unknown(e));
+        const st::Type& type = *whole.seat.type;
+        if (type.kind == st::Type::Kind::structure) {
+            for (const st::Variable* part : type.members)
+                if (st::same_name(part->text, name))
+                    return load({part->type, whole.seat.at + 8 * std::size_t{part->slot}, &frame_},
+                                part->unit);
+        } else if (type.kind == st::Type::Kind::block) {
+            for (const st::Variable* part : st::all_variables(*type.routine))
+                if (st::same_name(part->text, name))
+                    if (const Seat seat = seat_of(*part, whole.seat.at, frame_); seat.at)
+                        return load(seat, part->unit);
+        }
+        throw Failed(unknown(e));
+    }
+
+    Operand element(const st::Expression& e) const {
+        Operand whole = value(*e.operands[0]);
+        for (const st::Argument& argument : e.arguments) {
+            if (whole.of != Operand::Of::place || whole.seat.type->kind != st::Type::Kind::array)
+                throw Failed(unknown(e));
+            const st::Type& array = *whole.seat.type;
+            const Operand index = value(*argument.value);
+            if (index.of != Operand::Of::whole || index.whole < array.lower ||
+                index.whole > array.upper)
+                throw Failed(fmt::format("'{}' is not an index from {} to {}",
+                                         argument.value->place.text(), array.lower, array.upper));
+            const auto at = static_cast<std::size_t>(index.whole - array.lower);
+            whole =
+                load({array.element, whole.seat.at + 8 * at * st::element_slots(array), &frame_},
+                     whole.unit);
+        }
+        return whole;
+    }
+
+    /// `Mode#idle`, `INT#5`.
+    Operand typed(const st::Expression& e) const {
+        const Operand of_type = value(*e.operands[0]);
+        if (of_type.of != Operand::Of::name) return of_type;
+        for (const st::Type& type : checked_.types)
+            if (type.kind == st::Type::Kind::enumeration && st::same_name(type.name, e.token.text))
+                return {.whole = number_of(type, of_type.text)};
+        throw Failed(unknown(e));
+    }
+
+    static Wide number_of(const st::Type& type, const std::string& name) {
+        for (std::size_t i = 0; i < type.values.size(); ++i)
+            if (st::same_name(type.values[i], name)) return static_cast<Wide>(i);
+        throw Failed(fmt::format("{} has no value '{}'", type.name, name));
+    }
+
+    Operand unary(const st::Expression& e) const {
+        Operand value = number(*e.operands[0]);
+        if (e.op == Word::not_) {
+            value.whole = value.of == Operand::Of::truth ? Wide{value.whole == 0} : ~value.whole;
+        } else if (e.op == Word::minus) {
+            value.whole = -value.whole;
+            value.real = -value.real;
+        }
+        value.seat = {};
+        return value;
+    }
+
+    Operand number(const st::Expression& e) const {
+        Operand operand = value(e);
+        if (operand.of == Operand::Of::name) throw Failed(unknown(e));
+        if (!operand.is_number()) throw Failed(fmt::format("'{}' is no number", e.place.text()));
+        return operand;
+    }
+
+    Operand binary(const st::Expression& e) const {
+        Operand a = value(*e.operands[0]);
+        if (e.op == Word::and_then_ && a.whole == 0) return of_truth(false);
+        if (e.op == Word::or_else_ && a.whole != 0) return of_truth(true);
+        Operand b = value(*e.operands[1]);
+        const auto mean = [](Operand& name, const Operand& other) {
+            const bool is_value = name.of == Operand::Of::name && other.seat.type &&
+                                  other.seat.type->kind == st::Type::Kind::enumeration;
+            if (is_value) name = {.whole = number_of(*other.seat.type, name.text)};
+        };
+        mean(a, b);
+        mean(b, a);
+        if (a.of == Operand::Of::text && b.of == Operand::Of::text)
+            return compared(e, a.text.compare(b.text), 0);
+        if (!a.is_number()) throw Failed(unknown(*e.operands[0]));
+        if (!b.is_number()) throw Failed(unknown(*e.operands[1]));
+        if (e.op >= Word::less && e.op <= Word::unequal)
+            return a.of == Operand::Of::real || b.of == Operand::Of::real
+                       ? compared(e, a.as_real(), b.as_real())
+                       : compared(e, a.whole, b.whole);
+        return a.of == Operand::Of::real || b.of == Operand::Of::real
+                   ? reals(e, a.as_real(), b.as_real())
+                   : wholes(e, a, b);
+    }
+
+    template <class T>
+    static Operand compared(const st::Expression& e, T a, T b) {
+        switch (e.op) {
+            case Word::less:
+                return of_truth(a < b);
+            case Word::less_or_equal:
+                return of_truth(a <= b);
+            case Word::greater:
+                return of_truth(a > b);
+            case Word::greater_or_equal:
+                return of_truth(a >= b);
+            case Word::equal:
+                return of_truth(a == b);
+            case Word::unequal:
+                return of_truth(a != b);
+            default:
+                throw Failed(fmt::format("'{}' compares nothing", e.place.text()));
+        }
+    }
+
+    static Operand reals(const st::Expression& e, double a, double b) {
+        const auto real = [](double value) {
+            return Operand{.of = Operand::Of::real, .real = value};
+        };
+        switch (e.op) {
+            case Word::plus:
+                return real(a + b);
+            case Word::minus:
+                return real(a - b);
+            case Word::times:
+                return real(a * b);
+            case Word::divided:
+                return real(a / b);
+            case Word::power:
+                return real(std::pow(a, b));
+            default:
+                throw Failed(fmt::format("'{}' is not for real numbers", e.place.text()));
+        }
+    }
+
+    static Operand wholes(const st::Expression& e, const Operand& a, const Operand& b) {
+        Operand value{.of = a.of == b.of ? a.of : Operand::Of::whole};
+        if ((e.op == Word::divided || e.op == Word::mod_) && b.whole == 0)
+            throw Failed("a division by zero");
+        switch (e.op) {
+            case Word::and_:
+            case Word::and_then_:
+            case Word::ampersand:
+                value.whole = a.whole & b.whole;
+                return value;
+            case Word::or_:
+            case Word::or_else_:
+                value.whole = a.whole | b.whole;
+                return value;
+            case Word::xor_:
+                value.whole = a.whole ^ b.whole;
+                return value;
+            case Word::plus:
+                return {.whole = a.whole + b.whole};
+            case Word::minus:
+                return {.whole = a.whole - b.whole};
+            case Word::times:
+                return {.whole = st::product(a.whole, b.whole)};
+            case Word::divided:
+                return {.whole = a.whole / b.whole};
+            case Word::mod_:
+                return {.whole = a.whole % b.whole};
+            default:
+                return reals(e, a.as_real(), b.as_real());
+        }
+    }
+
+    static std::string unknown(const st::Expression& e) {
+        return fmt::format("'{}' is not known here", e.place.text());
+    }
+
+    const Frame& frame_;
+    const st::Checked& checked_;
+};
+
+Shown show_operand(const std::string& text, const Operand& value) {
+    if (value.seat.type) return show(text, value.seat, value.unit);
+    switch (value.of) {
+        case Operand::Of::truth:
+            return {.name = text, .value = value.whole != 0 ? "TRUE" : "FALSE"};
+        case Operand::Of::real:
+            return {.name = text, .value = fmt::format("{}", value.real)};
+        case Operand::Of::text:
+            return {.name = text, .value = st::text_literal(value.text)};
+        default:
+            return {.name = text, .value = st::to_string(value.whole)};
+    }
+}
+
+}  // namespace
+
+Expression::Expression(std::string text)
+    : text_(std::move(text)), parsed_(std::make_unique<Parsed>()) {
+    Diagnostics wrong;
+    const auto file = std::make_shared<SourceFile>(SourceFile{
+        "watch.st", fmt::format("FUNCTION watch : BOOL\nwatch := {}\n;\nEND_FUNCTION\n", text_)});
+    st::parse(st::read_tokens(file, wrong), parsed_->tree, wrong);
+    const auto& units = parsed_->tree.units;
+    if (!wrong.empty())
+        error_ = wrong.list().front().message;
+    else if (units.size() != 1 || units[0]->body.size() != 1)
+        error_ = "it is not one expression";
+    else
+        parsed_->root = units[0]->body[0]->value;
+}
+
+Expression::~Expression() = default;
+Expression::Expression(Expression&&) noexcept = default;
+
+Evaluated Expression::value(const Frame& frame, const st::Checked& checked) const {
+    if (!error_.empty()) return {error_};
+    try {
+        const Operand found = Reckoning(frame, checked).value(*parsed_->root);
+        if (found.of == Operand::Of::name) return {fmt::format("'{}' is not known here", text_)};
+        Evaluated evaluated{.shown = show_operand(text_, found)};
+        if (found.of == Operand::Of::truth) evaluated.truth = found.whole != 0;
+        return evaluated;
+    } catch (const Failed& why) {
+        return {why.what()};
+    }
+}
+
+}  // namespace lineshaft::debug

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "runtime/debug/values.hpp"
+
+namespace lineshaft::debug {
+
+/// What an expression comes to, or why it comes to nothing.
+struct Evaluated {
+    std::string error = {};
+    Shown shown = {};
+    std::optional<bool> truth = {};  ///< of a BOOL
+};
+
+/// An expression of Structured Text that somebody watches: variables that a routine sees, their
+/// parts, constants and operators. It calls nothing, so it changes nothing.
+class Expression {
+  public:
+    explicit Expression(std::string text);
+    ~Expression();
+    Expression(Expression&&) noexcept;
+
+    const std::string& error() const { return error_; }
+    /// The frame outlives what is shown.
+    Evaluated value(const Frame& frame, const st::Checked& checked) const;
+
+  private:
+    struct Parsed;
+
+    std::string text_, error_;
+    std::unique_ptr<Parsed> parsed_;
+};
+
+}  // namespace lineshaft::debug
