@@ -40,6 +40,11 @@ bool is_modifier(std::string_view word) {
     return word == "ABSTRACT" || word == "FINAL" || word == "PUBLIC" || word == "INTERNAL";
 }
 
+/// Of TcUnit, which is known by its others: these are variables of many programs.
+bool is_everyday(std::string_view name) {
+    return name == "RUN" || name == "TEST";
+}
+
 bool is_helper(std::string_view name) {
     return name.front() >= 'a' && name.front() <= 'z';
 }
@@ -57,7 +62,7 @@ LibraryNames::Index make_index(const Catalog& catalog) {
             const auto is_kind = [&](const BlockType& type) {
                 return same_name(type.name, name) || same_name(type.handle, name);
             };
-            if (is_open && std::ranges::none_of(catalog.types(), is_kind))
+            if (is_open && !is_everyday(name) && std::ranges::none_of(catalog.types(), is_kind))
                 index.by_name.emplace(name, &file);
         }
     }
