@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """TESTs of Structured Text: those of `pass` pass, those of `fail` fail with the messages of
-fail/expected.txt, and each file of `bad` is refused with the message in the file NAME.txt beside it.
+fail/expected.txt, those of others (`fixtures`, `suites`) say what their expected.txt has, and each file of `bad` is refused with the message in the file NAME.txt beside it.
 
 usage: st_tests.py LINESHAFT FOLDER [--update-expected]
 """
@@ -112,6 +112,28 @@ code, said, _ = run(root, "fail/machine_test.st", "--filter", "equal", "--source
 expect("--source", code, 1)
 code, _, errors = run(root, "pass/counter.st")
 expect("a file without a TEST", code, 1)
+
+for folder in "fixtures", "suites":
+    code, said, errors = run(root, folder)
+    expect(f"exit code of {folder}", (code, errors), (1, ""))
+    compare(root / folder / "expected.txt", said)
+with tempfile.TemporaryDirectory() as folder:
+    junit, info = pathlib.Path(folder, "out.xml"), pathlib.Path(folder, "out.info")
+    run(root, "fixtures", "suites", "--junit", str(junit), "--coverage", str(info))
+    cases = [(case.get("file"), case.get("line"), case.get("name")) for case in xml.parse(junit).getroot().iter("testcase")]
+    for file in "fixtures/test/ScalerTest.st", "suites/counter_suite.st":
+        lines = (root / file).read_text(encoding="utf-8").splitlines()
+        begins = [line for path, line, _ in cases if path == file]
+        expect(f"cases of {file} have the lines of their tests", all(
+            any(word in " ".join(lines[max(0, int(line) - 4):int(line)]) for word in ("{Test", "TEST")) for line in begins if line), True)
+        expect(f"{file} has cases", bool(begins), True)
+    expect("what they cover", {"fixtures/src/scaler.st", "suites/counter.st"} <= set(counts(info.read_text(encoding="utf-8"))), True)
+_, said, _ = run(root, "fixtures", "suites", "--list", "--filter", "Table|waits")
+expect("--list of tests of others", said.splitlines(), [
+    'fixtures/test/ScalerTest.st: ScalerTest.Table(raw := LREAL#1.0, wanted := LREAL#3.0)',
+    'fixtures/test/ScalerTest.st: ScalerTest.Table(raw := LREAL#-2.0, wanted := LREAL#-6.0)',
+    'fixtures/test/ScalerTest.st: ScalerTest.Table(raw := LREAL#2.0, wanted := LREAL#5.0)',
+    'suites/counter_suite.st: Main.counting: waits'])
 
 with tempfile.TemporaryDirectory() as folder:
     readme = (root / "../../programs/README.md").read_text(encoding="utf-8")

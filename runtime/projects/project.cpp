@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "runtime/projects/automation_studio.hpp"
+#include "runtime/projects/fixtures.hpp"
 #include "runtime/projects/plcopen.hpp"
 #include "runtime/projects/twincat.hpp"
 #include "runtime/source/codes.hpp"
@@ -65,7 +66,7 @@ bool is_test_file(const std::string& file) {
     if (!is_structured_text(file)) return false;
     Diagnostics unread;
     const auto source = read_source(file, unread);
-    return source && st::is_test_file(source);
+    return source && (has_fixtures(*source) || st::is_test_file(source));
 }
 
 /// What projects list themselves: all below a `.plcproj`, all beside a `.prg`.

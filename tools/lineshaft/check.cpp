@@ -56,8 +56,10 @@ std::size_t check_folder(const std::string& folder, const LoadOptions& options, 
         ++files;
         Diagnostics found;
         const auto source = is_structured_text(test.path) ? read_source(test.path, found) : nullptr;
-        if (source)
+        if (source && has_tests(source))
             compile_tests(test, source, found);
+        else if (projects::is_source(test.path))
+            --files;  // one of the sources below
         else if (const auto checked =
                      found.empty() ? check_file(test.path, options, found) : std::nullopt)
             for (const auto& text : checked->program.texts)
@@ -83,8 +85,8 @@ bool has_programs(const std::string& path) {
     std::error_code error;
     if (!std::filesystem::is_directory(path, error)) return false;
     const auto tests = find_tests(path, {});
-    return std::ranges::any_of(tests,
-                               [](const TestFile& test) { return !is_structured_text(test.path); });
+    return std::ranges::any_of(
+        tests, [](const TestFile& test) { return !projects::is_source(test.path); });
 }
 
 /// Those that are no tests together.
@@ -94,7 +96,7 @@ void check_sources(const std::vector<std::string>& paths, const LoadOptions& opt
     for (const std::string& path : paths) {
         Diagnostics unread;
         const auto file = is_structured_text(path) ? read_source(path, unread) : nullptr;
-        if (file && st::is_test_file(file))
+        if (file && has_tests(file))
             compile_tests(find_tests(path, {}).front(), file, out);
         else
             sources.push_back(path);

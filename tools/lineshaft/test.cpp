@@ -175,14 +175,15 @@ bool check_files(const TestCommand& command, const std::vector<std::string>& inp
 Exit finish(const TestCommand& command, const std::vector<SuiteEntry>& entries) {
     const auto failed =
         std::ranges::count_if(entries, [](const SuiteEntry& e) { return !e.failures.empty(); });
-    std::vector<std::string> skipped;
+    std::vector<std::string> slow;
     for (const SuiteEntry& e : entries)
-        if (!e.skipped.empty()) skipped.push_back(e.name);
-    const auto ran = std::ssize(entries) - std::ssize(skipped);
+        if (!e.skipped.empty() && e.file.empty()) slow.push_back(e.name);
+    const auto ran =
+        std::ranges::count_if(entries, [](const SuiteEntry& e) { return e.skipped.empty(); });
     fmt::print("{} of {} passed\n", ran - failed, ran);
-    if (!skipped.empty())
-        fmt::print("skipped as slow, --slow runs {}: {}\n", skipped.size() == 1 ? "it" : "them",
-                   fmt::join(skipped, ", "));
+    if (!slow.empty())
+        fmt::print("skipped as slow, --slow runs {}: {}\n", slow.size() == 1 ? "it" : "them",
+                   fmt::join(slow, ", "));
     if (!check_files(command, {})) return Exit::wrong;
     const bool written =
         write(command.junit, junit_xml(entries)) && write(command.coverage, st::lcov_text());

@@ -7,9 +7,11 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/fit/fit.hpp"
+#include "runtime/projects/fixtures.hpp"
 #include "runtime/run/single_run.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
+#include "runtime/st/library/suites.hpp"
 #include "runtime/st/library/test_suite.hpp"
 #include "runtime/study/report.hpp"
 #include "runtime/study/study_reader.hpp"
@@ -52,6 +54,21 @@ bool is_slow(const std::shared_ptr<const SourceFile>& file) {
     return slow && slow->text == "true";
 }
 
+projects::Project project_of(const std::string& path) {
+    Diagnostics unread;
+    return read_project(path, {}, unread);
+}
+
+/// Of a project of another tool: some program of it runs suites of TcUnit.
+bool has_suites(const std::string& path) {
+    return std::ranges::any_of(project_of(path).sources, st::calls_suites);
+}
+
+/// A file of another tool that is read as sources.
+bool is_of_project(const fs::path& path) {
+    return projects::is_source(path) && !is_structured_text(path);
+}
+
 bool can_be_tested(const fs::path& path) {
     const bool yaml = is_yaml(path);
     if (!yaml && !is_structured_text(path)) return false;
@@ -59,7 +76,8 @@ bool can_be_tested(const fs::path& path) {
     const auto file = read_source(path.string(), unread);
     const bool is_unreadable = !file && unread.list().front().code == code::file_cannot_be_read;
     if (!file) return is_unreadable || !yaml;  // whoever runs it tells why
-    return yaml ? is_study(*file) || is_fit(*file) || is_program(*file) : st::is_test_file(file);
+    return yaml ? is_study(*file) || is_fit(*file) || is_program(*file)
+                : has_tests(file) || st::calls_suites(file);
 }
 
 void add_sources(st::SourcePool& pool, const std::string& path, bool below) {
@@ -74,6 +92,9 @@ std::shared_ptr<const st::SourcePool> sources_for(const std::string& path,
     for (const std::string& source : more) add_sources(*pool, source, true);
     if (fs::is_directory(path)) {
         add_sources(*pool, path, true);
+    } else if (is_of_project(path)) {
+        for (const auto& source : project_of(path).sources) pool->add(source);
+        add_sources(*pool, fs::path(path).parent_path().string(), true);
     } else if (is_structured_text(path)) {
         const fs::path folder = fs::path(path).parent_path();
         const std::string name = folder.filename().string();
@@ -82,6 +103,27 @@ std::shared_ptr<const st::SourcePool> sources_for(const std::string& path,
             add_sources(*pool, (folder / "..").lexically_normal().string(), false);
     }
     return pool;
+}
+
+/// The file itself, or what its fixtures are.
+std::vector<std::shared_ptr<const SourceFile>> texts_of_tests(
+    const std::shared_ptr<const SourceFile>& file) {
+    if (!projects::has_fixtures(*file) || st::is_test_file(file)) return {file};
+    return projects::tests_of_fixtures(file);
+}
+
+std::optional<st::TestSuite> compile_text(const TestFile& tests,
+                                          const std::shared_ptr<const SourceFile>& text,
+                                          Diagnostics& out) {
+    if (!st::is_test_file(text))
+        out.add(code::not_declared, {text, 0, 0, 1}, "there is no TEST in this file",
+                "write TEST 'text' ... END_TEST");
+    if (!out.empty()) return {};
+    return st::compile_tests(text, tests.sources->needed_by(text), standard_blocks(), out);
+}
+
+bool is_suites(const std::string& path) {
+    return is_of_project(path) || (is_structured_text(path) && has_suites(path));
 }
 
 SuiteEntry wrong(const std::string& name, const std::string& messages) {
@@ -205,23 +247,18 @@ std::string cut_text(const Mark& cut) {
                        cut.line, cut.column);
 }
 
-std::vector<SuiteEntry> test_structured_text(const TestFile& tests,
-                                             const std::shared_ptr<const SourceFile>& file,
-                                             const TestOptions& options) {
-    Diagnostics out;
-    const auto suite = compile_tests(tests, file, out);
-    if (!suite) return {wrong(file->path, out.render())};
-    std::vector<SuiteEntry> entries;
-    for (std::size_t i = 0; i < suite->tests().size() && !interrupt_requested; ++i) {
-        const st::Test& test = suite->tests()[i];
+void run_suite(const TestFile& tests, const st::TestSuite& suite, const TestOptions& options,
+               std::vector<SuiteEntry>& entries) {
+    for (std::size_t i = 0; i < suite.tests().size() && !interrupt_requested; ++i) {
+        const st::Test& test = suite.tests()[i];
         if (!passes(full_name(tests, test), options)) continue;
         const double start = wall_seconds();
-        const st::TestResult result = suite->run(i);
+        const st::TestResult result = suite.run(i);
         SuiteEntry entry{.name = test.name,
                          .wall_seconds = wall_seconds() - start,
                          .failures = {},
                          .error = result.is_fault,
-                         .file = file->path,
+                         .file = tests.path,
                          .line = static_cast<int>(test.mark.line)};
         if (!result.failure.empty()) entry.failures.push_back(failure_text(result));
         if (result.cut) {
@@ -230,6 +267,70 @@ std::vector<SuiteEntry> test_structured_text(const TestFile& tests,
             if (!options.strict) entry.warnings += fmt::format("warning: {}\n", cut);
         }
         entries.push_back(std::move(entry));
+    }
+}
+
+std::vector<SuiteEntry> test_suites(const TestFile& tests,
+                                    const std::shared_ptr<const SourceFile>& program,
+                                    std::int64_t cycle, const TestOptions& options) {
+    Diagnostics out;
+    const double start = wall_seconds();
+    const auto ran =
+        st::run_suites(program, tests.sources->needed_by(program), standard_blocks(), cycle, out);
+    if (!ran) return {wrong(tests.path, out.render())};
+    const double each =
+        (wall_seconds() - start) / static_cast<double>(std::max<std::size_t>(1, ran->size()));
+    std::vector<SuiteEntry> entries;
+    for (const st::SuiteTest& test : *ran) {
+        if (!passes(full_name(tests, test.test), options)) continue;
+        SuiteEntry& entry =
+            entries.emplace_back(SuiteEntry{.name = test.test.name,
+                                            .wall_seconds = each,
+                                            .failures = {},
+                                            .error = test.result.is_fault,
+                                            .file = test.test.mark.file->path,
+                                            .line = static_cast<int>(test.test.mark.line)});
+        if (test.skipped) entry.skipped = "disabled by its name";
+        if (!test.result.failure.empty()) entry.failures.push_back(failure_text(test.result));
+    }
+    return entries;
+}
+
+bool is_program_of(const SourceFile& source, std::string_view name) {
+    return st::same_name(source.part, name) ||
+           st::same_name(fs::path(source.path).stem().string(), name);
+}
+
+/// The programs of a file or a project that run suites.
+std::vector<SuiteEntry> test_project(const TestFile& tests, const TestOptions& options) {
+    constexpr std::int64_t usual_cycle = 10'000'000;  // [ns] of a task of TwinCAT
+    const projects::Project project = project_of(tests.path);
+    std::vector<SuiteEntry> entries;
+    for (const auto& source : project.sources) {
+        if (!st::calls_suites(source)) continue;
+        std::int64_t cycle = usual_cycle;
+        for (const projects::ProjectTask& task : project.tasks)
+            for (const projects::Name& name : task.programs)
+                if (task.every > 0 && is_program_of(*source, name.text)) cycle = task.every;
+        auto found = test_suites(tests, source, cycle, options);
+        std::ranges::move(found, std::back_inserter(entries));
+    }
+    if (entries.empty() && tests.is_named && !options.filter)
+        entries.push_back(wrong(tests.path, "no program of it runs a suite of TcUnit"));
+    return entries;
+}
+
+std::vector<SuiteEntry> test_structured_text(const TestFile& tests,
+                                             const std::shared_ptr<const SourceFile>& file,
+                                             const TestOptions& options) {
+    std::vector<SuiteEntry> entries;
+    for (const auto& text : texts_of_tests(file)) {
+        Diagnostics out;
+        const auto suite = compile_text(tests, text, out);
+        if (suite)
+            run_suite(tests, *suite, options, entries);
+        else
+            entries.push_back(wrong(file->path, out.render()));
     }
     return entries;
 }
@@ -241,28 +342,42 @@ std::vector<TestFile> find_tests(const std::string& path, const std::vector<std:
     std::vector<TestFile> tests;
     for (const std::string& file : files_of(path, true, can_be_tested))
         tests.push_back({.path = file, .sources = pool, .is_named = file == path});
+    if (!fs::is_directory(path)) return tests;
+    std::error_code unread;
+    for (const std::string& file : projects::sources_below(path, unread))
+        if (is_of_project(file) && has_suites(file))
+            tests.push_back({.path = file, .sources = pool, .is_named = false});
+    std::ranges::sort(tests, {}, &TestFile::path);
     return tests;
 }
 
-std::optional<st::TestSuite> compile_tests(const TestFile& tests,
-                                           const std::shared_ptr<const SourceFile>& file,
-                                           Diagnostics& out) {
-    if (!st::is_test_file(file))
-        out.add(code::not_declared, {file, 0, 0, 1}, "there is no TEST in this file",
-                "write TEST 'text' ... END_TEST");
-    if (!out.empty()) return {};
-    return st::compile_tests(file, tests.sources->needed_by(file), standard_blocks(), out);
+bool has_tests(const std::shared_ptr<const SourceFile>& file) {
+    return projects::has_fixtures(*file) || st::is_test_file(file);
+}
+
+std::vector<st::TestSuite> compile_tests(const TestFile& tests,
+                                         const std::shared_ptr<const SourceFile>& file,
+                                         Diagnostics& out) {
+    std::vector<st::TestSuite> suites;
+    for (const auto& text : texts_of_tests(file))
+        if (auto suite = compile_text(tests, text, out)) suites.push_back(std::move(*suite));
+    return suites;
 }
 
 std::vector<std::string> test_names(const TestFile& file, const TestOptions& options) {
     std::vector<std::string> names;
+    if (is_suites(file.path)) {  // which tests there are is known when they ran
+        for (const SuiteEntry& entry : run_tests(file, options))
+            names.push_back(entry.file.empty() ? entry.name
+                                               : fmt::format("{}: {}", file.path, entry.name));
+        return names;
+    }
     Diagnostics out;
     const auto source = is_structured_text(file.path) ? read_source(file.path, out) : nullptr;
-    const auto suite = source ? compile_tests(file, source, out) : std::nullopt;
-    if (suite)
-        for (const st::Test& test : suite->tests()) names.push_back(full_name(file, test));
-    else
-        names.push_back(file.path);
+    if (source)
+        for (const st::TestSuite& suite : compile_tests(file, source, out))
+            for (const st::Test& test : suite.tests()) names.push_back(full_name(file, test));
+    if (!source || !out.empty()) names.push_back(file.path);
     std::erase_if(names, [&](const std::string& name) { return !passes(name, options); });
     return names;
 }
@@ -271,6 +386,7 @@ std::vector<SuiteEntry> run_tests(const TestFile& file, const TestOptions& optio
     Diagnostics out;
     const auto source = read_source(file.path, out);
     if (!source) return {wrong(file.path, out.render())};
+    if (is_suites(file.path)) return test_project(file, options);
     if (is_structured_text(file.path)) return test_structured_text(file, source, options);
     if (!passes(file.path, options)) return {};
     if (!options.slow && !file.is_named && is_slow(source))

@@ -12,7 +12,8 @@
 
 namespace lineshaft {
 
-/// A file that `lineshaft test` runs: a program, a study, a fit, or TESTs of Structured Text.
+/// What `lineshaft test` runs: a program, a study, a fit, tests in Structured Text, or a program of
+/// another tool that runs suites of TcUnit, or its project.
 struct TestFile {
     std::string path;
     std::shared_ptr<const st::SourcePool> sources;  ///< among which its TESTs find what they test
@@ -32,10 +33,14 @@ struct TestOptions {
 /// folder all below it, of a file its folder, and the one around that if it is `tests`.
 std::vector<TestFile> find_tests(const std::string& path, const std::vector<std::string>& sources);
 
-/// The TESTs of a file, which was read; empty, with what is wrong, if anything is.
-std::optional<st::TestSuite> compile_tests(const TestFile& tests,
-                                           const std::shared_ptr<const SourceFile>& file,
-                                           Diagnostics& out);
+/// Whether a file has TESTs, or fixtures of SIMATIC AX.
+bool has_tests(const std::shared_ptr<const SourceFile>& file);
+
+/// The TESTs of a file, which was read, and its fixtures, each for itself; without those that have
+/// something wrong, which is told.
+std::vector<st::TestSuite> compile_tests(const TestFile& tests,
+                                         const std::shared_ptr<const SourceFile>& file,
+                                         Diagnostics& out);
 
 /// The names of what a file has under the filter: its path, or `path: name` of its TESTs.
 std::vector<std::string> test_names(const TestFile& file, const TestOptions& options);

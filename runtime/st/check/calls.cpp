@@ -5,6 +5,7 @@
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
+#include "runtime/st/check/assertions.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
@@ -340,6 +341,10 @@ std::string_view standard_name(const Type& type, std::string_view name) {
 }
 
 const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Type* expected) {
+    if (Expression* assertion = c.has_tests ? assertion_call(c, *e) : nullptr) {
+        e = assertion;
+        return check_test_statement(c, *e, as_statement);
+    }
     if (const auto name = qualified_name(c, *e->operands[0]))
         e = make_call(c, *e, make_name(c, *e->operands[0], name->text), e->arguments);
     const Expression& callee = *e->operands[0];

@@ -191,17 +191,33 @@ void declare_bounds(Checking& c, Routine& routine, Variable& array) {
     }
 }
 
+/// A VAR_IN_OUT CONSTANT takes values, too: one that is no structure is an input.
+bool takes_values(const DeclarationBlock& block, const Type* type) {
+    const bool is_value = type && (type->is_scalar() || type->kind == Kind::text);
+    return block.section == Section::in_out && block.constant && is_value && !type->is_handle();
+}
+
+const Type& longer_string(Checking& c) {
+    Type& type = c.make_type(Kind::text, "STRING[255]");
+    type.length = 255;
+    return type;
+}
+
 void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
     for (const Declaration* declared : block.declarations) {
         const Type* type = declared->type ? resolve(c, *declared->type) : nullptr;
-        if (block.section == Section::in_out && type == &string_type) type = &open_string_type;
+        const bool is_value = takes_values(block, type);
+        const Section section = is_value ? Section::input : block.section;
+        const bool constant = block.constant && !is_value;
+        if (is_value && type == &string_type) type = &longer_string(c);
+        if (section == Section::in_out && type == &string_type) type = &open_string_type;
         Variable* variable = add(c, routine.variables, *declared, type);
-        variable->section = block.section;
-        variable->constant = block.constant;
+        variable->section = section;
+        variable->constant = constant;
         variable->retain = block.retain;
         variable->of = routine.pou;
         variable->access = block.access;
-        if (block.section == Section::in_out && !(type && type->is_handle()))
+        if (section == Section::in_out && !(type && type->is_handle()))
             variable->space = Space::reference;
         const auto [it, added] = routine.names.emplace(variable->text, variable);
         if (!added)
@@ -213,7 +229,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
                        ? "the function's own name is that of its result"
                        : fmt::format("first in line {}", it->second->name.place.mark().line));
         if (type && type->is_instance() && !routine.has_instances() && !routine.is_test() &&
-            block.section != Section::in_out && block.section != Section::kept)
+            section != Section::in_out && section != Section::kept)
             c.fail(code::wrong_place, declared->name.place,
                    "a function keeps nothing from call to call, so it has no instances",
                    "pass the instance as VAR_IN_OUT");
@@ -228,7 +244,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         if (routine.pou->is_tests || routine.is_test()) make_object(c, *variable);
         if (!declared->type)
             make_untyped_constant(c, *variable);
-        else if (block.constant && block.section != Section::input)
+        else if (constant && section != Section::input)
             make_constant(c, *variable);
         if (declared->edge.word != Word::end_of_file)
             declare_edge(c, routine, *variable, declared->edge);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/source/codes.hpp"
+#include "runtime/st/check/assertions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/vendors/names.hpp"
 
@@ -92,7 +93,7 @@ void collect_namespaces(Checking& c) {
                      p = before_last_point(p))
                     made.paths.push_back(p);
                 for (const Token& used : s->usings) {
-                    if (is_namespace(c, used.text))
+                    if (is_namespace(c, used.text) || is_namespace_of_assertions(used.text))
                         made.paths.push_back(used.text);
                     else
                         refuse_namespace(c, used.place, used.text), made.is_whole = false;
@@ -110,6 +111,14 @@ Token name_with_namespace(Checking& c, Token declared) {
     return declared;
 }
 
+std::optional<Token> without_project(const Checking& c, Token name) {
+    const std::size_t point = name.text.find('.');
+    if (point == name.text.npos || name.place.source->file->excerpts.empty()) return {};
+    if (is_namespace(c, name.text.substr(0, point))) return {};
+    name.text.remove_prefix(point + 1);
+    return name;
+}
+
 std::optional<Token> qualified_name(Checking& c, const Expression& member) {
     if (member.kind != E::member || !root_of(c, member)) return {};
     const std::string text = joined(member);
@@ -117,15 +126,33 @@ std::optional<Token> qualified_name(Checking& c, const Expression& member) {
     Token name = member.token;
     name.place = member.place;
     name.text = text;
-    const bool is_known = find_variable(c, name) || c.look_up(&Names::types, name) ||
-                          c.look_up(&Names::values, name) || c.find_routine(name);
-    if (!is_known) {
+    const auto is_known = [&](const Token& full) {
+        return find_variable(c, full) || c.look_up(&Names::types, full) ||
+               c.look_up(&Names::values, full) || c.find_routine(full);
+    };
+    const auto own = without_project(c, name);
+    if (!is_known(name) && own && is_known(*own)) {
+        name = *own;
+    } else if (!is_known(name)) {
         const std::string_view rest = without_library(text);
         if (rest == text) return {};
         name.text = rest;
     }
     name.text = c.checked.names.emplace_back(name.text);
     return name;
+}
+
+bool is_full_name(Checking& c, const Expression& e, std::string_view full) {
+    if (e.kind == E::member && !root_of(c, e)) return false;
+    const std::string text = joined(e);
+    if (text.size() > full.size() || text.empty()) return false;
+    if (text.size() == full.size()) return same_name(text, full);
+    const std::string_view path = full.substr(0, full.size() - text.size() - 1);
+    const Prefixes* here = c.prefixes_at(e.place);
+    const bool is_seen = here && std::ranges::any_of(here->paths, [&](std::string_view known) {
+                             return same_name(known, path);
+                         });
+    return is_seen && full[path.size()] == '.' && same_name(full.substr(path.size() + 1), text);
 }
 
 void refuse_qualified(Checking& c, const Token& name) {

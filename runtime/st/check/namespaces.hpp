@@ -14,6 +14,13 @@ Token name_with_namespace(Checking& c, Token declared);
 /// a list of globals or is of a library. Nothing: the points take parts.
 std::optional<Token> qualified_name(Checking& c, const Expression& member);
 
+/// Whether `e` means what is called so in full, `a.b.x`, though no source declares that.
+bool is_full_name(Checking& c, const Expression& e, std::string_view full);
+
+/// `Otg` of `Planner.Otg` in a project of another tool, which has another project as a library: its
+/// name is nowhere in the sources. Nothing in other sources, or where the first is a namespace.
+std::optional<Token> without_project(const Checking& c, Token name);
+
 /// Tells that a namespace is unknown, or has no such name, unless that was told.
 void refuse_qualified(Checking& c, const Token& name);
 /// Of a member: the same, where what is before its last point is a namespace. False: it is none.

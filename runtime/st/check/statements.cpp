@@ -199,6 +199,9 @@ void check_assignment(Checking& c, Statement*& s) {
     check(c, s->value, type);
     if (s->value->kind == E::list || !type || !check_target(c, *s->target) || !s->value->type)
         return;
+    if (type->kind == Kind::block && s->op == Word::assign && is_place(*s->value) &&
+        same_type(*type, *s->value->type))
+        return;
     if (type->is_instance()) {
         c.fail(code::cannot_be_assigned, s->place, "an instance is not assigned as a whole",
                "assign its inputs one by one");

@@ -118,6 +118,11 @@ bool check_compared(Checking& c, Expression& call) {
     const Type* first = check(c, a, b->type);
     const Type* second = check(c, b, first);
     if (!first || !second) return false;
+    if (first->kind == Kind::interface || second->kind == Kind::interface) {
+        Expression*& other = first->kind == Kind::interface ? b : a;
+        return other->type->kind == Kind::interface ||
+               coerce(c, other, first->kind == Kind::interface ? *first : *second);
+    }
     unite_texts(c, a, b);
     first = a->type, second = b->type;
     const bool parts =
@@ -225,8 +230,9 @@ const Type* check_test_statement(Checking& c, Expression& call, bool as_statemen
     const Token& name = call.operands[0]->token;
     const TestCall which = find_test_statement(name.text);
     const TestStatement& known = info(which);
-    const bool anywhere = which == TestCall::advance_time && c.has_tests;
-    if (!anywhere && !c.is_in_test())
+    const bool is_others = !same_name(known.name, call.operands[0]->place.text());
+    const bool anywhere = which == TestCall::advance_time || is_others;
+    if (!(anywhere && c.has_tests) && !is_library(name) && !c.is_in_test())
         return c.fail(code::wrong_place, name.place,
                       fmt::format("{} stands outside of a TEST", known.name),
                       "only TEST, SETUP and TEARDOWN have it");

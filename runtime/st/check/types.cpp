@@ -208,6 +208,11 @@ const Type* resolve_name(Checking& c, const Token& name) {
                       fmt::format("'{}' is a function, not a type", name.text),
                       "call it; only function blocks have instances");
     }
+    if (const auto own = without_project(c, name)) {
+        if (NamedType* type = c.look_up(&Names::types, *own)) return resolve_declared(c, *type);
+        const Routine* routine = c.find_routine(*own);
+        if (routine && routine->type) return routine->type;
+    }
     const std::string_view bare = without_library(name.text);
     if (const Type* type = standard_type(c, bare)) return type;
     if (c.tree.lost.contains(name.text) || may_be_elsewhere(c, name.place)) return nullptr;

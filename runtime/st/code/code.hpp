@@ -89,6 +89,15 @@ enum HeaderSlot : std::uint32_t {
 struct Native;
 class Probe;
 
+/// Is told of assertions that do not hold, while what they stand in runs.
+class Witness {
+  public:
+    virtual ~Witness() = default;
+    /// `frame` is the address of the frame that runs, `depth` how many calls do. True: what runs
+    /// ends there, with Fault::assertion.
+    virtual bool ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_t depth) = 0;
+};
+
 /// What all the sources together are compiled to.
 struct Code {
     std::vector<Instruction> instructions;
@@ -109,6 +118,7 @@ struct Code {
     std::vector<ShapeMember> members;  ///< of structures
     std::vector<CoverPoint> points;    ///< only with coverage
     std::unique_ptr<std::atomic<std::uint64_t>[]> hits;  ///< of each of them
+    mutable Witness* witness = nullptr;  ///< of tests; without one an assertion ends what runs
     std::shared_ptr<const Native> native;                ///< null: the machine interprets it
     mutable Probe* probe = nullptr;                      ///< a debugger's that looks at scans
 

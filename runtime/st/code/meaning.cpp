@@ -146,6 +146,12 @@ std::optional<std::int64_t> reference_distance(const std::byte* a, const std::by
     return std::int64_t{bytes_from_first(a)} - bytes_from_first(b);
 }
 
+bool Frames::ends_at(const Instruction* behind) const {
+    if (!code.witness) return true;
+    const auto next = static_cast<std::uint64_t>(behind - code.instructions.data());
+    return code.witness->ends_at(next - 1, base, static_cast<std::uint64_t>(top - bottom) / 16);
+}
+
 bool Frames::goes_on(const Piece& piece, const std::byte* reference,
                      const Instruction* next) const {
     const CodeRoutine& routine = code.routines[piece.routine];

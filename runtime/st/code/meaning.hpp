@@ -285,6 +285,9 @@ struct Frames {
         return by >= 0 && !__builtin_add_overflow(now.time, by, &now.time);
     }
 
+    /// `behind` an assertion that does not hold.
+    bool ends_at(const Instruction* behind) const;
+
     void note_cut(const Instruction* at) const {
         if (word(root, cut_slot) == 0)
             set_word(root, cut_slot, static_cast<std::uint64_t>(at - code.instructions.data()));

@@ -83,7 +83,7 @@
     OP(advance_time, call, "-rr-", if (!frames.advance(I(b), I(c))) FAIL(out_of_range); fuel = frames.fuel) \
     OP(message, none, "r---", (void)a)                                                                \
     OP(cover, none, "n---", code.hits[a].fetch_add(1, std::memory_order_relaxed))                     \
-    OP(stop, jump, "rrr-", FAIL(assertion))                                                           \
+    OP(stop, jump, "rrr-", if (frames.ends_at(pc)) FAIL(assertion))                                      \
     OP(leave, jump, "----", LEAVE)                                                                   \
     OP(and_bits, boolean, "wrr-", put(a, U(b) & U(c)))                                               \
     OP(or_bits, boolean, "wrr-", put(a, U(b) | U(c)))                                                \

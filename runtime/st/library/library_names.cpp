@@ -44,6 +44,11 @@ bool is_modifier(std::string_view word) {
     return word == "ABSTRACT" || word == "FINAL" || word == "PUBLIC" || word == "INTERNAL";
 }
 
+/// Of TcUnit, which is known by its others: these are variables of many programs.
+bool is_everyday(std::string_view name) {
+    return name == "RUN" || name == "TEST";
+}
+
 bool is_helper(std::string_view name) {
     return name.front() >= 'a' && name.front() <= 'z';
 }
@@ -78,7 +83,7 @@ LibraryNames::Index make_index(const Catalog& catalog) {
             const std::string& full =
                 index.full_names.emplace_back(fmt::format("{}.{}", file.library, name));
             index.by_full_name.emplace(full, &file);
-            if (is_open(file)) index.by_name[name].push_back(&file);
+            if (is_open(file) && !is_everyday(name)) index.by_name[name].push_back(&file);
         }
     }
     return index;

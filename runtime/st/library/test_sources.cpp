@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
 
 #include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/cursor.hpp"
@@ -39,14 +42,69 @@ bool is_test_file(const std::shared_ptr<const SourceFile>& file) {
     return !cursor.is(Word::end_of_file);
 }
 
+namespace {
+
+/// Of `a.b.T` also `b.T` and `T`, each with the whole.
+void add_declared(std::multimap<std::string, std::string>& to, std::string_view space,
+                  std::string_view name) {
+    const std::string full =
+        lower(space.empty() ? std::string(name) : fmt::format("{}.{}", space, name));
+    for (std::size_t at = 0;; at = full.find('.', at) + 1) {
+        to.emplace(full.substr(at), full);
+        if (full.find('.', at) == full.npos) return;
+    }
+}
+
+/// Of `a.b.c` in a source, where all are names, `a.b` and `a.b.c`.
+void add_used(std::set<std::string>& to, const Expression& member) {
+    const Expression* root = &member;
+    while (root->kind == Expression::Kind::member) root = root->operands[0];
+    if (root->kind != Expression::Kind::name || root->token.local) return;
+    std::string text;
+    for (const char c : root->place.to(member.place).text())
+        if (c != ' ' && c != '\n' && c != '\r' && c != '\t') text += c;
+    to.insert(lower(text));
+}
+
+/// A namespace with those around it, and what is used in it, from each of these on.
+void add_spaces(std::set<std::string>& to, const Scope& scope) {
+    std::set<std::string> around{""};
+    const std::string path = lower(std::string(scope.path));
+    for (std::size_t at = path.find('.'); at != path.npos; at = path.find('.', at + 1))
+        around.insert(path.substr(0, at) + '.');
+    if (!path.empty()) around.insert(path + '.');
+    for (const std::string& start : around)
+        for (const Token& used : scope.usings) to.insert(start + lower(used.text) + '.');
+    to.merge(around);
+}
+
+std::string_view space_at(const Tree& tree, Place place) {
+    std::string_view path;
+    const auto scopes = tree.scopes.find(place.source);
+    if (scopes != tree.scopes.end())
+        for (const Scope& scope : scopes->second)
+            if (scope.begin <= place.begin && place.begin < scope.end) path = scope.path;
+    return path;
+}
+
+}  // namespace
+
 SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& file) {
     Entry entry;
     entry.file = file;
     Diagnostics unread;
     Tree tree;
     parse(read_tokens(entry.file, unread, SourceKind::tests), tree, unread);
-    for (const Pou* unit : tree.units) entry.types.insert(lower(unit->name.text));
-    for (const TypeDeclaration& type : tree.types) entry.types.insert(lower(type.name.text));
+    for (const auto& [source, scopes] : tree.scopes)
+        for (const Scope& scope : scopes) add_spaces(entry.spaces, scope);
+    const auto declare = [&](const Token& name) {
+        add_declared(entry.types, space_at(tree, name.place), name.text);
+    };
+    for (const Pou* unit : tree.units) declare(unit->name);
+    for (const TypeDeclaration& type : tree.types) declare(type.name);
+    for (const Pou& pou : tree.pous)
+        for (const auto& names : {pou.bases, pou.implemented})
+            for (const Token& name : names) entry.used.insert(lower(name.text));
     for (const TypeText& type : tree.type_texts)
         if (type.kind == TypeText::Kind::enumeration)
             for (const Argument& value : type.values) entry.values.insert(lower(value.name.text));
@@ -55,9 +113,12 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
     for (const Declaration& variable : tree.declarations)
         entry.own.insert(lower(variable.name.text));
     for (const DeclarationBlock& block : tree.globals)
+        if (!block.list.empty()) entry.types.emplace(lower(block.list), lower(block.list));
+    for (const DeclarationBlock& block : tree.globals)
         for (const Declaration* variable : block.declarations)
             entry.values.insert(lower(variable->name.text));
     for (const Expression& e : tree.expressions) {
+        if (e.kind == Expression::Kind::member) add_used(entry.used, e);
         const bool is_name = e.kind == Expression::Kind::name || e.kind == Expression::Kind::typed;
         const std::string name = lower(e.token.text);
         if (is_name && !e.token.local && !entry.own.contains(name)) entry.used.insert(name);
@@ -76,16 +137,29 @@ void SourcePool::replace(const std::shared_ptr<const SourceFile>& file) {
     add(file);
 }
 
-const SourcePool::Entry* SourcePool::nearest(const std::string& name, const Entry& user,
-                                             const std::string& to) const {
-    const Entry* found = nullptr;
+std::vector<const SourcePool::Entry*> SourcePool::nearest(const std::string& name,
+                                                          const Entry& user,
+                                                          const std::string& to) const {
+    std::map<std::string, const Entry*> found;  // by what declares it in full
+    const auto add = [&](const std::string& full, const Entry& entry) {
+        const Entry*& known = found[full];
+        if (!known || nearness(entry.file->path, to) > nearness(known->file->path, to))
+            known = &entry;
+    };
     for (const Entry& entry : entries_) {
-        const bool hidden = user.own.contains(name);
-        if (!entry.types.contains(name) && (hidden || !entry.values.contains(name))) continue;
-        if (!found || nearness(entry.file->path, to) > nearness(found->file->path, to))
-            found = &entry;
+        const auto [first, last] = entry.types.equal_range(name);
+        for (auto it = first; it != last; ++it) {
+            const std::string space = it->second.substr(0, it->second.size() - name.size());
+            if (space.empty() || user.spaces.contains(space)) add(it->second, entry);
+        }
+        if (first == last && !user.own.contains(name) && entry.values.contains(name))
+            add(name, entry);
     }
-    return found;
+    const std::size_t point = name.find('.');  // of `Planner.Otg`, where that is another project
+    if (found.empty() && point != name.npos) return nearest(name.substr(point + 1), user, to);
+    std::vector<const Entry*> entries;
+    for (const auto& [full, entry] : found) entries.push_back(entry);
+    return entries;
 }
 
 std::vector<std::shared_ptr<const SourceFile>> SourcePool::needed_by(
@@ -107,8 +181,8 @@ std::vector<std::shared_ptr<const SourceFile>> SourcePool::needed_by(
     for (std::size_t i = 0; i < chosen.size(); ++i)
         for (const std::string& name : chosen[i]->used)
             if (!is_declared(name))
-                if (const Entry* found = nearest(name, *chosen[i], tests->path))
-                    chosen.push_back(found);
+                for (const Entry* found : nearest(name, *chosen[i], tests->path))
+                    if (std::ranges::find(chosen, found) == chosen.end()) chosen.push_back(found);
     std::vector<std::shared_ptr<const SourceFile>> files;
     for (const Entry* entry : chosen)
         if (entry != &test) files.push_back(entry->file);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -22,7 +23,8 @@ class SourcePool {
 
     /// What `tests` needs: `x.st` of the same folder for `test_x.st` and `x_test.st`, and then
     /// every file that declares a name which the tests or a file found so far use and do not
-    /// declare. Of several that declare it the nearest, by path. So files that tests do not name
+    /// declare. Of several that declare it the nearest, by path, one for each namespace that has
+    /// it. So files that tests do not name
     /// may hold whatever they like, and two that declare the same do not meet.
     std::vector<std::shared_ptr<const SourceFile>> needed_by(
         const std::shared_ptr<const SourceFile>& tests) const;
@@ -31,13 +33,16 @@ class SourcePool {
     /// Names in small letters.
     struct Entry {
         std::shared_ptr<const SourceFile> file;
-        std::set<std::string> types;   ///< declared blocks and types
+        /// Declared blocks and types: `T`, `b.T` and `a.b.T`, each with the last.
+        std::multimap<std::string, std::string> types;
+        std::set<std::string> spaces;  ///< namespaces whose names it may write without them
         std::set<std::string> values;  ///< declared globals and values of enumerations
         std::set<std::string> own;     ///< variables and members, which hide others' values
         std::set<std::string> used;
     };
     static Entry entry_of(const std::shared_ptr<const SourceFile>& file);
-    const Entry* nearest(const std::string& name, const Entry& user, const std::string& to) const;
+    std::vector<const Entry*> nearest(const std::string& name, const Entry& user,
+                                      const std::string& to) const;
 
     std::vector<Entry> entries_;
 };

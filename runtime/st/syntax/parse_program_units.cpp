@@ -154,7 +154,7 @@ void parse_declaration(Parsing& p) {
     p.take();
 }
 
-/// POU : POU_Word Pou_Modifier * Name ( ':' Data_Type ) ? POU_Header Var_Sections 'BEGIN' ?
+/// POU : POU_Word Pou_Modifier * Name ( ':' Data_Type ';' ? ) ? POU_Header Var_Sections 'BEGIN' ?
 ///       POU_Body POU_End ';' ?
 /// POU_Word : 'PROGRAM' | 'ORGANIZATION_BLOCK' | 'FUNCTION_BLOCK' | 'FUNCTION' | 'DATA_BLOCK'
 ///          | 'CLASS' | 'INTERFACE' | 'METHOD'
@@ -173,6 +173,7 @@ Pou* parse_pou(Parsing& p) {
     pou.place = opener.place.to(pou.name.place);
     if (p.accept(Word::colon)) pou.result = parse_type(p);
     if (p.panic) skip_line(p);
+    if (pou.result) p.accept(Word::semicolon);
     parse_header(p, pou);
     if (pou.doc.empty()) pou.doc = comment_before(p, p.at, true);
     parse_sections(p, pou, words.end);

@@ -1,0 +1,204 @@
+#include "runtime/st/library/bench.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "runtime/st/types/value_text.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+/// The statement in one line.
+std::string written(const Assertion& failed, Place at) {
+    constexpr std::size_t longest = 100;
+    std::string text;
+    for (const char c : at.text()) {
+        const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
+        if (!blank)
+            text += c;
+        else if (!text.empty() && text.back() != ' ')
+            text += ' ';
+    }
+    const bool is_call = text.ends_with(')');
+    if (text.size() > longest && is_call) text = text.substr(0, text.find('('));
+    return failed.part.empty() ? text : fmt::format("{} at {}", text, failed.part);
+}
+
+std::uint64_t word_at(const std::byte* place) {
+    std::uint64_t value = 0;
+    std::memcpy(&value, place, sizeof value);
+    return value;
+}
+
+}  // namespace
+
+Bench::Bench(const Compiled& made, const Options& options, const Type& unit, Told told)
+    : made_(made),
+      options_(options),
+      told_(std::move(told)),
+      memory_(made.generated.images.at(&unit)) {
+    for (const Assertion& assertion : made.generated.assertions)
+        assertions_.emplace(assertion.instruction, &assertion);
+    std::vector<std::size_t> begins;
+    for (const Global& global : made.checked.globals) {
+        const auto& image = made.generated.images.at(global.type);
+        begins.push_back(8 * memory_.size());
+        memory_.insert(memory_.end(), image.begin(), image.end());
+    }
+    for (const std::size_t begin : begins) places_.push_back(bytes() + begin);
+    for (std::size_t i = 0; i < places_.size(); ++i)
+        if (const Variable* object = made.checked.globals[i].object)
+            objects_.emplace_back(object->type->standard, places_[i]);
+}
+
+TestResult Bench::run(const CodeRoutine& routine, std::byte* instance) {
+    const Code& code = made_.generated.code;
+    const Context context{.instances = places_.data(),
+                          .seen = places_.data(),
+                          .memory = bytes(),
+                          .task = 0,
+                          .published = &never};
+    root_ = instance;
+    for (std::uint64_t i = 0; i < places_.size(); ++i)
+        std::memcpy(instance + 8 * (globals_slot + i), &i, sizeof i);
+    code.witness = this;
+    const Fault fault = execute(code, routine, instance, now_, context, options_.fuel, nullptr);
+    code.witness = nullptr;
+    if (fault == Fault::none) return {};
+    if (fault == Fault::assertion) return std::move(ended_);
+    const FaultPlace place = fault_of(code, instance);
+    return {fmt::format("the fault {}", fault_names[static_cast<std::size_t>(fault)]), place.mark,
+            true, place.calls};
+}
+
+void Bench::advance(std::int64_t by) {
+    constexpr std::int64_t step = 1'000'000;
+    const Context context{.instances = places_.data(),
+                          .seen = places_.data(),
+                          .memory = bytes(),
+                          .task = 0,
+                          .published = &never};
+    for (std::int64_t left = by; left > 0; left -= step) {
+        now_.interval = std::min(step, left);
+        now_.time += now_.interval;
+        ++now_.index;
+        for (const auto& [type, block] : objects_) {
+            Context inner = context;
+            inner.kind = type->context;
+            type->scan_blocks(block, 1, now_, inner);
+        }
+    }
+    now_.interval = by;
+}
+
+std::optional<Mark> Bench::cut() {
+    return cut_of(made_.generated.code, bytes());
+}
+
+bool Bench::ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_t depth) {
+    const Assertion& assertion = *assertions_.at(instruction);
+    frame_ = frame;
+    TestResult result = failed(assertion, made_.generated.code.instructions[instruction],
+                               called_at(assertion.place, depth));
+    const bool ends = told_(result);
+    if (ends) ended_ = std::move(result);
+    return ends;
+}
+
+std::byte* Bench::bytes() {
+    return reinterpret_cast<std::byte*>(memory_.data());
+}
+
+const std::byte* Bench::place(std::uint64_t address) {
+    const std::uint64_t space = address >> 32;
+    return (space == 0 ? root_ : places_[space - 1]) + 8 * (address & 0xFFFF'FFFF);
+}
+
+std::string_view Bench::text_at(std::uint64_t address) {
+    const std::byte* first = place(address);
+    return {reinterpret_cast<const char*>(first + 8), static_cast<std::size_t>(word_at(first))};
+}
+
+/// Of the frame that the assertion stands in.
+std::uint64_t Bench::word(std::uint64_t slot) {
+    return word_at(place(frame_ + slot));
+}
+
+std::string Bench::value(const Type& type, std::uint32_t slot) {
+    if (type.kind == Type::Kind::text) return text_literal(text_at(word(slot)));
+    return value_text(type, word(slot));
+}
+
+/// Of an assertion in a library the call of what it stands in.
+Place Bench::called_at(Place assertion, std::uint64_t depth) {
+    const Code& code = made_.generated.code;
+    const std::byte* calls = root_ + 8 * std::size_t{code.calls_slot()};
+    Place at = assertion;
+    while (at.source->is_library() && depth > 0)
+        at = code.places[word_at(calls + 16 * --depth) - 1];
+    return at;
+}
+
+TestResult Bench::failed(const Assertion& assertion, const Instruction& stop, Place at) {
+    TestResult result;
+    result.mark = at.mark();
+    result.failure = fmt::format("{}: {}", written(assertion, at), what(assertion, stop));
+    const auto* behind = &stop + 1;
+    if (assertion.has_message && !text_at(word(behind->a)).empty())
+        result.failure += "; " + printable(text_at(word(behind->a)));
+    return result;
+}
+
+std::string Bench::what(const Assertion& failed, const Instruction& stop) {
+    const auto found = [&] { return value(*failed.found, stop.a); };
+    const auto wanted = [&] { return value(*failed.wanted, stop.b); };
+    switch (failed.call) {
+        case TestCall::assert_true:
+            return fmt::format("expected TRUE, found {}", found());
+        case TestCall::assert_false:
+            return fmt::format("expected FALSE, found {}", found());
+        case TestCall::assert_neq:
+            return fmt::format("expected another value than {}", found());
+        case TestCall::assert_gt:
+            return fmt::format("expected more than {}, found {}", wanted(), found());
+        case TestCall::assert_lt:
+            return fmt::format("expected less than {}, found {}", wanted(), found());
+        case TestCall::assert_ge:
+            return fmt::format("expected at least {}, found {}", wanted(), found());
+        case TestCall::assert_le:
+            return fmt::format("expected at most {}, found {}", wanted(), found());
+        case TestCall::assert_near:
+            return distance(failed, stop);
+        case TestCall::mock_verify_called:
+            return "expected a call, found none";
+        case TestCall::mock_verify_call_count:
+            return fmt::format("expected {} call{}, found {}", word(stop.b),
+                               word(stop.b) == 1 ? "" : "s", word(stop.a));
+        default:
+            break;
+    }
+    const auto exact = [&](std::uint32_t slot) { return std::bit_cast<double>(word(slot)); };
+    const bool hides_digits =
+        wanted() == found() && failed.found->is_real() && std::isfinite(exact(stop.a));
+    if (!hides_digits) return fmt::format("expected {}, found {}", wanted(), found());
+    return fmt::format("expected {}, found {}", exact(stop.b), exact(stop.a));
+}
+
+std::string Bench::distance(const Assertion& failed, const Instruction& stop) {
+    const Type& type = *failed.found;
+    const auto shown = [&](std::uint64_t slot) {
+        const double real = std::bit_cast<double>(word(slot));
+        if (type.is_real()) return value_text(type, word(slot));
+        if (type.kind == Type::Kind::time) return time_literal(static_cast<std::int64_t>(real));
+        return fmt::format("{}", real);
+    };
+    return fmt::format("expected {} within {}, found {}", shown(stop.b), shown(stop.c),
+                       shown(stop.a));
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "runtime/st/library/compiled.hpp"
+#include "runtime/st/library/test_suite.hpp"
+
+namespace lineshaft::st {
+
+/// Memory to execute routines on, one of a unit and the data blocks, and what assertions in them
+/// say. Two may not execute at once what one Compiled has.
+class Bench : Witness {
+  public:
+    /// What an assertion says that does not hold; true: what runs ends with it.
+    using Told = std::function<bool(TestResult)>;
+
+    Bench(const Compiled& made, const Options& options, const Type& unit, Told told);
+    Bench(const Bench&) = delete;
+    Bench& operator=(const Bench&) = delete;
+
+    /// Executes a routine on an instance: the unit's, or one that it, or a data block, has. A fault
+    /// is a failure; so is an assertion that ended it.
+    TestResult run(const CodeRoutine& routine, std::byte* instance);
+    /// A cycle goes by: the blocks beside the unit, such as axes, are scanned in each millisecond.
+    void advance(std::int64_t by);
+
+    std::byte* unit() { return bytes(); }
+    std::byte* global(std::size_t number) { return places_[number]; }
+    std::int64_t time() const { return now_.time; }
+    std::optional<Mark> cut();
+
+  private:
+    bool ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_t depth) override;
+    std::byte* bytes();
+    const std::byte* place(std::uint64_t address);
+    std::string_view text_at(std::uint64_t address);
+    std::uint64_t word(std::uint64_t slot);
+    std::string value(const Type& type, std::uint32_t slot);
+    Place called_at(Place assertion, std::uint64_t depth);
+    TestResult failed(const Assertion& assertion, const Instruction& stop, Place at);
+    std::string what(const Assertion& failed, const Instruction& stop);
+    std::string distance(const Assertion& failed, const Instruction& stop);
+
+    const Compiled& made_;
+    const Options& options_;
+    Told told_;
+    std::unordered_map<std::uint64_t, const Assertion*> assertions_;  ///< by their instruction
+    std::vector<std::uint64_t> memory_;  ///< of the unit, then the data blocks and objects
+    std::vector<std::byte*> places_;
+    std::vector<std::pair<const BlockType*, std::byte*>> objects_;
+    Scan now_{0, 1'000'000, 0};
+    std::byte* root_ = nullptr;  ///< the instance that runs
+    std::uint64_t frame_ = 0;    ///< address of the one with the last assertion that did not hold
+    TestResult ended_;           ///< by the last one
+};
+
+}  // namespace lineshaft::st

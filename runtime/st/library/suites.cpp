@@ -1,0 +1,287 @@
+#include "runtime/st/library/suites.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "runtime/source/codes.hpp"
+#include "runtime/st/library/bench.hpp"
+#include "runtime/st/library/kind.hpp"
+#include "runtime/st/syntax/cursor.hpp"
+#include "runtime/st/syntax/parser.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+constexpr std::string_view state_name = "TcUnit.GVL_TcUnit";
+constexpr std::int64_t longest = 600'000'000'000;  // [ns] of virtual time
+
+const Routine* base_suite(const Routine* block) {
+    for (; block; block = block->base)
+        if (block->pou->place.source->is_library() && block->name == "TcUnit.FB_TestSuite")
+            return block;
+    return nullptr;
+}
+
+/// A suite, and where it is in the instance or the list that has it.
+struct Suite {
+    std::string name;
+    const Routine* block = nullptr;
+    int global = -1;  ///< the list; -1: the program
+    std::size_t slot = 0;
+    bool is_done = false;
+};
+
+/// What a test is at some moment; its number is that of its place among all.
+struct Entry {
+    std::int64_t suite = 0;
+    std::string name;
+    bool finished = false, skipped = false;
+};
+
+std::uint64_t read_word(const std::byte* place) {
+    std::uint64_t value = 0;
+    std::memcpy(&value, place, sizeof value);
+    return value;
+}
+
+const Variable* find(std::span<Variable* const> variables, std::string_view name) {
+    const auto it = std::ranges::find_if(
+        variables, [&](const Variable* variable) { return same_name(variable->text, name); });
+    return it == variables.end() ? nullptr : *it;
+}
+
+/// A run of all suites.
+class Suites {
+  public:
+    Suites(const Compiled& made, const Options& options, const Routine& program)
+        : made_(made),
+          program_(program),
+          bench_(made, options, *program.type,
+                 [this](TestResult result) { return tell(std::move(result)); }) {
+        add_suites(program.name, *program.type, -1, 0);
+        for (std::size_t i = 0; i < made.checked.globals.size(); ++i)
+            for (const Variable* member : made.checked.globals[i].type->members)
+                if (member->type)
+                    add_suites(std::string(member->text), *member->type, static_cast<int>(i),
+                               member->slot);
+    }
+
+    std::vector<SuiteTest> run(std::int64_t cycle) {
+        for (std::int64_t number = 0; bench_.time() < longest; ++number) {
+            set("cycle", number);
+            set("suite", 0);
+            const TestResult result = bench_.run(code_of(program_), bench_.unit());
+            if (!result.failure.empty()) {
+                fault_ = result;
+                break;
+            }
+            if (get("run_mode") > 0) call_suites();
+            if (std::ranges::all_of(suites_, &Suite::is_done)) break;
+            bench_.advance(cycle);
+        }
+        return results();
+    }
+
+  private:
+    void add_suites(const std::string& name, const Type& type, int global, std::size_t slot) {
+        if (type.kind == Type::Kind::array && !type.element->is_scalar())
+            for (std::int64_t i = type.lower; i <= type.upper; ++i)
+                add_suites(fmt::format("{}[{}]", name, i), *type.element, global,
+                           slot + static_cast<std::size_t>(i - type.lower) * element_slots(type));
+        if (type.kind == Type::Kind::structure)
+            for (const Variable* member : type.members) add_member(name, *member, global, slot);
+        if (type.kind != Type::Kind::block) return;
+        if (base_suite(type.routine)) suites_.push_back({name, type.routine, global, slot});
+        for (const Variable* member : all_variables(*type.routine))
+            if (member->space == Space::frame && member->section != Section::temp)
+                add_member(name, *member, global, slot);
+    }
+
+    void add_member(const std::string& name, const Variable& member, int global, std::size_t slot) {
+        if (member.type)
+            add_suites(fmt::format("{}.{}", name, member.text), *member.type, global,
+                       slot + member.slot);
+    }
+
+    const CodeRoutine& code_of(const Routine& routine) const {
+        const auto it = std::ranges::find(made_.checked.order, &routine);
+        return made_.generated.code
+            .routines[static_cast<std::size_t>(it - made_.checked.order.begin())];
+    }
+
+    /// Of a part of what the library keeps.
+    std::byte* place(std::string_view name, const Variable** variable = nullptr) {
+        const Variable& state = *find(made_.checked.globals.front().type->members, state_name);
+        const Variable* found = find(state.type->members, name);
+        if (variable) *variable = found;
+        return bench_.global(0) + 8 * std::size_t{state.slot + found->slot};
+    }
+    std::int64_t get(std::string_view name) {
+        return static_cast<std::int64_t>(read_word(place(name)));
+    }
+    void set(std::string_view name, std::int64_t value) {
+        std::memcpy(place(name), &value, sizeof value);
+    }
+
+    Entry entry(std::int64_t number) {
+        const Variable* tests = nullptr;
+        const std::byte* first = place("tests", &tests);
+        const Type& type = *tests->type->element;
+        const std::byte* at =
+            first + 8 * element_slots(*tests->type) * static_cast<std::size_t>(number - 1);
+        const auto part = [&](std::string_view name) {
+            return at + 8 * std::size_t{find(type.members, name)->slot};
+        };
+        const std::byte* name = part("name");
+        return {
+            static_cast<std::int64_t>(read_word(part("suite"))),
+            {reinterpret_cast<const char*>(name + 8), static_cast<std::size_t>(read_word(name))},
+            read_word(part("finished")) != 0,
+            read_word(part("skipped")) != 0};
+    }
+
+    void call_suites() {
+        const bool in_sequence = get("run_mode") == 2;
+        for (std::size_t i = 0; i < suites_.size(); ++i) {
+            Suite& suite = suites_[i];
+            if (suite.is_done) continue;
+            set("suite", static_cast<std::int64_t>(i) + 1);
+            set("test", 0);
+            std::byte* instance =
+                (suite.global < 0 ? bench_.unit()
+                                  : bench_.global(static_cast<std::size_t>(suite.global))) +
+                8 * suite.slot;
+            const TestResult result = bench_.run(code_of(*suite.block), instance);
+            if (!result.failure.empty()) note_fault(i, result);
+            suite.is_done = !result.failure.empty() || is_finished(i);
+            if (in_sequence && !suite.is_done) return;
+        }
+    }
+
+    bool is_finished(std::size_t suite) {
+        for (std::int64_t i = 1; i <= get("number_of_tests"); ++i) {
+            const Entry test = entry(i);
+            if (test.suite == static_cast<std::int64_t>(suite) + 1 && !test.finished &&
+                !test.skipped)
+                return false;
+        }
+        return true;
+    }
+
+    bool tell(TestResult result) {
+        failed_.emplace(get("test"), std::move(result));
+        return false;
+    }
+
+    /// Of the tests that are not finished those that ran fail with it.
+    void note_fault(std::size_t suite, const TestResult& result) {
+        for (std::int64_t i = 1; i <= get("number_of_tests"); ++i) {
+            const Entry test = entry(i);
+            if (test.suite == static_cast<std::int64_t>(suite) + 1 && !test.finished &&
+                !test.skipped)
+                failed_.emplace(i, result);
+        }
+        if (is_finished(suite)) faults_.push_back({suite, result});
+    }
+
+    /// The call that begins it.
+    Mark begin_of(const Routine& suite, std::string_view name) const {
+        for (const Routine* block = &suite; block; block = block->base)
+            for (const Expression& e : made_.tree.expressions) {
+                if (e.kind != Expression::Kind::call || e.place.source != block->pou->place.source)
+                    continue;
+                const std::string_view called = e.operands[0]->token.text;
+                const bool begins = same_name(called, "TEST") || same_name(called, "TEST_ORDERED");
+                if (!begins || e.place.begin < block->pou->place.begin || e.arguments.empty())
+                    continue;
+                std::string_view text = e.arguments[0].value->place.text();
+                text.remove_suffix(std::min<std::size_t>(1, text.size()));  // the quote
+                if (text.ends_with(name)) return e.place.mark();
+            }
+        return suite.pou->place.mark();
+    }
+
+    std::vector<SuiteTest> results() {
+        std::vector<SuiteTest> tests;
+        for (std::int64_t i = 1; i <= get("number_of_tests"); ++i) {
+            const Entry test = entry(i);
+            const Suite& suite = suites_[static_cast<std::size_t>(test.suite) - 1];
+            SuiteTest& made = tests.emplace_back();
+            made.test = {fmt::format("{}: {}", suite.name, test.name),
+                         begin_of(*suite.block, test.name)};
+            made.skipped = test.skipped;
+            if (const auto it = failed_.find(i); it != failed_.end())
+                made.result = it->second;
+            else if (!test.finished && !test.skipped)
+                made.result = {"it is not finished after ten minutes: TEST_FINISHED is missing",
+                               made.test.mark};
+        }
+        for (const auto& [suite, result] : faults_)
+            tests.push_back(
+                {{suites_[suite].name, suites_[suite].block->pou->place.mark()}, result});
+        if (!fault_.failure.empty())
+            tests.push_back({{program_.name, program_.pou->place.mark()}, fault_});
+        return tests;
+    }
+
+    const Compiled& made_;
+    const Routine& program_;
+    Bench bench_;
+    std::vector<Suite> suites_;
+    std::map<std::int64_t, TestResult> failed_;               ///< the first of each test
+    std::vector<std::pair<std::size_t, TestResult>> faults_;  ///< of suites without a test that ran
+    TestResult fault_;                                        ///< of the program
+};
+
+bool is_call_of_run(const Cursor& cursor) {
+    return (cursor.says("run") || cursor.says("run_in_sequence")) &&
+           cursor.next().word == Word::open;
+}
+
+}  // namespace
+
+bool calls_suites(const std::shared_ptr<const SourceFile>& file) {
+    if (file->text.find("RUN") == std::string::npos) return false;
+    Diagnostics unread;
+    Cursor cursor{read_tokens(file, unread)};
+    bool is_in_program = false;
+    for (; !cursor.is(Word::end_of_file); cursor.take()) {
+        if (cursor.is(Word::program_)) is_in_program = true;
+        if (is_in_program && cursor.is(Word::name) && is_call_of_run(cursor)) return true;
+    }
+    return false;
+}
+
+std::optional<std::vector<SuiteTest>> run_suites(
+    const std::shared_ptr<const SourceFile>& file,
+    const std::vector<std::shared_ptr<const SourceFile>>& sources, const Catalog& standard,
+    std::int64_t cycle, Diagnostics& out, const Options& options) {
+    constexpr std::int64_t more_fuel = 1000;  // a test may do in a scan what a machine does in many
+    Options own = options;
+    own.fuel *= more_fuel;
+    Compiled made;
+    made.sources = sources;
+    made.sources.push_back(file);
+    if (!compile(made, standard, out)) return {};
+    make_native(made.generated.code, own);
+    const Routine* program = nullptr;
+    bool has_suites = false;
+    for (const Routine& routine : made.checked.routines) {
+        has_suites |= base_suite(&routine) != nullptr;
+        if (routine.pou->kind == PouKind::program && !routine.owner &&
+            routine.pou->place.source->file == file)
+            program = &routine;
+    }
+    if (!program || !has_suites) {
+        out.add(code::not_declared, {file, 0, 0, 1}, "this program runs no suite of TcUnit",
+                "declare an instance of a block that extends TcUnit.FB_TestSuite");
+        return {};
+    }
+    return Suites(made, own, *program).run(cycle);
+}
+
+}  // namespace lineshaft::st

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "runtime/st/library/test_suite.hpp"
+
+namespace lineshaft::st {
+
+/// True if a PROGRAM stands in it that calls RUN or RUN_IN_SEQUENCE of TcUnit.
+bool calls_suites(const std::shared_ptr<const SourceFile>& file);
+
+struct SuiteTest {
+    Test test;  ///< `MAIN.fbMath: adds two numbers`
+    TestResult result;
+    bool skipped = false;  ///< it is disabled
+};
+
+/// Scans the PROGRAM of `file` every `cycle` [ns], and behind it the suites of TcUnit that it and
+/// the lists of globals have, in virtual time from 0 on, until each test is finished; axes and
+/// other blocks of the lists are scanned every millisecond. A failed assertion does not end its
+/// test; the first one is told. A test that is not finished after ten minutes has failed, as has
+/// one in which a fault happens, and then the others of its suite that are not finished. Empty,
+/// with all that is wrong in `out`, if anything is.
+std::optional<std::vector<SuiteTest>> run_suites(
+    const std::shared_ptr<const SourceFile>& file,
+    const std::vector<std::shared_ptr<const SourceFile>>& sources, const Catalog& standard,
+    std::int64_t cycle, Diagnostics& out, const Options& options = {});
+
+}  // namespace lineshaft::st
