@@ -60,13 +60,14 @@ void parse_labels(Parsing& p) {
     p.accept(Word::semicolon);
 }
 
-/// Located_At : 'AT' Direct
-/// Only one variable is there.
+/// Located_At : 'AT' ( Direct | Name )
+/// Only one variable is there. Of another variable's bytes it is a second view.
 Token parse_location(Parsing& p, const std::vector<Token>& names) {
     if (!p.accept(Word::at_)) return {};
-    if (!p.is(Word::direct)) return refuse_place(p), Token{};
     if (names.size() > 1) refuse_shared_place(p);
-    return p.take();
+    if (p.is(Word::direct) || p.is_name()) return p.take();
+    expected(p, "an address", "after AT");
+    return {};
 }
 
 }  // namespace
@@ -116,9 +117,11 @@ DeclarationBlock parse_section(Parsing& p, Section section) {
     return block;
 }
 
-/// Var_Decl : ( Variable_List | Name Located_At ) ':' Data_Type ( 'R_EDGE' | 'F_EDGE' ) ?
+/// Var_Decl : ( Variable_List | Name Located_At | 'AT' Direct ) ':' Data_Type ( 'R_EDGE' | 'F_EDGE'
+/// ) ?
 ///            ( ':=' Var_Init ) ? ';'
 /// Variable_List : Name ( ',' Name ) *
+/// Without a name an address is its name.
 void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
     const std::size_t first = p.at;
     const Word behind = p.next().word;
@@ -129,8 +132,12 @@ void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
     if (!p.is_name() && p.here().word < Word::end_of_file && behind == Word::colon)
         return refuse_reserved_name(p);
     std::vector<Token> names;
-    do names.push_back(expect_name(p, "the name of a variable"));
-    while (p.accept(Word::comma));
+    const bool is_unnamed = p.is(Word::at_) && p.next().word == Word::direct;
+    if (is_unnamed) names.push_back(p.next());
+    while (!is_unnamed) {
+        names.push_back(expect_name(p, "the name of a variable"));
+        if (!p.accept(Word::comma)) break;
+    }
     const Token at = parse_location(p, names);
     expect(p, Word::colon, "after the name");
     TypeText* type = parse_type(p);
