@@ -112,9 +112,10 @@ int run_command(int argc, char** argv) {
         "`lineshaft COMMAND --help` says more.");
     Exit result = Exit::fine;
     for (const AddCommand add :
-         {add_new,    add_run,    add_serve,   add_debug,  add_check,  add_test,   add_study,   add_fit,
-          add_blocks, add_form,   add_units,   add_states, add_schema, add_explain, add_plan,
-          add_diff,   add_verify, add_contour, add_report, add_show,   add_plot,    add_lsp})
+         {add_new,    add_run,     add_serve,  add_debug, add_check,  add_test,
+          add_study,  add_fit,     add_blocks, add_form,  add_units,  add_states,
+          add_schema, add_explain, add_plan,   add_diff,  add_verify, add_contour,
+          add_report, add_show,    add_plot,   add_lsp,   add_format})
         add(app, result);
     if (argc > 1 && argv[1][0] != '-') {
         if (const std::string message = unknown_command(app, argv[1]); !message.empty()) {

@@ -9,8 +9,10 @@
 
 namespace lineshaft::st {
 
-Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out) {
+Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out,
+              std::vector<NameUse>* uses) {
     Checking c{tree, catalog, evaluate, out};
+    c.uses = uses;
     collect_names(c);
     resolve_bases(c);
     declare_globals(c);

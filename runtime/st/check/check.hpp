@@ -19,6 +19,8 @@ struct Checked {
     Image image = {};                ///< the process image
 };
 
+struct NameUse;
+
 /// What an expression comes to, or the fault that it ends with.
 struct Evaluated {
     Fault fault = Fault::none;
@@ -29,7 +31,8 @@ struct Evaluated {
 /// standard alone: the bits are to be those of a scan, so the machine does it.
 using Evaluate = Evaluated (*)(Expression&);
 
-/// Checks `tree` and notes in it what it found. With a mistake in `out` the result is of no use.
+/// Checks `tree` and notes in it what it found. With a mistake in `out` the result is of no use,
+/// but to who asks what names mean: `uses`, if it is there, gets what was found.
 ///   L0904  a name that is not declared     L0905  a type that does not fit
 ///   L0906  a conversion that may lose      L0907  wrong arguments
 ///   L0908  a value out of range            L0909  declared twice
@@ -40,6 +43,7 @@ using Evaluate = Evaluated (*)(Expression&);
 ///   L0924  warning: a block assigns its own input
 ///   L0925  warning: a step without a way out
 ///   L0926  warning: two variables at one address
-Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out);
+Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out,
+              std::vector<NameUse>* uses = nullptr);
 
 }  // namespace lineshaft::st
