@@ -347,7 +347,7 @@ def completion_offers_what_fits():
     on = Folder()
     text = on.client.texts[str(on.block)]
     on.client.change(on.block, text.replace("allowed := last;", "allowed := last;\ndelay.\nClamp(\nla"))
-    assert {"Q", "ET"} <= set(on.labels(on.block, "delay.\n", None, 6))
+    assert {"q", "et"} <= {name.lower() for name in on.labels(on.block, "delay.\n", None, 6)}
     names = on.labels(on.block, "Clamp(\n", None, 6)
     assert names[:2] == ["x", "limit"], names[:5]
     assert {"last", "wanted", "most", "Clamp", "MIN", "IF", "TON"} <= set(on.labels(on.block, "\nla", None, 3))

@@ -44,6 +44,11 @@ Exit format(const std::string& path, bool check) {
     Diagnostics out;
     const auto file = read_source(path, out);
     if (!file) return report(out, false);
+    int error = 0;
+    if (read_bytes(path, file->text.size() + 1, error) != file->text) {
+        spdlog::error("{} is left as it is: it is not in UTF-8", path);
+        return Exit::wrong;
+    }
     const auto styled = is_structured_text(path) ? st::in_style(file) : std::nullopt;
     if (!styled) {
         spdlog::error("{} is left as it is: something in it is no Structured Text", path);

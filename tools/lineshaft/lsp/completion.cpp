@@ -239,7 +239,7 @@ std::size_t without_blanks(const std::string& text, std::size_t end) {
 Json complete_structured_text(Session& session, const Asked& where) {
     Offer offer;
     const auto meaning = whole_meaning_of(session, session.project.roots_of(where.path).front());
-    const Completion at{*meaning, meaning->routine_at(where.path, where.offset)};
+    const Completion at{*meaning, meaning->routine_at(where)};
     std::size_t begin = where.offset;
     while (begin > 0 && (is_letter(where.text[begin - 1]) || is_digit(where.text[begin - 1])))
         --begin;
@@ -296,7 +296,7 @@ Json signature_help(Session& session, const Json& params) {
     const auto call = call_around(where->text, where->offset);
     if (!call) return nullptr;
     const auto meaning = whole_meaning_of(session, session.project.roots_of(where->path).front());
-    const Completion at{*meaning, meaning->routine_at(where->path, where->offset)};
+    const Completion at{*meaning, meaning->routine_at(*where)};
     const auto chain = chain_before(where->text, without_blanks(where->text, call->open));
     const auto signature = signature_at(at, chain);
     if (!signature) return nullptr;

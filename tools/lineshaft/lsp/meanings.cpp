@@ -97,8 +97,15 @@ const st::NameUse* Meaning::find(const std::string& path, std::size_t offset) co
     return found;
 }
 
-const st::Routine* Meaning::routine_at(const std::string& path, std::size_t offset) const {
+const st::Routine* Meaning::routine_at(const Asked& where) const {
     const st::Routine* found = nullptr;
+    const std::string& path = where.path;
+    std::size_t offset = where.offset;
+    for (const auto& source : compiled.sources)  // which may be older: as far as it is the same
+        if (std::filesystem::path(source->path).lexically_normal().string() == path) {
+            const auto changed = std::ranges::mismatch(source->text, where.text).in1;
+            offset = std::min(offset, static_cast<std::size_t>(changed - source->text.begin()));
+        }
     for (const st::Routine& routine : compiled.checked.routines) {
         const st::Place& at = routine.pou->name.place;
         if (at.begin <= offset && is_in(at, path) &&

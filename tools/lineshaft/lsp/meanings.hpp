@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runtime/st/library/compiled.hpp"
-#include "tools/lineshaft/lsp/session.hpp"
+#include "tools/lineshaft/lsp/requests.hpp"
 
 namespace lineshaft::lsp {
 
@@ -18,7 +18,7 @@ struct Meaning {
     /// Of the name at a byte of a file; null: it is none.
     const st::NameUse* find(const std::string& path, std::size_t offset) const;
     /// The block, function, method or program that the byte stands in; null: none.
-    const st::Routine* routine_at(const std::string& path, std::size_t offset) const;
+    const st::Routine* routine_at(const Asked& where) const;
     const st::Routine* find_block(std::string_view name) const;
 };
 
