@@ -218,6 +218,198 @@ def messages_that_are_none_are_refused():
         assert answer.returncode == wanted, answer
 
 
+BLOCK = """(* Limits a speed *)
+FUNCTION_BLOCK Limiter
+VAR_INPUT
+    wanted : REAL; (* what is asked for *) {unit := 'mm/s'}
+END_VAR
+VAR_OUTPUT allowed : REAL {unit := 'mm/s'}; END_VAR
+VAR CONSTANT most : REAL := 2.0 * 5.0; END_VAR
+VAR delay : TON; last : REAL; END_VAR
+delay(IN := wanted > most, PT := T#1s);
+last := Clamp(x := wanted, limit := most);
+allowed := last;
+END_FUNCTION_BLOCK
+
+FUNCTION Clamp : REAL
+VAR_INPUT x, limit : REAL; END_VAR
+Clamp := MIN(x, limit);
+END_FUNCTION
+"""
+PROGRAM = """lineshaft: 1
+tasks: {main: {every: 2 ms}}
+sources: [limiter.st]
+inputs: {speed: 3 mm/s}
+blocks:
+  first: {type: Limiter, task: main, wanted: inputs.speed}
+  second: {type: Limiter, task: main, wanted: first.allowed}
+outputs: {shown: second.allowed}
+run: {for: 10 ms}
+"""
+
+
+class Folder:
+    """A program, its source, and a client that has both open."""
+
+    def __init__(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        folder = pathlib.Path(self.temporary.name)
+        self.program, self.block = folder / "line.yaml", folder / "limiter.st"
+        self.program.write_text(PROGRAM, encoding="utf-8")
+        self.block.write_text(BLOCK, encoding="utf-8")
+        self.client = Client(lineshaft, folder)
+        for path in self.block, self.program:
+            self.client.open(path)
+            assert self.client.diagnosed(path) == [], self.client.diagnosed(path)
+
+    def where(self, path, text, part=None, more=0, nth=0):
+        """The place of a part of a text that stands in the file."""
+        whole = self.client.texts[str(path)]
+        at = -1
+        for _ in range(nth + 1):
+            at = whole.index(text, at + 1)
+        at += text.index(part or text) + more
+        return {"textDocument": {"uri": uri_of(path)},
+                "position": {"line": whole.count("\n", 0, at), "character": at - whole.rfind("\n", 0, at) - 1}}
+
+    def ask(self, method, path, text, part=None, more=0, nth=0, **params):
+        return self.client.ask("textDocument/" + method, self.where(path, text, part, more, nth) | params)
+
+    def labels(self, path, text, part=None, more=0, nth=0):
+        return [item["label"] for item in self.ask("completion", path, text, part, more, nth)["items"]]
+
+    def end(self):
+        assert self.client.end() == 0
+        self.temporary.cleanup()
+
+
+@check
+def hover_says_type_unit_value_and_documentation():
+    on = Folder()
+    for path, text, part, wanted in (
+            (on.block, "IN := wanted", "wanted", ("wanted : REAL", "VAR_INPUT", "mm/s", "what is asked for")),
+            (on.block, "limit := most", "most", ("most : REAL := 10",)), (on.block, "MIN(x", "MIN", ("MIN(", "the least")),
+            (on.block, "Clamp(x", "Clamp", ("FUNCTION Clamp(x : REAL; limit : REAL) : REAL",)),
+            (on.program, "wanted: inputs", "wanted", ("wanted : REAL", "mm/s")), (on.program, "every: 2", "every", ("every",)),
+            (on.program, "type: Limiter", "Limiter", ("FUNCTION_BLOCK Limiter(", "Limits a speed"))):
+        text = on.ask("hover", path, text, part)["contents"]["value"]
+        for piece in wanted:
+            assert piece in text, (part, piece, text)
+    on.end()
+
+
+@check
+def definitions_and_references_go_across_files():
+    on = Folder()
+    declared = on.where(on.block, "wanted : REAL")["position"]
+    for path, text, part in ((on.block, "x := wanted", "wanted"), (on.program, "wanted: first", "wanted")):
+        found = on.ask("definition", path, text, part)
+        assert found["uri"] == uri_of(on.block) and found["range"]["start"] == declared, found
+    found = on.ask("definition", on.program, "first.allowed", "first")
+    assert found["range"]["start"] == on.where(on.program, "first: {")["position"], found
+    assert on.ask("definition", on.program, "type: Limiter", "Limiter")["uri"] == uri_of(on.block)
+    found = on.ask("references", on.block, "wanted : REAL", context={"includeDeclaration": True})
+    assert [pathlib.Path(r["uri"]).name for r in found] == ["limiter.st"] * 3 + ["line.yaml"] * 2, found
+    found = on.ask("references", on.program, "first.allowed", "allowed", context={"includeDeclaration": False})
+    assert len(found) == 3, found
+    on.end()
+
+
+@check
+def renamed_names_leave_what_a_program_does():
+    on = Folder()
+    before = subprocess.run([lineshaft, "run", on.program, "--json"], capture_output=True, check=False)
+    for text, part, name in (("wanted : REAL", None, "asked"), ("allowed : REAL", None, "given"), ("Clamp : REAL", None, "Bounded"),
+                             ("last : REAL", None, "kept"), ("FUNCTION_BLOCK Limiter", "Limiter", "Bound"), ("most : REAL", None, "top")):
+        assert on.ask("prepareRename", on.block, text, part)
+        changes = on.ask("rename", on.block, text, part, newName=name)["changes"]
+        for path in (on.block, on.program):
+            whole = on.client.texts[str(path)].split("\n")
+            for edit in sorted(changes.get(uri_of(path), []), key=lambda e: (e["range"]["start"]["line"], e["range"]["start"]["character"]), reverse=True):
+                start, end = edit["range"]["start"], edit["range"]["end"]
+                assert start["line"] == end["line"]
+                line = whole[start["line"]]
+                whole[start["line"]] = line[:start["character"]] + edit["newText"] + line[end["character"]:]
+            on.client.change(path, "\n".join(whole))
+            path.write_text("\n".join(whole), encoding="utf-8")
+        for path in (on.block, on.program):
+            assert on.client.diagnosed(path) == [], (name, path, on.client.texts[str(path)], on.client.diagnosed(path))
+    assert "type: Bound, task: main, asked: first.given" in on.client.texts[str(on.program)]
+    after = subprocess.run([lineshaft, "run", on.program, "--json"], capture_output=True, check=False)
+    assert before.returncode == after.returncode == 0, (before, after)
+    answer = on.client.answer("textDocument/rename", on.where(on.block, "kept := ", None) | {"newName": "top"})
+    assert answer["error"]["code"] == -32602, answer
+    on.end()
+
+
+@check
+def completion_offers_what_fits():
+    on = Folder()
+    text = on.client.texts[str(on.block)]
+    on.client.change(on.block, text.replace("allowed := last;", "allowed := last;\ndelay.\nClamp(\nla"))
+    assert {"q", "et"} <= {name.lower() for name in on.labels(on.block, "delay.\n", None, 6)}
+    names = on.labels(on.block, "Clamp(\n", None, 6)
+    assert names[:2] == ["x", "limit"], names[:5]
+    assert {"last", "wanted", "most", "Clamp", "MIN", "IF", "TON"} <= set(on.labels(on.block, "\nla", None, 3))
+    help = on.ask("signatureHelp", on.block, "x := wanted, limit", None, 14)
+    assert help["activeParameter"] == 1 and "Clamp(" in help["signatures"][0]["label"], help
+    text = on.client.texts[str(on.program)]
+    on.client.change(on.program, text + "ex\n")
+    assert {"expect", "trace", "stimulus"} <= set(on.labels(on.program, "ex\n", None, 2))
+    on.client.change(on.program, text.replace("  second:", "  third: {type: Limiter, task: main, w\n  second:"))
+    assert "wanted" in on.labels(on.program, "main, w\n", None, 7)
+    on.client.change(on.program, text.replace("  second:", "  third: {type: L\n  second:"))
+    assert {"Limiter", "axis", "MC_GearIn"} <= set(on.labels(on.program, "type: L\n", None, 7))
+    on.client.change(on.program, text.replace("wanted: first.allowed", "wanted: f"))
+    assert {"first.allowed", "inputs.speed"} <= set(on.labels(on.program, "wanted: f", None, 9))
+    on.client.change(on.program, text.replace("for: 10 ms", "for: 10 m"))
+    assert {"ms", "s"} <= set(on.labels(on.program, "for: 10 m", None, 9))
+    on.end()
+
+
+@check
+def outline_folding_lenses_and_quick_fixes():
+    on = Folder()
+    document = {"textDocument": {"uri": uri_of(on.block)}}
+    symbols = on.client.ask("textDocument/documentSymbol", document)
+    assert [s["name"] for s in symbols] == ["Limiter", "Clamp"]
+    assert [c["name"] for c in symbols[0]["children"]] == ["wanted", "allowed", "most", "delay", "last"]
+    folds = {(f["startLine"], f["endLine"]) for f in on.client.ask("textDocument/foldingRange", document)}
+    assert {(1, 11), (2, 4), (13, 16)} <= folds, folds
+    program = {"textDocument": {"uri": uri_of(on.program)}}
+    names = [s["name"] for s in on.client.ask("textDocument/documentSymbol", program)]
+    assert names == ["lineshaft", "tasks", "sources", "inputs", "blocks", "outputs", "run"], names
+    assert {"startLine": 4, "endLine": 6} in on.client.ask("textDocument/foldingRange", program)
+    lenses = on.client.ask("textDocument/codeLens", program)
+    assert [lens["command"]["title"] for lens in lenses] == ["run", "debug", "test"]
+    on.client.change(on.block, on.client.texts[str(on.block)].replace("x := wanted", "x := wnated"))
+    [told] = on.client.diagnosed(on.block)
+    [action] = on.client.ask("textDocument/codeAction", document | {"range": told["range"], "context": {"diagnostics": [told]}})
+    [edit] = action["edit"]["changes"][uri_of(on.block)]
+    assert edit == {"range": told["range"], "newText": "wanted"}, action
+    on.end()
+
+
+@check
+def every_request_answers_whatever_is_written():
+    rng, on, times = random.Random(seed), Folder(), []
+    asked = ("hover", "definition", "references", "prepareRename", "completion", "signatureHelp", "documentSymbol", "foldingRange",
+             "codeLens")
+    for path in (on.block, on.program):
+        start = text = on.client.texts[str(path)]
+        for i in range(edits):
+            text, change = random_edit(start if i % 10 == 0 else text, rng)
+            on.client.change(path, text, *([change] if i % 10 else []))
+            at = rng.randrange(len(text) + 1)
+            place = {"line": text.count("\n", 0, at), "character": at - text.rfind("\n", 0, at) - 1}
+            begun = time.perf_counter()
+            on.client.ask("textDocument/" + rng.choice(asked), {"textDocument": {"uri": uri_of(path)}, "position": place})
+            times.append(time.perf_counter() - begun)
+    on.end()
+    times.sort()
+    return f"{len(times)} requests, 95 % answered within {times[int(0.95 * len(times))] * 1000:.1f} ms"
+
+
 def main():
     failed = 0
     for function in checks:

@@ -110,6 +110,7 @@ void add_contour(CLI::App& app, Exit& result);
 void add_report(CLI::App& app, Exit& result);
 void add_show(CLI::App& app, Exit& result);
 void add_plot(CLI::App& app, Exit& result);
+void add_format(CLI::App& app, Exit& result);
 void add_lsp(CLI::App& app, Exit& result);
 
 }  // namespace lineshaft

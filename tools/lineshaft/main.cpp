@@ -105,7 +105,7 @@ void add_commands(CLI::App& app, std::string_view asked, lineshaft::Exit& result
         {"schema", add_schema}, {"explain", add_explain}, {"plan", add_plan},
         {"diff", add_diff},     {"verify", add_verify},   {"contour", add_contour},
         {"report", add_report}, {"show", add_show},       {"plot", add_plot},
-        {"lsp", add_lsp}};
+        {"lsp", add_lsp},       {"format", add_format}};
     if (asked == "--version") return;
     const auto named = std::ranges::find(commands, asked, &Command::name);
     if (named != std::end(commands)) return named->add(app, result);

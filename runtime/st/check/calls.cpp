@@ -193,6 +193,7 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
             check(c, argument.value);
             continue;
         }
+        if (argument.is_named()) c.note(argument.name.place, *parameter);
         if (std::ranges::find(given, parameter) != given.end())
             c.fail(code::wrong_arguments, argument.value->place,
                    fmt::format("'{}' is given twice", parameter->text));
@@ -253,6 +254,7 @@ void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
             found = find_member(type, standard_name(type, argument.name.text));
         }
         argument.variable = found;
+        if (found && argument.is_named()) c.note(argument.name.place, *found);
         const AddedInput* ignored =
             found || argument.is_output ? nullptr : added_input(type, argument.name.text);
         if (ignored) {
@@ -323,6 +325,7 @@ const Type* check_instance_call(Checking& c, Expression*& e, const Type& type, b
 
 const Type* check_routine_call(Checking& c, Expression*& e, Routine& routine, bool as_statement) {
     e->routine = &routine;
+    c.note(e->operands[0]->token.place, routine);
     note_call(c, *e, &routine);
     check_arguments(c, e, routine);
     if (routine.result) return routine.result->type;

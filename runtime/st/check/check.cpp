@@ -39,9 +39,10 @@ void tell_missing_libraries(Checking& c) {
 }  // namespace
 
 Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out,
-              std::span<const LibraryReference> missing) {
+              std::span<const LibraryReference> missing, std::vector<NameUse>* uses) {
     Checking c{tree, catalog, evaluate, out};
     c.missing_libraries = missing;
+    c.uses = uses;
     collect_names(c);
     resolve_bases(c);
     declare_globals(c);

@@ -22,6 +22,8 @@ struct Checked {
     Image image = {};                ///< the process image
 };
 
+struct NameUse;
+
 /// What an expression comes to, or the fault that it ends with.
 struct Evaluated {
     Fault fault = Fault::none;
@@ -32,7 +34,8 @@ struct Evaluated {
 /// standard alone: the bits are to be those of a scan, so the machine does it.
 using Evaluate = Evaluated (*)(Expression&);
 
-/// Checks `tree` and notes in it what it found. With a mistake in `out` the result is of no use.
+/// Checks `tree` and notes in it what it found. With a mistake in `out` the result is of no use,
+/// but to who asks what names mean: `uses`, if it is there, gets what was found.
 ///   L0904  a name that is not declared     L0905  a type that does not fit
 ///   L0906  a conversion that may lose      L0907  wrong arguments
 ///   L0908  a value out of range            L0909  declared twice
@@ -45,6 +48,7 @@ using Evaluate = Evaluated (*)(Expression&);
 ///   L0926  warning: two variables at one address
 ///   L0927  names that may be of `missing`, libraries that a project refers to
 Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out,
-              std::span<const LibraryReference> missing = {});
+              std::span<const LibraryReference> missing = {},
+              std::vector<NameUse>* uses = nullptr);
 
 }  // namespace lineshaft::st

@@ -12,6 +12,34 @@ void Checking::warn(const char* code, Place place, std::string message, std::str
     if (place.source->is_users()) out.warn(code, place.mark(), std::move(message), std::move(help));
 }
 
+namespace {
+
+/// A name that the checker has put in for others means nothing where they stand.
+bool is_written(Place at, std::string_view name) {
+    if (!at.source || !at.source->is_users()) return false;
+    std::string_view text = at.text();
+    if (text.starts_with('#')) text.remove_prefix(1);
+    if (text.starts_with('"')) text = text.substr(1, text.size() - 2);
+    return same_name(text, name.substr(name.rfind('.') + 1)) || same_name(text, name);
+}
+
+}  // namespace
+
+void Checking::note(Place at, const Variable& variable) {
+    if (uses && is_written(at, variable.text))
+        uses->push_back({at, variable.name.place, &variable, nullptr, variable.type});
+}
+
+void Checking::note(Place at, const Routine& called) {
+    if (uses && is_written(at, called.name))
+        uses->push_back({at, called.pou->name.place, nullptr, &called, called.type});
+}
+
+void Checking::note(Place at, const Type& type, Place declared) {
+    if (uses && at.source && at.source->is_users())
+        uses->push_back({at, declared, nullptr, nullptr, &type});
+}
+
 const Prefixes* Checking::prefixes_at(Place place) const {
     const auto all = prefixes.find(place.source);
     if (all == prefixes.end()) return nullptr;
@@ -50,6 +78,7 @@ Routine& Checking::make_routine(Pou& pou, std::string name) {
     Routine& made = checked.routines.emplace_back();
     made.pou = &pou;
     made.name = std::move(name);
+    note(pou.name.place, made);
     return made;
 }
 

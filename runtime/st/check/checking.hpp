@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "runtime/st/check/check.hpp"
+#include "runtime/st/check/uses.hpp"
 #include "runtime/st/types/elementary.hpp"
 
 namespace lineshaft::st {
@@ -70,6 +71,7 @@ struct Checking {
     Diagnostics& out;
     Checked checked = {};
 
+    std::vector<NameUse>* uses = nullptr;  ///< null: nobody asks
     Names users = {}, prelude = {};
     NameMap<bool> namespaces = {};  ///< `a`, `a.b`; false: there is none of that name, told once
     std::unordered_map<const Source*, std::vector<Prefixes>> prefixes =
@@ -102,6 +104,11 @@ struct Checking {
     /// An error. Null, for who returns a type, a variable or a node.
     std::nullptr_t fail(const char* code, Place place, std::string message, std::string help = {});
     void warn(const char* code, Place place, std::string message, std::string help);
+
+    /// What a name means, for who asks.
+    void note(Place at, const Variable& variable);
+    void note(Place at, const Routine& called);
+    void note(Place at, const Type& type, Place declared = {});
 
     /// What a name is. The prelude and libraries see nothing of the user's; what they declare he
     /// sees where he has no such name.

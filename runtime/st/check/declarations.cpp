@@ -350,6 +350,7 @@ Variable* add(Checking& c, std::deque<Variable>& to, const Declaration& declared
     variable.initial = declared.initial;
     variable.doc = declared.doc;
     check_unit(c, variable, declared);
+    c.note(variable.name.place, variable);
     return &variable;
 }
 

@@ -101,6 +101,7 @@ const Type* undeclared(Checking& c, const Token& name, Place place,
 const Type* use(Checking& c, Expression*& e, Variable& variable) {
     variable.used = true;
     e->variable = &variable;
+    c.note(e->token.place, variable);
     if (!variable.type) return nullptr;
     if (variable.space == Space::constant) {
         e = make_constant(c, *e, *variable.type, variable.value);
@@ -131,6 +132,7 @@ const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, co
         return c.fail(code::not_declared, name.place,
                       fmt::format("{} has no value '{}'", enumeration.name, name.text),
                       suggest(name.text, enumeration.values));
+    c.note(name.place, enumeration);
     e = make_constant(c, *e, enumeration, {.integer = found - enumeration.values.begin()});
     return &enumeration;
 }

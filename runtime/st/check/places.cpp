@@ -62,6 +62,7 @@ const Type* check_member(Checking& c, Expression*& e) {
     }
     const std::string_view name = standard_name(*type, e->token.text);
     if (Variable* found = find_member(*type, name)) {
+        c.note(e->token.place, *found);
         const bool is_value = found->space == Space::constant;
         if (is_value && c.is_in_test()) {
             e = make_constant(c, *e, *found->type, found->value);

@@ -203,8 +203,13 @@ const Type* resolve(Checking& c, const TypeText& text) {
 const Type* resolve_name(Checking& c, const Token& name) {
     if (c.is_lost(name)) return nullptr;
     if (const Type* type = find_elementary(name.text); type && !name.quoted) return type;
-    if (NamedType* type = c.look_up(&Names::types, name)) return resolve_declared(c, *type);
+    if (NamedType* named = c.look_up(&Names::types, name)) {
+        const Type* type = resolve_declared(c, *named);
+        if (type) c.note(name.place, *type, named->declaration->name.place);
+        return type;
+    }
     if (const Routine* routine = c.find_routine(name)) {
+        c.note(name.place, *routine);
         if (routine->type) return routine->type;
         return c.fail(code::type_does_not_fit, name.place,
                       fmt::format("'{}' is a function, not a type", name.text),
@@ -216,7 +221,10 @@ const Type* resolve_name(Checking& c, const Token& name) {
         if (routine && routine->type) return routine->type;
     }
     const std::string_view bare = without_library(name.text);
-    if (const Type* type = standard_type(c, bare)) return type;
+    if (const Type* type = standard_type(c, bare)) {
+        c.note(name.place, *type);
+        return type;
+    }
     if (c.tree.lost.contains(name.text) || may_be_elsewhere(c, name.place)) return nullptr;
     std::string_view instead = instead_of_type(bare);
     if (instead.empty()) instead = c.catalog.instead_of(bare);
@@ -275,6 +283,7 @@ const Type* resolve_declared(Checking& c, NamedType& named) {
     if (declared.initial)
         for (auto& [name, value] : values)
             if (value.type && value.type->name == type->name) value.type = type;
+    c.note(declared.name.place, *type, declared.name.place);
     return named.type = type;
 }
 

@@ -21,8 +21,10 @@ Compiled::~Compiled() {
     if (generated.code.hits) record(generated.code);
 }
 
-bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOptions options,
-             const SourceFile* tests) {
+namespace {
+
+/// What the sources say, with those of the standard that they name.
+void parse_all(Compiled& to, const Catalog& standard, Diagnostics& out, const SourceFile* tests) {
     bool uses_standard = false;
     std::set<const BlockType*> used;
     LibraryNames libraries(standard);
@@ -44,6 +46,21 @@ bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOption
     for (const BlockType& type : standard.types())
         if (used.contains(&type))
             parse(read_tokens(source_of(type), out, SourceKind::prelude), to.tree, out);
+}
+
+}  // namespace
+
+std::vector<NameUse> understand(Compiled& to, const Catalog& standard, const SourceFile* tests) {
+    Diagnostics untold;
+    std::vector<NameUse> uses;
+    parse_all(to, standard, untold, tests);
+    to.checked = check(to.tree, standard, evaluate, untold, to.missing_libraries, &uses);
+    return uses;
+}
+
+bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOptions options,
+             const SourceFile* tests) {
+    parse_all(to, standard, out, tests);
     to.checked = check(to.tree, standard, evaluate, out, to.missing_libraries);
     if (!out.empty()) return false;
     options.covered = is_covered();

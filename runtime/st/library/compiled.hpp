@@ -1,5 +1,6 @@
 #pragma once
 
+#include "runtime/st/check/uses.hpp"
 #include "runtime/st/generate/generator.hpp"
 #include "runtime/st/library/library.hpp"
 
@@ -23,6 +24,10 @@ struct Compiled {
 /// that is wrong in `out`.
 bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOptions options = {},
              const SourceFile* tests = nullptr);
+
+/// Finds out what the names of all `sources` mean, as far as it can be said, and makes no code.
+std::vector<NameUse> understand(Compiled& to, const Catalog& standard,
+                                const SourceFile* tests = nullptr);
 
 /// Makes the processor's code of it, where the options want that and nothing is counted.
 void make_native(Code& code, const Options& options);

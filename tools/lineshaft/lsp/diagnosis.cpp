@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <set>
 
-#include "tools/lineshaft/lsp/session.hpp"
+#include "tools/lineshaft/lsp/meanings.hpp"
 
 namespace lineshaft::lsp {
 
@@ -37,6 +37,7 @@ Json to_json(const Session& session, const Diagnostic& d) {
 
 void Diagnosis::change(const std::string& path) {
     session_.project.change(path);
+    session_.meanings.clear();
     std::set<std::string> wanted;
     std::deque<std::string> first;
     for (const auto& [open, document] : session_.documents.all())
@@ -77,7 +78,12 @@ bool Diagnosis::work() {
 
 void Diagnosis::check(const std::string& root) {
     Diagnostics out;
-    session_.project.check(root, out);
+    if (auto checked = session_.project.check(root, out)) {
+        const bool has_kinds = checked->program.texts.empty() || checked->net.kinds;
+        if (has_kinds && !checked->program.blocks.empty())
+            session_.programs[root] = std::make_shared<const CheckedProgram>(std::move(*checked));
+    }
+    meaning_of(session_, root);  // as long as it is whole
     std::set<std::string> files{root};
     Found& found = found_[root];
     for (const auto& [file, list] : found) files.insert(file);

@@ -5,6 +5,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/source/encoding.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/st/library/library.hpp"
 #include "runtime/study/study_reader.hpp"
 #include "tools/lineshaft/test_files.hpp"
@@ -92,12 +93,19 @@ std::vector<std::string> Project::roots_of(const std::string& path) {
     return roots.empty() ? std::vector{path} : roots;
 }
 
-std::vector<std::string> Project::roots() {
-    read_folders();
-    std::vector<std::string> all(yaml_files_.begin(), yaml_files_.end());
-    for (const std::string& path : sources_)
-        if (roots_of(path).front() == path) all.push_back(path);
-    return all;
+std::vector<std::string> Project::roots_to_look_in(const std::string& path,
+                                                   const std::string& word) {
+    std::vector<std::string> found = roots_of(path);
+    const std::string small = lower(word);
+    for (const std::string& source : sources_) {
+        Diagnostics untold;
+        const auto file = read_source(source, untold);
+        if (!file || lower(file->text).find(small) == std::string::npos) continue;
+        for (const std::string& root : roots_of(source)) found.push_back(root);
+    }
+    std::ranges::sort(found);
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
 }
 
 std::vector<std::shared_ptr<const SourceFile>> Project::sources_of(const std::string& root) {

@@ -28,8 +28,8 @@ class Project {
     /// What is compiled together there, a file of tests last.
     std::vector<std::shared_ptr<const SourceFile>> sources_of(const std::string& root);
 
-    /// Every root below the folders.
-    std::vector<std::string> roots();
+    /// Every root below the folders with that word in what belongs to it, and those of `path`.
+    std::vector<std::string> roots_to_look_in(const std::string& path, const std::string& word);
 
     /// The text of a file is another one; files have come or gone.
     void change(const std::string& path);

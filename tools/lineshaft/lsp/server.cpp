@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "runtime/version.hpp"
+#include "tools/lineshaft/lsp/requests.hpp"
 
 namespace lineshaft::lsp {
 
@@ -12,6 +13,23 @@ namespace {
 
 constexpr int parse_error = -32700, invalid_request = -32600, method_not_found = -32601,
               invalid_params = -32602, server_not_initialized = -32002;
+
+struct Request {
+    std::string_view method;
+    Json (*answer)(Session&, const Json&);
+};
+constexpr Request requests[] = {{"textDocument/documentSymbol", document_symbols},
+                                {"textDocument/foldingRange", folding_ranges},
+                                {"textDocument/hover", hover},
+                                {"textDocument/definition", definition},
+                                {"textDocument/references", references},
+                                {"textDocument/prepareRename", prepare_rename},
+                                {"textDocument/rename", rename},
+                                {"textDocument/completion", completion},
+                                {"textDocument/signatureHelp", signature_help},
+                                {"textDocument/codeAction", code_actions},
+                                {"textDocument/formatting", formatting},
+                                {"textDocument/codeLens", code_lenses}};
 
 struct Refusal {
     int code;
@@ -22,7 +40,18 @@ Json capabilities(Encoding encoding) {
     constexpr int incremental = 2;
     return {{"positionEncoding", encoding == Encoding::utf8 ? "utf-8" : "utf-16"},
             {"textDocumentSync",
-             {{"openClose", true}, {"change", incremental}, {"save", {{"includeText", false}}}}}};
+             {{"openClose", true}, {"change", incremental}, {"save", {{"includeText", false}}}}},
+            {"documentSymbolProvider", true},
+            {"documentFormattingProvider", true},
+            {"foldingRangeProvider", true},
+            {"hoverProvider", true},
+            {"definitionProvider", true},
+            {"referencesProvider", true},
+            {"renameProvider", {{"prepareProvider", true}}},
+            {"completionProvider", {{"triggerCharacters", {".", "#", ":", " "}}}},
+            {"signatureHelpProvider", {{"triggerCharacters", {"(", ","}}}},
+            {"codeActionProvider", {{"codeActionKinds", {"quickfix"}}}},
+            {"codeLensProvider", {{"resolveProvider", false}}}};
 }
 
 bool is_id(const Json& id) {
@@ -68,6 +97,8 @@ void Server::receive(const std::string& text) {
         session_.send({{"jsonrpc", "2.0"}, {"id", id}, {"result", result}});
     } catch (const Refusal& refusal) {
         if (has_id) fail(id, refusal.code, refusal.message);
+    } catch (const RefusedName& refused) {
+        fail(id, invalid_params, refused.why);
     } catch (const Json::exception& error) {
         if (has_id) fail(id, invalid_params, error.what());
     }
@@ -97,6 +128,8 @@ Json Server::answer(const std::string& method, const Json& params) {
         phase_ = Phase::shut_down;
         return nullptr;
     }
+    for (const Request& request : requests)
+        if (request.method == method) return request.answer(session_, params);
     throw Refusal{method_not_found, fmt::format("there is no method '{}'", method)};
 }
 

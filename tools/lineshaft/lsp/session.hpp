@@ -3,6 +3,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 
 namespace lineshaft::lsp {
 
+struct Meaning;
+
 /// What an editor and the server know of each other.
 struct Session {
     std::function<void(const Json&)> send;
@@ -18,6 +21,13 @@ struct Session {
     bool takes_related_information = false;
     Documents documents = {};
     Project project = {};
+    /// By root, of the texts as they are now.
+    std::map<std::string, std::shared_ptr<const Meaning>> meanings = {};
+    /// Likewise, as they last were understood as a whole: what is half-written is lost to the
+    /// others.
+    std::map<std::string, std::shared_ptr<const Meaning>> whole_meanings = {};
+    /// Programs as they last could be read with their sources, by path.
+    std::map<std::string, std::shared_ptr<const CheckedProgram>> programs = {};
 };
 
 /// What is wrong with the files that are open, told file by file as the editor wants it.

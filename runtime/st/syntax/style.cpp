@@ -1,0 +1,274 @@
+#include "runtime/st/syntax/style.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/lexer.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+constexpr std::size_t blanks_a_level = 4;
+
+/// A token, a comment or a pragma, as it is written.
+struct Piece {
+    Place place = {};
+    const Token* token = nullptr;  ///< null: a comment or a pragma
+
+    bool is(Word word) const { return token && token->word == word; }
+    std::string_view text() const { return place.text(); }
+    std::string word() const { return token && !token->quoted ? upper(text()) : std::string(); }
+};
+
+std::vector<Piece> pieces_of(const Tokens& all) {
+    std::vector<Piece> pieces;
+    for (const Token& token : all.tokens)
+        if (token.word != Word::end_of_file) pieces.push_back({token.place, &token});
+    for (const auto* list : {&all.comments, &all.pragmas})
+        for (const Pragma& one : *list) pieces.push_back({one.place, nullptr});
+    std::ranges::sort(pieces, {}, [](const Piece& p) { return p.place.begin; });
+    return pieces;
+}
+
+bool is_one_of(const Piece& piece, std::initializer_list<Word> words) {
+    return piece.token && std::ranges::find(words, piece.token->word) != words.end();
+}
+
+bool is_value(const Piece& piece) {
+    return is_one_of(piece, {Word::name, Word::integer, Word::real, Word::duration, Word::text,
+                             Word::direct, Word::close, Word::close_bracket, Word::caret});
+}
+
+bool is_sign(const Piece& piece) {
+    return is_one_of(piece, {Word::plus, Word::minus});
+}
+
+/// Writes the pieces line by line.
+class Style {
+  public:
+    Style(const SourceFile& file, std::vector<Piece> pieces)
+        : text_(file.text),
+          pieces_(std::move(pieces)),
+          end_(text_.find("\r\n") == text_.npos ? "\n" : "\r\n") {
+        for (const Piece& piece : pieces_)
+            if (const std::string word = piece.word(); word.starts_with("END_"))
+                closed_.push_back(word.substr(4));
+    }
+    /// Empty: there is something between the tokens.
+    std::optional<std::string> write();
+
+  private:
+    struct Open {
+        std::string word;
+        bool is_indented = true;
+        bool has_label = false;  ///< of CASE: what follows belongs to one
+    };
+
+    std::string_view between(std::size_t i) const {
+        const std::size_t begin = i == 0 ? 0 : pieces_[i - 1].place.end;
+        return text_.substr(begin, pieces_[i].place.begin - begin);
+    }
+    bool is_spaced(std::size_t i) const;
+    bool is_label(std::size_t i) const;
+    bool opens(const std::string& word) const;
+    std::size_t depth() const;
+    std::size_t indent_of(std::size_t i);
+    void take(std::size_t i);
+    void close(const std::string& word);
+
+    std::string_view text_;
+    std::vector<Piece> pieces_;
+    std::string end_;
+    std::vector<std::string> closed_;  ///< words that some END_... ends
+    std::vector<Open> open_;
+    int brackets_ = 0;
+    bool begins_ = true;      ///< a statement or a declaration
+    bool is_header_ = false;  ///< which the line ends
+};
+
+/// An operator's sign or a statement's colon has blanks around it, a call's bracket none before.
+bool Style::is_spaced(std::size_t i) const {
+    const Piece &before = pieces_[i - 1], &here = pieces_[i];
+    if (!before.token || !here.token) return true;
+    if (is_one_of(here, {Word::comma, Word::semicolon, Word::close, Word::close_bracket, Word::dot,
+                         Word::range, Word::caret}))
+        return false;
+    if (is_one_of(before, {Word::open, Word::open_bracket, Word::dot, Word::range, Word::prefix}))
+        return false;
+    if (here.is(Word::open))
+        return !is_one_of(before, {Word::name, Word::caret, Word::close_bracket});
+    if (here.is(Word::open_bracket)) return !is_value(before) && !before.is(Word::array_);
+    const bool is_unary = is_sign(before) && (i < 2 || !is_value(pieces_[i - 2]));
+    return !is_unary;
+}
+
+/// `1, 3..5:` of a CASE.
+bool Style::is_label(std::size_t i) const {
+    if (open_.empty() || open_.back().word != "CASE" || !pieces_[i].token) return false;
+    for (int depth = 0; i < pieces_.size(); ++i) {
+        if (is_one_of(pieces_[i], {Word::open, Word::open_bracket})) ++depth;
+        if (is_one_of(pieces_[i], {Word::close, Word::close_bracket})) --depth;
+        if (pieces_[i].is(Word::colon) && depth == 0) return true;
+        if (is_one_of(pieces_[i], {Word::semicolon, Word::assign, Word::then_, Word::do_}))
+            return false;
+    }
+    return false;
+}
+
+bool Style::opens(const std::string& word) const {
+    if (word.starts_with("VAR")) return word == "VAR" || word.starts_with("VAR_");
+    return std::ranges::find(closed_, word) != closed_.end();
+}
+
+bool is_unindented(const std::string& word) {
+    for (const std::string_view one :
+         {"PROGRAM", "FUNCTION", "FUNCTION_BLOCK", "METHOD", "CLASS", "INTERFACE", "PROPERTY",
+          "NAMESPACE", "ORGANIZATION_BLOCK", "DATA_BLOCK", "ACTION", "CONFIGURATION"})
+        if (word == one) return true;
+    return false;
+}
+
+std::size_t Style::depth() const {
+    std::size_t levels = 0;
+    for (const Open& open : open_)
+        levels += (open.is_indented ? 1U : 0U) + (open.has_label ? 1U : 0U);
+    return levels;
+}
+
+void Style::close(const std::string& word) {
+    const auto fits = [&](const Open& open) {
+        return open.word == word || (word == "VAR" && open.word.starts_with("VAR"));
+    };
+    const auto found = std::find_if(open_.rbegin(), open_.rend(), fits);
+    if (found != open_.rend()) open_.erase(std::prev(found.base()), open_.end());
+}
+
+std::size_t Style::indent_of(std::size_t i) {
+    const Piece& piece = pieces_[i];
+    const std::string word = piece.word();
+    const bool is_end = word.starts_with("END_");
+    if (is_header_ && brackets_ == 0) begins_ = true;
+    is_header_ = false;
+    if (is_end) {
+        auto inner = open_;
+        close(word.substr(4));
+        const std::size_t at = depth();
+        open_ = std::move(inner);
+        return blanks_a_level * at;
+    }
+    const bool in_case = !open_.empty() && open_.back().word == "CASE";
+    std::size_t levels = depth();
+    const bool is_middle = word == "ELSE" || word == "ELSIF" ||
+                           (word == "UNTIL" && !open_.empty() && open_.back().word == "REPEAT");
+    if (is_middle && levels > 0) {
+        levels -= in_case && open_.back().has_label ? 2 : 1;
+    } else if (begins_ && in_case && open_.back().has_label && is_label(i)) {
+        --levels;
+    } else if (!begins_ && piece.token && !is_one_of(piece, {Word::then_, Word::do_, Word::of_})) {
+        if (!(brackets_ == 1 && is_one_of(piece, {Word::close, Word::close_bracket}))) ++levels;
+    }
+    return blanks_a_level * levels;
+}
+
+/// What the piece opens, ends and goes on with.
+void Style::take(std::size_t i) {
+    const Piece& piece = pieces_[i];
+    if (!piece.token) return;
+    const std::string word = piece.word();
+    if (is_one_of(piece, {Word::open, Word::open_bracket})) ++brackets_;
+    if (is_one_of(piece, {Word::close, Word::close_bracket}) && brackets_ > 0) --brackets_;
+    const bool is_inner = word == "STRUCT" || word == "UNION";
+    if (word.starts_with("END_")) {
+        close(word.substr(4));
+        begins_ = true;
+        return;
+    }
+    if ((begins_ || is_inner) && brackets_ == 0 && opens(word)) {
+        open_.push_back({word, !is_unindented(word)});
+        is_header_ = word != "IF" && word != "CASE" && word != "FOR" && word != "WHILE";
+        begins_ = word == "REPEAT";
+        return;
+    }
+    if (begins_ && (word == "ELSE") && !open_.empty() && open_.back().word == "CASE")
+        open_.back().has_label = false;
+    const bool in_case = !open_.empty() && open_.back().word == "CASE";
+    if (in_case && piece.is(Word::colon) && brackets_ == 0) {
+        open_.back().has_label = true;
+        begins_ = true;
+        return;
+    }
+    begins_ =
+        is_one_of(piece, {Word::semicolon, Word::then_, Word::do_, Word::else_, Word::begin_}) ||
+        (piece.is(Word::of_) && in_case);
+}
+
+std::optional<std::string> Style::write() {
+    std::string out;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+        std::string gap(between(i));
+        const auto lines = std::ranges::count(gap, '\n');
+        std::string left = gap;  // what is no token, as the '#' behind a prefix
+        std::erase_if(left, [](char c) {
+            return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f';
+        });
+        if (!left.empty() && left != "#") return {};
+        if (i == 0 || lines > 0) {
+            const bool is_apart = lines > 1 && i > 0;
+            if (i > 0) out += is_apart ? end_ + end_ : end_;
+            out += std::string(indent_of(i), ' ');
+        } else if (!pieces_[i].token && pieces_[i - 1].token) {
+            const auto blanks = gap.size() - left.size();
+            out += std::string(std::max<std::size_t>(blanks, 1), ' ');
+        } else if (left.empty() && is_spaced(i)) {
+            const bool is_label_colon = pieces_[i].is(Word::colon) && !open_.empty() &&
+                                        open_.back().word == "CASE" && brackets_ == 0;
+            if (!is_label_colon) out += ' ';
+        }
+        out += left;
+        std::string_view text = pieces_[i].text();
+        while (!pieces_[i].token && !text.empty() &&
+               (text.back() == ' ' || text.back() == '\r' || text.back() == '\t'))
+            text.remove_suffix(1);
+        out += text;
+        take(i);
+    }
+    const std::size_t last = pieces_.empty() ? 0 : pieces_.back().place.end;
+    std::string rest(text_.substr(last));
+    rest.erase(0, std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
+    if (!rest.empty()) return {};
+    return out.empty() ? out : out + end_;
+}
+
+/// Nothing but blanks and ends of lines differs.
+bool is_same_code(const std::string& a, const std::string& b, const std::string& path) {
+    const auto bare = [&](const std::string& text) {
+        Diagnostics untold;
+        const auto file = std::make_shared<SourceFile>(SourceFile{path, text});
+        const Tokens all = read_tokens(file, untold, SourceKind::tests);
+        std::vector<std::string> words;
+        for (const Piece& piece : pieces_of(all)) {
+            std::string word(piece.text());
+            while (!piece.token &&
+                   (word.ends_with(' ') || word.ends_with('\r') || word.ends_with('\t')))
+                word.pop_back();
+            words.push_back(std::move(word));
+        }
+        return words;
+    };
+    return bare(a) == bare(b);
+}
+
+}  // namespace
+
+std::optional<std::string> in_style(const std::shared_ptr<const SourceFile>& file) {
+    Diagnostics out;
+    const Tokens all = read_tokens(file, out, SourceKind::tests);
+    if (!out.empty()) return {};
+    auto styled = Style(*file, pieces_of(all)).write();
+    if (styled && !is_same_code(file->text, *styled, file->path)) styled.reset();
+    return styled;
+}
+
+}  // namespace lineshaft::st

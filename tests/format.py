@@ -1,0 +1,77 @@
+#!/usr/bin/python3
+"""`lineshaft format`: every source of programs/ and tests/ in the style is the same code, and stays as it is.
+
+usage: format.py LINESHAFT SOURCE_DIR
+"""
+
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+lineshaft, source = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
+endings = {".st", ".scl", ".s7dcl", ".udt", ".db", ".exp", ".typ", ".var", ".fun"}
+
+
+def run(*arguments):
+    return subprocess.run([lineshaft, *arguments], capture_output=True, text=True, timeout=120, check=False)
+
+
+def said(path):
+    """What is wrong with a file, without the places."""
+    answer = run("check", "--json", path).stdout
+    found = json.loads(answer)["diagnostics"] if answer.startswith("{") else []
+    return sorted((d["code"], re.sub(r"\d+", "N", d["message"])) for d in found)
+
+
+def bare(text):
+    return re.sub(r"\s+", "", text)
+
+
+def in_style(text, ending=".st"):
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / f"one{ending}"
+        path.write_text(text, encoding="utf-8")
+        assert run("format", path).returncode == 0
+        return path.read_text(encoding="utf-8")
+
+
+def check_tree(folder):
+    count = changed = refused = 0
+    for path in sorted(p for p in folder.rglob("*") if p.suffix.lower() in endings):
+        before = path.read_bytes()
+        first = run("format", "--check", path).returncode
+        told = said(path)
+        answer = run("format", path)
+        after = path.read_bytes()
+        if answer.returncode == 2:
+            assert after == before, path
+            refused += 1
+            continue
+        assert answer.returncode == 0 and first == (1 if after != before else 0), (path, answer, first)
+        count, changed = count + 1, changed + (after != before)
+        assert bare(after.decode("utf-8")) == bare(before.decode("utf-8", errors="replace")), path
+        assert run("format", "--check", path).returncode == 0, f"{path} is not as it was written"
+        assert said(path) == told, (path, told, said(path))
+    return count, changed, refused
+
+
+def main():
+    assert in_style("FUNCTION_BLOCK a\nVAR x,y:INT ;END_VAR\nIF x>1 AND(y<-2) THEN\nx:=f( 1,y [ 2 ] );  // so\nELSE\ny := 1;\n\n\n"
+                    "END_IF\nCASE x OF\n1,2 : y:=1;\n3:\nx:=2;\nELSE\nx:=3;\nEND_CASE;\nEND_FUNCTION_BLOCK\n") == \
+        "FUNCTION_BLOCK a\nVAR x, y : INT; END_VAR\nIF x > 1 AND (y < -2) THEN\n    x := f(1, y[2]);  // so\nELSE\n    y := 1;\n\n" \
+        "END_IF\nCASE x OF\n    1, 2: y := 1;\n    3:\n        x := 2;\nELSE\n    x := 3;\nEND_CASE;\nEND_FUNCTION_BLOCK\n"
+    total = [0, 0, 0]
+    with tempfile.TemporaryDirectory() as folder:
+        for part in "programs", "tests/st", "tests/st_tests", "tests/cases":
+            shutil.copytree(source / part, pathlib.Path(folder) / part)
+            total = [a + b for a, b in zip(total, check_tree(pathlib.Path(folder) / part))]
+    assert total[0] > 200 and total[2] < 60, total
+    print(f"{total[0]} sources, {total[1]} of them not in the style before; {total[2]} are no Structured Text")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,83 @@
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include "runtime/projects/project.hpp"
+#include "runtime/source/encoding.hpp"
+#include "runtime/st/syntax/style.hpp"
+#include "tools/lineshaft/command.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+struct FormatCommand {
+    std::vector<std::string> files;
+    bool check = false;
+};
+
+std::vector<std::string> sources_in(const std::string& path) {
+    namespace fs = std::filesystem;
+    if (!fs::is_directory(path)) return {path};
+    std::vector<std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(path))
+        if (entry.is_regular_file() && is_structured_text(entry.path()))
+            files.push_back(entry.path().lexically_normal().string());
+    std::ranges::sort(files);
+    return files;
+}
+
+/// Beside the file first, so that it is never half-written.
+bool write_file(const std::string& path, const std::string& text) {
+    const std::string beside = path + ".new";
+    std::ofstream file(beside, std::ios::binary);
+    file << text;
+    file.close();
+    std::error_code error;
+    if (file) std::filesystem::rename(beside, path, error);
+    return file && !error;
+}
+
+Exit format(const std::string& path, bool check) {
+    Diagnostics out;
+    const auto file = read_source(path, out);
+    if (!file) return report(out, false);
+    int error = 0;
+    if (read_bytes(path, file->text.size() + 1, error) != file->text) {
+        spdlog::error("{} is left as it is: it is not in UTF-8", path);
+        return Exit::wrong;
+    }
+    const auto styled = is_structured_text(path) ? st::in_style(file) : std::nullopt;
+    if (!styled) {
+        spdlog::error("{} is left as it is: something in it is no Structured Text", path);
+        return Exit::wrong;
+    }
+    if (*styled == file->text) return Exit::fine;
+    if (check) fmt::print("{} is not in the style\n", path);
+    if (check) return Exit::failed;
+    if (!write_file(path, *styled)) {
+        spdlog::error("{} cannot be written", path);
+        return Exit::fault;
+    }
+    fmt::print("{}\n", path);
+    return Exit::fine;
+}
+
+}  // namespace
+
+void add_format(CLI::App& app, Exit& result) {
+    auto command = std::make_shared<FormatCommand>();
+    CLI::App* sub =
+        app.add_subcommand("format", "Write files of Structured Text anew, in the one style");
+    sub->add_option("files", command->files, "Files, and folders of them")->required();
+    sub->add_flag("--check", command->check, "Only say which are not in the style; exit code 1");
+    sub->callback([command, &result] {
+        for (const std::string& path : command->files)
+            for (const std::string& file : sources_in(path))
+                result = std::max(result, format(file, command->check));
+    });
+}
+
+}  // namespace lineshaft

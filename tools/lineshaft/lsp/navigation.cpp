@@ -1,0 +1,238 @@
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "blocks/catalog.hpp"
+#include "runtime/source/encoding.hpp"
+#include "runtime/source/letters.hpp"
+#include "runtime/st/functions/standard.hpp"
+#include "tools/lineshaft/lsp/meanings.hpp"
+#include "tools/lineshaft/lsp/requests.hpp"
+#include "tools/lineshaft/lsp/yaml_places.hpp"
+
+namespace lineshaft::lsp {
+
+namespace {
+
+Json location(const Session& session, const Mark& mark) {
+    const std::string path = std::filesystem::path(mark.file->path).lexically_normal().string();
+    return {{"uri", session.documents.uri(path)}, {"range", range_of(mark, session.encoding)}};
+}
+
+Json markdown(const std::string& text) {
+    return {{"contents", {{"kind", "markdown"}, {"value", text}}}};
+}
+
+/// What a name in a file means, and where that was found out.
+struct Found {
+    std::shared_ptr<const Meaning> meaning;
+    const st::NameUse* use = nullptr;
+};
+
+Found find(Session& session, const Asked& where) {
+    for (const std::string& root : session.project.roots_of(where.path)) {
+        Found found{meaning_of(session, root), nullptr};
+        found.use = found.meaning->find(where.path, where.offset);
+        if (found.use) return found;
+    }
+    return {};
+}
+
+/// What a name in a program's file means of its Structured Text.
+Found find_in_sources(Session& session, const Asked& where, const YamlName& name) {
+    Found found;
+    const std::string kind = kind_meant(session, where.path, name);
+    if (kind.empty()) return found;
+    found.meaning = meaning_of(session, where.path);
+    const st::Routine* block = found.meaning->find_block(kind);
+    if (!block) return found;
+    const st::Place declared = name.port.empty() ? block->pou->name.place
+                               : block->names.contains(name.port)
+                                   ? block->names.at(name.port)->name.place
+                                   : st::Place();
+    for (const st::NameUse& use : found.meaning->uses)
+        if (declared.source && use.at.source == declared.source && use.at.begin == declared.begin)
+            found.use = &use;
+    return found;
+}
+
+Found find_anywhere(Session& session, const Asked& where) {
+    if (is_structured_text(where.path)) return find(session, where);
+    const auto name = name_at(where.text, where.offset);
+    return name ? find_in_sources(session, where, *name) : Found();
+}
+
+/// Where a name is written that means what is declared there.
+struct Reference {
+    Mark mark;
+    std::string text;  ///< as it is written, with quotes or `#`
+    bool operator<(const Reference& other) const {
+        const auto key = [](const Reference& r) {
+            return std::make_tuple(r.mark.file->path, r.mark.line, r.mark.column);
+        };
+        return key(*this) < key(other);
+    }
+};
+
+bool is_same(const st::Place& a, const st::Place& b) {
+    return a.source && b.source && a.begin == b.begin &&
+           a.source->file->path == b.source->file->path &&
+           a.source->file->part == b.source->file->part;
+}
+
+/// Within the file of a program that has the block among its sources.
+void add_in_yaml(Session& session, const std::string& root, const st::NameUse& use,
+                 std::set<Reference>& to) {
+    Diagnostics untold;
+    const auto file = read_source(root, untold);
+    const st::Routine* block = use.routine;
+    const std::string kind = block              ? block->name
+                             : use.variable->of ? std::string(use.variable->of->name.text)
+                                                : std::string();
+    if (!file || kind.empty()) return;
+    const std::string port = block ? std::string() : std::string(use.variable->text);
+    for (const auto& [begin, end] : places_of(session, *file, kind, port))
+        to.insert({mark_of(file, begin, end), file->text.substr(begin, end - begin)});
+}
+
+std::set<Reference> references_to(Session& session, const st::NameUse& wanted) {
+    std::set<Reference> found;
+    const std::string name(wanted.declared.text());
+    for (const std::string& root :
+         session.project.roots_to_look_in(wanted.declared.source->file->path, name)) {
+        const auto meaning = meaning_of(session, root);
+        bool is_there = false;
+        for (const st::NameUse& use : meaning->uses)
+            if (is_same(use.declared, wanted.declared)) {
+                is_there = true;
+                found.insert({use.at.mark(), std::string(use.at.text())});
+            }
+        if (is_there && !is_structured_text(root) && (wanted.routine || wanted.variable))
+            add_in_yaml(session, root, wanted, found);
+    }
+    return found;
+}
+
+std::string about_function(const Asked& where) {
+    std::size_t begin = where.offset, end = where.offset;
+    const auto is_part = [&](std::size_t i) {
+        return is_letter(where.text[i]) || is_digit(where.text[i]);
+    };
+    while (begin > 0 && is_part(begin - 1)) --begin;
+    while (end < where.text.size() && is_part(end)) ++end;
+    const auto* f = st::find_standard_function(where.text.substr(begin, end - begin));
+    return f ? fmt::format("```st\n{}\n```\n{}", f->signature, f->doc) : std::string();
+}
+
+bool can_be_changed(const Found& found) {
+    return found.use && found.use->declared.source && found.use->declared.source->is_users();
+}
+
+/// A name that stands somewhere already would mean both.
+bool is_taken(const Meaning& meaning, const std::string& name) {
+    return st::find_standard_function(name) || standard_blocks().find(name) ||
+           std::ranges::any_of(meaning.uses, [&](const st::NameUse& use) {
+               return st::same_name(use.at.text(), name);
+           });
+}
+
+}  // namespace
+
+Json hover(Session& session, const Json& params) {
+    const auto where = asked(session, params);
+    if (!where) return nullptr;
+    const Found found = find_anywhere(session, *where);
+    std::string text = found.use ? about(*found.use) : std::string();
+    if (text.empty())
+        text =
+            is_structured_text(where->path) ? about_function(*where) : about_yaml(session, *where);
+    return text.empty() ? Json() : markdown(text);
+}
+
+Json definition(Session& session, const Json& params) {
+    const auto where = asked(session, params);
+    if (!where) return nullptr;
+    if (const Found found = find_anywhere(session, *where); found.use) {
+        const st::Place& declared = found.use->declared;
+        const bool is_own = declared.source && declared.source->is_users();
+        return is_own ? location(session, declared.mark()) : Json();
+    }
+    if (is_structured_text(where->path)) return nullptr;
+    const auto mark = declared_in_yaml(session, *where);
+    return mark ? location(session, *mark) : Json();
+}
+
+Json references(Session& session, const Json& params) {
+    const auto where = asked(session, params);
+    const Found found = where ? find_anywhere(session, *where) : Found();
+    if (!found.use || !found.use->declared.source) return nullptr;
+    const bool with_declaration =
+        params.value(Json::json_pointer("/context/includeDeclaration"), true);
+    const Mark declared = found.use->declared.mark();
+    Json list = Json::array();
+    for (const Reference& reference : references_to(session, *found.use)) {
+        const Mark& mark = reference.mark;
+        const bool is_declaration = mark.file->path == declared.file->path &&
+                                    mark.line == declared.line && mark.column == declared.column;
+        if (with_declaration || !is_declaration) list.push_back(location(session, mark));
+    }
+    return list;
+}
+
+Json prepare_rename(Session& session, const Json& params) {
+    const auto where = asked(session, params);
+    const Found found = where ? find_anywhere(session, *where) : Found();
+    if (!can_be_changed(found)) return nullptr;
+    if (is_structured_text(where->path)) return range_of(found.use->at.mark(), session.encoding);
+    const auto name = name_at(where->text, where->offset);
+    return Text(where->text).range(name->begin, name->end, session.encoding);
+}
+
+Json rename(Session& session, const Json& params) {
+    const auto where = asked(session, params);
+    const std::string name = params.at("newName").get<std::string>();
+    const Found found = where ? find_anywhere(session, *where) : Found();
+    if (!can_be_changed(found)) throw RefusedName{"what stands here has no name of yours"};
+    if (!is_identifier(name)) throw RefusedName{fmt::format("'{}' is not a name", name)};
+    if (is_taken(*found.meaning, name)) throw RefusedName{fmt::format("there is a '{}'", name)};
+    Json changes = Json::object();
+    for (const auto& [mark, text] : references_to(session, *found.use)) {
+        const std::string_view before = text.starts_with('#') ? "#" : "";
+        const std::string_view quote = text.ends_with('"') ? "\"" : "";
+        const Json at = location(session, mark);
+        changes[at["uri"].get<std::string>()].push_back(
+            {{"range", at["range"]},
+             {"newText", fmt::format("{}{}{}{}", before, quote, name, quote)}});
+    }
+    return {{"changes", changes}};
+}
+
+Json code_actions(Session&, const Json& params) {
+    constexpr std::string_view question = "did you mean ";
+    const std::string uri = params.at("textDocument").at("uri");
+    Json actions = Json::array();
+    for (const Json& diagnostic : params.at("context").at("diagnostics")) {
+        if (!diagnostic.contains("data") || !diagnostic["data"].is_string()) continue;
+        const std::string help = diagnostic["data"];
+        if (!help.starts_with(question)) continue;
+        for (std::size_t begin = help.find('\''); begin != help.npos;
+             begin = help.find('\'', begin)) {
+            const std::size_t end = help.find('\'', ++begin);
+            if (end == help.npos) break;
+            const std::string meant = help.substr(begin, end - begin);
+            const Json edit{{"range", diagnostic.at("range")}, {"newText", meant}};
+            Json changes = Json::object();
+            changes[uri] = Json::array({edit});
+            actions.push_back({{"title", fmt::format("Write '{}'", meant)},
+                               {"kind", "quickfix"},
+                               {"diagnostics", Json::array({diagnostic})},
+                               {"edit", {{"changes", changes}}}});
+            begin = end + 1;
+        }
+    }
+    return actions;
+}
+
+}  // namespace lineshaft::lsp
