@@ -15,6 +15,7 @@
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/objects.hpp"
 #include "runtime/st/check/order.hpp"
+#include "runtime/st/check/overlays.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/types.hpp"
 
@@ -89,6 +90,7 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
     variable->constant = block.constant;
     variable->retain = block.retain;
     locate_in_image(c, *variable, declared);
+    refuse_overlay(c, declared);
     variable->section = Section::global;
     if (variable->space == Space::frame) {
         variable->space = Space::global;
@@ -292,6 +294,7 @@ void declare_routine(Checking& c, Routine& routine) {
         for (const DeclarationBlock& block : routine.pou->blocks)
             if ((block.constant && block.section == Section::local) == constant)
                 declare(c, routine, block);
+    declare_overlays(c, routine);
     declare_chart(c, routine);
 }
 
@@ -376,6 +379,7 @@ void declare_globals(Checking& c) {
             Type& made = c.make_type(Kind::structure, std::string(pou->name.text));
             for (const DeclarationBlock& block : pou->blocks)
                 for (const Declaration* declared : block.declarations) {
+                    refuse_overlay(c, *declared);
                     made.members.push_back(
                         add(c, c.checked.variables, *declared, resolve(c, *declared->type)));
                     made.members.back()->retain = block.retain;

@@ -113,7 +113,7 @@ void warn_of_crossing(Checking& c, const Image& image) {
 
 void locate_in_image(Checking& c, Variable& variable, const Declaration& declared) {
     const Token& at = declared.at;
-    if (at.word == Word::end_of_file || !variable.type) return;
+    if (at.word != Word::direct || !variable.type) return;
     variable.used = true;
     if (at.text.ends_with('*')) {
         const char area = at.text.size() > 2 ? upper(at.text[1]) : ' ';

@@ -14,6 +14,7 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/objects.hpp"
 #include "runtime/st/check/order.hpp"
+#include "runtime/st/check/overlays.hpp"
 #include "runtime/st/check/rewrites.hpp"
 
 namespace lineshaft::st {
@@ -106,6 +107,7 @@ const Type* use(Checking& c, Expression*& e, Variable& variable) {
         e->variable = &variable;
         return variable.type;
     }
+    if (variable.space == Space::overlay) return use_overlay(c, e, variable);
     if (variable.space == Space::global) depend(c, variable.type, e->place);
     if (c.routine && variable.type->is_object()) c.routine->objects.push_back(variable.global);
     return variable.type;

@@ -14,6 +14,7 @@
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/objects.hpp"
+#include "runtime/st/check/overlays.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/vendors/names.hpp"
@@ -80,6 +81,7 @@ const Type* check_member(Checking& c, Expression*& e) {
             return nullptr;
         found->used = true;
         e->variable = found;
+        if (found->space == Space::overlay) return use_overlay(c, e, *found);
         return found->type;
     }
     if (type->kind == Kind::array && same_name(name, "this")) {  // "Recipes".THIS[1]

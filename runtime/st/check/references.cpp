@@ -1,16 +1,20 @@
 #include "runtime/st/check/references.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "runtime/source/codes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
+#include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/operators.hpp"
 #include "runtime/st/check/order.hpp"
 #include "runtime/st/check/places.hpp"
 #include "runtime/st/check/types.hpp"
+#include "runtime/st/types/packed.hpp"
 
 namespace lineshaft::st {
 
@@ -45,8 +49,9 @@ std::string_view why_no_place(const Expression& e) {
     if (e.kind == E::self) return {};
     if (e.kind != E::name && e.kind != E::member && e.kind != E::index && e.kind != E::deref)
         return "a value has no place";
-    if (is_packed(e)) return "what is packed has no place of its own";
     const Expression& root = root_of(e);
+    if (root.variable && root.variable->space == Space::image)
+        return "what stands at an address is not referred to";
     if (root.kind == E::deref) return {};
     if (root.kind != E::name && root.kind != E::member) return "a value has no place";
     if (root.variable && root.variable->constant) return "a constant has no place";
@@ -90,6 +95,16 @@ bool begins_with(const Type& whole, const Type& part) {
     if (whole.kind != Kind::structure || whole.members.empty()) return false;
     const Type* first = whole.members.front()->type;
     return first && begins_with(*first, part);
+}
+
+/// No part of it is an instance, whose bytes nobody sees.
+bool is_of_bytes(const Type& type) {
+    if (type.kind == Kind::array) return type.element && is_of_bytes(*type.element);
+    if (type.kind == Kind::structure)
+        return std::ranges::all_of(type.members, [](const Variable* member) {
+            return member->type && is_of_bytes(*member->type);
+        });
+    return !type.is_instance() && type.kind != Kind::handle;
 }
 
 /// An instance of a block that derives from the one that is referred to is one of it, too.
@@ -141,8 +156,10 @@ void depend_on_target(Checking& c, const Type* target, Place place) {
 
 const Type* check_size(Checking& c, Expression*& e) {
     Expression*& of = e->arguments[0].value;
-    const bool is_type = of->kind == E::name && !find_variable(c, of->token);
-    const Type* type = is_type ? resolve_name(c, of->token) : check(c, of);
+    const auto qualified = qualified_name(c, *of);
+    const Token name = qualified ? *qualified : of->token;
+    const bool is_type = (qualified || of->kind == E::name) && !find_variable(c, name);
+    const Type* type = is_type ? resolve_name(c, name) : check(c, of);
     if (!type) return nullptr;
     e = make_constant(c, *e, any_integer_type, {.integer = Wide{bytes_of(*type)}});
     return &any_integer_type;
@@ -186,6 +203,10 @@ const Type* check_moved(Checking& c, Expression*& e) {
 }
 
 }  // namespace
+
+const Type& pointer_to(Checking& c, const Type& target) {
+    return make_reference(c, Referring::pointer, &target);
+}
 
 const Type* resolve_reference(Checking& c, const TypeText& text) {
     const Referring referring = text.name.word == Word::ref_to_    ? Referring::ref
@@ -332,12 +353,13 @@ std::optional<const Type*> check_reference_call(Checking& c, Expression*& e, con
         return c.fail(code::not_supported, name.place,
                       fmt::format("{} is not supported", name.text),
                       "a program's memory does not grow: declare the variable, and take ADR of it");
-    const bool is_known = is("adr") || is("ref") || is("sizeof") || is("__isvalidref");
+    const bool is_known =
+        is("adr") || is("ref") || is("sizeof") || is("xsizeof") || is("__isvalidref");
     if (!is_known) return {};
     if (e->arguments.size() != 1 || e->arguments[0].is_output)
         return c.fail(code::wrong_arguments, name.place,
                       fmt::format("{} takes 1 argument", name.text));
-    if (is("sizeof")) return check_size(c, e);
+    if (is("sizeof") || is("xsizeof")) return check_size(c, e);
     if (is("__isvalidref")) return check_is_bound(c, e);
     return check_refer(c, e, is("adr") ? Referring::pointer : Referring::ref);
 }
@@ -376,7 +398,9 @@ bool coerce_reference(Checking& c, Expression*& e, const Type& to) {
     const bool are_pointers = to.is_pointer() && from.is_pointer() && to.element && from.element;
     const bool fits =
         from.is_reference() && from.element &&
-        (is_target(to, *from.element) || (are_pointers && begins_with(*from.element, *to.element)));
+        (is_target(to, *from.element) ||
+         (are_pointers && (begins_with(*from.element, *to.element) ||
+                           (is_of_bytes(*from.element) && packed_bits(*to.element, iec) > 0))));
     if (fits) {
         e = make_converted(c, e, to);
         return true;

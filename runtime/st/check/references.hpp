@@ -6,6 +6,9 @@ namespace lineshaft::st {
 
 /// REFERENCE TO, REF_TO, POINTER TO. What it is to may be declared further down, or be what it is
 /// in.
+/// POINTER TO that type.
+const Type& pointer_to(Checking& c, const Type& target);
+
 const Type* resolve_reference(Checking& c, const TypeText& text);
 /// Of those that had to wait until all types are known.
 void resolve_targets(Checking& c);

@@ -264,6 +264,27 @@ const Type* check_capacity(Checking& c, Expression*& e) {
     return &int_type;
 }
 
+const Type* check_memory(Checking& c, Expression& call, const Type* expected) {
+    const StandardFunction& f = *call.standard;
+    for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+        Expression*& value = call.arguments[i].value;
+        if (f.parameter(i).type == Generic::pointer) {
+            if (value->type->is_pointer()) continue;
+            return c.fail(code::type_does_not_fit, value->place,
+                          fmt::format("{} takes a POINTER, not {}", f.name, describe(*value->type)),
+                          "write ADR(...) of a variable");
+        }
+        become_number(c, value);
+        if (!value->type->is_integer() && !value->type->is_bits())
+            return c.fail(code::type_does_not_fit, value->place,
+                          fmt::format("expected a whole number, found {}", describe(*value->type)));
+        if (value->type->is_any() && !coerce(c, value, lint_type)) return nullptr;
+    }
+    if (f.result != Generic::any_int) return &dint_type;
+    return expected && expected->kind == Kind::integer ? &expected->plain()
+                                                       : &integer_type(32, false);
+}
+
 const Type* check_operation(Checking& c, Expression*& e, const Type* expected) {
     Expression* joined = join(c, *e, e->standard->word);
     if (!joined) return nullptr;
@@ -292,6 +313,7 @@ const Type* standard_type_of(Checking& c, Expression*& e, const Type* expected) 
         case Typing::upper_bound: return check_bound(c, e);
         case Typing::element_count: return check_element_count(c, e);
         case Typing::scan_time: return &time_type;
+        case Typing::memory: return check_memory(c, call, expected);
         case Typing::operation: return check_operation(c, e, expected);
         case Typing::statement: break;
     }

@@ -11,6 +11,7 @@
 #include "runtime/st/check/initial_values.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
+#include "runtime/st/check/overlays.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/types/packed.hpp"
 #include "runtime/st/vendors/instead.hpp"
@@ -99,6 +100,7 @@ const Type* resolve_structure(Checking& c, const TypeText& text) {
     if (text.base.word != Word::end_of_file) inherit_members(c, text.base, type, names);
     for (const Declaration* declared : text.members) {
         const Type* member = resolve(c, *declared->type);
+        refuse_overlay(c, *declared);
         if (is_new_name(c, declared->name, names))
             type.members.push_back(add(c, c.checked.variables, *declared, member));
     }

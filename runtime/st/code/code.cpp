@@ -90,10 +90,23 @@ std::string instruction_error(const Code& code, const CodeRoutine& routine, cons
             return in.b + 2 >= routine.frame || in.c >= code.shapes.size()
                        ? "a reference that is not whole"
                        : "";
+        case Op::load_through:
+        case Op::store_through:
+        case Op::load_text_through:
+        case Op::store_text_through:
+        case Op::copy_from_through:
+        case Op::copy_to_through:
+            return in.b + 2 >= routine.frame || in.c >> 32 >= code.shapes.size()
+                       ? "a reference that is not whole"
+                       : "";
+        case Op::copy_memory:
         case Op::move_reference:
             return in.a + 2 >= routine.frame || in.b + 2 >= routine.frame
                        ? "a reference that is not whole"
                        : "";
+        case Op::fill_memory:
+            return in.a + 2 >= routine.frame ? "a reference that is not whole" : "";
+        case Op::compare_memory:
         case Op::compare_references:
         case Op::reference_distance:
             return in.b + 2 >= routine.frame || in.c + 2 >= routine.frame

@@ -168,19 +168,142 @@ bool Frames::goes_on(const Piece& piece, const std::byte* reference,
     }
 }
 
-Fault Frames::reach(const std::byte* reference, std::uint32_t shape, const Instruction* next) {
+Fault Frames::told(Fault fault, const std::byte* reference) const {
+    if (fault == Fault::outside_of_variable || fault == Fault::call_has_ended)
+        set_word(root, code.left_slot(), piece_of(reference));
+    return fault;
+}
+
+Fault Frames::find(const std::byte* reference, const Instruction* next, Bytes& found) const {
     const std::uint64_t number = piece_of(reference);
     if (number == 0) return Fault::no_reference;
     const Piece& piece = code.pieces[number - 1];
-    const auto refuse = [&](Fault fault) {
-        set_word(root, code.left_slot(), number);
-        return fault;
-    };
-    if (piece.ends && !goes_on(piece, reference, next)) return refuse(Fault::call_has_ended);
-    const auto slot = slot_of(code, piece.shape, bytes_from_first(reference), shape);
-    if (!slot) return refuse(Fault::outside_of_variable);
+    if (piece.ends && !goes_on(piece, reference, next))
+        return told(Fault::call_has_ended, reference);
+    found = {piece.shape, place(word(reference, 0)), bytes_from_first(reference)};
+    return Fault::none;
+}
+
+Fault Frames::reach(const std::byte* reference, std::uint32_t shape, const Instruction* next) {
+    Bytes at;
+    if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
+    const auto slot = slot_of(code, at.shape, 8 * at.first, shape);
+    if (!slot) return told(Fault::outside_of_variable, reference);
     reached = word(reference, 0) + *slot;
     return Fault::none;
+}
+
+/// The slot of a value of that shape there, if there is one; else null: it is to be had by bytes.
+static std::byte* slots_at(const Code& code, const Bytes& at, std::uint64_t bit,
+                           std::uint32_t shape) {
+    const auto slot = slot_of(code, at.shape, 8 * at.first + static_cast<std::int64_t>(bit), shape);
+    return slot ? at.slots + 8 * *slot : nullptr;
+}
+
+Fault Frames::load_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
+                           const Instruction* next) {
+    Bytes at;
+    if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
+    if (const std::byte* slots = slots_at(code, at, bit, shape)) {
+        reached = word(slots, 0);
+        return Fault::none;
+    }
+    return told(load_value(code, at, bit, shape, reached), reference);
+}
+
+Fault Frames::store_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
+                            std::uint64_t value, const Instruction* next) {
+    Bytes at;
+    if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
+    if (std::byte* slots = slots_at(code, at, bit, shape)) {
+        set_word(slots, 0, value);
+        return Fault::none;
+    }
+    return told(store_value(code, at, bit, shape, value), reference);
+}
+
+Fault Frames::load_text_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
+                                std::uint64_t slots, const Instruction* next) {
+    Bytes at;
+    if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
+    at.first += static_cast<std::int64_t>(bit / 8);
+    return told(load_text(code, at, shape, place(slots)), reference);
+}
+
+Fault Frames::store_text_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
+                                 std::uint64_t slots, const Instruction* next) {
+    Bytes at;
+    if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
+    if (word(place(slots), 0) > code.shapes[shape].type->length) note_cut(next);
+    at.first += static_cast<std::int64_t>(bit / 8);
+    return told(store_text(code, at, shape, place(slots)), reference);
+}
+
+Fault Frames::copy_from_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
+                                std::uint64_t slots, const Instruction* next) {
+    Bytes at;
+    if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
+    if (const std::byte* from = slots_at(code, at, bit, shape)) {
+        copy_slots(place(slots), from, code.shapes[shape].slots);
+        return Fault::none;
+    }
+    at.first += static_cast<std::int64_t>(bit / 8);
+    const Bytes to{shape, place(slots), 0};
+    return told(copy_bytes(code, to, at, code.shapes[shape].bits / 8), reference);
+}
+
+Fault Frames::copy_to_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
+                              std::uint64_t slots, const Instruction* next) {
+    Bytes at;
+    if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
+    if (std::byte* to = slots_at(code, at, bit, shape)) {
+        copy_slots(to, place(slots), code.shapes[shape].slots);
+        return Fault::none;
+    }
+    at.first += static_cast<std::int64_t>(bit / 8);
+    const Bytes from{shape, place(slots), 0};
+    return told(copy_bytes(code, at, from, code.shapes[shape].bits / 8), reference);
+}
+
+/// Of two variables: which of them was left.
+static bool is_left(const Code& code, const Bytes& at, std::uint64_t count) {
+    const std::uint64_t size = code.shapes[at.shape].bits / 8;
+    return at.first < 0 || count > size || static_cast<std::uint64_t>(at.first) > size - count;
+}
+
+Fault Frames::copy_memory(const std::byte* to, const std::byte* from, std::int64_t count,
+                          const Instruction* next) {
+    if (count <= 0) return Fault::none;
+    Bytes target, source;
+    if (const Fault wrong = find(to, next, target); wrong != Fault::none) return wrong;
+    if (const Fault wrong = find(from, next, source); wrong != Fault::none) return wrong;
+    const auto bytes = static_cast<std::uint64_t>(count);
+    const Fault wrong = copy_bytes(code, target, source, bytes);
+    return told(wrong, is_left(code, target, bytes) ? to : from);
+}
+
+Fault Frames::fill_memory(const std::byte* to, std::uint64_t value, std::int64_t count,
+                          const Instruction* next) {
+    if (count <= 0) return Fault::none;
+    Bytes target;
+    if (const Fault wrong = find(to, next, target); wrong != Fault::none) return wrong;
+    return told(
+        fill_bytes(code, target, static_cast<std::byte>(value), static_cast<std::uint64_t>(count)),
+        to);
+}
+
+Fault Frames::compare_memory(const std::byte* a, const std::byte* b, std::int64_t count,
+                             const Instruction* next) {
+    reached = 0;
+    if (count <= 0) return Fault::none;
+    Bytes left, right;
+    if (const Fault wrong = find(a, next, left); wrong != Fault::none) return wrong;
+    if (const Fault wrong = find(b, next, right); wrong != Fault::none) return wrong;
+    std::int64_t order = 0;
+    const auto bytes = static_cast<std::uint64_t>(count);
+    const Fault wrong = compare_bytes(code, left, right, bytes, order);
+    reached = static_cast<std::uint64_t>(order);
+    return told(wrong, is_left(code, left, bytes) ? a : b);
 }
 
 }  // namespace lineshaft::st::meaning

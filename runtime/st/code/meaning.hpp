@@ -9,6 +9,7 @@
 
 #include <sleef.h>
 
+#include "runtime/st/code/bytes.hpp"
 #include "runtime/st/code/machine.hpp"
 #include "runtime/st/syntax/constant.hpp"
 #include "runtime/st/types/packed.hpp"
@@ -190,6 +191,11 @@ void write_time(std::byte* to, std::uint64_t kind, std::int64_t value);
 /// `T#1s`, or without what stands before '#'; 0 where it is none.
 std::int64_t time_of_text(std::uint64_t kind, const std::byte* from);
 
+/// Passes of a loop that so many bytes count as.
+inline std::int64_t effort(std::int64_t bytes) {
+    return bytes > 0 ? bytes / 16 : 0;
+}
+
 // References: see Piece.
 
 /// False where it would be beyond what a reference holds.
@@ -304,6 +310,33 @@ struct Frames {
     /// Finds in `reached` what a reference is to, which is to be of that shape. `next` is behind
     /// the instruction that asks.
     Fault reach(const std::byte* reference, std::uint32_t shape, const Instruction* next);
+
+    /// The variable of a reference and the byte that it is at.
+    Fault find(const std::byte* reference, const Instruction* next, Bytes& found) const;
+    /// A fault of what is done with that, of which messages name the variable.
+    Fault told(Fault fault, const std::byte* reference) const;
+
+    // What a reference is to as the bytes that a controller has there, so many bits behind, and of
+    // that shape. `slots` is the address of a text's or a value's slots.
+    Fault load_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
+                       const Instruction* next);
+    Fault store_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
+                        std::uint64_t value, const Instruction* next);
+    Fault load_text_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
+                            std::uint64_t slots, const Instruction* next);
+    Fault store_text_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
+                             std::uint64_t slots, const Instruction* next);
+    Fault copy_from_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
+                            std::uint64_t slots, const Instruction* next);
+    Fault copy_to_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
+                          std::uint64_t slots, const Instruction* next);
+    Fault copy_memory(const std::byte* to, const std::byte* from, std::int64_t count,
+                      const Instruction* next);
+    Fault fill_memory(const std::byte* to, std::uint64_t value, std::int64_t count,
+                      const Instruction* next);
+    /// -1, 0 or 1 in `reached`.
+    Fault compare_memory(const std::byte* a, const std::byte* b, std::int64_t count,
+                         const Instruction* next);
 
     std::uint64_t leave() {
         top -= 16;

@@ -18,10 +18,18 @@
 /// fault.
 ///
 /// Of packed memory the lower half of c is where a value begins [bits], on from what slot d has,
-/// and the upper one, UPPER_C, its PackedFormat.
+/// and the upper one, UPPER_C, its PackedFormat; of what a reference is to (`..._through`) the number
+/// of the value's shape.
 ///
 /// Fused instructions do what two or more of the others do. Code that is counted has none.
 // clang-format off
+#define LINESHAFT_ST_REACHED(fault)                                                                  \
+    const Fault wrong = fault;                                                                       \
+    if (wrong == Fault::no_reference) FAIL(no_reference);                                            \
+    if (wrong == Fault::outside_of_variable) FAIL(outside_of_variable);                              \
+    if (wrong == Fault::call_has_ended) FAIL(call_has_ended);                                        \
+    if (wrong == Fault::out_of_range) FAIL(out_of_range)
+
 #define LINESHAFT_ST_OPCODES(OP)                                                                     \
     OP(move, move, "wr--", put(a, U(b)))                                                             \
     OP(copy, move, "ssn-", copy_slots(at(a), at(b), c))                                              \
@@ -35,7 +43,16 @@
     OP(move_reference, move, "ssr-", if (!move_reference(at(a), at(b), I(c))) FAIL(out_of_range))    \
     OP(compare_references, integer, "wss-", put(a, compare_references(at(b), at(c))))                \
     OP(reference_distance, integer, "wss-", if (const auto n = reference_distance(at(b), at(c))) put(a, *n); else FAIL(out_of_range)) \
-    OP(reach, move, "wsn-", const Fault wrong = frames.reach(at(b), c, pc); if (wrong == Fault::no_reference) FAIL(no_reference); if (wrong == Fault::outside_of_variable) FAIL(outside_of_variable); if (wrong == Fault::call_has_ended) FAIL(call_has_ended); put(a, frames.reached)) \
+    OP(reach, move, "wsn-", LINESHAFT_ST_REACHED(frames.reach(at(b), c, pc)); put(a, frames.reached)) \
+    OP(load_through, move, "wsnr", LINESHAFT_ST_REACHED(frames.load_through(at(b), c + U(d), UPPER_C, pc)); put(a, frames.reached)) \
+    OP(store_through, move, "rsnr", LINESHAFT_ST_REACHED(frames.store_through(at(b), c + U(d), UPPER_C, U(a), pc))) \
+    OP(load_text_through, text, "rsnr", LINESHAFT_ST_REACHED(frames.load_text_through(at(b), c + U(d), UPPER_C, U(a), pc))) \
+    OP(store_text_through, text, "rsnr", LINESHAFT_ST_REACHED(frames.store_text_through(at(b), c + U(d), UPPER_C, U(a), pc))) \
+    OP(copy_from_through, move, "rsnr", LINESHAFT_ST_REACHED(frames.copy_from_through(at(b), c + U(d), UPPER_C, U(a), pc))) \
+    OP(copy_to_through, move, "rsnr", LINESHAFT_ST_REACHED(frames.copy_to_through(at(b), c + U(d), UPPER_C, U(a), pc))) \
+    OP(copy_memory, move, "ssr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.copy_memory(at(a), at(b), I(c), pc))) \
+    OP(fill_memory, move, "srr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.fill_memory(at(a), U(b), I(c), pc))) \
+    OP(compare_memory, integer, "wssr", if ((fuel -= effort(I(d))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.compare_memory(at(b), at(c), I(d), pc)); put(a, frames.reached)) \
     OP(offset, move, "wrn-", put(a, U(b) + c))                                                       \
     OP(offset_by, move, "wrr-", put(a, U(b) + U(c)))                                                 \
     OP(load, move, "wrn-", put(a, word(target(U(b)), c)))                                            \

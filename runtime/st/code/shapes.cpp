@@ -11,8 +11,8 @@ namespace lineshaft::st {
 namespace {
 
 /// The last member that begins there or before.
-const ShapeMember* member_at(const Code& code, const Shape& of, std::uint64_t ShapeMember::*begin,
-                             std::uint64_t at) {
+const ShapeMember* last_member(const Code& code, const Shape& of, std::uint64_t ShapeMember::*begin,
+                               std::uint64_t at) {
     const auto members = std::span(code.members).subspan(of.first, of.count);
     const auto behind = std::ranges::upper_bound(members, at, {}, begin);
     return behind == members.begin() ? nullptr : &*std::prev(behind);
@@ -26,26 +26,29 @@ bool is_of(const Code& code, std::uint32_t shape, std::uint32_t wanted) {
 
 }  // namespace
 
-std::optional<std::uint64_t> slot_of(const Code& code, std::uint32_t shape, std::int64_t byte,
+const ShapeMember* member_at(const Code& code, const Shape& structure, std::uint64_t bit) {
+    return last_member(code, structure, &ShapeMember::bit, bit);
+}
+
+std::optional<std::uint64_t> slot_of(const Code& code, std::uint32_t shape, std::int64_t bit,
                                      std::uint32_t wanted) {
-    if (byte < 0) return {};
-    auto at = static_cast<std::uint64_t>(byte);
+    if (bit < 0) return {};
+    auto at = static_cast<std::uint64_t>(bit);
     std::uint64_t slot = 0;
     for (;;) {
         const Shape& here = code.shapes[shape];
-        if (at >= here.bytes && at != 0) return {};
+        if (at >= here.bits && at != 0) return {};
         if (is_of(code, shape, wanted)) return at == 0 ? std::optional(slot) : std::nullopt;
         if (here.kind == Shape::Kind::array) {
-            const Shape& element = code.shapes[here.element];
-            if (element.bytes == 0) return {};
-            slot += at / element.bytes * element.slots;
-            at %= element.bytes;
+            if (here.stride == 0) return {};
+            slot += at / here.stride * code.shapes[here.element].slots;
+            at %= here.stride;
             shape = here.element;
         } else if (here.kind == Shape::Kind::structure) {
-            const ShapeMember* member = member_at(code, here, &ShapeMember::byte, at);
+            const ShapeMember* member = member_at(code, here, at);
             if (!member) return {};
             slot += member->slot;
-            at -= member->byte;
+            at -= member->bit;
             shape = member->shape;
         } else {
             return {};
@@ -59,13 +62,13 @@ std::uint64_t byte_of(const Code& code, std::uint32_t shape, std::uint64_t slot)
         const Shape& here = code.shapes[shape];
         if (here.kind == Shape::Kind::array) {
             const Shape& element = code.shapes[here.element];
-            byte += slot / element.slots * element.bytes;
+            byte += slot / element.slots * (here.stride / 8);
             slot %= element.slots;
             shape = here.element;
         } else if (here.kind == Shape::Kind::structure) {
-            const ShapeMember* member = member_at(code, here, &ShapeMember::slot, slot);
+            const ShapeMember* member = last_member(code, here, &ShapeMember::slot, slot);
             if (!member) return byte;
-            byte += member->byte;
+            byte += member->bit / 8;
             slot -= member->slot;
             shape = member->shape;
         } else {

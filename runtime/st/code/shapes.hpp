@@ -5,25 +5,36 @@
 #include <string>
 #include <vector>
 
+#include "runtime/st/types/packed.hpp"
+
 namespace lineshaft::st {
 
-struct Type;
-
-/// How a controller has a value in its memory, in bytes, and how it is kept here, in slots: so that
-/// a reference may be reckoned with in bytes.
+/// How a controller has a value in its memory, in bits, and how it is kept here, in slots: so that
+/// a reference may be reckoned with in bytes, and bytes be read and written (`bytes.hpp`).
 struct Shape {
-    enum class Kind : std::uint8_t { whole, array, structure };
+    enum class Kind : std::uint8_t {
+        whole,   ///< seen by no bytes: a reference, an instance
+        scalar,  ///< has a `format`
+        text,
+        raw,  ///< its slots are the bytes: a UNION
+        array,
+        structure,
+    };
 
     const Type* type = nullptr;
-    Kind kind = Kind::whole;  ///< nothing in it is found by bytes, else its elements or members are
-    std::uint64_t bytes = 0, slots = 0;
-    std::uint32_t element = 0;           ///< of an array
-    std::uint32_t first = 0, count = 0;  ///< of a structure: its members in Code::members
-    std::uint32_t base = 0;              ///< of a block: that of its base plus 1; 0: it has none
+    Kind kind = Kind::whole;
+    bool is_s7 = false;  ///< as SCL's dialect has it, not as Structured Text's
+    PackedFormat format = {};
+    std::uint64_t bits = 0, slots = 0;
+    std::uint64_t stride = 0;   ///< of an array: bits from an element to the next one
+    std::uint32_t element = 0;  ///< its elements' shape
+    std::uint32_t first = 0;    ///< of a structure: its members in Code::members
+    std::uint32_t count = 0;    ///< elements, members
+    std::uint32_t base = 0;     ///< of a block: that of its base plus 1; 0: it has none
 };
 
 struct ShapeMember {
-    std::uint64_t byte = 0, slot = 0;
+    std::uint64_t bit = 0, slot = 0;
     std::uint32_t shape = 0;
 };
 
@@ -41,9 +52,12 @@ struct Piece {
 
 struct Code;
 
+/// The last member that begins at that bit of the structure, or before; null: none does.
+const ShapeMember* member_at(const Code& code, const Shape& structure, std::uint64_t bit);
+
 /// How many slots behind the first one of a value of that shape a value of the shape `wanted`
-/// begins at that byte; empty: none begins there.
-std::optional<std::uint64_t> slot_of(const Code& code, std::uint32_t shape, std::int64_t byte,
+/// begins at that bit; empty: none begins there.
+std::optional<std::uint64_t> slot_of(const Code& code, std::uint32_t shape, std::int64_t bit,
                                      std::uint32_t wanted);
 
 /// The first byte of what begins so many slots behind the first one.

@@ -50,6 +50,10 @@ struct Emission {
     virtual Slot several(std::size_t first) = 0;
     virtual Slot capacity(std::size_t argument) = 0;  ///< of a text
 
+    virtual Slot reference(std::size_t argument) = 0;  ///< the first of its slots
+    /// An instruction that gives nothing, or whose slot `a` is given.
+    virtual void put(Op op, Slot a, Slot b, Slot c, Slot d = 0) = 0;
+
     virtual Slot constant(std::uint64_t bits) = 0;
     /// What is emitted next is not fused with what was before.
     virtual void land() = 0;

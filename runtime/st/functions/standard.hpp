@@ -30,6 +30,7 @@ enum class Typing : std::uint8_t {
     element_count,  ///< of an array: a constant
     scan_time,
     operation,  ///< those of the operator that the call is
+    memory,     ///< of pointers and whole numbers
     statement,  ///< no value: a statement of its own, check/rewrites.cpp
 };
 
@@ -47,6 +48,7 @@ enum class Typing : std::uint8_t {
     TYPE(any_bit, "ANY_BIT", "BYTE, WORD, DWORD or LWORD; of AND, OR and XOR also BOOL")           \
     TYPE(any_whole, "ANY_WHOLE", "an integer or a bit string")                                     \
     TYPE(array, "ARRAY", "an array of any type")                                                   \
+    TYPE(pointer, "POINTER", "a POINTER TO, or ADR of a variable")                                 \
     TYPE(timer, "TIMER", "an instance of TON, TOF, TP or TONR")                                    \
     TYPE(boolean, "BOOL", "") TYPE(integer, "INT", "") TYPE(double_integer, "DINT", "")            \
     TYPE(text, "STRING", "") TYPE(time, "TIME", "") TYPE(long_time, "LTIME", "")                   \
@@ -117,10 +119,10 @@ struct Subject {
 
 /// A file each. Messages offer names that are equally near in this order.
 extern const Subject number_functions, bit_functions, timer_functions, operator_functions,
-    measured_functions, time_functions, array_functions, text_functions;
+    measured_functions, time_functions, array_functions, text_functions, memory_functions;
 inline constexpr const Subject* function_subjects[] = {
-    &number_functions,   &bit_functions,  &timer_functions, &operator_functions,
-    &measured_functions, &time_functions, &array_functions, &text_functions};
+    &number_functions, &bit_functions,   &timer_functions, &operator_functions, &measured_functions,
+    &time_functions,   &array_functions, &text_functions,  &memory_functions};
 std::span<const StandardFunction* const> standard_functions();
 
 /// Null for another name.
@@ -150,7 +152,7 @@ consteval StandardFunction::StandardFunction(std::string_view written, std::stri
       typing(types),
       emit(emitted),
       op(instruction),
-      is_pure(types != Typing::scan_time && types != Typing::statement) {
+      is_pure(types != Typing::scan_time && types != Typing::statement && types != Typing::memory) {
     std::string_view rest = written;
     name = take_until(rest, "(");
     std::string_view list = take_until(rest, ")");

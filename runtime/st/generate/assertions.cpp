@@ -115,6 +115,11 @@ void write_distance(Writing& w, const Expression& e) {
                     {w.emit(Op::le_float, none, distance, tolerance), found, wanted, tolerance});
 }
 
+Location in_slots(Writing& w, const Expression& e) {
+    const Location at = locate(w, e);
+    return at.packed ? unpacked(w, at, *e.type) : at;
+}
+
 /// Part by part, so that a message can name the first one that differs.
 void write_equal(Writing& w, const Expression& e, const Type& type, const Location& a,
                  const Location& b, const std::string& path) {
@@ -202,7 +207,7 @@ void write_test_statement(Writing& w, const Expression& e) {
     const Type& type = *first.type;
     if (type.kind == Kind::text || type.is_scalar()) return write_assertion(w, e, compared(w, e));
     if (e.test == TestCall::assert_eq)
-        return write_equal(w, e, type, locate(w, first), locate(w, second), "");
+        return write_equal(w, e, type, in_slots(w, first), in_slots(w, second), "");
 }
 
 void count_call(Writing& w, const Location& calls, Jumps& runs) {

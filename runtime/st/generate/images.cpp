@@ -57,7 +57,8 @@ void fill_member_of_union(Writing& w, Writing::Image& image, std::uint32_t at,
 
 void fill(Writing& w, Writing::Image& image, std::uint32_t at, const Variable& variable) {
     if (variable.space == Space::reference || variable.space == Space::constant ||
-        variable.space == Space::image || (variable.space == Space::global && variable.of))
+        variable.space == Space::image || variable.space == Space::overlay ||
+        (variable.space == Space::global && variable.of))
         return;
     fill_default(w, image, at, *variable.type);
     if (variable.initial) fill(w, image, at, *variable.type, *variable.initial);

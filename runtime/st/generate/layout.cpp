@@ -36,7 +36,8 @@ void note_activation(const Writing& w, Routine& routine, std::uint32_t& at) {
 void place_variables(Writing& w, Routine& routine, std::uint32_t& at, auto condition) {
     for (Variable& variable : routine.variables) {
         const bool elsewhere = variable.space == Space::constant ||
-                               variable.space == Space::global || variable.space == Space::image;
+                               variable.space == Space::global || variable.space == Space::image ||
+                               variable.space == Space::overlay;
         if (elsewhere || !condition(variable)) continue;
         w.place = variable.name.place;
         variable.slot = at;

@@ -5,6 +5,7 @@
 
 #include "runtime/st/generate/images.hpp"
 #include "runtime/st/generate/layout.hpp"
+#include "runtime/st/generate/references.hpp"
 #include "runtime/st/generate/values.hpp"
 #include "runtime/st/types/packed.hpp"
 
@@ -35,6 +36,19 @@ void put(Writing& w, Op op, Slot value, const Location& at, std::uint32_t form) 
     const Slot index = packed.index == none ? w.constant_slot(0) : packed.index;
     w.put(op, value, base.index, 0, index);
     w.code.instructions.back().c = first | std::uint64_t{form} << 32;
+}
+
+/// The same of what is reached through a reference.
+void put_through(Writing& w, Op op, Slot value, const Location& at) {
+    const Location::Packed& packed = *at.packed;
+    const Slot index = packed.index == none ? w.constant_slot(0) : packed.index;
+    const std::uint64_t shape = shape_number(w, *packed.type, packed.dialect->packs_as_s7);
+    w.put(op, value, packed.through, 0, index);
+    w.code.instructions.back().c = packed.first | shape << 32;
+}
+
+bool is_through(const Location& at) {
+    return at.packed && at.packed->through != none;
 }
 
 /// The same place as a value of a part of it.
@@ -70,6 +84,31 @@ Location locate_in_image(Writing& w, const Variable& variable) {
     return made;
 }
 
+Location locate_through(Slot reference, const Type& type, const Dialect& dialect) {
+    Location made{.mode = Mode::address};
+    made.packed = {0, none, &dialect, &type, false, reference};
+    return made;
+}
+
+Slot reference_to_packed(Writing& w, const Location& at) {
+    const Location::Packed& packed = *at.packed;
+    if (packed.first == 0 && packed.index == none) return packed.through;
+    Slot bytes = w.constant_slot(packed.first / 8);
+    if (packed.index != none) {
+        const Slot more = w.emit(Op::div_lint, none, packed.index, w.constant_slot(8));
+        bytes = packed.first < 8 ? more : w.emit(Op::add_lint, none, more, bytes);
+    }
+    const Slot made = w.new_temporary(reference_slots);
+    w.put(Op::move_reference, made, packed.through, bytes);
+    return made;
+}
+
+Location unpacked(Writing& w, const Location& at, const Type& type) {
+    const Location made{Mode::slot, w.new_temporary(slots_of(w, type))};
+    copy_packed(w, made, at, type);
+    return made;
+}
+
 Location packed_member(Location of, const Variable& member) {
     const std::uint64_t bit = packed_offset(*of.packed->type, member, *of.packed->dialect);
     return at_bit(of, bit, *member.type);
@@ -98,6 +137,10 @@ Location packed_element(Writing& w, Location at, const Expression& e) {
 
 Slot load_packed(Writing& w, const Location& from, Slot wanted) {
     const Slot to = w.result(wanted);
+    if (is_through(from)) {
+        put_through(w, Op::load_through, to, from);
+        return to;
+    }
     put(w, Op::load_packed, to, from, format_of(*from.packed).number());
     const Type& type = *from.packed->type;
     if (type.kind == Kind::enumeration)
@@ -106,17 +149,23 @@ Slot load_packed(Writing& w, const Location& from, Slot wanted) {
 }
 
 void store_packed(Writing& w, const Location& to, Slot from) {
+    if (is_through(to)) return put_through(w, Op::store_through, from, to);
     put(w, Op::store_packed, from, to, format_of(*to.packed).number());
 }
 
 Slot load_packed_text(Writing& w, const Location& from) {
     const Type& type = *from.packed->type;
     const Slot text = w.emit(Op::set_address, none, w.new_temporary(slots_of(w, type)));
+    if (is_through(from)) {
+        put_through(w, Op::load_text_through, text, from);
+        return text;
+    }
     put(w, Op::load_packed_text, text, from, packed_text(type, *from.packed->dialect).number());
     return text;
 }
 
 void store_packed_text(Writing& w, const Location& to, Slot text) {
+    if (is_through(to)) return put_through(w, Op::store_text_through, text, to);
     put(w, Op::store_packed_text, text, to,
         packed_text(*to.packed->type, *to.packed->dialect).number());
 }
@@ -150,6 +199,15 @@ static void copy_bytes(Writing& w, Location to, Location from, const Type& type)
 
 void copy_packed(Writing& w, const Location& to, const Location& from, const Type& type) {
     if (type.is_scalar()) return store(w, to, load(w, from));
+    if (is_through(from) && type.kind != Kind::text) {
+        if (to.packed && to.packed->type->kind != Kind::union_)
+            return copy_packed(w, to, unpacked(w, from, type), type);
+        return put_through(w, Op::copy_from_through, address_of(w, to), from);
+    }
+    if (is_through(to) && type.kind != Kind::text) {
+        const Location slots = from.packed ? unpacked(w, from, type) : from;
+        return put_through(w, Op::copy_to_through, address_of(w, slots), to);
+    }
     if (type.kind == Kind::union_) return copy_bytes(w, to, from, type);
     if (type.kind == Kind::text) {
         const Slot text = from.packed ? load_packed_text(w, from) : address_of(w, from);

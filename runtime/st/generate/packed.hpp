@@ -10,6 +10,13 @@ Location as_packed(Writing& w, const Location& of, const Type& type);
 /// A variable in the process image.
 Location locate_in_image(Writing& w, const Variable& variable);
 
+/// What a reference, in three slots, is to, as the bytes that a controller has there.
+Location locate_through(Slot reference, const Type& type, const Dialect& dialect);
+/// The reference to it.
+Slot reference_to_packed(Writing& w, const Location& at);
+/// A value that is packed, in slots of its own.
+Location unpacked(Writing& w, const Location& at, const Type& type);
+
 /// Parts of what is packed.
 Location packed_member(Location of, const Variable& member);
 Location packed_element(Writing& w, Location of, const Expression& e);

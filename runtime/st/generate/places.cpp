@@ -132,6 +132,11 @@ Location behind(Location of, std::uint32_t slots) {
 }
 
 Location as_address(Writing& w, Location location) {
+    if (location.packed && location.packed->through != none) {
+        const Type& type = *location.packed->type;
+        const Slot reference = reference_to_packed(w, location);
+        return {Mode::address, 0, w.emit(Op::reach, none, reference, shape_number(w, type))};
+    }
     if (location.mode == Mode::address) return location;
     Slot address = w.emit(Op::set_address, none, location.slot);
     if (location.mode == Mode::indexed)

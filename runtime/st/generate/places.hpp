@@ -21,6 +21,7 @@ struct Location {
         const Dialect* dialect = nullptr;
         const Type* type = nullptr;
         bool is_bit = false;  ///< a boolean at an address, `%IX0.3`
+        Slot through = none;  ///< a reference: of the bytes of what that is to
     };
     std::optional<Packed> packed = {};  ///< of the bytes from there on
     Slot capacity = none;               ///< of a text of any length: what it holds is in that slot

@@ -6,7 +6,9 @@
 
 #include "runtime/st/generate/calls.hpp"
 #include "runtime/st/generate/layout.hpp"
+#include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/values.hpp"
+#include "runtime/st/types/packed.hpp"
 
 namespace lineshaft::st {
 
@@ -35,8 +37,24 @@ Location path(Writing& w, const Expression& e, const Expression& root) {
     return e.kind == E::member ? part(w, of, *e.variable) : element(w, of, e);
 }
 
+/// Seen by bytes, through references that reckon in them.
+bool has_bytes(const Type& type) {
+    return packed_bits(type, iec) > 0;
+}
+
+/// `of` at that part of it.
+Location packed_path(Writing& w, const Expression& e, const Expression& root, const Location& of) {
+    if (&e == &root) return of;
+    const Location at = packed_path(w, *e.operands[0], root, of);
+    return e.kind == E::member ? packed_member(at, *e.variable) : packed_element(w, at, e);
+}
+
 /// `base` moved on to a part of what it refers to.
 Slot refer_to_part(Writing& w, Slot base, const Expression& part, const Expression& root) {
+    if (has_bytes(*root.type)) {
+        const Location whole = locate_through(base, *root.type, iec);
+        return reference_to_packed(w, packed_path(w, part, root, whole));
+    }
     const Location at = path(w, part, root);
     if (at.mode == Mode::slot && at.slot == 0) return base;
     Slot slots = w.constant_slot(at.slot);
@@ -72,6 +90,16 @@ std::uint32_t piece_number(Writing& w, const Variable& variable) {
     }
     w.code.pieces.push_back(std::move(piece));
     return number;
+}
+
+/// Of a variable that stays as long as it is seen so.
+std::uint32_t view_number(Writing& w, const Variable& variable, bool is_s7) {
+    const auto number = static_cast<std::uint32_t>(w.code.pieces.size());
+    const auto [it, added] = w.views.emplace(&variable, number);
+    if (added)
+        w.code.pieces.push_back(
+            {.name = std::string(variable.text), .shape = shape_number(w, *variable.type, is_s7)});
+    return it->second;
 }
 
 /// What a VAR_IN_OUT was given; the reference stands behind its address.
@@ -113,29 +141,65 @@ Slot moved(Writing& w, const Expression& e) {
     return made;
 }
 
+void add_members(Writing& w, Shape& made) {
+    const Dialect& dialect = made.is_s7 ? scl : iec;
+    const bool is_packed = packed_bits(*made.type, dialect) > 0;
+    std::vector<ShapeMember> members;
+    std::uint64_t bit = 0;
+    for (const Variable* member : made.type->members) {
+        if (is_packed) bit = packed_offset(*made.type, *member, dialect);
+        members.push_back({bit, member->slot, shape_number(w, *member->type, made.is_s7)});
+        bit += 8 * bytes_of(*member->type);
+    }
+    made.first = static_cast<std::uint32_t>(w.code.members.size());
+    made.count = static_cast<std::uint32_t>(members.size());
+    w.code.members.insert(w.code.members.end(), members.begin(), members.end());
+}
+
 void finish_shape(Writing& w, std::uint32_t number) {
-    const Type& type = *w.code.shapes[number].type;
-    Shape made{.type = &type};
-    made.bytes = bytes_of(type);
+    Shape made = w.code.shapes[number];
+    const Type& type = *made.type;
+    const Dialect& dialect = made.is_s7 ? scl : iec;
+    const std::uint64_t bits = packed_bits(type, dialect);
+    made.bits = bits > 0 ? bits : 8 * bytes_of(type);
     made.slots = slots_of(w, type);
-    if (type.kind == Kind::array) {
+    const bool is_listed = type.kind == Kind::enumeration && !type.counted && type.base;
+    const auto format = packed_format(is_listed ? *type.base : type, dialect);
+    if (format) {
+        made.kind = Shape::Kind::scalar;
+        made.format = *format;
+    } else if (type.kind == Kind::text && !type.is_open) {
+        made.kind = Shape::Kind::text;
+    } else if (type.kind == Kind::union_) {
+        made.kind = Shape::Kind::raw;
+    } else if (type.kind == Kind::array) {
         made.kind = Shape::Kind::array;
-        made.element = shape_number(w, *type.element);
+        made.count = static_cast<std::uint32_t>(type.upper - type.lower + 1);
+        made.stride = bits > 0 ? packed_stride(type, dialect) : 8 * bytes_of(*type.element);
+        made.element = shape_number(w, *type.element, made.is_s7);
     } else if (type.kind == Kind::structure) {
         made.kind = Shape::Kind::structure;
-        std::vector<ShapeMember> members;
-        std::uint64_t byte = 0;
-        for (const Variable* member : type.members) {
-            members.push_back({byte, member->slot, shape_number(w, *member->type)});
-            byte += bytes_of(*member->type);
-        }
-        made.first = static_cast<std::uint32_t>(w.code.members.size());
-        made.count = static_cast<std::uint32_t>(members.size());
-        w.code.members.insert(w.code.members.end(), members.begin(), members.end());
+        add_members(w, made);
     }
     if (type.kind == Kind::block && type.routine->base)
         made.base = shape_number(w, *type.routine->base->type) + 1;
     w.code.shapes[number] = made;
+}
+
+/// Of an overlay, where a variable is seen as another type.
+bool is_view(const Expression& refer) {
+    const Expression& place = *refer.operands[0];
+    return &root_of(place) == &place && place.kind != E::deref;
+}
+
+/// A second view of a variable, which is used at once.
+Slot view_of(Writing& w, const Expression& place, bool is_s7) {
+    const Slot made = w.new_temporary(reference_slots);
+    const Slot address = address_of(w, locate(w, place));
+    w.put(Op::move, made, address);
+    const std::uint64_t piece = view_number(w, *place.variable, is_s7);
+    w.put(Op::move, made + 1, w.constant_slot((piece + 1) << 32));
+    return made;
 }
 
 }  // namespace
@@ -170,7 +234,14 @@ Slot reference_to(Writing& w, const Expression& place) {
 
 Location locate_target(Writing& w, const Expression& e) {
     slots_of(w, *e.type);  // lays it out: nothing else of its type may be there yet
-    const Slot from = reference(w, *e.operands[0]);
+    const Expression& pointer = *e.operands[0];
+    if (pointer.kind == E::refer && is_view(pointer)) {
+        const Dialect& dialect = e.place.dialect();
+        const Slot view = view_of(w, *pointer.operands[0], dialect.packs_as_s7);
+        return locate_through(view, *e.type, dialect);
+    }
+    const Slot from = reference(w, pointer);
+    if (has_bytes(*e.type)) return locate_through(from, *e.type, iec);
     return {Mode::address, 0, w.emit(Op::reach, none, from, shape_number(w, *e.type))};
 }
 
@@ -184,11 +255,13 @@ Slot reference_distance(Writing& w, const Expression& e, Slot wanted) {
     return w.emit(Op::reference_distance, wanted, a, b);
 }
 
-std::uint32_t shape_number(Writing& w, const Type& type) {
-    const auto is_same = [&](const Shape& shape) { return same_type(*shape.type, type); };
+std::uint32_t shape_number(Writing& w, const Type& type, bool is_s7) {
+    const auto is_same = [&](const Shape& shape) {
+        return shape.is_s7 == is_s7 && same_type(*shape.type, type);
+    };
     const auto it = std::ranges::find_if(w.code.shapes, is_same);
     const auto number = static_cast<std::uint32_t>(it - w.code.shapes.begin());
-    if (it == w.code.shapes.end()) w.code.shapes.push_back({.type = &type});
+    if (it == w.code.shapes.end()) w.code.shapes.push_back({.type = &type, .is_s7 = is_s7});
     return number;
 }
 

@@ -18,7 +18,7 @@ Slot compare_references(Writing& w, const Expression& e);
 Slot reference_distance(Writing& w, const Expression& e, Slot wanted);
 
 /// The number of a type's shape. What it is made of is known when all routines are written.
-std::uint32_t shape_number(Writing& w, const Type& type);
+std::uint32_t shape_number(Writing& w, const Type& type, bool is_s7 = false);
 void finish_shapes(Writing& w);
 
 }  // namespace lineshaft::st

@@ -6,7 +6,9 @@
 #include "runtime/st/generate/calls.hpp"
 #include "runtime/st/generate/images.hpp"
 #include "runtime/st/generate/layout.hpp"
+#include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/places.hpp"
+#include "runtime/st/generate/references.hpp"
 #include "runtime/st/generate/texts.hpp"
 #include "runtime/st/generate/values.hpp"
 
@@ -44,7 +46,10 @@ void reset_timer(Writing& w, const Expression& timer) {
 Slot value_or_address(Writing& w, const Expression& e, Slot wanted = none) {
     if (e.type->is_scalar()) return value(w, e, wanted);
     if (e.type->kind == Kind::text) return text_address(w, e);
-    if (e.kind != E::call) return address_of(w, locate(w, e));
+    if (e.kind != E::call) {
+        const Location at = locate(w, e);
+        return address_of(w, at.packed ? unpacked(w, at, *e.type) : at);
+    }
     return e.routine ? w.emit(Op::set_address, none, call(w, e, none)) : standard(w, e, none);
 }
 
@@ -73,6 +78,8 @@ struct Call : Emission {
     Slot capacity(std::size_t i) override {
         return capacity_of(w, locate(w, given(i)), *given(i).type);
     }
+    Slot reference(std::size_t i) override { return st::reference(w, given(i)); }
+    void put(Op op, Slot a, Slot b, Slot c, Slot d) override { w.put(op, a, b, c, d); }
     Slot constant(std::uint64_t bits) override { return w.constant_slot(bits); }
     void land() override { w.land(); }
     Slot index(Slot slot, std::uint64_t count) override {

@@ -89,8 +89,9 @@ struct Writing {
     };
     std::vector<ImageUse> image_uses = {};
     std::unordered_map<const Variable*, std::uint32_t> pieces = {};
+    std::unordered_map<const Variable*, std::uint32_t> views = {};   ///< pieces of overlays
     std::unordered_map<const Type*, std::uint32_t> own_pieces = {};  ///< of THIS
-    std::map<IndexTable, std::uint32_t> tables = {};  ///< their numbers
+    std::map<IndexTable, std::uint32_t> tables = {};                 ///< their numbers
 
     // Of the routine that is being written.
     Routine* routine = nullptr;

@@ -113,14 +113,6 @@ void refuse_static(Parsing& p, PouKind kind) {
                                    : "declare it in the VAR of the block");
 }
 
-void refuse_place(Parsing& p) {
-    if (p.is_name())
-        return fail(p, code::not_supported, p.here().place, "overlays (AT) are not supported",
-                    fmt::format("leave AT out, and write {0}.%X3 or {0}.%B1, or SCATTER and GATHER",
-                                p.here().text));
-    expected(p, "an address", "after AT");
-}
-
 void refuse_shared_place(Parsing& p) {
     fail(p, code::something_else_expected, p.here().place, "several variables at one address",
          "declare each by itself, with an address of its own");

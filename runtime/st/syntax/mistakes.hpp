@@ -26,8 +26,6 @@ void refuse_chart(Parsing& p);
 bool refuse_section(Parsing& p);
 /// VAR_INST and VAR_STAT where nothing stays.
 void refuse_static(Parsing& p, PouKind kind);
-/// Behind AT: `%IX0.0`, or another variable.
-void refuse_place(Parsing& p);
 void refuse_shared_place(Parsing& p);
 /// A statement stands where a declaration is due.
 void refuse_statement(Parsing& p);

@@ -60,13 +60,14 @@ void parse_labels(Parsing& p) {
     p.accept(Word::semicolon);
 }
 
-/// Located_At : 'AT' Direct
-/// Only one variable is there.
+/// Located_At : 'AT' ( Direct | Name )
+/// Only one variable is there. Of another variable's bytes it is a second view.
 Token parse_location(Parsing& p, const std::vector<Token>& names) {
     if (!p.accept(Word::at_)) return {};
-    if (!p.is(Word::direct)) return refuse_place(p), Token{};
     if (names.size() > 1) refuse_shared_place(p);
-    return p.take();
+    if (p.is(Word::direct) || p.is_name()) return p.take();
+    expected(p, "an address", "after AT");
+    return {};
 }
 
 }  // namespace
@@ -116,8 +117,8 @@ DeclarationBlock parse_section(Parsing& p, Section section) {
     return block;
 }
 
-/// Var_Decl : ( Variable_List | Name ? Located_At ) ':' Data_Type ( 'R_EDGE' | 'F_EDGE' ) ?
-///            ( ':=' Var_Init ) ? ';'
+/// Var_Decl : ( Variable_List | Name Located_At | 'AT' Direct ) ':' Data_Type
+///            ( 'R_EDGE' | 'F_EDGE' ) ? ( ':=' Var_Init ) ? ';'
 /// Variable_List : Name ( ',' Name ) *
 void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
     const std::size_t first = p.at;

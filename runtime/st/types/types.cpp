@@ -57,6 +57,7 @@ bool is_packed(const Expression& place) {
     if (place.variable && place.variable->space == Space::image) return true;
     const Expression* of = place.operands[0];
     if (!of) return false;
+    if (place.kind == Expression::Kind::deref && of->kind == Expression::Kind::refer) return true;
     const bool of_union =
         place.kind == Expression::Kind::member && of->type && of->type->kind == Kind::union_;
     return of_union || is_packed(*of);

@@ -120,7 +120,7 @@ const Expression& root_of(const Expression& place);
 /// is, and what a POINTER is reckoned in.
 std::uint64_t bytes_of(const Type& type);
 
-/// It is a part of the process image, or of a UNION.
+/// It is a part of the process image, of a UNION, or of an overlay.
 bool is_packed(const Expression& place);
 
 /// A function or a method is called in it, which may write variables.
@@ -133,6 +133,7 @@ enum class Space : std::uint8_t {
     global,     ///< of a data block: `global` is its number
     image,      ///< of the process image: `address` says where
     constant,   ///< nowhere: its value is known
+    overlay,    ///< of another variable, `seen`, whose bytes it is a view of
 };
 
 struct Variable {
@@ -149,6 +150,7 @@ struct Variable {
     bool is_direct = false;        ///< no variable: an address that code names
     Section pin = Section::local;  ///< `AT %I*`, `%Q*`: input or output of its block for programs
     Constant value = {};           ///< of a constant scalar
+    Variable* seen = nullptr;      ///< of an overlay
     Expression* initial = nullptr;
     std::string unit = {};
     const Pou* of = nullptr;  ///< null: a member of a structure, or of the catalogue

@@ -32,6 +32,8 @@ std::string type_for(Generic type, bool is_other) {
             return "WORD";
         case Generic::array:
             return "ARRAY[0..15] OF BOOL";
+        case Generic::pointer:
+            return "POINTER TO BYTE";
         case Generic::timer:
             return "TON";
         default:
