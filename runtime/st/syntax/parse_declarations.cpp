@@ -117,8 +117,8 @@ DeclarationBlock parse_section(Parsing& p, Section section) {
     return block;
 }
 
-/// Var_Decl : ( Variable_List | Name ? Located_At ) ':' Data_Type ( 'R_EDGE' | 'F_EDGE' ) ?
-///            ( ':=' Var_Init ) ? ';'
+/// Var_Decl : ( Variable_List | Name Located_At | 'AT' Direct ) ':' Data_Type
+///            ( 'R_EDGE' | 'F_EDGE' ) ? ( ':=' Var_Init ) ? ';'
 /// Variable_List : Name ( ',' Name ) *
 /// Without a name an address is its name.
 void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
