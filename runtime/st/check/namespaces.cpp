@@ -111,12 +111,16 @@ Token name_with_namespace(Checking& c, Token declared) {
     return declared;
 }
 
-std::optional<Token> without_project(const Checking& c, Token name) {
+std::optional<Token> without_project(Checking& c, Token name) {
     const std::size_t point = name.text.find('.');
     if (point == name.text.npos || name.place.source->file->excerpts.empty()) return {};
-    if (is_namespace(c, name.text.substr(0, point))) return {};
+    Token first = name;
+    first.text = name.text.substr(0, point);
+    if (is_namespace(c, first.text) || c.look_up(&Names::types, first) || c.find_routine(first))
+        return {};
     name.text.remove_prefix(point + 1);
-    return name;
+    const bool is_known = c.look_up(&Names::types, name) || c.find_routine(name);
+    return is_known ? std::optional(name) : std::nullopt;
 }
 
 std::optional<Token> qualified_name(Checking& c, const Expression& member) {
@@ -131,7 +135,7 @@ std::optional<Token> qualified_name(Checking& c, const Expression& member) {
                c.look_up(&Names::values, full) || c.find_routine(full);
     };
     const auto own = without_project(c, name);
-    if (!is_known(name) && own && is_known(*own)) {
+    if (!is_known(name) && own) {
         name = *own;
     } else if (!is_known(name)) {
         const std::string_view rest = without_library(text);

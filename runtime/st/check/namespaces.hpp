@@ -18,8 +18,9 @@ std::optional<Token> qualified_name(Checking& c, const Expression& member);
 bool is_full_name(Checking& c, const Expression& e, std::string_view full);
 
 /// `Otg` of `Planner.Otg` in a project of another tool, which has another project as a library: its
-/// name is nowhere in the sources. Nothing in other sources, or where the first is a namespace.
-std::optional<Token> without_project(const Checking& c, Token name);
+/// name is nowhere in the sources. Nothing in other sources, where the first is declared, or where
+/// the second is no type, block or function.
+std::optional<Token> without_project(Checking& c, Token name);
 
 /// Tells that a namespace is unknown, or has no such name, unless that was told.
 void refuse_qualified(Checking& c, const Token& name);

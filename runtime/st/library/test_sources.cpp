@@ -113,7 +113,10 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
     for (const Declaration& variable : tree.declarations)
         entry.own.insert(lower(variable.name.text));
     for (const DeclarationBlock& block : tree.globals)
-        if (!block.list.empty()) entry.types.emplace(lower(block.list), lower(block.list));
+        for (const Declaration* variable : block.declarations) {
+            const std::string name = lower(fmt::format("{}.{}", block.list, variable->name.text));
+            entry.types.emplace(name, name);
+        }
     for (const DeclarationBlock& block : tree.globals)
         for (const Declaration* variable : block.declarations)
             entry.values.insert(lower(variable->name.text));
@@ -146,7 +149,12 @@ std::vector<const SourcePool::Entry*> SourcePool::nearest(const std::string& nam
         if (!known || nearness(entry.file->path, to) > nearness(known->file->path, to))
             known = &entry;
     };
+    // Of a project of another tool `Planner.Otg` is Otg, where Planner is another project.
+    const std::size_t point = user.file->excerpts.empty() ? name.npos : name.find('.');
     for (const Entry& entry : entries_) {
+        const auto bare =
+            point == name.npos ? entry.types.end() : entry.types.find(name.substr(point + 1));
+        if (bare != entry.types.end() && bare->first == bare->second) add(bare->second, entry);
         const auto [first, last] = entry.types.equal_range(name);
         for (auto it = first; it != last; ++it) {
             const std::string space = it->second.substr(0, it->second.size() - name.size());
@@ -155,8 +163,6 @@ std::vector<const SourcePool::Entry*> SourcePool::nearest(const std::string& nam
         if (first == last && !user.own.contains(name) && entry.values.contains(name))
             add(name, entry);
     }
-    const std::size_t point = name.find('.');  // of `Planner.Otg`, where that is another project
-    if (found.empty() && point != name.npos) return nearest(name.substr(point + 1), user, to);
     std::vector<const Entry*> entries;
     for (const auto& [full, entry] : found) entries.push_back(entry);
     return entries;
