@@ -48,7 +48,7 @@ bool is_meant(Checking& c, const Expression& call, const OtherAssertion& known) 
         });
     };
     const bool is_own = known.name == known.same;  // where it is not by the arguments' names
-    return is_own ? std::ranges::all_of(call.arguments, is_declared)
+    return is_own ? !call.arguments.empty() && std::ranges::all_of(call.arguments, is_declared)
                   : !c.find_routine(callee.token);
 }
 

@@ -55,11 +55,13 @@ void add_declared(std::multimap<std::string, std::string>& to, std::string_view 
     }
 }
 
-/// Of `a.b.c` in a source, where all are names, `a.b` and `a.b.c`.
-void add_used(std::set<std::string>& to, const Expression& member) {
+/// `a.b.c` of a source, where all are names and `a` is none of its variables.
+void add_used(std::set<std::string>& to, const std::set<std::string>& own,
+              const Expression& member) {
     const Expression* root = &member;
     while (root->kind == Expression::Kind::member) root = root->operands[0];
     if (root->kind != Expression::Kind::name || root->token.local) return;
+    if (own.contains(lower(root->token.text))) return;
     std::string text;
     for (const char c : root->place.to(member.place).text())
         if (c != ' ' && c != '\n' && c != '\r' && c != '\t') text += c;
@@ -121,7 +123,7 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
         for (const Declaration* variable : block.declarations)
             entry.values.insert(lower(variable->name.text));
     for (const Expression& e : tree.expressions) {
-        if (e.kind == Expression::Kind::member) add_used(entry.used, e);
+        if (e.kind == Expression::Kind::member) add_used(entry.used, entry.own, e);
         const bool is_name = e.kind == Expression::Kind::name || e.kind == Expression::Kind::typed;
         const std::string name = lower(e.token.text);
         if (is_name && !e.token.local && !entry.own.contains(name)) entry.used.insert(name);
