@@ -86,6 +86,7 @@ def within(rule, inside):
         "Variable_Access": {"Value": "Expression"},
         "Array_Init": {"Value": "Init"}, "Array_Elem_Init": {"Value": "Init"},
         "Case_List_Elem": {"Expression": "Name | '-' ? Unsigned_Int | Name '.' Name"},
+        "Access_Stmt": {"Variable_Access": "Name ( '[' Subscripts ']' | '.' Name ) *", "Expression": "Name '(' Name ')'"},
         "Latch_Stmt": {"Variable_Access": "Name ( '.' Name ) *"},
         "Invocation": {"Variable_Access": "Name ( '[' Subscripts ']' | '.' Name ) * '(' Params ')'"},
         "Assign_Stmt": {"Variable_Access": "Name ( '[' Subscripts ']' | '.' Member ) *"},
