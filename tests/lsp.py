@@ -350,7 +350,7 @@ def completion_offers_what_fits():
     assert {"q", "et"} <= {name.lower() for name in on.labels(on.block, "delay.\n", None, 6)}
     names = on.labels(on.block, "Clamp(\n", None, 6)
     assert names[:2] == ["x", "limit"], names[:5]
-    assert {"last", "wanted", "most", "Clamp", "MIN", "IF", "TON"} <= set(on.labels(on.block, "\nla", None, 3))
+    assert {"last", "wanted", "most", "Clamp", "MIN", "IF", "ton"} <= set(on.labels(on.block, "\nla", None, 3))
     help = on.ask("signatureHelp", on.block, "x := wanted, limit", None, 14)
     assert help["activeParameter"] == 1 and "Clamp(" in help["signatures"][0]["label"], help
     text = on.client.texts[str(on.program)]
