@@ -171,13 +171,6 @@ bool is_open_array(const Type* type) {
 
 /// `a : ARRAY[*] OF INT` is given as where its first element is, and its bounds beside it.
 void declare_bounds(Checking& c, Routine& routine, Variable& array) {
-    const bool is_given = array.section == Section::in_out || array.section == Section::input;
-    if (!is_given) {
-        c.fail(code::wrong_place, array.name.place,
-               "an array of any length is a VAR_IN_OUT, or an input",
-               "write its bounds: ARRAY[0..9] OF ...");
-        return;
-    }
     array.section = Section::input;
     array.space = Space::frame;
     for (const std::string_view bound : {"lower", "upper"}) {
@@ -207,7 +200,10 @@ const Type& longer_string(Checking& c) {
 
 void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
     for (const Declaration* declared : block.declarations) {
-        const Type* type = declared->type ? resolve(c, *declared->type) : nullptr;
+        const bool is_given = block.section == Section::in_out || block.section == Section::input;
+        const Type* type = !declared->type ? nullptr
+                           : is_given      ? resolve_parameter(c, *declared->type)
+                                           : resolve(c, *declared->type);
         const bool is_value = takes_values(block, type);
         const Section section = is_value ? Section::input : block.section;
         const bool constant = block.constant && !is_value;

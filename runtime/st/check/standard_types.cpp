@@ -62,6 +62,7 @@ const Type* check_open_bound(Checking& c, Expression*& e) {
         return c.fail(code::value_out_of_range, wanted->place, "the array's dimensions are 1 to 1");
     const bool is_lower = e->standard->typing == Typing::lower_bound;
     e = bound_of(c, *e->arguments[0].value, is_lower ? "lower" : "upper");
+    if (!e->type) return nullptr;
     convert(c, e, dint_type);
     return e->type = &dint_type;
 }

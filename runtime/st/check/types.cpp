@@ -21,6 +21,10 @@ namespace lineshaft::st {
 
 namespace {
 
+bool is_open_array(const TypeText& text) {
+    return text.kind == TypeText::Kind::array && !text.ranges.empty() && !text.ranges.front().first;
+}
+
 /// `ARRAY[*] OF INT` of what is given to a call.
 const Type* resolve_open_array(Checking& c, const TypeText& text) {
     if (text.ranges.size() > 1)
@@ -33,7 +37,10 @@ const Type* resolve_open_array(Checking& c, const TypeText& text) {
 }
 
 const Type* resolve_array(Checking& c, const TypeText& text) {
-    if (!text.ranges.front().first) return resolve_open_array(c, text);
+    if (is_open_array(text))
+        return c.fail(code::wrong_place, text.place,
+                      "an array of any length is a VAR_IN_OUT, or an input",
+                      "write its bounds: ARRAY[0..9] OF ...");
     const Type* element = resolve(c, *text.element);
     Wide total = 1;
     for (auto it = text.ranges.rbegin(); it != text.ranges.rend(); ++it) {
@@ -198,6 +205,10 @@ const Type* resolve(Checking& c, const TypeText& text) {
             return resolve_reference(c, text);
     }
     return nullptr;
+}
+
+const Type* resolve_parameter(Checking& c, const TypeText& text) {
+    return is_open_array(text) ? resolve_open_array(c, text) : resolve(c, text);
 }
 
 const Type* resolve_name(Checking& c, const Token& name) {
