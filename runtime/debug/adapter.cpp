@@ -256,7 +256,7 @@ Json Adapter::set_breakpoints(const Json& arguments) {
                               .log = text_in(each, "logMessage")});
     const std::string path = text_in(arguments.value("source", Json::object()), "path");
     Json all = Json::array();
-    for (const Breakpoint& breakpoint : session().breakpoints().set(path, wanted)) {
+    for (const Breakpoint& breakpoint : session().set_breakpoints(path, wanted)) {
         Json one{{"id", breakpoint.id},
                  {"verified", breakpoint.is_verified},
                  {"line", breakpoint.line - first},

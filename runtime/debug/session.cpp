@@ -185,6 +185,13 @@ bool Session::is_reached(const Plan& plan, int task, std::uint32_t depth, std::i
     }
 }
 
+std::vector<Breakpoint> Session::set_breakpoints(const std::string& path,
+                                                 const std::vector<Wanted>& wanted) {
+    std::vector<Breakpoint> made = breakpoints_.set(path, wanted);
+    for (const Breakpoint& breakpoint : made) set_at_[breakpoint.id] = here_;
+    return made;
+}
+
 /// Tells which breakpoints it is that the statement stops at.
 bool Session::hits(const st::Halt& halt, Stop& stop, bool tells) {
     const auto& here = breakpoints_.at(halt.statement);
@@ -196,8 +203,9 @@ bool Session::hits(const st::Halt& halt, Stop& stop, bool tells) {
             if (!value.truth.value_or(true)) continue;
             if (!value.truth) stop.text = breakpoint->wanted.condition + ": " + value.error;
         }
-        const std::int64_t count = ++hits_[breakpoint->id];
-        if (breakpoint->hits && !breakpoint->hits->holds(count)) continue;
+        const bool counts = here_ > set_at_[breakpoint->id];
+        const std::int64_t count = counts ? ++hits_[breakpoint->id] : 0;
+        if (breakpoint->hits && !(counts && breakpoint->hits->holds(count))) continue;
         if (breakpoint->log.empty())
             stop.breakpoints.push_back(breakpoint->id);
         else if (tells)

@@ -106,7 +106,10 @@ class Session final : Observer, EventSink {
     /// Of the executive's state: the same number, the same state.
     std::string fingerprint() const;
 
-    Breakpoints& breakpoints() { return breakpoints_; }
+    /// In place of those that the file had: see Breakpoints. What they are come to is counted from
+    /// here on, also when the run goes back behind this place and comes again.
+    std::vector<Breakpoint> set_breakpoints(const std::string& path,
+                                            const std::vector<Wanted>& wanted);
     SignalConditions& signals() { return signals_; }
     bool stop_on_error = false;
     const Loaded& loaded() const { return loaded_; }
@@ -179,6 +182,7 @@ class Session final : Observer, EventSink {
     Breakpoints breakpoints_;
     SignalConditions signals_;
     std::map<int, std::int64_t> hits_;  ///< of breakpoints, by their numbers
+    std::map<int, Position> set_at_;    ///< likewise
     std::vector<HandChange> changes_;
     std::size_t next_change_ = 0;
     std::vector<HandChange> wanted_changes_;  ///< of the instant under way

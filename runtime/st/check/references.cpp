@@ -249,12 +249,6 @@ const Type* take_target(Checking& c, Expression*& e) {
 }
 
 Expression* bound_of(Checking& c, const Expression& array, std::string_view which) {
-    if (!array.variable || array.kind != E::name) {
-        c.fail(code::not_supported, array.place,
-               "the bounds of an ARRAY[*] that a reference is to are not known",
-               "give the array itself, as VAR_IN_OUT");
-        return make_constant(c, array, lint_type, {});
-    }
     const std::string name = fmt::format("{}.{}", array.variable->text, which);
     Expression* made = make_name(c, array, c.checked.names.emplace_back(name));
     check(c, made);
