@@ -48,7 +48,6 @@ using Evaluate = Evaluated (*)(Expression&);
 ///   L0926  warning: two variables at one address
 ///   L0927  names that may be of `missing`, libraries that a project refers to
 Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics& out,
-              std::span<const LibraryReference> missing = {},
-              std::vector<NameUse>* uses = nullptr);
+              std::span<const LibraryReference> missing = {}, std::vector<NameUse>* uses = nullptr);
 
 }  // namespace lineshaft::st

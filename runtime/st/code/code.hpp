@@ -118,9 +118,9 @@ struct Code {
     std::vector<ShapeMember> members;  ///< of structures
     std::vector<CoverPoint> points;    ///< only with coverage
     std::unique_ptr<std::atomic<std::uint64_t>[]> hits;  ///< of each of them
-    mutable Witness* witness = nullptr;  ///< of tests; without one an assertion ends what runs
-    std::shared_ptr<const Native> native;                ///< null: the machine interprets it
-    mutable Probe* probe = nullptr;                      ///< a debugger's that looks at scans
+    mutable Witness* witness = nullptr;    ///< of tests; without one an assertion ends what runs
+    std::shared_ptr<const Native> native;  ///< null: the machine interprets it
+    mutable Probe* probe = nullptr;        ///< a debugger's that looks at scans
 
     std::uint32_t left_slot() const { return globals_slot + globals; }
     std::uint32_t kind_slot() const { return left_slot() + (has_references ? 1 : 0); }

@@ -22,7 +22,7 @@ enum class Fault : std::int64_t {
 };
 
 inline constexpr std::string_view fault_names[] = {
-    "none",   "array_bounds", "division_by_zero",    "out_of_range",  "no_reference",
+    "none",   "array_bounds", "division_by_zero",    "out_of_range",   "no_reference",
     "no_end", "runs_already", "outside_of_variable", "call_has_ended", "assertion"};
 
 /// A scan between two statements. What ran before stands in the instance as in a machine that is

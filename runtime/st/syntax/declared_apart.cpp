@@ -36,9 +36,8 @@ void join_declared_apart(Tree& tree) {
         joined.push_back(&declaration);
         declared.erase(it);
     }
-    std::erase_if(tree.units, [&](const Pou* unit) {
-        return std::ranges::find(joined, unit) != joined.end();
-    });
+    std::erase_if(tree.units,
+                  [&](const Pou* unit) { return std::ranges::find(joined, unit) != joined.end(); });
 }
 
 }  // namespace lineshaft::st
