@@ -49,7 +49,8 @@ class Harness:
     def __init__(self, lineshaft, folder):
         self.folder = folder
         os.umask(0)
-        shutil.copy(lineshaft, folder / "lineshaft")
+        for part in "lineshaft", "lineshaft_http.so":
+            shutil.copy(pathlib.Path(lineshaft).with_name(part), folder / part)
         (folder / "lineshaft").chmod(0o755)
         self.command = str(folder / "lineshaft")
         folder.chmod(0o777)

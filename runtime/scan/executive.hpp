@@ -170,6 +170,15 @@ class Executive {
         Random cost_jitter;
 
         void set_next(const Task& task);
+
+        /// Each member for itself: between them are bytes that mean nothing, and differ.
+        static void visit(auto& state, auto&& take) {
+            take(state.due), take(state.pending), take(state.active), take(state.released);
+            take(state.cost), take(state.remaining), take(state.deadline), take(state.index);
+            take(state.outside), take(state.repeats), take(state.next_stimulus);
+            take(state.next_cost), take(state.first_error), take(state.may_err), take(state.scan);
+            take(state.jitter), take(state.cost_jitter);
+        }
     };
 
     /// What has been told of a device's warnings.

@@ -109,7 +109,8 @@ void Executive::save(StateWriter& out) const {
     save_list(out, machine_, machine_.forces);
     forces_.save(out);
     save_list(out, machine_, mail_);
-    out.put(states_);
+    for (const State& state : states_)
+        State::visit(state, [&out](const auto& part) { out.put(part); });
     out.put(trigger_levels_);
     out.put(error_levels_);
     out.put(warned_);
@@ -203,7 +204,7 @@ void Executive::restore_mail(StateReader& in, const KeptMemory& memory) {
 /// A task that is under way is on the stack of those that run, once.
 void Executive::restore_states(StateReader& in) {
     const std::vector<State> fresh = states_;
-    in.get(states_);
+    for (State& state : states_) State::visit(state, [&in](auto& part) { in.get(part); });
     for (std::size_t i = 0; i < states_.size(); ++i)
         in.require(is_possible(states_[i], fresh[i], machine_.tasks[i]),
                    fmt::format("the state of task '{}'", machine_.tasks[i].name));
@@ -235,8 +236,7 @@ void Executive::restore_states(StateReader& in) {
 /// Nothing that is due lies before the machine's time: there is nothing to be made up for.
 bool Executive::is_possible(const State& state, const State& fresh, const Task& task) const {
     const auto is_later = [this](std::int64_t time) { return time >= now_; };
-    return are_booleans(state.pending, state.active, state.may_err) &&
-           is_later(later(state.due, task.every)) &&
+    return is_later(later(state.due, task.every)) &&
            (task.on_event == (state.due == never) || state.due == never) && state.released >= 0 &&
            state.released <= now_ && is_count(state.cost) && is_count(state.remaining) &&
            state.remaining <= state.cost && is_later(state.deadline) && is_count(state.index) &&

@@ -123,7 +123,8 @@ void Judge::save(StateWriter& out) const {
         out.put(verdict.ok);
         out.put(verdict.deviation);
     }
-    out.put(watches_);
+    for (const Watch& watch : watches_)
+        Watch::visit(watch, [&out](const auto& part) { out.put(part); });
     out.put(next_timed_);
     out.put(next_);
 }
@@ -134,11 +135,9 @@ void Judge::restore(StateReader& in) {
         in.get(verdict.deviation);
     }
     const std::vector<Watch> fresh = watches_;
-    in.get(watches_);
+    for (Watch& watch : watches_) Watch::visit(watch, [&in](auto& part) { in.get(part); });
     for (const Watch& watch : watches_)
-        in.require(are_booleans(watch.level, watch.has_risen, watch.is_answered) &&
-                       is_count(watch.edges) && watch.awaits >= 0,
-                   "what is expected");
+        in.require(is_count(watch.edges) && watch.awaits >= 0, "what is expected");
     if (!in.ok()) watches_ = fresh;
     in.get(next_timed_, 0, timed_.size());
     in.get(next_, 0, never);

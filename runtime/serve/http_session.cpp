@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include <dlfcn.h>
+#include <sys/auxv.h>
 
 namespace lineshaft {
 
@@ -14,7 +15,8 @@ namespace fs = std::filesystem;
 fs::path shared_object() {
     constexpr const char* name = "lineshaft_http.so";
     std::error_code unknown;
-    const fs::path folder = fs::read_symlink("/proc/self/exe", unknown).parent_path();
+    const auto* command = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
+    const fs::path folder = fs::canonical(command, unknown).parent_path();
     const fs::path built = folder / name;
     if (fs::exists(built, unknown)) return built;
     return folder.parent_path() / LINESHAFT_LIBRARIES / "lineshaft" / name;

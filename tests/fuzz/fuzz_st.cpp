@@ -21,7 +21,8 @@ std::uint64_t slots_of(const st::Type& type);
 std::uint64_t slots_of(const st::Routine& routine) {
     std::uint64_t sum = 300;
     for (const st::Variable& variable : routine.variables)
-        if (variable.type) sum += slots_of(*variable.type);
+        if (variable.type && variable.space != st::Space::reference)
+            sum += slots_of(*variable.type);
     for (const auto& [name, method] : routine.methods) sum += slots_of(*method);
     return sum;
 }
