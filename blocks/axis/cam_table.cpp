@@ -8,6 +8,7 @@
 namespace lineshaft {
 
 std::string seam_of(const Cam& cam) {
+    if (!(cam.length() > 0)) return {};  // no cam, which was told
     const double first = cam.at(cam.begin()).slope, last = cam.last().slope;
     if (std::abs(last - first) <= rounding_of_cams * cam.extremes().slope) return {};
     return fmt::format(
