@@ -27,16 +27,17 @@ std::uint64_t bytes_of(const Type& type) {
         case Kind::text:
             return type.length + 1;
         case Kind::enumeration:
-            return bytes_of(*type.base);
+            return type.base ? bytes_of(*type.base) : 0;
         case Kind::array:
             return static_cast<std::uint64_t>(type.upper - type.lower + 1) *
                    bytes_of(*type.element);
         case Kind::structure:
-            for (const Variable* member : type.members) bytes += bytes_of(*member->type);
+            for (const Variable* member : type.members)
+                bytes += member->type ? bytes_of(*member->type) : 0;  // told, if it has none
             return bytes;
         case Kind::union_:
             for (const Variable* member : type.members)
-                bytes = std::max(bytes, bytes_of(*member->type));
+                if (member->type) bytes = std::max(bytes, bytes_of(*member->type));
             return bytes;
         case Kind::block:
             for (const Variable& variable : type.routine->variables)
