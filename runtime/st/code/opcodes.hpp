@@ -7,8 +7,7 @@
 
 /// The instructions, one line each: name, class, operands, meaning.
 ///
-///     Instruction   | op 16 | - | a 32 | b 32 | d 32 | c 64 |      a is written, the others are
-///     read
+///     Instruction | op 16 | - | a 32 | b 32 | d 32 | c 64 |   a is written, the others are read
 ///
 /// An operand is a slot of the frame (w written, r read), a number (n), an instruction of the same
 /// routine, by its address (j), a routine (f), an index table (x), the first of several slots (s),
@@ -18,8 +17,8 @@
 /// fault.
 ///
 /// Of packed memory the lower half of c is where a value begins [bits], on from what slot d has,
-/// and the upper one, UPPER_C, its PackedFormat; of what a reference is to (`..._through`) the number
-/// of the value's shape.
+/// and the upper one, UPPER_C, its PackedFormat; of what a reference is to (`..._through`) the
+/// number of the value's shape.
 ///
 /// Fused instructions do what two or more of the others do. Code that is counted has none.
 // clang-format off
