@@ -187,7 +187,8 @@ void AxesGroup::find_axes(const Context& context) {
         const Axis* const led = axis(context, i);
         if (!led) continue;
         position[i] = led->position;
-        turned[i] = led->total().position - position[i];
+        const double turns = led->total().position - position[i];
+        turned[i] = led->modulo ? std::round(turns / led->period) * led->period : turns;
     }
     end_point = position;
 }

@@ -60,20 +60,35 @@ bool is_valid(const MotionPlan& plan) {
 
 bool is_valid(const PathPiece& piece) {
     return is_one_of(piece.curve.kind, PathCurveKind::corner) && piece.curve.length > 0 &&
-           std::isfinite(piece.curve.length);
+           std::isfinite(piece.curve.length) && std::isfinite(piece.begin);
 }
 
-/// Pieces under way are in the ring.
+/// It ends in one of the stretches, or the path is over.
+bool is_valid(const PathLeg& leg, const Path& path) {
+    const bool has_goal = leg.goal >= path.stretch && leg.goal < path.stretches;
+    return is_valid(leg.plan) && std::isfinite(leg.base) && std::isfinite(leg.end) &&
+           !std::isnan(leg.ripe) && (has_goal || leg.plan.count == 0);
+}
+
+bool is_valid(const PathStretch& stretch, std::uint64_t number, const Path& path) {
+    return is_good(stretch.box) && is_good(stretch.span) && std::isfinite(stretch.begin) &&
+           std::isfinite(stretch.end) && stretch.target >= number &&
+           stretch.target < path.stretches;
+}
+
+/// Pieces and stretches under way are in the ring.
 bool is_valid(const Path& path, const AxesGroup& group) {
     constexpr std::uint64_t most = std::uint64_t{1} << 62;
     if (path.count > most || path.first > path.count ||
-        path.count - path.first > group.ring.size() ||
-        !are_booleans(path.halted, path.stale, path.lost) || !is_valid(path.plan) ||
-        (path.phase > 0 && path.phase >= path.plan.count) || !std::isfinite(path.time) ||
-        path.time < 0)
+        path.count - path.first > group.ring.size() || path.stretch > path.stretches ||
+        path.stretches - path.stretch > path.count - path.first ||
+        !are_booleans(path.halted, path.stale, path.fresh, path.lost) ||
+        !is_valid(path.leg, path) || !std::isfinite(path.time) || path.time < 0)
         return false;
     for (std::uint64_t k = path.first; k < path.count; ++k)
         if (!is_valid(group.ring[k % group.ring.size()])) return false;
+    for (std::uint64_t k = path.stretch; k < path.stretches; ++k)
+        if (!is_valid(group.ring[k % group.ring.size()].stretch, k, path)) return false;
     return true;
 }
 

@@ -6,35 +6,14 @@
 #include <limits>
 #include <span>
 
-#include "blocks/path/path_curve.hpp"
-#include "blocks/profile/any_state.hpp"
+#include "blocks/path/path_leg.hpp"
 
 namespace lineshaft {
-
-struct PathLimit {
-    double velocity = 1, acceleration = 1, jerk = 1;  ///< all > 0 [u/s^n]
-};
-
-/// Limits of the motion along the path and of each axis; they hold together at any instant.
-struct PathLimits {
-    PathLimit path;
-    std::array<PathLimit, most_path_axes> axes;
-};
 
 /// How the joint before a piece is passed.
 struct PathJoint {
     double velocity = std::numeric_limits<double>::infinity();  ///< at most; 0: a stop [u/s]
     double distance = 0;  ///< > 0: two lines are joined by a corner this far from the vertex [u]
-};
-
-/// One piece in the ring, with what is planned for it once: within it s', s'' and s''' keep to
-/// `cap`, and then all limits are kept (README.md). At a joint the acceleration along the path is
-/// 0.
-struct PathPiece {
-    PathCurve curve;
-    PathLimit cap;
-    double joint = 0;  ///< greatest velocity at its end by the joint itself: 0 is a stop there
-    double exit = 0;   ///< ... and from which the rest of the path can be braked on [u/s]
 };
 
 /// The motion along the path at one instant, and that of the axes.
@@ -46,23 +25,26 @@ struct PathMotion {
 /// A path of pieces that is run along with constant jerk from phase to phase. The pieces lie in a
 /// ring that the caller owns and gives with each call, the same one each time: this and the ring
 /// are plain bytes without an address, and nothing is allocated. Pieces are appended at any time,
-/// also in motion. What is commanded counts from the next `advance`.
+/// also in motion. What is commanded counts from the next `advance`, and so do pieces appended,
+/// as soon as the motion would brake without them.
 ///
 /// At any instant, whatever is commanded: the velocity along the path is not negative, limits of
 /// path and axes are kept, positions lie on the curves, and the last piece ends exactly at its end
 /// with velocity 0. Override changes the velocity only, not acceleration and jerk.
 struct Path {
-    std::uint64_t first = 0;  ///< number of the piece under way, counted from 0
-    std::uint64_t count = 0;  ///< pieces appended so far
-    double total = 0;         ///< length of all pieces appended [u]
-    double travelled = 0;     ///< length of the pieces before the one under way [u]
-    double time = 0;          ///< since the plan began [s]
-    double override = 1;      ///< factor of the velocity, >= 0
+    std::uint64_t first = 0;      ///< number of the piece under way, counted from 0
+    std::uint64_t count = 0;      ///< pieces appended so far
+    std::uint64_t stretch = 0;    ///< number of the stretch under way, counted from 0
+    std::uint64_t stretches = 0;  ///< of the pieces appended so far
+    std::uint64_t changed = 0;    ///< the first stretch that has changed since the last look back
+    double total = 0;             ///< length of all pieces appended [u]
+    double time = 0;              ///< since the leg under way began [s]
+    double override = 1;          ///< factor of the velocity, >= 0
     bool halted = false;
-    bool stale = false;       ///< what was planned is to be planned anew
-    bool lost = false;        ///< numbers too many decades apart to be planned: it stands there
-    MotionPlan plan;          ///< along the piece under way, from its start on
-    std::uint64_t phase = 0;  ///< of the plan, where the last instant was found
+    bool stale = false;  ///< what was planned is to be planned anew
+    bool fresh = false;  ///< stretches have changed since the last look back
+    bool lost = false;   ///< numbers too many decades apart to be planned: it stands there
+    PathLeg leg;         ///< under way
 
     /// One piece more, with its limits. A corner is as far from the vertex as `joint` says, or as
     /// the lines leave room, half of the new one; where the path under way cannot be braked any
@@ -89,15 +71,11 @@ struct Path {
     /// The motion now.
     PathMotion now(std::span<const PathPiece> ring) const;
 
-    bool standing() const { return time >= plan.duration && plan.end.velocity == 0; }
+    bool standing() const { return time >= leg.plan.duration && leg.plan.end.velocity == 0; }
     bool finished() const { return first == count; }
 
     /// What is left to its end [u].
     double remaining() const;
 };
-
-/// How far from the vertex a corner may begin that is passed with `velocity` [u/s].
-double corner_distance_at(double velocity, const PathCurve& before, const PathCurve& after,
-                          const PathLimits& limits);
 
 }  // namespace lineshaft

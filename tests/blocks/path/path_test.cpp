@@ -172,7 +172,7 @@ TEST_CASE("path: a single line takes the time of the seven-segment move") {
     SevenSegmentPlan least;
     REQUIRE(plan(SevenSegment{0, 0, 20, 100, 1000, 50}, least) == PlanResult::ok);
     path.advance(ring, 0);
-    CHECK(path.plan.duration == Approx(least.duration).epsilon(1e-12));
+    CHECK(path.leg.plan.duration == Approx(least.duration).epsilon(1e-12));
     path.advance(ring, 100);
     CHECK(path.finished());
     CHECK(path.now(ring).position == PathVector{30, 40});
@@ -193,6 +193,54 @@ TEST_CASE("path: on an arc the speed does not ripple and keeps what the axes all
     }
 }
 
+TEST_CASE("path: many short pieces of a line take the time of the line, also when they come late") {
+    constexpr double slant = 0.7, scan = 1e-3;
+    constexpr int pieces = 2000;
+    const PathLimits limits = wide_limits({100, 1000, 10000});
+    std::vector<PathPiece> ring(300);
+    Path path;
+    PathVector from{};
+    double time = 0;
+    for (int given = 0; given < pieces || !path.finished(); time += scan) {
+        for (; given < pieces && path.count - path.first < ring.size(); ++given) {
+            const double way = 0.1 * (given + 1);
+            const PathVector to{way * std::cos(slant), way * std::sin(slant)};
+            PathCurve line;
+            REQUIRE(line_to(from, to, line) == PathFault::none);
+            REQUIRE(path.append(ring, line, limits) == PathFault::none);
+            from = to;
+        }
+        REQUIRE(violation(path.advance(ring, scan), limits).empty());
+    }
+    SevenSegmentPlan least;
+    REQUIRE(plan(SevenSegment{0, 0, 100, 1000, 10000, 0.1 * pieces}, least) == PlanResult::ok);
+    CHECK(time <= least.duration + 2 * scan);
+}
+
+TEST_CASE("path: a ramp spans pieces whose limits differ, and keeps those of each") {
+    std::vector<PathPiece> ring(16);
+    Path path;
+    PathVector from{};
+    for (int i = 0; i < 10; ++i) {
+        const PathVector to{2.0 * (i + 1)};
+        PathCurve line;
+        REQUIRE(line_to(from, to, line) == PathFault::none);
+        REQUIRE(path.append(ring, line, wide_limits({100.0 - i, 1000, 10000})) == PathFault::none);
+        from = to;
+    }
+    double time = 0;
+    for (; !path.finished(); time += 1e-3) {
+        const std::uint64_t piece = path.first;
+        const PathMotion m = path.advance(ring, 1e-3);
+        if (path.first != piece) continue;
+        CHECK(violation(m, wide_limits({100.0 - static_cast<double>(piece), 1000, 10000})).empty());
+    }
+    SevenSegmentPlan least;
+    REQUIRE(plan(SevenSegment{0, 0, 91, 1000, 10000, 20}, least) == PlanResult::ok);
+    CHECK(path.stretches == 10);
+    CHECK(time <= 1.01 * least.duration);
+}
+
 TEST_CASE("path: a corner is a stop, a line cut in two is not") {
     std::vector<PathPiece> ring(4);
     Path path;
@@ -204,8 +252,10 @@ TEST_CASE("path: a corner is a stop, a line cut in two is not") {
     for (const PathCurve& curve : {a, b, c}) {
         REQUIRE(path.append(ring, curve, limits) == PathFault::none);
     }
-    CHECK(ring[0].exit == Approx(10).epsilon(1e-8));
-    CHECK(ring[1].exit == 0);
+    CHECK(path.stretches == 2);
+    path.advance(ring, 0);
+    CHECK(path.leg.end == 30);
+    CHECK(path.leg.plan.end.velocity == 0);
     CHECK(path.append(ring, a, limits) == PathFault::not_joined);
 }
 

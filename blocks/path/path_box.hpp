@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <limits>
+
+#include "blocks/path/path_curve.hpp"
+
+namespace lineshaft {
+
+struct PathLimit {
+    double velocity = 1, acceleration = 1, jerk = 1;  ///< all > 0 [u/s^n]
+};
+
+/// Limits of the motion along the path and of each axis; they hold together at any instant.
+struct PathLimits {
+    PathLimit path;
+    std::array<PathLimit, most_path_axes> axes;
+};
+
+/// All three are above 0 and finite.
+bool is_good(const PathLimit& limit);
+
+PathLimit least_of(const PathLimit& a, const PathLimit& b);
+
+/// The box of a line or an arc: while 0 <= s' <= velocity, |s''| <= acceleration and |s'''| <= jerk
+/// all limits are kept (README.md, "Why no limit is passed").
+PathLimit box_of(const PathCurve& curve, const PathLimits& limits);
+
+/// The box of the corner of this length between two lines, within `most`.
+PathLimit box_of_corner(const PathCurve& before, const PathCurve& after, double length,
+                        const PathLimits& limits, const PathLimit& most);
+
+/// How far from the vertex a corner may begin that is passed with `velocity` [u/s].
+double corner_distance_at(double velocity, const PathCurve& before, const PathCurve& after,
+                          const PathLimits& limits);
+
+}  // namespace lineshaft

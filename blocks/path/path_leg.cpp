@@ -1,0 +1,237 @@
+#include "blocks/path/path_leg.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "blocks/profile/seven_segment.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// From where the motion begins.
+struct Departure {
+    MotionState from;
+    double base = 0, factor = 1;
+};
+
+/// Stretches up to one of them: the least of their boxes, and the greatest velocity in them.
+struct Span {
+    std::uint64_t goal = 0;
+    PathLimit least;
+    double fastest = 0;
+
+    void extend(ConstPathStretches stretches, std::uint64_t to) {
+        for (; goal < to; ++goal) {
+            const PathLimit& box = stretches[goal + 1].box;
+            least = least_of(least, box);
+            fastest = std::max(fastest, box.velocity);
+        }
+    }
+};
+
+/// The velocity nearest to `wanted` that is reached within `room`; below 0 where there is none.
+double reached_velocity(const MotionState& from, double room, double wanted, const PathLimit& box) {
+    if (way_to(from, wanted, box) <= room) return wanted;
+    const double a = from.acceleration;
+    double reached = std::max(0.0, from.velocity + a * std::abs(a) / (2 * box.jerk));
+    double missed = wanted;
+    if (!(way_to(from, reached, box) <= room)) return -1;
+    if (a == 0) {
+        SevenSegmentPlan direct;
+        const double V = std::max(from.velocity, wanted);
+        if (plan({from.velocity, wanted, V, box.acceleration, box.jerk, room}, direct) !=
+            PlanResult::ok)
+            return -1;
+        const double found = direct.end.velocity, off = reached - found;
+        for (double less = 0x1p-46; less < 1; less *= 64)
+            if (const double tried = found + less * off; way_to(from, tried, box) <= room)
+                return tried;
+        missed = found;
+    }
+    for (int step = 0; step < 52; ++step) {
+        const double middle = 0.5 * (reached + missed);
+        (way_to(from, middle, box) <= room ? reached : missed) = middle;
+    }
+    return reached;
+}
+
+/// A part of a phase within one stretch.
+bool is_in_box(const MotionState& start, double duration, const PathLimit& box) {
+    constexpr double rounding = 1e-10;
+    const MotionState end = start.after(duration);
+    const double A = box.acceleration * (1 + rounding), V = box.velocity * (1 + rounding);
+    if (std::abs(start.jerk) > box.jerk * (1 + rounding) || std::abs(start.acceleration) > A ||
+        std::abs(end.acceleration) > A)
+        return false;
+    double least = std::min(start.velocity, end.velocity);
+    double most = std::max(start.velocity, end.velocity);
+    if (start.acceleration * end.acceleration < 0) {
+        const double turn = start.after(-start.acceleration / start.jerk).velocity;
+        least = std::min(least, turn);
+        most = std::max(most, turn);
+    }
+    return most <= V && least >= -rounding * box.velocity;
+}
+
+/// Whatever it was planned with: each of its states is in the box of the stretch that it lies in.
+bool keeps_boxes(ConstPathStretches stretches, const Departure& departure, std::uint64_t goal,
+                 const MotionPlan& plan) {
+    std::uint64_t k = stretches.first;
+    for (std::size_t i = 0; i < plan.count; ++i) {
+        MotionState s = plan.phases[i].start;
+        double left = plan.phases[i].duration;
+        const double end = s.after(left).position;
+        for (; k < goal && departure.base + end > stretches[k].end; ++k) {
+            const double way = stretches[k].end - departure.base - s.position;
+            const double t = way > 0 ? time_at_way(s, left, way) : 0;
+            if (!is_in_box(s, t, stretches[k].box)) return false;
+            s = s.after(t);
+            left -= t;
+        }
+        if (!is_in_box(s, left, stretches[k].box)) return false;
+    }
+    return true;
+}
+
+/// In the least of the boxes but with this velocity.
+bool plan_with(ConstPathStretches stretches, const Departure& departure, const Span& span,
+               double velocity, const Goal& to, MotionPlan& out) {
+    MotionLimits limits;
+    return velocity > 0 &&
+           limits.set(velocity, -velocity, span.least.acceleration, span.least.acceleration,
+                      span.least.jerk) == PlanResult::ok &&
+           plan(limits, departure.from, to, out, {Entry::gentle, 1024}) == PlanResult::ok &&
+           keeps_boxes(stretches, departure, span.goal, out);
+}
+
+/// To the end of the span.
+bool plan_to(ConstPathStretches stretches, const Departure& departure, const Span& span,
+             MotionPlan& out) {
+    const auto& [from, base, factor] = departure;
+    const PathStretch& goal = stretches[span.goal];
+    const double room = goal.end - base, exit = stretches.exit(span.goal);
+    if (!(room > 0)) return false;
+    const double velocity =
+        reached_velocity(from, room, std::min(exit, factor * goal.joint), span.least);
+    if (velocity < 0 || velocity > exit) return false;
+    const double now =
+        from.velocity + from.acceleration * std::abs(from.acceleration) / (2 * span.least.jerk);
+    double before = -1;
+    for (const double V :
+         {factor * span.fastest, factor * span.least.velocity, now, span.fastest}) {
+        const double most = std::max(V, velocity);
+        if (most != before && plan_with(stretches, departure, span, most, {room, velocity}, out))
+            return true;
+        before = most;
+    }
+    return false;
+}
+
+bool plan_halt(ConstPathStretches stretches, const Departure& departure, Span span, PathLeg& out) {
+    const auto& [from, base, factor] = departure;
+    for (;;) {
+        const double way = way_to(from, 0, span.least);
+        const double end = stretches[span.goal].end;
+        if (base + way <= end) {
+            if (!plan_with(stretches, departure, span, span.fastest, {way, 0}, out.plan))
+                return false;
+            out.end = base + way;
+            out.goal = span.goal;
+            return true;
+        }
+        if (!(way < infinite) || stretches.is_last(span.goal)) return false;
+        span.extend(stretches, span.goal + 1);
+    }
+}
+
+/// The motion that would follow one to a joint, to where the stretch behind it brakes [s].
+double duration_of_next(ConstPathStretches stretches, std::uint64_t joint, double velocity,
+                        double factor) {
+    const PathStretch& next = stretches[joint + 1];
+    const PathStretch& goal = stretches[next.target];
+    const double exit = std::min(stretches.exit(next.target), factor * goal.joint);
+    const double V = std::max({factor * next.box.velocity, velocity, exit});
+    SevenSegmentPlan ramp;
+    const SevenSegment problem{
+        velocity, exit, V, next.span.acceleration, next.span.jerk, goal.end - next.begin};
+    return plan(problem, ramp) == PlanResult::ok ? ramp.duration : infinite;
+}
+
+/// No acceleration is wanted at its end: it is as fast there as the joint itself allows.
+bool ends_well(ConstPathStretches stretches, const Span& span, const MotionPlan& plan,
+               double factor) {
+    constexpr double rounding = 1e-8;
+    return stretches.is_bound_by_joint(span.goal, factor) &&
+           plan.end.velocity >= factor * stretches[span.goal].joint * (1 - rounding);
+}
+
+/// Further and further while that is sooner than to come to acceleration 0 at the joint.
+void extend(ConstPathStretches stretches, const Departure& departure, Span& span,
+            MotionPlan& best) {
+    MotionPlan further;
+    while (!stretches.is_last(span.goal) && !ends_well(stretches, span, best, departure.factor)) {
+        Span longer = span;
+        longer.extend(stretches, stretches[span.goal + 1].target);
+        if (!plan_to(stretches, departure, longer, further)) return;
+        const double next = duration_of_next(stretches, span.goal, best.end.velocity,
+                                             std::max(departure.factor, 0x1p-20));
+        if (further.duration > best.duration + next) return;
+        best = further;
+        span = longer;
+    }
+}
+
+/// When the motion leaves the one that it would be if the path went on further: where it begins to
+/// come down to its end.
+double ripe_at(const MotionPlan& plan) {
+    std::size_t i = plan.count;
+    const auto comes_down = [&](const MotionPlan::Phase& phase) {
+        return phase.start.acceleration < 0 || phase.start.jerk < 0;
+    };
+    while (i > 0 && comes_down(plan.phases[i - 1])) --i;
+    return i < plan.count ? plan.phases[i].begin : plan.duration;
+}
+
+}  // namespace
+
+double way_to(const MotionState& from, double velocity, const PathLimit& box) {
+    VelocityRamp ramp;
+    if (ramp.plan(from.velocity, from.acceleration, velocity, box.acceleration, box.jerk) !=
+        PlanResult::ok) {
+        return infinite;
+    }
+    return ramp.end.position;
+}
+
+bool plan_leg(ConstPathStretches stretches, const MotionState& from, double base, double factor,
+              PathLeg& out) {
+    const PathStretch& first = stretches[stretches.first];
+    const Departure departure{from, base, factor};
+    Span span{stretches.first, first.box, first.box.velocity};
+    PathLeg leg;
+    leg.base = base;
+    leg.ripe = infinite;
+    if (factor == 0 && plan_halt(stretches, departure, span, leg)) {
+        out = leg;
+        return true;
+    }
+    if (!plan_to(stretches, departure, span, leg.plan)) {
+        if (first.target == stretches.first) return false;
+        span.extend(stretches, first.target);
+        if (!plan_to(stretches, departure, span, leg.plan)) return false;
+    }
+    if (factor > 0) {
+        extend(stretches, departure, span, leg.plan);
+        if (!ends_well(stretches, span, leg.plan, factor)) leg.ripe = ripe_at(leg.plan);
+    }
+    leg.goal = span.goal;
+    leg.end = stretches[span.goal].end;
+    out = leg;
+    return true;
+}
+
+}  // namespace lineshaft

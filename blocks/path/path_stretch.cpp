@@ -1,0 +1,104 @@
+#include "blocks/path/path_stretch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "blocks/profile/seven_segment.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+/// A ramp seen from its end backwards, where it is one upwards.
+struct BackwardRamp {
+    SevenSegmentPlan plan;
+    double entry = 0;  ///< at its start [u/s]
+
+    double velocity_before_end(double way) const {
+        std::size_t i = 6;
+        while (i > 0 && !(plan.T[i] > 0 && plan.start[i].position <= way)) --i;
+        const MotionState& s = plan.start[i];
+        return s.after(time_at_way(s, plan.T[i], way - s.position)).velocity;
+    }
+
+    /// From here on, counted from its end, it comes down as any ramp from a greater velocity.
+    double settled_way() const { return plan.start[2].position; }
+};
+
+/// A little less than what is reached: what rounds there must not decide whether a ramp has room.
+bool plan_back(double exit, double V, const PathLimit& box, double length, BackwardRamp& out) {
+    const SevenSegment problem{exit, V, V, box.acceleration, box.jerk, length};
+    if (plan(problem, out.plan) != PlanResult::ok) return false;
+    const bool has_room = out.plan.reaches_Ve && out.plan.T[3] * V > 1e-9 * length;
+    out.entry = has_room ? V : out.plan.end.velocity * (1 - 1e-9);
+    return true;
+}
+
+/// It passes no joint faster than that allows, up to where it is as slow as the ramp before was.
+bool passes_joints(PathStretches stretches, std::uint64_t k, const BackwardRamp& ramp) {
+    const std::uint64_t target = stretches[k + 1].target;
+    const double end = stretches[target].end;
+    for (std::uint64_t i = k; i < target; ++i) {
+        const PathStretch& s = stretches[i];
+        if (!(ramp.velocity_before_end(end - s.end) <= s.joint)) return false;
+        if (s.end >= stretches[k + 1].settled) break;
+    }
+    return true;
+}
+
+void take(PathStretch& s, const BackwardRamp& ramp, std::uint64_t target, const PathLimit& span,
+          double end) {
+    s.entry = ramp.entry;
+    s.target = target;
+    s.span = span;
+    s.settled = end - ramp.settled_way();
+}
+
+/// The better one of a ramp to its own end and one to where the next stretch brakes.
+void find_entry(PathStretches stretches, std::uint64_t k) {
+    PathStretch& s = stretches[k];
+    const double V = s.box.velocity;
+    BackwardRamp ramp;
+    s.entry = 0;
+    s.target = k;
+    s.span = s.box;
+    s.settled = s.end;
+    if (plan_back(std::min(stretches.exit(k), V), V, s.box, s.end - s.begin, ramp))
+        take(s, ramp, k, s.box, s.end);
+    if (s.entry == V || stretches.is_last(k) || stretches.is_bound_by_joint(k)) return;
+    const PathStretch& next = stretches[k + 1];
+    const PathStretch& target = stretches[next.target];
+    const PathLimit span = least_of(s.box, next.span);
+    const double exit = std::min(stretches.exit(next.target), V);
+    if (plan_back(exit, V, span, target.end - s.begin, ramp) && ramp.entry > s.entry &&
+        passes_joints(stretches, k, ramp))
+        take(s, ramp, next.target, span, target.end);
+}
+
+}  // namespace
+
+void look_back(PathStretches stretches, std::uint64_t changed) {
+    for (std::uint64_t k = stretches.count; k-- > stretches.first;) {
+        const bool may_end = k > stretches.first && k <= changed;
+        const bool was_bound = may_end && stretches.is_bound_by_joint(k - 1);
+        find_entry(stretches, k);
+        if (was_bound && stretches.is_bound_by_joint(k - 1)) return;
+    }
+}
+
+double time_at_way(const MotionState& from, double duration, double way) {
+    double lo = 0, hi = duration;
+    double t = from.velocity > 0 ? std::min(way / from.velocity, duration) : 0.5 * duration;
+    for (int step = 0; step < 64 && hi > lo; ++step) {
+        const MotionState s = from.after(t);
+        const double missing = way - (s.position - from.position);
+        (missing > 0 ? lo : hi) = t;
+        double next = s.velocity > 0 ? t + missing / s.velocity : lo - 1;
+        if (!(next > lo && next < hi)) next = 0.5 * (lo + hi);
+        if (std::abs(next - t) <= 1e-15 * duration) break;
+        t = next;
+    }
+    return t;
+}
+
+}  // namespace lineshaft
