@@ -1,6 +1,6 @@
 /// Random programs in Structured Text, run as native code, by the machine, and as C by the compiler
 /// at -O0 and -O3: the same bits of every variable after every scan, the same faults; of native
-/// code and the machine the same whole memory.
+/// code and the machine the same whole memory, and of each 200th also as --native has it compiled.
 ///
 /// usage: twin PROGRAMS [SEED]
 ///        twin FILE         one program from a file: what the C is, and what differs
@@ -21,6 +21,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/model/random.hpp"
+#include "runtime/st/code/native/compile.hpp"
 #include "runtime/st/generate/generator.hpp"
 #include "runtime/st/library/evaluate.hpp"
 #include "runtime/st/syntax/parser.hpp"
@@ -57,7 +58,7 @@ struct Program {
     const Routine* main = nullptr;
     std::vector<Part> parts;
     std::vector<Words> inputs;  ///< of each scan
-    std::optional<Library> library, interpreted;
+    std::optional<Library> library, interpreted, compiled;
     std::string refused;
 };
 
@@ -73,7 +74,17 @@ std::uint64_t random_bits(const st::Type& type, Random& random) {
     return static_cast<std::uint64_t>(wrapped(type, value));
 }
 
-std::unique_ptr<Program> prepare(std::string text, std::uint64_t seed) {
+/// As --native has it, whose cache is of this run.
+void add_compiled(Program& p) {
+    Diagnostics out;
+    const std::size_t before = end_compiling();
+    compile_natively([](const std::string& why) { fmt::print(stderr, "--native: {}\n", why); });
+    p.compiled = compile({p.source}, catalog(), out);
+    if (end_compiling() == before) p.refused = "no compiler made it";
+    compile_natively(nullptr);
+}
+
+std::unique_ptr<Program> prepare(std::string text, std::uint64_t seed, bool is_compiled = false) {
     auto program = std::make_unique<Program>();
     Program& p = *program;
     p.source = source(std::move(text));
@@ -87,6 +98,7 @@ std::unique_ptr<Program> prepare(std::string text, std::uint64_t seed) {
     }
     if (!p.library) return program;
     p.refused.clear();
+    if (is_compiled) add_compiled(p);
     parse(read_tokens(p.source, out), p.tree, out);
     p.checked = check(p.tree, catalog(), evaluate, out);
     for (const Routine& routine : p.checked.routines)
@@ -214,6 +226,7 @@ void shell(const std::string& command) {
 class Twins {
   public:
     Twins() {
+        ::setenv("XDG_CACHE_HOME", folder_.path.c_str(), 1);
         shell(fmt::format("{} {} -O1 -c '{}/prelude.c' -o '{}/prelude.o'", LINESHAFT_COMPILER,
                           flags, LINESHAFT_TWIN_DIR, folder_.path));
     }
@@ -260,6 +273,7 @@ class Twins {
     std::string difference(const Program& program, const Compiled& compiled, std::size_t number,
                            std::string_view level) {
         Machine machine(program, *program.library), interpreter(program, *program.interpreted);
+        Machine by_compiler(program, program.compiled ? *program.compiled : *program.library);
         const TwinCalls& twin = compiled.twin(number);
         twin.begin();
         Words ours, theirs;
@@ -273,6 +287,9 @@ class Twins {
             if (interpreter.scan(i) != fault || !machine.instances().is_guarded() ||
                 machine.instances().memory() != interpreter.instances().memory())
                 return fmt::format("scan {}: memory differs where native code is off", i);
+            if (by_compiler.scan(i) != fault ||
+                by_compiler.instances().memory() != interpreter.instances().memory())
+                return fmt::format("scan {}: memory differs with --native", i);
             machine.dump(ours, starts);
             theirs.assign(ours.size() + 64 * program.parts.size() + 64, 0);
             theirs.resize(static_cast<std::size_t>(twin.dump(theirs.data()) - theirs.data()));
@@ -376,7 +393,7 @@ int run_random(long count, std::uint64_t seed) {
         std::vector<std::unique_ptr<Program>> programs;
         std::vector<std::uint64_t> seeds;
         for (long i = done; i < std::min(done + batch, count); ++i, ++seed) {
-            auto program = prepare(text_of(random_bytes(seed)), seed);
+            auto program = prepare(text_of(random_bytes(seed)), seed, i % 200 == 0);
             if (program->refused.empty()) {
                 seeds.push_back(seed);
                 programs.push_back(std::move(program));

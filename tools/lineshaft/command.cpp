@@ -11,7 +11,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/source/codes.hpp"
-#include "runtime/st/code/native/native.hpp"
+#include "runtime/st/code/native/compile.hpp"
 
 namespace lineshaft {
 
@@ -60,7 +60,7 @@ void CommonOptions::add_to(CLI::App& command) {
     command.add_option("--include-dir", include_dirs, "Allow files below this folder, too")
         ->type_name("DIR");
     command.add_flag("--json", json, "Print one JSON object for machines");
-    add_no_native(command);
+    add_native(command);
     command.add_flag("--quiet", quiet, "Print results only, and nothing where a file takes them");
 }
 
@@ -82,9 +82,23 @@ void add_strict(CLI::App& command, bool& strict) {
     command.add_flag("--strict", strict, "Take warnings for errors");
 }
 
-void add_no_native(CLI::App& command) {
-    command.add_flag_callback("--no-native", st::switch_native_off,
-                              "Interpret Structured Text: slower, and the same in all else");
+void add_native(CLI::App& command) {
+    const auto compile = [] {
+        st::compile_natively([](const std::string& why) {
+            fmt::print(stderr,
+                       "lineshaft: warning: --native: {}; code is copied and patched instead, "
+                       "which is slower\n",
+                       why);
+        });
+    };
+    CLI::Option* const off =
+        command.add_flag_callback("--no-native", st::switch_native_off,
+                                  "Interpret Structured Text: slower, and the same in all else");
+    command
+        .add_flag_callback("--native", compile,
+                           "Have Structured Text compiled by the system's C++ compiler, once: "
+                           "faster, and the same in all else")
+        ->excludes(off);
 }
 
 std::optional<st::Library> compile_files(const std::vector<std::string>& files,

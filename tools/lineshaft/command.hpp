@@ -51,8 +51,8 @@ Exit report(const Diagnostics& diagnostics, bool json);
 /// `--strict`: warnings are errors.
 void add_strict(CLI::App& command, bool& strict);
 
-/// `--no-native`: Structured Text is interpreted.
-void add_no_native(CLI::App& command);
+/// `--no-native`: Structured Text is interpreted; `--native`: it is compiled.
+void add_native(CLI::App& command);
 
 /// L0509 for each of `outputs` that is, by whatever name, a file which has been read so far or one
 /// of `inputs`, which are still to be read, or that is named twice. Empty names are none.

@@ -16,7 +16,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "runtime/st/code/native/native.hpp"
+#include "runtime/st/code/native/compile.hpp"
 #include "runtime/version.hpp"
 #include "tools/lineshaft/command.hpp"
 
@@ -149,6 +149,7 @@ int run_command(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : static_cast<int>(Exit::wrong);
     }
+    st::end_compiling();
     if (st::is_native_refused())
         spdlog::warn(
             "the system refuses executable memory: Structured Text was interpreted, which "

@@ -245,7 +245,7 @@ void add_test(CLI::App& app, Exit& result) {
                     "Write which lines and branches of Structured Text all of it executed, for "
                     "lcov and genhtml")
         ->type_name("FILE.info");
-    add_no_native(*sub);
+    add_native(*sub);
     sub->footer(test_help);
     add_strict(*sub, command->options.strict);
     sub->callback([command, &result] { result = execute(*command); });

@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "runtime/model/catalog.hpp"
+#include "runtime/model/scan.hpp"
 #include "runtime/st/code/opcodes.hpp"
 #include "runtime/st/code/shapes.hpp"
+#include "runtime/st/code/slots.hpp"
 #include "runtime/st/syntax/token.hpp"
 
 namespace lineshaft::st {
@@ -23,21 +25,6 @@ struct Instruction {
     std::uint64_t c = 0;
 };
 static_assert(sizeof(Instruction) == 24);
-
-/// Of a value that is one of `count` from `lower` on: the place of an element in an array, or in
-/// `Code::numbers` of an enumeration's number or a CASE's jump.
-struct IndexTable {
-    std::int64_t lower = 0;
-    std::uint64_t count = 0, stride = 1, first = 0;
-
-    bool contains(std::uint64_t value) const {
-        return value - static_cast<std::uint64_t>(lower) < count;
-    }
-    std::uint64_t place(std::uint64_t value) const {
-        return first + (value - static_cast<std::uint64_t>(lower)) * stride;
-    }
-    auto operator<=>(const IndexTable&) const = default;
-};
 
 struct CodeRoutine {
     std::string name;
@@ -68,22 +55,6 @@ struct StatementStart {
     std::uint32_t instruction = 0;
     bool is_inner = false;  ///< with the second half of what was fused to that instruction
     Place place = {};
-};
-
-/// An instance begins with these slots. Then come the numbers of the data blocks among the
-/// program's instances, where there are references the Piece that one of them left (plus 1, or 0),
-/// its kind where calls find routines by it, two slots for each call that runs (where it goes on,
-/// and on which frame), and its variables. A block that extends another begins with all of its
-/// frame.
-enum HeaderSlot : std::uint32_t {
-    error_slot,     ///< BOOL: the last scan ended with a fault
-    error_id_slot,  ///< Fault
-    place_slot,     ///< the instruction it ended with
-    depth_slot,     ///< calls that ran then
-    time_slot,      ///< what its instructions took [ns], if they are counted
-    cut_slot,       ///< 1 + the first instruction that cut a text short, or 0
-    counts_slot,    ///< executed instructions of each class, if they are counted
-    globals_slot = counts_slot + op_classes,
 };
 
 struct Native;
@@ -126,6 +97,16 @@ struct Code {
     std::uint32_t kind_slot() const { return left_slot() + (has_references ? 1 : 0); }
     /// Where the calls that run begin.
     std::uint32_t calls_slot() const { return kind_slot() + (has_kinds ? 1 : 0); }
+
+    /// A call of a kind of the catalogue.
+    void call_block(std::byte* block, std::uint32_t number, const Scan& now,
+                    const Context& context) const {
+        const BlockType& type = *standard[number];
+        if (!type.context) return void(type.scan_blocks(block, 1, now, context));
+        Context inner = context;
+        inner.kind = type.context;
+        type.scan_blocks(block, 1, now, inner);
+    }
 
     /// Of a jump's address; none of this code if it is not one.
     std::uint64_t place_of(std::uint64_t address) const {

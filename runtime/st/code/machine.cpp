@@ -2,8 +2,11 @@
 
 #include <numeric>
 
+#include <sleef.h>
+
 #include "runtime/st/code/meaning.hpp"
 #include "runtime/st/code/native/native.hpp"
+#include "runtime/st/syntax/constant.hpp"
 
 namespace lineshaft::st {
 
@@ -102,12 +105,15 @@ Fault run(Frames& frames, const CodeRoutine& routine) {
 #define number_of(value, number) code.numbers.data()[table(number).place(value)]
 #define within(value, number) table(number).contains(value)
 // The empty statement keeps a jump that is not taken off the way to the next instruction.
-#define UPPER_C static_cast<std::uint32_t>(to >> 32)
+#define UPPER(operand) static_cast<std::uint32_t>(operand >> 32)
+#define BEHIND static_cast<std::uint64_t>(pc - first)
+#define IMAGE(number) reinterpret_cast<const std::byte*>(code.images.data() + number)
 #define GO(address)                                                                      \
     {                                                                                    \
         pc = reinterpret_cast<const Instruction*>(static_cast<std::uintptr_t>(address)); \
         asm volatile("" : "+r"(pc));                                                     \
     }
+#define CHOOSE(slot, number, ways) GO(number_of(U(slot), number))
 #define AGAIN(address)                \
     {                                 \
         if (--fuel < 0) FAIL(no_end); \
@@ -121,12 +127,12 @@ Fault run(Frames& frames, const CodeRoutine& routine) {
 #define ELEMENT(slot, number)                         \
     if (!within(U(slot), number)) FAIL(array_bounds); \
     const std::uint64_t element = table(number).place(U(slot))
-#define CALL(address, number)                                          \
-    {                                                                  \
-        if (--fuel < 0) FAIL(no_end);                                  \
-        frames.enter(address, static_cast<std::uint64_t>(pc - first)); \
-        base = frames.place(frames.base);                              \
-        pc = first + code.routines.data()[number].entry;               \
+#define CALL(address, number)                            \
+    {                                                    \
+        if (--fuel < 0) FAIL(no_end);                    \
+        frames.enter(address, BEHIND);                   \
+        base = frames.place(frames.base);                \
+        pc = first + code.routines.data()[number].entry; \
     }
 #define LEAVE                                        \
     {                                                \
@@ -158,7 +164,7 @@ Fault run(Frames& frames, const CodeRoutine& routine) {
 #undef OP
 #pragma GCC diagnostic pop
 ended:
-    return frames.end(fault, static_cast<std::uint64_t>(pc - 1 - first));
+    return frames.end(fault, BEHIND - 1);
 }
 
 }  // namespace
@@ -170,10 +176,16 @@ Probe::Probe(const Code& code) : marks_(code.instructions.size()) {
 
 Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, Scan& now,
               const Context& context, std::int64_t fuel, const std::int64_t* times) {
-    Frames frames{code, now, context, fuel, instance, routine.levels};
+    Frames frames{code,
+                  now,
+                  context,
+                  fuel,
+                  instance,
+                  routine.levels,
+                  instance + 8 * std::size_t{code.calls_slot()}};
     const bool steps = code.probe && code.probe->steps(routine, now);
     if (!times && code.native && !steps)
-        return code.native->entry(routine.entry)(instance, frames, frames.fuel);
+        return code.native->scan_of(code, routine)(instance, frames, fuel);
     if (!times && !steps) return run<false, false>(frames, routine);
     std::uint64_t counted[op_classes + 1] = {};
     frames.counted = counted;

@@ -4,6 +4,8 @@
 #include <tuple>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/st/code/bytes.hpp"
+#include "runtime/st/code/code.hpp"
 #include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft::st::meaning {
@@ -146,17 +148,49 @@ std::optional<std::int64_t> reference_distance(const std::byte* a, const std::by
     return std::int64_t{bytes_from_first(a)} - bytes_from_first(b);
 }
 
-bool Frames::ends_at(const Instruction* behind) const {
-    if (!code.witness) return true;
-    const auto next = static_cast<std::uint64_t>(behind - code.instructions.data());
-    return code.witness->ends_at(next - 1, base, static_cast<std::uint64_t>(top - bottom) / 16);
+void Frames::find(std::byte* to, std::uint64_t address, std::uint32_t method) const {
+    const std::uint64_t kind = word(place(address), code.kind_slot());
+    const FoundRoutine& found = code.found[kind * code.methods + method];
+    set_word(to, 0, found.routine);
+    set_word(to, 1, address + found.first);
 }
 
-bool Frames::goes_on(const Piece& piece, const std::byte* reference,
-                     const Instruction* next) const {
+bool Frames::has_room(std::uint64_t routine) const {
+    const auto running = static_cast<std::uint64_t>(top - bottom) / 16;
+    return running + 1 + code.routines[routine].depth <= levels;
+}
+
+void Frames::unmark(std::uint64_t at, std::uint64_t frame) const {
+    std::byte* level = top;
+    for (;;) {
+        const auto runs = std::ranges::upper_bound(code.routines, at, {}, &CodeRoutine::end);
+        if (runs->mark != 0) set_word(place(frame), runs->mark, 0);
+        if (level == bottom) return;
+        level -= 16;
+        at = word(level, 0) - 1;
+        frame = word(level, 1);
+    }
+}
+
+Fault Frames::end(Fault fault, std::uint64_t at) const {
+    set_word(root, error_slot, fault != Fault::none);
+    set_word(root, error_id_slot, static_cast<std::uint64_t>(fault));
+    if (fault == Fault::none) return fault;
+    set_word(root, place_slot, at);
+    set_word(root, depth_slot, static_cast<std::uint64_t>(top - bottom) / 16);
+    if (code.has_kinds) unmark(at, base);
+    return fault;
+}
+
+bool Frames::ends_at(std::uint64_t behind) const {
+    if (!code.witness) return true;
+    return code.witness->ends_at(behind - 1, base, static_cast<std::uint64_t>(top - bottom) / 16);
+}
+
+bool Frames::goes_on(const Piece& piece, const std::byte* reference, std::uint64_t next) const {
     const CodeRoutine& routine = code.routines[piece.routine];
     const std::byte* variable = place(word(reference, 0));
-    auto at = static_cast<std::uint64_t>(next - code.instructions.data()) - 1;
+    std::uint64_t at = next - 1;
     const std::byte* frame = place(base);
     for (const std::byte* level = top;; level -= 16) {
         const bool is_its = at >= routine.entry && at < routine.end;
@@ -174,7 +208,7 @@ Fault Frames::told(Fault fault, const std::byte* reference) const {
     return fault;
 }
 
-Fault Frames::find(const std::byte* reference, const Instruction* next, Bytes& found) const {
+Fault Frames::find(const std::byte* reference, std::uint64_t next, Bytes& found) const {
     const std::uint64_t number = piece_of(reference);
     if (number == 0) return Fault::no_reference;
     const Piece& piece = code.pieces[number - 1];
@@ -184,7 +218,7 @@ Fault Frames::find(const std::byte* reference, const Instruction* next, Bytes& f
     return Fault::none;
 }
 
-Fault Frames::reach(const std::byte* reference, std::uint32_t shape, const Instruction* next) {
+Fault Frames::reach(const std::byte* reference, std::uint32_t shape, std::uint64_t next) {
     Bytes at;
     if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
     const auto slot = slot_of(code, at.shape, 8 * at.first, shape);
@@ -201,7 +235,7 @@ static std::byte* slots_at(const Code& code, const Bytes& at, std::uint64_t bit,
 }
 
 Fault Frames::load_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                           const Instruction* next) {
+                           std::uint64_t next) {
     Bytes at;
     if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
     if (const std::byte* slots = slots_at(code, at, bit, shape)) {
@@ -212,7 +246,7 @@ Fault Frames::load_through(const std::byte* reference, std::uint64_t bit, std::u
 }
 
 Fault Frames::store_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                            std::uint64_t value, const Instruction* next) {
+                            std::uint64_t value, std::uint64_t next) {
     Bytes at;
     if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
     if (std::byte* slots = slots_at(code, at, bit, shape)) {
@@ -223,7 +257,7 @@ Fault Frames::store_through(const std::byte* reference, std::uint64_t bit, std::
 }
 
 Fault Frames::load_text_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                                std::uint64_t slots, const Instruction* next) {
+                                std::uint64_t slots, std::uint64_t next) {
     Bytes at;
     if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
     at.first += static_cast<std::int64_t>(bit / 8);
@@ -231,7 +265,7 @@ Fault Frames::load_text_through(const std::byte* reference, std::uint64_t bit, s
 }
 
 Fault Frames::store_text_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                                 std::uint64_t slots, const Instruction* next) {
+                                 std::uint64_t slots, std::uint64_t next) {
     Bytes at;
     if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
     if (word(place(slots), 0) > code.shapes[shape].type->length) note_cut(next);
@@ -240,7 +274,7 @@ Fault Frames::store_text_through(const std::byte* reference, std::uint64_t bit, 
 }
 
 Fault Frames::copy_from_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                                std::uint64_t slots, const Instruction* next) {
+                                std::uint64_t slots, std::uint64_t next) {
     Bytes at;
     if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
     if (const std::byte* from = slots_at(code, at, bit, shape)) {
@@ -253,7 +287,7 @@ Fault Frames::copy_from_through(const std::byte* reference, std::uint64_t bit, s
 }
 
 Fault Frames::copy_to_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                              std::uint64_t slots, const Instruction* next) {
+                              std::uint64_t slots, std::uint64_t next) {
     Bytes at;
     if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
     if (std::byte* to = slots_at(code, at, bit, shape)) {
@@ -272,7 +306,7 @@ static bool is_left(const Code& code, const Bytes& at, std::uint64_t count) {
 }
 
 Fault Frames::copy_memory(const std::byte* to, const std::byte* from, std::int64_t count,
-                          const Instruction* next) {
+                          std::uint64_t next) {
     if (count <= 0) return Fault::none;
     Bytes target, source;
     if (const Fault wrong = find(to, next, target); wrong != Fault::none) return wrong;
@@ -283,7 +317,7 @@ Fault Frames::copy_memory(const std::byte* to, const std::byte* from, std::int64
 }
 
 Fault Frames::fill_memory(const std::byte* to, std::uint64_t value, std::int64_t count,
-                          const Instruction* next) {
+                          std::uint64_t next) {
     if (count <= 0) return Fault::none;
     Bytes target;
     if (const Fault wrong = find(to, next, target); wrong != Fault::none) return wrong;
@@ -293,7 +327,7 @@ Fault Frames::fill_memory(const std::byte* to, std::uint64_t value, std::int64_t
 }
 
 Fault Frames::compare_memory(const std::byte* a, const std::byte* b, std::int64_t count,
-                             const Instruction* next) {
+                             std::uint64_t next) {
     reached = 0;
     if (count <= 0) return Fault::none;
     Bytes left, right;

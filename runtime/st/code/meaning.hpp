@@ -7,15 +7,22 @@
 #include <limits>
 #include <optional>
 
-#include <sleef.h>
+#include "runtime/model/scan.hpp"
+#include "runtime/st/code/fault.hpp"
+#include "runtime/st/code/slots.hpp"
+#include "runtime/st/types/packed_form.hpp"
 
-#include "runtime/st/code/bytes.hpp"
-#include "runtime/st/code/machine.hpp"
-#include "runtime/st/syntax/constant.hpp"
-#include "runtime/st/types/packed.hpp"
+namespace lineshaft::st {
 
-/// What the lines of the instructions are written in: the machine and the stencils of native code
-/// (native/) include it. Nothing here throws.
+struct Bytes;
+struct Code;
+struct Piece;
+
+}  // namespace lineshaft::st
+
+/// What the lines of the instructions are written in: the machine, the stencils of native code and
+/// what a compiler makes of the lines (native/) include it, that without the rest of the program.
+/// Nothing here throws.
 namespace lineshaft::st::meaning {
 
 template <class T>
@@ -25,7 +32,9 @@ void write(std::byte* place, T value) {
 }
 
 inline std::uint64_t word(const std::byte* first, std::uint64_t slot) {
-    return read<std::uint64_t>(first + 8 * slot);
+    std::uint64_t value = 0;
+    std::memcpy(&value, first + 8 * slot, sizeof value);
+    return value;
 }
 
 inline void set_word(std::byte* first, std::uint64_t slot, std::uint64_t value) {
@@ -138,14 +147,16 @@ inline std::optional<std::uint64_t> to_bcd(std::uint64_t value, std::uint32_t di
 /// A FOR goes on with this counter; behind the limit stands the step.
 template <class T>
 bool is_within(const std::byte* counter, const std::byte* limit) {
-    const bool rises = std::is_unsigned_v<T> || read<std::int64_t>(limit + 8) >= 0;
-    return rises ? read<T>(counter) <= read<T>(limit) : read<T>(counter) >= read<T>(limit);
+    const auto at = static_cast<T>(word(counter, 0)), last = static_cast<T>(word(limit, 0));
+    const bool rises = std::is_unsigned_v<T> || static_cast<std::int64_t>(word(limit, 1)) >= 0;
+    return rises ? at <= last : at >= last;
 }
 
 template <class T>
 bool next(std::byte* counter, const std::byte* limit) {
     T sum = 0;
-    const bool over = __builtin_add_overflow(read<T>(counter), read<T>(limit + 8), &sum);
+    const bool over = __builtin_add_overflow(static_cast<T>(word(counter, 0)),
+                                             static_cast<T>(word(limit, 1)), &sum);
     write(counter, sum);
     return !over && is_within<T>(counter, limit);
 }
@@ -212,8 +223,8 @@ struct Frames {
     const Context& context;
     std::int64_t fuel;
     std::byte* root;
-    std::uint32_t levels = 0;  ///< of calls that the root has room for
-    std::byte* bottom = root + 8 * std::size_t{code.calls_slot()};
+    std::uint32_t levels = 0;          ///< of calls that the root has room for
+    std::byte* bottom = nullptr;       ///< where the calls that run begin in the instance
     std::byte* top = bottom;           ///< of the calls that run
     std::uint64_t base = 0;            ///< address of the frame
     std::uint64_t reached = 0;         ///< what the last reference is to
@@ -244,37 +255,14 @@ struct Frames {
     }
     std::uint64_t global(std::uint32_t number) const { return (global_number(number) + 1) << 32; }
 
-    /// Of the instance at the address, which is one: what that method is.
-    const FoundRoutine& find(std::uint64_t address, std::uint32_t method) const {
-        const std::uint64_t kind = word(place(address), code.kind_slot());
-        return code.found.data()[kind * code.methods + method];
-    }
+    /// Of the instance at the address, which is one: what that method is, to slot 0, and the
+    /// address of what is given to it, to the next one.
+    void find(std::byte* to, std::uint64_t address, std::uint32_t method) const;
 
-    bool has_room(std::uint64_t routine) const {
-        const auto running = static_cast<std::uint64_t>(top - bottom) / 16;
-        return running + 1 + code.routines[routine].depth <= levels;
-    }
+    bool has_room(std::uint64_t routine) const;
 
     /// Nothing runs any more: where it was left says what did.
-    void unmark(std::uint64_t at, std::uint64_t frame) const {
-        std::byte* level = top;
-        for (;;) {
-            const auto runs = std::ranges::upper_bound(code.routines, at, {}, &CodeRoutine::end);
-            if (runs->mark != 0) set_word(place(frame), runs->mark, 0);
-            if (level == bottom) return;
-            level -= 16;
-            at = word(level, 0) - 1;
-            frame = word(level, 1);
-        }
-    }
-
-    void call_block(std::byte* block, std::uint32_t number) const {
-        const BlockType& type = *code.standard[number];
-        if (!type.context) return void(type.scan_blocks(block, 1, now, context));
-        Context inner = context;
-        inner.kind = type.context;
-        type.scan_blocks(block, 1, now, inner);
-    }
+    void unmark(std::uint64_t at, std::uint64_t frame) const;
 
     /// A call, after which the instruction `behind` is next.
     void enter(std::uint64_t address, std::uint64_t behind) {
@@ -292,11 +280,10 @@ struct Frames {
     }
 
     /// `behind` an assertion that does not hold.
-    bool ends_at(const Instruction* behind) const;
+    bool ends_at(std::uint64_t behind) const;
 
-    void note_cut(const Instruction* at) const {
-        if (word(root, cut_slot) == 0)
-            set_word(root, cut_slot, static_cast<std::uint64_t>(at - code.instructions.data()));
+    void note_cut(std::uint64_t behind) const {
+        if (word(root, cut_slot) == 0) set_word(root, cut_slot, behind);
     }
 
     /// Of a call that begins now: no other one of the same frame has it.
@@ -305,38 +292,38 @@ struct Frames {
     }
 
     /// Whether the call that has the variable of a piece goes on, or is the one that runs.
-    bool goes_on(const Piece& piece, const std::byte* reference, const Instruction* next) const;
+    bool goes_on(const Piece& piece, const std::byte* reference, std::uint64_t next) const;
 
     /// Finds in `reached` what a reference is to, which is to be of that shape. `next` is behind
     /// the instruction that asks.
-    Fault reach(const std::byte* reference, std::uint32_t shape, const Instruction* next);
+    Fault reach(const std::byte* reference, std::uint32_t shape, std::uint64_t next);
 
     /// The variable of a reference and the byte that it is at.
-    Fault find(const std::byte* reference, const Instruction* next, Bytes& found) const;
+    Fault find(const std::byte* reference, std::uint64_t next, Bytes& found) const;
     /// A fault of what is done with that, of which messages name the variable.
     Fault told(Fault fault, const std::byte* reference) const;
 
     // What a reference is to as the bytes that a controller has there, so many bits behind, and of
     // that shape. `slots` is the address of a text's or a value's slots.
     Fault load_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                       const Instruction* next);
+                       std::uint64_t next);
     Fault store_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                        std::uint64_t value, const Instruction* next);
+                        std::uint64_t value, std::uint64_t next);
     Fault load_text_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                            std::uint64_t slots, const Instruction* next);
+                            std::uint64_t slots, std::uint64_t next);
     Fault store_text_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                             std::uint64_t slots, const Instruction* next);
+                             std::uint64_t slots, std::uint64_t next);
     Fault copy_from_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                            std::uint64_t slots, const Instruction* next);
+                            std::uint64_t slots, std::uint64_t next);
     Fault copy_to_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                          std::uint64_t slots, const Instruction* next);
+                          std::uint64_t slots, std::uint64_t next);
     Fault copy_memory(const std::byte* to, const std::byte* from, std::int64_t count,
-                      const Instruction* next);
+                      std::uint64_t next);
     Fault fill_memory(const std::byte* to, std::uint64_t value, std::int64_t count,
-                      const Instruction* next);
+                      std::uint64_t next);
     /// -1, 0 or 1 in `reached`.
     Fault compare_memory(const std::byte* a, const std::byte* b, std::int64_t count,
-                         const Instruction* next);
+                         std::uint64_t next);
 
     std::uint64_t leave() {
         top -= 16;
@@ -344,15 +331,8 @@ struct Frames {
         return word(top, 0);
     }
 
-    Fault end(Fault fault, std::uint64_t at) {
-        set_word(root, error_slot, fault != Fault::none);
-        set_word(root, error_id_slot, static_cast<std::uint64_t>(fault));
-        if (fault == Fault::none) return fault;
-        set_word(root, place_slot, at);
-        set_word(root, depth_slot, static_cast<std::uint64_t>(top - bottom) / 16);
-        if (code.has_kinds) unmark(at, base);
-        return fault;
-    }
+    /// Of a scan, at that instruction.
+    Fault end(Fault fault, std::uint64_t at) const;
 };
 
 }  // namespace lineshaft::st::meaning

@@ -17,7 +17,7 @@
 /// fault.
 ///
 /// Of packed memory the lower half of c is where a value begins [bits], on from what slot d has,
-/// and the upper one, UPPER_C, its PackedFormat; of what a reference is to (`..._through`) the
+/// and the upper one, UPPER(to), its PackedFormat; of what a reference is to (`..._through`) the
 /// number of the value's shape.
 ///
 /// Fused instructions do what two or more of the others do. Code that is counted has none.
@@ -42,16 +42,16 @@
     OP(move_reference, move, "ssr-", if (!move_reference(at(a), at(b), I(c))) FAIL(out_of_range))    \
     OP(compare_references, integer, "wss-", put(a, compare_references(at(b), at(c))))                \
     OP(reference_distance, integer, "wss-", if (const auto n = reference_distance(at(b), at(c))) put(a, *n); else FAIL(out_of_range)) \
-    OP(reach, move, "wsn-", LINESHAFT_ST_REACHED(frames.reach(at(b), c, pc)); put(a, frames.reached)) \
-    OP(load_through, move, "wsnr", LINESHAFT_ST_REACHED(frames.load_through(at(b), c + U(d), UPPER_C, pc)); put(a, frames.reached)) \
-    OP(store_through, move, "rsnr", LINESHAFT_ST_REACHED(frames.store_through(at(b), c + U(d), UPPER_C, U(a), pc))) \
-    OP(load_text_through, text, "rsnr", LINESHAFT_ST_REACHED(frames.load_text_through(at(b), c + U(d), UPPER_C, U(a), pc))) \
-    OP(store_text_through, text, "rsnr", LINESHAFT_ST_REACHED(frames.store_text_through(at(b), c + U(d), UPPER_C, U(a), pc))) \
-    OP(copy_from_through, move, "rsnr", LINESHAFT_ST_REACHED(frames.copy_from_through(at(b), c + U(d), UPPER_C, U(a), pc))) \
-    OP(copy_to_through, move, "rsnr", LINESHAFT_ST_REACHED(frames.copy_to_through(at(b), c + U(d), UPPER_C, U(a), pc))) \
-    OP(copy_memory, move, "ssr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.copy_memory(at(a), at(b), I(c), pc))) \
-    OP(fill_memory, move, "srr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.fill_memory(at(a), U(b), I(c), pc))) \
-    OP(compare_memory, integer, "wssr", if ((fuel -= effort(I(d))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.compare_memory(at(b), at(c), I(d), pc)); put(a, frames.reached)) \
+    OP(reach, move, "wsn-", LINESHAFT_ST_REACHED(frames.reach(at(b), c, BEHIND)); put(a, frames.reached)) \
+    OP(load_through, move, "wsnr", LINESHAFT_ST_REACHED(frames.load_through(at(b), c + U(d), UPPER(to), BEHIND)); put(a, frames.reached)) \
+    OP(store_through, move, "rsnr", LINESHAFT_ST_REACHED(frames.store_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(load_text_through, text, "rsnr", LINESHAFT_ST_REACHED(frames.load_text_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(store_text_through, text, "rsnr", LINESHAFT_ST_REACHED(frames.store_text_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(copy_from_through, move, "rsnr", LINESHAFT_ST_REACHED(frames.copy_from_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(copy_to_through, move, "rsnr", LINESHAFT_ST_REACHED(frames.copy_to_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(copy_memory, move, "ssr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.copy_memory(at(a), at(b), I(c), BEHIND))) \
+    OP(fill_memory, move, "srr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.fill_memory(at(a), U(b), I(c), BEHIND))) \
+    OP(compare_memory, integer, "wssr", if ((fuel -= effort(I(d))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.compare_memory(at(b), at(c), I(d), BEHIND)); put(a, frames.reached)) \
     OP(offset, move, "wrn-", put(a, U(b) + c))                                                       \
     OP(offset_by, move, "wrr-", put(a, U(b) + U(c)))                                                 \
     OP(load, move, "wrn-", put(a, word(target(U(b)), c)))                                            \
@@ -65,11 +65,11 @@
     OP(copy_from, move, "srn-", copy_slots(at(a), target(U(b)), c))                                  \
     OP(copy_between, move, "rrn-", copy_slots(target(U(a)), target(U(b)), c))                        \
     OP(copy_to, move, "rsn-", copy_slots(target(U(a)), at(b), c))                                    \
-    OP(load_packed, move, "wrnr", put(a, load_packed(target(U(b)), c + U(d), PackedFormat::of_number(UPPER_C)))) \
-    OP(store_packed, move, "rrnr", store_packed(target(U(b)), c + U(d), PackedFormat::of_number(UPPER_C), U(a))) \
-    OP(load_packed_text, text, "rrnr", load_packed_text(target(U(a)), target(U(b)), c + U(d), PackedText::of_number(UPPER_C))) \
-    OP(store_packed_text, text, "rrnr", if (word(target(U(a)), 0) > PackedText::of_number(UPPER_C).length) frames.note_cut(pc); store_packed_text(target(U(b)), c + U(d), PackedText::of_number(UPPER_C), target(U(a)))) \
-    OP(initialise, move, "snn-", std::memcpy(at(a), &code.images[b], 8 * std::size_t{c}))            \
+    OP(load_packed, move, "wrnr", put(a, load_packed(target(U(b)), c + U(d), PackedFormat::of_number(UPPER(to))))) \
+    OP(store_packed, move, "rrnr", store_packed(target(U(b)), c + U(d), PackedFormat::of_number(UPPER(to)), U(a))) \
+    OP(load_packed_text, text, "rrnr", load_packed_text(target(U(a)), target(U(b)), c + U(d), PackedText::of_number(UPPER(to)))) \
+    OP(store_packed_text, text, "rrnr", if (word(target(U(a)), 0) > PackedText::of_number(UPPER(to)).length) frames.note_cut(BEHIND); store_packed_text(target(U(b)), c + U(d), PackedText::of_number(UPPER(to)), target(U(a)))) \
+    OP(initialise, move, "snn-", copy_slots(at(a), IMAGE(b), c))            \
     OP(index, integer, "wrx-", ELEMENT(b, c); put(a, element))                                       \
     OP(index_more, integer, "wrx-", ELEMENT(b, c); put(a, U(a) + element))                           \
     OP(load_element, integer, "wsrx", ELEMENT(c, d); put(a, word(at(b), element)))                   \
@@ -82,7 +82,7 @@
     OP(jump_unless, jump, "-rj-", if (U(b) == 0) GO(to))                                             \
     OP(move_twice, move, "wrwr", put(a, U(b)); put(c, U(d)))                                         \
     OP(move_and_jump, jump, "wrj-", put(a, U(b)); GO(to))                                            \
-    OP(choose, jump, "-rx-", if (within(U(b), c)) GO(number_of(U(b), c)))                            \
+    OP(choose, jump, "-rx-", if (within(U(b), c)) CHOOSE(b, c, to))                            \
     OP(repeat, jump, "--j-", AGAIN(to))                                                              \
     OP(repeat_if, jump, "-rj-", if (U(b) != 0) AGAIN(to))                                            \
     OP(repeat_next, jump, "wsj-", if (next<std::int64_t>(at(a), at(b))) AGAIN(to))                   \
@@ -91,15 +91,15 @@
     OP(skip_loop_unsigned, jump, "rsj-", if (!is_within<std::uint64_t>(at(a), at(b))) GO(to))        \
     OP(call, call, "sf--", CALL(frames.address_of(a), b))                                            \
     OP(call_at, call, "rf--", CALL(U(a), b))                                                         \
-    OP(find_routine, call, "wrn-", if (U(b) == 0) FAIL(no_reference); put(a, frames.find(U(b), c).routine); set_word(at(a), 1, U(b) + frames.find(U(b), c).first)) \
+    OP(find_routine, call, "wrn-", if (U(b) == 0) FAIL(no_reference); frames.find(at(a), U(b), c)) \
     OP(call_found, call, "rr--", const std::uint64_t found = U(b); if (!frames.has_room(found)) FAIL(no_end); CALL(U(a), found)) \
     OP(begin_once, call, "w---", if (U(a) != 0) FAIL(runs_already); put(a, std::uint64_t{1}))        \
-    OP(call_block, call, "sn--", frames.call_block(at(a), b))                                        \
-    OP(call_block_at, call, "rn--", frames.call_block(target(U(a)), b))                              \
+    OP(call_block, call, "sn--", code.call_block(at(a), b, frames.now, frames.context))                                        \
+    OP(call_block_at, call, "rn--", code.call_block(target(U(a)), b, frames.now, frames.context))                              \
     OP(advance_time, call, "-rr-", if (!frames.advance(I(b), I(c))) FAIL(out_of_range); fuel = frames.fuel) \
     OP(message, none, "r---", (void)a)                                                                \
     OP(cover, none, "n---", code.hits[a].fetch_add(1, std::memory_order_relaxed))                     \
-    OP(stop, jump, "rrr-", if (frames.ends_at(pc)) FAIL(assertion))                                      \
+    OP(stop, jump, "rrr-", if (frames.ends_at(BEHIND)) FAIL(assertion))                                      \
     OP(leave, jump, "----", LEAVE)                                                                   \
     OP(and_bits, boolean, "wrr-", put(a, U(b) & U(c)))                                               \
     OP(or_bits, boolean, "wrr-", put(a, U(b) | U(c)))                                                \
@@ -163,8 +163,8 @@
     OP(real_bits, real, "wr--", put(a, std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(R(b)))})) \
     OP(real_of_bits, real, "wr--", put(a, double{std::bit_cast<float>(static_cast<std::uint32_t>(U(b)))})) \
     OP(is_finite, real, "wr--", put(a, std::uint64_t{std::isfinite(R(b))}))                          \
-    OP(text_copy, text, "rrr-", if (word(target(U(b)), 0) > U(c)) frames.note_cut(pc); copy_text(target(U(a)), target(U(b)), U(c))) \
-    OP(text_append, text, "rrs-", if (!append_text(target(U(a)), target(U(b)), I(c), I(c + 1))) frames.note_cut(pc)) \
+    OP(text_copy, text, "rrr-", if (word(target(U(b)), 0) > U(c)) frames.note_cut(BEHIND); copy_text(target(U(a)), target(U(b)), U(c))) \
+    OP(text_append, text, "rrs-", if (!append_text(target(U(a)), target(U(b)), I(c), I(c + 1))) frames.note_cut(BEHIND)) \
     OP(text_length, text, "wr--", put(a, word(target(U(b)), 0)))                                     \
     OP(text_compare, text, "wrr-", put(a, compare_texts(target(U(b)), target(U(c)))))                \
     OP(text_character, text, "wrrn", if (const auto n = character_of(target(U(b)), I(c), d)) put(a, *n); else FAIL(array_bounds)) \

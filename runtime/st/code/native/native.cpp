@@ -7,6 +7,7 @@
 #include <sys/mman.h>
 
 #include "runtime/st/code/meaning.hpp"
+#include "runtime/st/code/native/compile.hpp"
 #include "runtime/st/code/native/stencil.hpp"
 
 namespace lineshaft::st {
@@ -31,6 +32,11 @@ Native::~Native() {
 
 Fault native_end(std::byte*, meaning::Frames& frames, std::uint64_t behind, Fault fault) {
     return frames.end(fault, behind - 1);
+}
+
+void native_call_block(const Code& code, std::byte* block, std::uint32_t number, const Scan& now,
+                       const Context& context) {
+    code.call_block(block, number, now, context);
 }
 
 #ifdef LINESHAFT_NATIVE
@@ -139,6 +145,7 @@ class Patching {
             case Hole::next_instruction:
                 return address(native_.places[number + 1]);
             case Hole::jump_target:
+            case Hole::repeat_target:
                 return address(native_.places[code_.place_of(in.c)]);
             case Hole::called_routine:
                 return address(native_.places[called(in).entry]);
@@ -189,9 +196,12 @@ std::shared_ptr<const Native> native_code(const Code& code) {
     }
     native->first = static_cast<const std::byte*>(memory);
     if (!patching.write(static_cast<std::byte*>(memory))) return {};
-    if (::mprotect(memory, native->size, PROT_READ | PROT_EXEC) == 0) return native;
-    refused = true;
-    return {};
+    if (::mprotect(memory, native->size, PROT_READ | PROT_EXEC) != 0) {
+        refused = true;
+        return {};
+    }
+    compile_code(code, native);
+    return native;
 }
 
 #else

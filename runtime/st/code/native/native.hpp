@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -23,6 +24,8 @@ struct Native {
     const std::byte* first = nullptr;   ///< of the memory that has it
     std::size_t size = 0;               ///< of that memory [bytes]
     std::vector<std::uint32_t> places;  ///< of each instruction, from `first` on
+    /// Of each routine what a compiler made, as soon as it did: `compile`.
+    std::atomic<const NativeEntry*> compiled = nullptr;
 
     Native() = default;
     ~Native();
@@ -32,6 +35,10 @@ struct Native {
     NativeEntry entry(std::uint64_t instruction) const {
         return reinterpret_cast<NativeEntry>(const_cast<std::byte*>(first) +
                                              places.data()[instruction]);
+    }
+    NativeEntry scan_of(const Code& code, const CodeRoutine& routine) const {
+        const NativeEntry* const made = compiled.load(std::memory_order_acquire);
+        return made ? made[&routine - code.routines.data()] : entry(routine.entry);
     }
 };
 
@@ -47,5 +54,9 @@ void switch_native_off();
 /// The end of a scan at the instruction before `behind`. The stencils end with it.
 extern "C" [[gnu::cold]] Fault native_end(std::byte* base, meaning::Frames& frames,
                                           std::uint64_t behind, Fault fault);
+
+/// Code::call_block, for what a compiler made.
+extern "C" void native_call_block(const Code& code, std::byte* block, std::uint32_t number,
+                                  const Scan& now, const Context& context);
 
 }  // namespace lineshaft::st

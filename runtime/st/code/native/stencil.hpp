@@ -12,7 +12,7 @@ namespace lineshaft::st {
     HOLE(a_bytes) HOLE(b_bytes) HOLE(c_bytes) HOLE(d_bytes)                                 \
     HOLE(a_number) HOLE(b_number) HOLE(c_number) HOLE(d_number) HOLE(c_upper)               \
     HOLE(c_table) HOLE(d_table) HOLE(place_behind)                                          \
-    HOLE(next_instruction) HOLE(jump_target) HOLE(called_routine)
+    HOLE(next_instruction) HOLE(jump_target) HOLE(repeat_target) HOLE(called_routine)
 // clang-format on
 
 enum class Hole : std::uint8_t {
@@ -50,5 +50,6 @@ extern const Filling stencil_fillings[];
 extern const unsigned char stencil_constants[];
 extern const std::size_t stencil_constants_size, stencil_externals_count;
 extern const void* const stencil_externals[];
+extern const char* const stencil_external_names[];
 
 }  // namespace lineshaft::st

@@ -4,6 +4,8 @@
 /// library is loaded. Every way out of a function is a tail call; the one to the next instruction
 /// is expected, so that it comes last.
 
+#include <sleef.h>
+
 #include "runtime/st/code/meaning.hpp"
 #include "runtime/st/code/native/native.hpp"
 
@@ -75,6 +77,7 @@ void put_at(std::byte* place, T value) {
 #endif
 #define WAY(name) extern "C" [[gnu::cold]] STENCIL name(STATE);
 extern "C" STENCIL next_instruction(STATE);
+extern "C" STENCIL repeat_target(STATE);
 WAY(jump_target)
 WAY(called_routine)
 #undef WAY
@@ -103,28 +106,31 @@ WAY_OF call(const Operand&, STATE) {
 #define I(slot) static_cast<std::int64_t>(U(slot))
 #define R(slot) std::bit_cast<double>(U(slot))
 #define put(slot, value) put_at(at(slot), value)
-#define UPPER_C NUMBER(c_upper)
+#define UPPER(way) NUMBER(c_upper)
+#define BEHIND NUMBER(place_behind)
+#define IMAGE(operand) \
+    reinterpret_cast<const std::byte*>(code.images.data() + std::uint32_t{operand})
 #define target(address) frames.place(address)
 #define table(operand) (*operand.table)
 #define number_of(value, operand) code.numbers.data()[table(operand).place(value)]
 #define within(value, operand) table(operand).contains(value)
-#define pc (code.instructions.data() + NUMBER(place_behind))
 #define GO(way) return go(way, base, frames, fuel)
-#define AGAIN(way)                    \
-    {                                 \
-        if (--fuel < 0) FAIL(no_end); \
-        GO(way);                      \
+#define CHOOSE(slot, number, ways) GO(number_of(U(slot), number))
+#define AGAIN(way)                                \
+    {                                             \
+        if (--fuel < 0) FAIL(no_end);             \
+        return repeat_target(base, frames, fuel); \
     }
-#define FAIL(why) return native_end(base, frames, NUMBER(place_behind), Fault::why)
+#define FAIL(why) return native_end(base, frames, BEHIND, Fault::why)
 #define ELEMENT(slot, number)                         \
     if (!within(U(slot), number)) FAIL(array_bounds); \
     const std::uint64_t element = table(number).place(U(slot))
-#define CALL(address, routine)                       \
-    {                                                \
-        if (--fuel < 0) FAIL(no_end);                \
-        frames.enter(address, NUMBER(place_behind)); \
-        base = frames.place(frames.base);            \
-        return call(routine, base, frames, fuel);    \
+#define CALL(address, routine)                    \
+    {                                             \
+        if (--fuel < 0) FAIL(no_end);             \
+        frames.enter(address, BEHIND);            \
+        base = frames.place(frames.base);         \
+        return call(routine, base, frames, fuel); \
     }
 #define LEAVE                                                  \
     {                                                          \

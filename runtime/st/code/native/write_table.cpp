@@ -39,8 +39,7 @@ constexpr unsigned char jump_byte = 0xE9, call_byte = 0xE8, return_byte = 0xC3,
 constexpr std::uint32_t jump_size = 5;
 
 bool is_way(Hole hole) {
-    return hole == Hole::next_instruction || hole == Hole::jump_target ||
-           hole == Hole::called_routine;
+    return hole >= Hole::next_instruction && hole <= Hole::called_routine;
 }
 
 /// A relocatable file of this machine's kind, as elf(5) describes it.
@@ -144,6 +143,8 @@ class Table {
         std::printf("const std::size_t stencil_externals_count = %zu;\n", externals_.size());
         std::puts("const void* const stencil_externals[] = {");
         for (std::size_t i = 0; i < externals_.size(); ++i) std::printf("external_%zu,\n", i);
+        std::puts("nullptr};\nconst char* const stencil_external_names[] = {");
+        for (const std::string& name : externals_) std::printf("\"%s\",\n", name.c_str());
         std::puts("nullptr};\n\n}  // namespace lineshaft::st");
     }
 

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+
+#include "runtime/st/code/op_class.hpp"
+
+namespace lineshaft::st {
+
+/// Of a value that is one of `count` from `lower` on: the place of an element in an array, or in
+/// `Code::numbers` of an enumeration's number or a CASE's jump.
+struct IndexTable {
+    std::int64_t lower = 0;
+    std::uint64_t count = 0, stride = 1, first = 0;
+
+    bool contains(std::uint64_t value) const {
+        return value - static_cast<std::uint64_t>(lower) < count;
+    }
+    std::uint64_t place(std::uint64_t value) const {
+        return first + (value - static_cast<std::uint64_t>(lower)) * stride;
+    }
+    auto operator<=>(const IndexTable&) const = default;
+};
+
+/// An instance begins with these slots. Then come the numbers of the data blocks among the
+/// program's instances, where there are references the Piece that one of them left (plus 1, or 0),
+/// its kind where calls find routines by it, two slots for each call that runs (where it goes on,
+/// and on which frame), and its variables. A block that extends another begins with all of its
+/// frame.
+enum HeaderSlot : std::uint32_t {
+    error_slot,     ///< BOOL: the last scan ended with a fault
+    error_id_slot,  ///< Fault
+    place_slot,     ///< the instruction it ended with
+    depth_slot,     ///< calls that ran then
+    time_slot,      ///< what its instructions took [ns], if they are counted
+    cut_slot,       ///< 1 + the first instruction that cut a text short, or 0
+    counts_slot,    ///< executed instructions of each class, if they are counted
+    globals_slot = counts_slot + op_classes,
+};
+
+}  // namespace lineshaft::st
