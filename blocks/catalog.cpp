@@ -99,6 +99,7 @@ Catalog make_catalog() {
     blocks.add<PathTable>();
     blocks.add<AddAxisToGroup>();
     blocks.add<RemoveAxisFromGroup>();
+    blocks.add<UngroupAllAxes>();
     blocks.add<GroupEnable>();
     blocks.add<GroupDisable>();
     blocks.add<GroupReset>();

@@ -93,6 +93,7 @@ struct AxesGroup {
     MotionError administer(const Context& context, GroupJob& job);
     MotionError add_axis(const Context& context, const GroupRequest& request);
     MotionError remove_axis(const Context& context, const GroupRequest& request);
+    MotionError ungroup(const Context& context);
     MotionError enable();
     void disable(const Context& context);
     MotionError set_override(const Context& context, GroupJob& job);
@@ -101,7 +102,7 @@ struct AxesGroup {
     void hold(const Context& context, GroupJob& job);
     void begin_reset(const Context& context, GroupJob& job);
     void finish_reset(const Context& context);
-    void brake();
+    void brake(const PathLimit& gently = no_path_limit);
     void fail(const Context& context, MotionError why);
     void abort_all(const Context& context, Progress how, MotionError why = MotionError::none);
     void end(const Context& context, Holder& ended, Progress how,
@@ -112,10 +113,14 @@ struct AxesGroup {
     MotionError refusal() const;
     std::size_t axis_count() const;
 
+    // axes_group_tables.cpp: as far as there is room, row by row.
+    MotionError lay_table(const Context& context, GroupJob& job);
+    MotionError look_through(const Context& context, const GroupJob& job) const;
+    const PathCurve* last_curve(const GroupJob& job) const;
+
     // axes_group_moves.cpp: moves are put into the path.
     void lay(const Context& context);
     MotionError lay(const Context& context, GroupJob& job);
-    MotionError lay_table(const Context& context, GroupJob& job);
     MotionError check(const Context& context, const GroupRequest& request) const;
     void find_axes(const Context& context);
     MotionError begin_to_follow(const Context& context);
@@ -125,7 +130,15 @@ struct AxesGroup {
                        const PathLimits& limits) const;
     MotionError append(const Context& context, const GroupRequest& request, const PathCurve& curve,
                        bool is_within);
-    bool has_room() const { return path.count - path.first + 2 <= ring.size(); }
+    bool has_room(std::size_t pieces = 1) const {
+        return path.count - path.first + pieces + 1 <= ring.size();
+    }
 };
+
+/// The curve of a move that is no path, from where it begins.
+PathFault curve_of(const GroupRequest& request, const PathVector& from, PathCurve& out);
+
+/// What a move is refused with.
+MotionError motion_error_of(PathFault fault);
 
 }  // namespace lineshaft

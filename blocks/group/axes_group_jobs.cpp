@@ -4,6 +4,18 @@
 
 namespace lineshaft {
 
+namespace {
+
+/// What is below 0 is as the moves under way allow.
+PathLimit braking_of(const GroupRequest& request) {
+    PathLimit limit = no_path_limit;
+    if (request.deceleration > 0) limit.acceleration = request.deceleration;
+    if (request.jerk > 0) limit.jerk = request.jerk;
+    return limit;
+}
+
+}  // namespace
+
 void AxesGroup::send(const Context& context, const Scan& now, GroupJob& job) {
     job.task = context.task;
     job.scan = now.index;
@@ -24,6 +36,10 @@ void AxesGroup::take(const Context& context, GroupJob& job) {
     if (is_end(job.progress)) return;
     if (!next_state(request.command, state)) return tell(job, Progress::failed, refusal());
     if (is_move(request.command)) return take_move(context, job);
+    const bool brakes =
+        request.command == stop || request.command == halt || request.command == interrupt;
+    if (brakes && (request.deceleration == 0 || request.jerk == 0))
+        return tell(job, Progress::failed, MotionError::limit_not_positive);
     if (request.command == stop || request.command == halt) return hold(context, job);
     if (request.command == interrupt) return begin_interrupt(context, job);
     if (request.command == reset) return begin_reset(context, job);
@@ -51,6 +67,8 @@ MotionError AxesGroup::administer(const Context& context, GroupJob& job) {
             return add_axis(context, job.request);
         case GroupCommand::remove_axis:
             return remove_axis(context, job.request);
+        case GroupCommand::ungroup:
+            return ungroup(context);
         case GroupCommand::enable:
             return enable();
         case GroupCommand::disable:
@@ -90,6 +108,15 @@ MotionError AxesGroup::remove_axis(const Context& context, const GroupRequest& r
     return MotionError::none;
 }
 
+MotionError AxesGroup::ungroup(const Context& context) {
+    if (following != 0) return MotionError::wrong_state;
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        if (Axis* const removed = axis(context, i)) removed->group = nowhere;
+    axes.fill(nowhere);
+    disable(context);
+    return MotionError::none;
+}
+
 std::size_t AxesGroup::axis_count() const {
     return axes.size() - static_cast<std::size_t>(std::ranges::count(axes, nowhere));
 }
@@ -126,7 +153,7 @@ MotionError AxesGroup::set_override(const Context& context, GroupJob& job) {
 void AxesGroup::begin_interrupt(const Context& context, GroupJob& job) {
     if (braking != 0 || interrupted != 0)
         return tell(job, Progress::failed, MotionError::wrong_state);
-    path.halt();
+    path.halt(braking_of(job.request));
     interrupted = 1;
     if (queue.first != nowhere) tell(context.at<GroupJob>(queue.first), Progress::waiting);
     interrupter = {context.place_of(job), job.ticket, job.request.command};
@@ -150,7 +177,7 @@ void AxesGroup::hold(const Context& context, GroupJob& job) {
     state = *next_state(job.request.command, state);
     tell(job, Progress::active);
     if (following != 0)
-        brake();
+        brake(braking_of(job.request));
     else
         come_to_stand(context);
 }
@@ -175,8 +202,8 @@ void AxesGroup::finish_reset(const Context& context) {
     end(context, resetter, Progress::done);
 }
 
-void AxesGroup::brake() {
-    path.halt();
+void AxesGroup::brake(const PathLimit& gently) {
+    path.halt(gently);
     braking = 1;
 }
 

@@ -3,6 +3,7 @@
 
 #include "blocks/group/axes_group.hpp"
 #include "blocks/group/path_table.hpp"
+#include "blocks/path/path_spline.hpp"
 
 namespace lineshaft {
 
@@ -25,20 +26,6 @@ PathVector in_linear_axes(PathVector x) {
     return x;
 }
 
-MotionError motion_error_of(PathFault fault) {
-    switch (fault) {
-        case PathFault::none:
-        case PathFault::no_length:
-            return MotionError::none;
-        case PathFault::no_arc:
-            return MotionError::no_arc;
-        case PathFault::limit_not_positive:
-            return MotionError::limit_not_positive;
-        default:
-            return MotionError::not_finite;
-    }
-}
-
 PathFault arc_of(const GroupRequest& request, const PathVector& from, const PathVector& to,
                  PathCurve& out) {
     const bool relative = is_relative(request.command);
@@ -57,27 +44,6 @@ PathFault arc_of(const GroupRequest& request, const PathVector& from, const Path
     return fault;
 }
 
-PathFault curve_of(const GroupRequest& request, const PathVector& from, PathCurve& out) {
-    using enum GroupCommand;
-    const GroupCommand command = request.command;
-    const PathVector to = is_relative(command) ? sum(from, request.target) : request.target;
-    if (command == move_circular_absolute || command == move_circular_relative)
-        return arc_of(request, from, to, out);
-    const bool direct = command == move_direct_absolute || command == move_direct_relative;
-    return line_to(from, to, out, direct ? most_path_axes : path_space);
-}
-
-/// A row of a table as a move of its own.
-GroupRequest row_of(const GroupRequest& request, const PathTablePoint& point) {
-    GroupRequest row = request;
-    row.command = point.kind == PathPointKind::line ? GroupCommand::move_linear_absolute
-                                                    : GroupCommand::move_circular_absolute;
-    row.circle = CircleMode::border;
-    row.target = point.target();
-    row.auxiliary = point.auxiliary();
-    return row;
-}
-
 /// Rotary axes alone, or axes each for itself: the path has no limits then, only its axes.
 bool is_free(const GroupRequest& request, const PathCurve& curve) {
     using enum GroupCommand;
@@ -89,6 +55,30 @@ bool is_free(const GroupRequest& request, const PathCurve& curve) {
 }
 
 }  // namespace
+
+MotionError motion_error_of(PathFault fault) {
+    switch (fault) {
+        case PathFault::none:
+        case PathFault::no_length:
+            return MotionError::none;
+        case PathFault::no_arc:
+            return MotionError::no_arc;
+        case PathFault::limit_not_positive:
+            return MotionError::limit_not_positive;
+        default:
+            return MotionError::not_finite;
+    }
+}
+
+PathFault curve_of(const GroupRequest& request, const PathVector& from, PathCurve& out) {
+    using enum GroupCommand;
+    const GroupCommand command = request.command;
+    const PathVector to = is_relative(command) ? sum(from, request.target) : request.target;
+    if (command == move_circular_absolute || command == move_circular_relative)
+        return arc_of(request, from, to, out);
+    const bool direct = command == move_direct_absolute || command == move_direct_relative;
+    return line_to(from, to, out, direct ? most_path_axes : path_space);
+}
 
 /// Whatever the place where it will begin.
 MotionError AxesGroup::check(const Context& context, const GroupRequest& request) const {
@@ -148,35 +138,6 @@ MotionError AxesGroup::lay(const Context& context, GroupJob& job) {
     }
     job.end_piece = static_cast<std::int64_t>(path.count);
     job.is_laid = 1;
-    return MotionError::none;
-}
-
-/// All of it is looked at before it begins.
-MotionError AxesGroup::lay_table(const Context& context, GroupJob& job) {
-    const PathTable::Points& points = context.instance<PathTable>(job.request.table).table;
-    PathCurve curve;
-    if (job.rows == 0) {
-        job.first_piece = static_cast<std::int64_t>(path.count);
-        PathVector from = end_point;
-        for (std::int64_t i = 0; i < points.size; ++i) {
-            const PathTablePoint& point = points.rows[static_cast<std::size_t>(i)];
-            const PathFault fault = curve_of(row_of(job.request, point), from, curve);
-            MotionError why = motion_error_of(fault);
-            if (fault == PathFault::none) why = stays_inside(context, curve);
-            if (why != MotionError::none) return why;
-            from = point.target();
-        }
-    }
-    for (; job.rows < points.size && has_room(); ++job.rows) {
-        const GroupRequest row =
-            row_of(job.request, points.rows[static_cast<std::size_t>(job.rows)]);
-        if (curve_of(row, end_point, curve) != PathFault::none) continue;
-        if (const MotionError why = append(context, row, curve, job.rows > 0);
-            why != MotionError::none)
-            return why;
-    }
-    job.end_piece = static_cast<std::int64_t>(path.count);
-    job.is_laid = job.rows == points.size ? 1 : 0;
     return MotionError::none;
 }
 
@@ -259,12 +220,14 @@ PathJoint AxesGroup::joint_of(const GroupRequest& request, bool is_within, const
     if (!is_within && request.mode <= BufferMode::buffered) joint.velocity = 0;
     const PathCurve& before = ring[(path.count - 1) % ring.size()].curve;
     const bool lines = before.kind == PathCurveKind::line && curve.kind == PathCurveKind::line;
-    if (!lines || joint.velocity == 0) return joint;
+    if (!before.is_line_or_arc() || !curve.is_line_or_arc() || joint.velocity == 0) return joint;
     const double bend = bend_between(before, curve), parameter = request.corner_parameter;
     if (request.corner == CornerMode::corner_distance) joint.distance = parameter;
-    if (request.corner == CornerMode::corner_deviation && bend > 0)
+    if (request.corner == CornerMode::corner_deviation && !lines)
+        joint.distance = transition_distance(parameter, before, curve);
+    if (request.corner == CornerMode::corner_deviation && lines && bend > 0)
         joint.distance = 16 * parameter / (3 * bend);
-    if (request.corner == CornerMode::start_velocity)
+    if (request.corner == CornerMode::start_velocity && lines)
         joint.distance = corner_distance_at(parameter, before, curve, limits);
     return joint;
 }

@@ -26,7 +26,7 @@ void AddAxisToGroup::scan(const Scan& now, const Context& context) {
 }
 
 std::span<const Field> GroupStop::fields() {
-    static const auto fields = group_pin::table({}, "the group stands");
+    static const auto fields = group_pin::table({group_pin::braking()}, "the group stands");
     return fields;
 }
 
@@ -79,7 +79,7 @@ std::span<const Field> plain_fields() {
 }
 
 std::span<const Field> standing_fields() {
-    static const auto fields = group_pin::table({}, "the group stands");
+    static const auto fields = group_pin::table({group_pin::braking()}, "the group stands");
     return fields;
 }
 

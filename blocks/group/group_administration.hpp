@@ -44,6 +44,8 @@ std::span<const Field> standing_fields();
 
 inline constexpr GroupCommandKind remove_axis{GroupCommand::remove_axis, "MC_RemoveAxisFromGroup",
                                               "takes an axis out of a group", remove_axis_fields};
+inline constexpr GroupCommandKind ungroup{GroupCommand::ungroup, "MC_UngroupAllAxes",
+                                          "takes all axes out of a group", plain_fields};
 inline constexpr GroupCommandKind enable{GroupCommand::enable, "MC_GroupEnable",
                                          "lets a group take moves", plain_fields};
 inline constexpr GroupCommandKind disable{GroupCommand::disable, "MC_GroupDisable",
@@ -61,6 +63,7 @@ inline constexpr GroupCommandKind go_on{GroupCommand::go_on, "MC_GroupContinue",
 }  // namespace group_kinds
 
 using RemoveAxisFromGroup = PlainGroupCommand<group_kinds::remove_axis>;
+using UngroupAllAxes = PlainGroupCommand<group_kinds::ungroup>;
 using GroupEnable = PlainGroupCommand<group_kinds::enable>;
 using GroupDisable = PlainGroupCommand<group_kinds::disable>;
 using GroupReset = PlainGroupCommand<group_kinds::reset>;

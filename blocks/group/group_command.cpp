@@ -71,6 +71,13 @@ std::vector<Field> dynamics() {
                   "limit along the path; below 0: the group's own")};
 }
 
+std::vector<Field> braking() {
+    return {input("Deceleration", &B::pins, &GroupRequest::deceleration, "{AxesGroup}/s^2",
+                  "along the path; below 0: as hard as the moves allow"),
+            input("Jerk", &B::pins, &GroupRequest::jerk, "{AxesGroup}/s^3",
+                  "along the path; below 0: as the moves allow")};
+}
+
 std::vector<Field> blending() {
     return {input("BufferMode", &B::pins, &GroupRequest::mode, "",
                   "what becomes of the command at work")

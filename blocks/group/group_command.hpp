@@ -28,22 +28,10 @@ struct GroupCommandBlock : CommandState {
     MotionError check() const;
 };
 
-/// A block with a table of pins and nothing else of its own.
-struct GroupCommandKind {
-    GroupCommand command;
-    std::string_view type, doc;
-    std::span<const Field> (*fields)();
-};
+using GroupCommandKind = KindOf<GroupCommand>;
 
 template <const GroupCommandKind& kind>
-struct PlainGroupCommand : GroupCommandBlock {
-    static constexpr std::string_view type = kind.type;
-    static constexpr std::string_view doc = kind.doc;
-    static std::span<const Field> fields() { return kind.fields(); }
-
-    constexpr PlainGroupCommand() { pins.command = kind.command; }
-    void scan(const Scan& now, const Context& context) { run(now, context); }
-};
+using PlainGroupCommand = PlainBlock<GroupCommandBlock, kind>;
 
 /// Pins of commands to a group. Quantities are in the unit of `AxesGroup`, of rotary axes in deg.
 namespace group_pin {
@@ -54,6 +42,8 @@ std::vector<Field> coordinates(std::string_view name, PathVector GroupRequest::*
                                std::size_t count, std::string_view doc);
 std::vector<Field> dynamics();
 std::vector<Field> blending();
+/// Of a command that brakes.
+std::vector<Field> braking();
 
 /// AxesGroup and Execute, `inputs`, Done, and the other outputs of all.
 std::vector<Field> table(std::initializer_list<std::vector<Field>> inputs,

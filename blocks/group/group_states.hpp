@@ -20,6 +20,7 @@ enum class GroupCommand : std::int64_t {
     none,
     add_axis,
     remove_axis,
+    ungroup,
     enable,
     disable,
     reset,

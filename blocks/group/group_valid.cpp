@@ -59,7 +59,7 @@ bool is_valid(const MotionPlan& plan) {
 }
 
 bool is_valid(const PathPiece& piece) {
-    return is_one_of(piece.curve.kind, PathCurveKind::corner) && piece.curve.length > 0 &&
+    return is_one_of(piece.curve.kind, PathCurveKind::spline) && piece.curve.length > 0 &&
            std::isfinite(piece.curve.length) && std::isfinite(piece.begin);
 }
 

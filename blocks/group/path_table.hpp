@@ -17,9 +17,9 @@ namespace lineshaft {
 inline constexpr std::size_t most_path_points = 1024;
 
 /// How a point of a path_table is reached from the one before.
-enum class PathPointKind : std::int64_t { line, arc };
+enum class PathPointKind : std::int64_t { line, arc, spline };
 
-inline constexpr std::string_view path_point_kind_names[] = {"line", "arc"};
+inline constexpr std::string_view path_point_kind_names[] = {"line", "arc", "spline"};
 
 /// A row: the position of the first three axes, how it is reached, of an arc a point that it
 /// passes, and the position of the rotary axes.
@@ -44,7 +44,7 @@ struct PathTable {
     Points table;
 
     static constexpr std::string_view type = "path_table";
-    static constexpr std::string_view doc = "points of a path, by lines and arcs";
+    static constexpr std::string_view doc = "points of a path, by lines, arcs and splines";
     static constexpr std::string_view handle = "PATH_REF";
     static std::span<const Field> fields();
     static std::span<const TableField> tables();

@@ -74,21 +74,27 @@ struct CommandBlock : CommandState {
 };
 
 /// A block with a table of pins and nothing else of its own.
-struct CommandKind {
-    Command command;
+template <class Commands>
+struct KindOf {
+    Commands command;
     std::string_view type, doc;
     std::span<const Field> (*fields)();
 };
 
-template <const CommandKind& kind>
-struct PlainCommand : CommandBlock {
+template <class Block, const auto& kind>
+struct PlainBlock : Block {
     static constexpr std::string_view type = kind.type;
     static constexpr std::string_view doc = kind.doc;
     static std::span<const Field> fields() { return kind.fields(); }
 
-    constexpr PlainCommand() { pins.command = kind.command; }
-    void scan(const Scan& now, const Context& context) { run(now, context); }
+    constexpr PlainBlock() { this->pins.command = kind.command; }
+    void scan(const Scan& now, const Context& context) { this->run(now, context); }
 };
+
+using CommandKind = KindOf<Command>;
+
+template <const CommandKind& kind>
+using PlainCommand = PlainBlock<CommandBlock, kind>;
 
 /// Pins of command blocks, to make a table of. Quantities are in the unit of `Axis`.
 namespace pin {

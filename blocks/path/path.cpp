@@ -1,8 +1,11 @@
 #include "blocks/path/path.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+
+#include "blocks/path/path_spline.hpp"
 
 namespace lineshaft {
 
@@ -20,7 +23,7 @@ const PathPiece& piece_at(std::span<const PathPiece> ring, std::uint64_t number)
 bool is_smooth(const PathCurve& before, const PathCurve& after) {
     constexpr double rounding = 1e-9;
     const PathPoint a = before.at(before.length), b = after.at(0);
-    double bend = 0;
+    double bend = 1 / (before.length + after.length);
     for (const double x : a.bend) bend = std::max(bend, std::abs(x));
     for (std::size_t i = 0; i < most_path_axes; ++i) {
         if (std::abs(a.tangent[i] - b.tangent[i]) > rounding) return false;
@@ -63,7 +66,8 @@ bool plan_anew(Path& path, std::span<PathPiece> ring) {
     look_back_where_changed(path, ring);
     MotionState from = state_of(path);
     from.position = 0;
-    if (!plan_leg(stretches_of(path, ring), from, place_of(path), factor_of(path), path.leg))
+    if (!plan_leg(stretches_of(path, ring), from, place_of(path), factor_of(path), path.gently,
+                  path.leg))
         return false;
     path.time = 0;
     return true;
@@ -89,7 +93,8 @@ void enter_next(Path& path, std::span<PathPiece> ring) {
         return;
     }
     look_back_where_changed(path, ring);
-    path.lost = !plan_leg(stretches_of(path, ring), from, base, factor_of(path), path.leg);
+    path.lost =
+        !plan_leg(stretches_of(path, ring), from, base, factor_of(path), path.gently, path.leg);
     path.stale = false;
 }
 
@@ -111,14 +116,6 @@ bool is_joined(const PathCurve& before, const PathCurve& after) {
         const double size = std::abs(before.end[i]) + after.length + after.radius;
         if (std::abs(start[i] - before.end[i]) > 1e-12 * size) return false;
     }
-    return true;
-}
-
-/// The lines are as straight on as rounding lets them.
-bool is_straight_on(const PathCurve& before, const PathCurve& after) {
-    constexpr double rounding = 1e-9;
-    for (std::size_t i = 0; i < most_path_axes; ++i)
-        if (std::abs(before.u[i] - after.u[i]) > rounding) return false;
     return true;
 }
 
@@ -175,31 +172,57 @@ bool holds(Path& path, std::span<PathPiece> ring, std::uint64_t cut) {
     return plan_anew(path, ring);
 }
 
-/// Joins a line to the last one by a corner. False, and nothing has changed, where that cannot be.
-bool append_round(Path& path, std::span<PathPiece> ring, PathCurve line, const PathLimit& box,
+/// The curves that round the joint of two, `far` from it, and the box of each.
+struct Round {
+    std::size_t count = 0;
+    std::array<PathCurve, most_spline_parts> curves;
+    std::array<PathLimit, most_spline_parts> boxes;
+};
+
+bool find_round(const PathCurve& before, const PathCurve& after, double far,
+                const PathLimits& limits, const PathLimit& most, Round& out) {
+    const bool lines = before.kind == PathCurveKind::line && after.kind == PathCurveKind::line;
+    if (lines) {
+        out.count = 1;
+        out.curves[0] = corner_between(before, after, far);
+        out.boxes[0] = box_of_corner(before, after, out.curves[0].length, limits, most);
+    } else {
+        out.count = spline_between(before.at(before.length - far), after.at(far), out.curves);
+        for (std::size_t i = 0; i < out.count; ++i)
+            out.boxes[i] = least_of(box_of(out.curves[i], limits), most);
+    }
+    for (std::size_t i = 0; i < out.count; ++i)
+        if (!is_good(out.boxes[i])) return false;
+    return out.count > 0;
+}
+
+/// Joins a line or an arc to the last one by a corner or a transition. False, and nothing has
+/// changed, where that cannot be.
+bool append_round(Path& path, std::span<PathPiece> ring, PathCurve next, const PathLimit& box,
                   const PathLimits& limits, double distance) {
     if (path.finished() || path.count - path.first + 2 > ring.size()) return false;
     PathPiece& last = piece_at(ring, path.count - 1);
     PathStretch& cut = piece_at(ring, path.stretches - 1).stretch;
     const PathCurve curve = last.curve;
-    if (curve.kind != PathCurveKind::line || line.kind != PathCurveKind::line ||
-        is_straight_on(curve, line))
+    if (!curve.is_line_or_arc() || !next.is_line_or_arc() || is_smooth(curve, next)) return false;
+    const double far = std::min(distance, room_of_corner(path, ring, next));
+    Round round;
+    if (!(far > 0) ||
+        !find_round(curve, next, far, limits, least_of(cut.box, limits.path), round) ||
+        path.count - path.first + 1 + round.count > ring.size())
         return false;
-    const double far = std::min(distance, room_of_corner(path, ring, line));
-    if (!(far > 0)) return false;
-    const PathCurve corner = corner_between(curve, line, far);
-    const PathLimit round = box_of_corner(curve, line, corner.length, limits, cut.box);
-    if (!is_good(round)) return false;
-    line.cut_start(far);
+    next.cut_start(far);
     last.curve.cut_end(far);
-    if (!(last.curve.length > 0) || !(line.length > 0)) {
+    if (!(last.curve.length > 0) || !(next.length > 0)) {
         last.curve = curve;
         return false;
     }
     const Path before = path;
+    constexpr double any = std::numeric_limits<double>::infinity();
     path.total = cut.end = last.end();
-    append_piece(path, ring, corner, round, round.velocity);
-    append_piece(path, ring, line, box, round.velocity);
+    for (std::size_t i = 0; i < round.count; ++i)
+        append_piece(path, ring, round.curves[i], round.boxes[i], any);
+    append_piece(path, ring, next, box, any);
     if (holds(path, ring, before.stretches - 1)) return true;
     path = before;
     last.curve = curve;
@@ -237,12 +260,14 @@ void Path::set_override(double factor) {
     stale = true;
 }
 
-void Path::halt() {
+void Path::halt(const PathLimit& limit) {
+    gently = limit;
     halted = true;
     stale = true;
 }
 
 void Path::resume() {
+    gently = no_path_limit;
     halted = false;
     stale = true;
 }

@@ -6,6 +6,7 @@
 
 #include <sleef.h>
 
+#include "blocks/path/path_spline.hpp"
 #include "blocks/profile/seven_segment.hpp"
 
 namespace lineshaft {
@@ -30,28 +31,64 @@ PathLimit tangential(const PathCurve& curve, const PathLimits& limits) {
     return least;
 }
 
-/// Greatest sizes of an axis' first three derivatives by s in a corner, or of the whole vector's;
-/// its limit.
-struct CornerBound {
-    double tangent = 0, bend = 0, twist = 0;
+/// What bounds of an axis' derivatives, or of the whole vector's, belong to which limit.
+struct Bounded : PathBound {
     PathLimit limit;
 };
 
-/// Parts of a limit that the curvature alone may take, and the product of speed and acceleration: a
-/// corner is passed at nearly one speed.
-constexpr double of_acceleration = 0.9, of_jerk = 0.8, of_jerk_by_both = 0.1;
+using AllBounded = std::array<Bounded, most_path_axes + 1>;
 
-template <class Use>
-void for_bounds(const PathCurve& u, const PathCurve& w, double length, const PathLimits& limits,
-                const Use& use) {
+/// Parts of a limit that the curvature alone may take: a corner is passed at nearly one speed.
+constexpr double of_acceleration = 0.9, of_jerk = 0.8;
+
+AllBounded bounds_of_corner(const PathCurve& u, const PathCurve& w, double length,
+                            const PathLimits& limits) {
     const auto bound = [&](double tangent, double turn, const PathLimit& limit) {
-        if (tangent == 0) return;
-        use(CornerBound{tangent, 1.5 * turn / length, 6 * turn / (length * length), limit});
+        return Bounded{{tangent, 1.5 * turn / length, 6 * turn / (length * length)}, limit};
     };
-    bound(1, bend_between(u, w), limits.path);
+    AllBounded out{bound(1, bend_between(u, w), limits.path)};
     for (std::size_t i = 0; i < most_path_axes; ++i)
-        bound(std::max(std::abs(u.u[i]), std::abs(w.u[i])), std::abs(w.u[i] - u.u[i]),
-              limits.axes[i]);
+        out[i + 1] = bound(std::max(std::abs(u.u[i]), std::abs(w.u[i])), std::abs(w.u[i] - u.u[i]),
+                           limits.axes[i]);
+    return out;
+}
+
+AllBounded bounds_of_spline(const PathCurve& spline, const PathLimits& limits) {
+    AllBounded out{Bounded{{1, 0, 0}, limits.path}};
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        out[i + 1] = {spline_bound(spline, i), limits.axes[i]};
+    return out;
+}
+
+/// The box of README.md, "Corners", with this part of the greatest velocity.
+PathLimit box_within(const AllBounded& bounds, double part, const PathLimit& most) {
+    PathLimit box = most;
+    for (const Bounded& b : bounds) {
+        if (b.tangent == 0) continue;
+        box.velocity = std::min(box.velocity, b.limit.velocity / b.tangent);
+        if (b.bend > 0)
+            box.velocity = std::min(
+                box.velocity, part * std::sqrt(of_acceleration * b.limit.acceleration / b.bend));
+        if (b.twist > 0)
+            box.velocity = std::min(
+                box.velocity, part * Sleef_cinz_cbrtd1_u10purec(of_jerk * b.limit.jerk / b.twist));
+    }
+    const double V = box.velocity;
+    for (const Bounded& b : bounds) {
+        if (b.tangent == 0) continue;
+        const double twist = b.limit.jerk - b.twist * V * V * V;
+        box.acceleration =
+            std::min(box.acceleration, (b.limit.acceleration - b.bend * V * V) / b.tangent);
+        if (b.bend > 0)
+            box.acceleration = std::min(box.acceleration, 0.5 * twist / (3 * b.bend * V));
+    }
+    const double A = box.acceleration;
+    for (const Bounded& b : bounds) {
+        if (b.tangent == 0) continue;
+        const double left = b.limit.jerk - 3 * b.bend * V * A - b.twist * V * V * V;
+        box.jerk = std::min(box.jerk, left / b.tangent);
+    }
+    return box;
 }
 
 /// The box of README.md, "Arcs", with this velocity.
@@ -64,6 +101,23 @@ PathLimit box_on_arc(double V, double R, const PathLimit& axes, const PathLimit&
     return {V, A, std::min(most.jerk, J)};
 }
 
+/// Of boxes with several parts of the greatest velocity, the one with which a curve alone, from
+/// stop to stop, is run along in the least time; all 0 where there is none.
+template <class Box>
+PathLimit soonest(double length, const Box& box_with) {
+    PathLimit best{0, 0, 0};
+    double least = std::numeric_limits<double>::infinity();
+    for (const double part : {1.0, 0.95, 0.87, 0.77, 0.65, 0.5}) {
+        const PathLimit box = box_with(part);
+        SevenSegmentPlan alone;
+        const SevenSegment problem{0, 0, box.velocity, box.acceleration, box.jerk, length};
+        if (plan(problem, alone) != PlanResult::ok || alone.duration >= least) continue;
+        least = alone.duration;
+        best = box;
+    }
+    return best;
+}
+
 }  // namespace
 
 bool is_good(const PathLimit& limit) {
@@ -72,48 +126,22 @@ bool is_good(const PathLimit& limit) {
 
 PathLimit box_of_corner(const PathCurve& before, const PathCurve& after, double length,
                         const PathLimits& limits, const PathLimit& most) {
-    PathLimit cap = most;
-    for_bounds(before, after, length, limits, [&](const CornerBound& b) {
-        cap.velocity = std::min(cap.velocity, b.limit.velocity / b.tangent);
-        if (b.bend == 0) return;
-        cap.velocity =
-            std::min({cap.velocity, std::sqrt(of_acceleration * b.limit.acceleration / b.bend),
-                      Sleef_cinz_cbrtd1_u10purec(of_jerk * b.limit.jerk / b.twist)});
-    });
-    const double V = cap.velocity;
-    for_bounds(before, after, length, limits, [&](const CornerBound& b) {
-        const double left = b.limit.acceleration - b.bend * V * V;
-        cap.acceleration = std::min(cap.acceleration, left / b.tangent);
-        if (b.bend > 0)
-            cap.acceleration =
-                std::min(cap.acceleration, of_jerk_by_both * b.limit.jerk / (3 * b.bend * V));
-    });
-    const double A = cap.acceleration;
-    for_bounds(before, after, length, limits, [&](const CornerBound& b) {
-        const double left = b.limit.jerk - 3 * b.bend * V * A - b.twist * V * V * V;
-        cap.jerk = std::min(cap.jerk, left / b.tangent);
-    });
-    return cap;
+    return box_within(bounds_of_corner(before, after, length, limits), 1, most);
 }
 
 PathLimit box_of(const PathCurve& curve, const PathLimits& limits) {
+    if (curve.kind == PathCurveKind::spline) {
+        const AllBounded bounds = bounds_of_spline(curve, limits);
+        return soonest(curve.length,
+                       [&](double part) { return box_within(bounds, part, limits.path); });
+    }
     const PathLimit axes = tangential(curve, limits);
     const PathLimit most = least_of(limits.path, axes);
     if (curve.kind == PathCurveKind::line) return most;
     const double R = curve.radius;
     const double steady = Sleef_cinz_cbrtd1_u10purec(0.5 * axes.jerk * R * R);
     const double V = std::min({most.velocity, std::sqrt(0.98 * axes.acceleration * R), steady});
-    PathLimit best;
-    double least = std::numeric_limits<double>::infinity();
-    for (const double part : {1.0, 0.95, 0.87, 0.77, 0.65, 0.5}) {
-        const PathLimit box = box_on_arc(part * V, R, axes, most);
-        SevenSegmentPlan alone;
-        const SevenSegment problem{0, 0, box.velocity, box.acceleration, box.jerk, curve.length};
-        if (plan(problem, alone) != PlanResult::ok || alone.duration >= least) continue;
-        least = alone.duration;
-        best = box;
-    }
-    return least < std::numeric_limits<double>::infinity() ? best : PathLimit{0, 0, 0};
+    return soonest(curve.length, [&](double part) { return box_on_arc(part * V, R, axes, most); });
 }
 
 PathLimit least_of(const PathLimit& a, const PathLimit& b) {
@@ -124,14 +152,15 @@ PathLimit least_of(const PathLimit& a, const PathLimit& b) {
 double corner_distance_at(double velocity, const PathCurve& before, const PathCurve& after,
                           const PathLimits& limits) {
     double distance = 0;
-    for_bounds(before, after, 1, limits, [&](const CornerBound& b) {
+    for (const Bounded& b : bounds_of_corner(before, after, 1, limits)) {
+        if (b.tangent == 0) continue;
         const double square = velocity * velocity;
         const double by_acceleration =
             0.5 * b.bend * square / (of_acceleration * b.limit.acceleration);
         const double by_jerk =
             0.5 * std::sqrt(b.twist * square * velocity / (of_jerk * b.limit.jerk));
         distance = std::max({distance, by_acceleration, by_jerk});
-    });
+    }
     return distance;
 }
 

@@ -17,6 +17,8 @@ struct PathLimits {
     std::array<PathLimit, most_path_axes> axes;
 };
 
+inline constexpr PathLimit no_path_limit{1e300, 1e300, 1e300};
+
 /// All three are above 0 and finite.
 bool is_good(const PathLimit& limit);
 

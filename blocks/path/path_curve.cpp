@@ -5,6 +5,8 @@
 
 #include <sleef.h>
 
+#include "blocks/path/path_spline.hpp"
+
 namespace lineshaft {
 
 namespace {
@@ -82,12 +84,61 @@ PathFault finish_arc(PathCurve& arc, double angle, PathCurve& out) {
 /// Below this sine of an angle three points lie on one line: the centre is not known to 1e-9.
 constexpr double least_sine = 1e-6;
 
+/// Of a line or an arc, also where that is before its end.
+PathVector place_on(PathCurve curve, double s) {
+    curve.length = 2 * s;
+    return curve.at(s).position;
+}
+
+/// Between the places where its derivative changes its sign, of 64.
+PathCurve::Extent extent_of_spline(const PathCurve& c, std::size_t axis) {
+    constexpr int places = 64;
+    PathCurve::Extent out{std::fmin(c.origin[axis], c.end[axis]),
+                          std::fmax(c.origin[axis], c.end[axis])};
+    for (int k = 0; k < places; ++k) {
+        double a = c.length * k / places, b = c.length * (k + 1) / places;
+        const bool rises = c.at(a).tangent[axis] > 0;
+        if (rises == (c.at(b).tangent[axis] > 0)) continue;
+        for (int step = 0; step < 40; ++step) {
+            const double middle = 0.5 * (a + b);
+            ((c.at(middle).tangent[axis] > 0) == rises ? a : b) = middle;
+        }
+        const double x = c.at(a).position[axis];
+        out = {std::fmin(out.least, x), std::fmax(out.greatest, x)};
+    }
+    return out;
+}
+
+PathPoint point_of_spline(const PathCurve& c, double s) {
+    const double per = 1 / c.length, t = s * per;
+    const auto& m = c.map;
+    const double at = t * (m[1] + t * (m[2] + t * (m[3] + t * (m[4] + t * m[5])))) + m[0];
+    const double m1 =
+        per * (m[1] + t * (2 * m[2] + t * (3 * m[3] + t * (4 * m[4] + t * 5 * m[5]))));
+    const double m2 = per * per * (2 * m[2] + t * (6 * m[3] + t * (12 * m[4] + t * 20 * m[5])));
+    const double m3 = per * per * per * (6 * m[3] + t * (24 * m[4] + t * 60 * m[5]));
+    PathPoint out;
+    for (std::size_t i = 0; i < most_path_axes; ++i) {
+        const double a = c.u[i], b = c.w[i], d = c.slope[i], e = c.fourth[i], f = c.fifth[i];
+        const double x1 = a + at * (2 * b + at * (3 * d + at * (4 * e + at * 5 * f)));
+        const double x2 = 2 * b + at * (6 * d + at * (12 * e + at * 20 * f));
+        const double x3 = 6 * d + at * (24 * e + at * 60 * f);
+        out.position[i] = c.origin[i] + at * (a + at * (b + at * (d + at * (e + at * f))));
+        out.tangent[i] = x1 * m1;
+        out.bend[i] = x2 * m1 * m1 + x1 * m2;
+        out.twist[i] = x3 * m1 * m1 * m1 + 3 * x2 * m1 * m2 + x1 * m3;
+    }
+    return out;
+}
+
 }  // namespace
 
 PathPoint PathCurve::at(double s) const {
     PathPoint out;
     s = std::fmin(std::fmax(s, 0), length);
-    if (kind == PathCurveKind::line) {
+    if (kind == PathCurveKind::spline) {
+        out = point_of_spline(*this, s);
+    } else if (kind == PathCurveKind::line) {
         out.position = combined(origin, 1, u, s);
         out.tangent = u;
     } else if (kind == PathCurveKind::corner) {
@@ -117,12 +168,14 @@ PathPoint PathCurve::at(double s) const {
 }
 
 double PathCurve::share(std::size_t axis) const {
+    if (kind == PathCurveKind::spline) return spline_bound(*this, axis).tangent;
     if (kind == PathCurveKind::line) return std::abs(u[axis]);
     if (kind == PathCurveKind::corner) return std::fmax(std::abs(u[axis]), std::abs(w[axis]));
     return slope[axis] != 0 ? std::abs(slope[axis]) : std::hypot(u[axis], w[axis]);
 }
 
 PathCurve::Extent PathCurve::extent(std::size_t axis) const {
+    if (kind == PathCurveKind::spline) return extent_of_spline(*this, axis);
     const double first = at(0).position[axis];
     Extent out{std::fmin(first, end[axis]), std::fmax(first, end[axis])};
     const double reach = kind == PathCurveKind::arc ? radius * std::hypot(u[axis], w[axis]) : 0;
@@ -138,12 +191,21 @@ PathCurve::Extent PathCurve::extent(std::size_t axis) const {
 
 void PathCurve::cut_end(double by) {
     length -= by;
-    end = combined(origin, 1, u, length);
+    end = place_on(*this, length);
 }
 
 void PathCurve::cut_start(double by) {
     length -= by;
-    origin = combined(origin, 1, u, by);
+    if (kind == PathCurveKind::line) {
+        origin = combined(origin, 1, u, by);
+        return;
+    }
+    const double sine = Sleef_cinz_sind1_u10purec(by / radius);
+    const double cosine = Sleef_cinz_cosd1_u10purec(by / radius);
+    const PathVector outwards = combined(u, cosine, w, sine);
+    w = combined(w, cosine, u, -sine);
+    u = outwards;
+    origin = combined(origin, 1, slope, by);
 }
 
 PathFault line_to(const PathVector& from, const PathVector& to, PathCurve& out,

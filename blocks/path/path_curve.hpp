@@ -22,13 +22,15 @@ struct PathPoint {
     PathVector twist{};     ///< x''' [1/u^2]
 };
 
-enum class PathCurveKind : std::int64_t { line, arc, corner };
+enum class PathCurveKind : std::int64_t { line, arc, corner, spline };
 
 /// A piece of a path over its length s in 0..length, with phi = s / radius and t = s / length:
 ///
 ///     line    x = origin + s u
 ///     arc     x = origin + radius (u cos phi + w sin phi) + s slope
 ///     corner  x = origin + s u + length (t^3 - t^4/2) (w - u)
+///     spline  x = origin + m u + m^2 w + m^3 slope + m^4 fourth + m^5 fifth,
+///             m the polynomial of t with the coefficients `map`
 ///
 /// Of an arc u and w are of length 1 and stand upright on each other, and slope is of the axes that
 /// follow. A corner leads from the direction u into the direction w; it begins and ends without
@@ -41,13 +43,20 @@ struct PathCurve {
     PathVector u{},
         w{};             ///< directions: of a line; from the centre to the start, and tangent there
     PathVector slope{};  ///< of an arc
-    PathVector end{};    ///< where it ends: exactly what was asked for [u]
+    PathVector fourth{}, fifth{};  ///< of a spline
+    std::array<double, 6> map{};   ///< of a spline
+    PathVector end{};              ///< where it ends: exactly what was asked for [u]
+
+    bool is_line_or_arc() const {
+        return kind == PathCurveKind::line || kind == PathCurveKind::arc;
+    }
 
     /// s beyond an end is taken as that end.
     PathPoint at(double s) const;
 
     /// The greatest size that axis i's part of the tangent can have, on any such curve of this
-    /// plane: |u_i| of a line, sqrt(u_i^2 + w_i^2) of an arc, the greater of both of a corner.
+    /// plane: |u_i| of a line, sqrt(u_i^2 + w_i^2) of an arc, the greater of both of a corner; of a
+    /// spline no less than that.
     double share(std::size_t axis) const;
 
     /// Between which positions axis i stays.
@@ -56,7 +65,7 @@ struct PathCurve {
     };
     Extent extent(std::size_t axis) const;
 
-    /// Of a line: so much less of it at its end, or at its start.
+    /// Of a line or an arc: so much less of it at its end, or at its start.
     void cut_end(double by);
     void cut_start(double by);
 };

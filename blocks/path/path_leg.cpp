@@ -208,14 +208,17 @@ double way_to(const MotionState& from, double velocity, const PathLimit& box) {
 }
 
 bool plan_leg(ConstPathStretches stretches, const MotionState& from, double base, double factor,
-              PathLeg& out) {
+              const PathLimit& halt, PathLeg& out) {
     const PathStretch& first = stretches[stretches.first];
     const Departure departure{from, base, factor};
     Span span{stretches.first, first.box, first.box.velocity};
     PathLeg leg;
     leg.base = base;
     leg.ripe = infinite;
-    if (factor == 0 && plan_halt(stretches, departure, span, leg)) {
+    Span gentle = span;
+    gentle.least = least_of(span.least, halt);
+    if (factor == 0 && (plan_halt(stretches, departure, gentle, leg) ||
+                        plan_halt(stretches, departure, span, leg))) {
         out = leg;
         return true;
     }

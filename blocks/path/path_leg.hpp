@@ -18,10 +18,11 @@ struct PathLeg {
 };
 
 /// The next leg from a state (its position is 0) at `base` within the first of the stretches, with
-/// `factor` 0..1 of the velocities; 0 is a halt. False, and `out` is unchanged, where there is
-/// none: then what was planned goes on.
+/// `factor` 0..1 of the velocities; 0 is a halt, with acceleration and jerk of `halt` where there
+/// is room for that. False, and `out` is unchanged, where there is none: then what was planned goes
+/// on.
 bool plan_leg(ConstPathStretches stretches, const MotionState& from, double base, double factor,
-              PathLeg& out);
+              const PathLimit& halt, PathLeg& out);
 
 /// The way that a direct ramp takes from a state to a velocity; infinite where there is none [u].
 double way_to(const MotionState& from, double velocity, const PathLimit& box);

@@ -267,6 +267,104 @@ TEST_CASE("group: a table is run along, longer than the path looks ahead") {
     CHECK(bench.number("y.position") == 5);
 }
 
+TEST_CASE("group: a table of splines is passed without a stop, from a line into an arc") {
+    MotionBench bench(table_with(R"(
+  way: {type: path_table, task: servo, points: [[10 mm, 0 mm, 0 mm, line, 0 mm, 0 mm, 0 mm, 350 deg, 0 deg, 0 deg], [25 mm, 8 mm, 0 mm, spline, 0 mm, 0 mm, 0 mm, 340 deg, 0 deg, 0 deg], [40 mm, -6 mm, 0 mm, spline, 0 mm, 0 mm, 0 mm, 345 deg, 0 deg, 0 deg], [60 mm, 0 mm, 0 mm, spline, 0 mm, 0 mm, 0 mm, 350 deg, 0 deg, 0 deg], [65 mm, 5 mm, 0 mm, arc, 62 mm, 1 mm, 0 mm, 350 deg, 0 deg, 0 deg]]}
+  path: {type: MC_MovePath, task: servo, AxesGroup: group, PathData: way}
+)"));
+    bench.step(20);
+    bench.set("path.Execute", true);
+    bool past = false;
+    double slowest = 50, highest = 0;
+    while (!bench.is("path.Done")) {
+        bench.step();
+        REQUIRE_FALSE(bench.is("path.Error"));
+        const double x = bench.number("x.position"), y = bench.number("y.position");
+        if (x > 5 && x < 55) slowest = std::min(slowest, bench.number("group.velocity"));
+        if (x < 10) REQUIRE(std::abs(y) <= 1e-12);
+        if (!past && x >= 25) CHECK(y == Approx(8).margin(0.05));
+        past = past || x >= 25;
+        highest = std::max(highest, y);
+        REQUIRE(bench.now() < 20'000);
+    }
+    CHECK(slowest > 10);
+    CHECK(highest < 10);
+    CHECK(bench.number("x.position") == 65);
+    CHECK(bench.number("y.position") == 5);
+    CHECK(bench.number("turn.position") == 350);
+}
+
+TEST_CASE("group: a line runs into an arc within the deviation asked for, without a stop") {
+    MotionBench bench(table_with(R"(
+  line: {type: MC_MoveLinearAbsolute, task: servo, AxesGroup: group, Position1: 20 mm, Position4: 350 deg}
+  arc: {type: MC_MoveCircularAbsolute, task: servo, AxesGroup: group, AuxPoint1: 40 mm, AuxPoint2: 20 mm, EndPoint1: 20 mm, EndPoint2: 40 mm, EndPoint4: 350 deg, BufferMode: mcBlendingLow, TransitionMode: mcTMMaxCornerDeviation, TransitionParameter: 0.02 mm}
+)"));
+    bench.step(20);
+    bench.set("line.Execute", true);
+    bench.set("arc.Execute", true);
+    double slowest = 50, most = 0;
+    while (!bench.is("arc.Done")) {
+        bench.step();
+        const double x = bench.number("x.position"), y = bench.number("y.position");
+        const double way = bench.number("group.distance");
+        if (way > 10 && way < 60) slowest = std::min(slowest, bench.number("group.velocity"));
+        most = std::max(most, x < 20 && y < 20 ? y : std::abs(std::hypot(x - 20, y - 20) - 20));
+        REQUIRE(bench.now() < 20'000);
+    }
+    CHECK(slowest > 10);
+    CHECK(most <= 0.02);
+    CHECK(bench.number("y.position") == 40);
+}
+
+TEST_CASE("group: a halt brakes as gently as its pins say, and a stop as the moves allow") {
+    for (const bool gently : {true, false}) {
+        MotionBench bench(table_with(R"(
+  line: {type: MC_MoveLinearAbsolute, task: servo, AxesGroup: group, Position1: 70 mm, Position4: 350 deg}
+  halt: {type: MC_GroupHalt, task: servo, AxesGroup: group, Deceleration: 100 mm/s^2, Jerk: 1000 mm/s^3}
+  stop: {type: MC_GroupStop, task: servo, AxesGroup: group}
+)"));
+        bench.step(20);
+        bench.set("line.Execute", true);
+        bench.step(500);
+        const std::string command = gently ? "halt" : "stop";
+        bench.set(command + ".Execute", true);
+        double hardest = 0, most = 0;
+        while (!bench.is(command + ".Done")) {
+            bench.step();
+            hardest = std::max(hardest, -bench.number("group.acceleration"));
+            most = std::max(most, std::abs(bench.number("group.jerk")));
+            REQUIRE(bench.now() < 5'000);
+        }
+        CHECK(hardest <= (gently ? 100 : 500) * (1 + 1e-9));
+        CHECK(hardest >= (gently ? 90 : 400));
+        CHECK(most == Approx(gently ? 1000 : 5000).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("group: all axes leave it at once, and can join another one") {
+    MotionBench bench(table_with(R"(
+  other: {type: axes_group, task: servo}
+  again: {type: MC_AddAxisToGroup, task: servo, AxesGroup: other, Axis: y}
+  line: {type: MC_MoveLinearAbsolute, task: servo, AxesGroup: group, Position1: 10 mm, Position4: 350 deg}
+  ungroup: {type: MC_UngroupAllAxes, task: servo, AxesGroup: group}
+)"));
+    bench.step(20);
+    bench.set("line.Execute", true);
+    bench.step(50);
+    bench.set("ungroup.Execute", true);
+    bench.step(2);
+    CHECK(bench.is("ungroup.Error"));
+    bench.set("ungroup.Execute", false);
+    REQUIRE(comes(bench, "line.Done"));
+    bench.set("ungroup.Execute", true);
+    bench.step(2);
+    CHECK(bench.is("ungroup.Done"));
+    CHECK(state(bench) == "disabled");
+    bench.set("again.Execute", true);
+    bench.step(2);
+    CHECK(bench.is("again.Done"));
+}
+
 TEST_CASE("group: what cannot be a member is refused") {
     MotionBench bench(R"(
 tasks:

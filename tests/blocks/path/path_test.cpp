@@ -11,6 +11,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "blocks/path/path_spline.hpp"
 #include "blocks/profile/seven_segment.hpp"
 
 using namespace lineshaft;
@@ -51,7 +52,23 @@ PathJoint random_joint(Random& random, double size) {
     return {0, size * random.decades(-4, 0)};
 }
 
-/// Lines and arcs, some of them cut in two, so that there are smooth joints.
+/// With the tangent of the last one, or that of a line to the point; the part of a spline that a
+/// longer one would have.
+void append_spline(RandomPath& out, Random& random, const PathVector& from, const PathVector& to,
+                   const PathLimits& limits) {
+    const PathVector beyond = random_point(random, 3, std::abs(to[0]) + 1);
+    PathPoint begin = waypoint(from, from, to);
+    if (!out.curves.empty() && random.share() < 0.7)
+        begin = out.curves.back().at(out.curves.back().length);
+    std::array<PathCurve, most_spline_parts> parts;
+    const std::size_t count = spline_between(begin, waypoint(from, to, beyond), parts);
+    for (std::size_t i = 0; i < count; ++i) {
+        out.curves.push_back(parts[i]);
+        out.limits.push_back(limits);
+    }
+}
+
+/// Lines, arcs and splines, some lines cut in two, so that there are smooth joints.
 RandomPath random_path(Random& random, std::size_t most) {
     RandomPath out;
     const auto axes = static_cast<std::size_t>(random.between(2, 6.999));
@@ -66,6 +83,12 @@ RandomPath random_path(Random& random, std::size_t most) {
     while (static_cast<double>(out.curves.size()) < wanted && out.curves.size() < most) {
         const PathVector to = random_point(random, axes, size);
         PathCurve curve;
+        if (random.share() < 0.2) {
+            append_spline(out, random, from, random_point(random, axes, size), limits);
+            if (!out.curves.empty()) from = out.curves.back().end;
+            while (out.joints.size() < out.curves.size()) out.joints.push_back({});
+            continue;
+        }
         const bool line = random.share() < 0.5;
         if ((line ? line_to(from, to, curve)
                   : arc_through(from, random_point(random, axes, size), to, curve)) !=

@@ -1,0 +1,258 @@
+#include "blocks/path/path_spline.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lineshaft {
+
+namespace {
+
+constexpr std::size_t terms = 6;
+using Polynomial = std::array<double, terms>;
+
+Polynomial polynomial_of(const PathCurve& c, std::size_t axis) {
+    return {c.origin[axis], c.u[axis], c.w[axis], c.slope[axis], c.fourth[axis], c.fifth[axis]};
+}
+
+Polynomial derivative(const Polynomial& p) {
+    Polynomial out{};
+    for (std::size_t k = 1; k < terms; ++k) out[k - 1] = static_cast<double>(k) * p[k];
+    return out;
+}
+
+double value(const Polynomial& p, double t) {
+    double sum = 0;
+    for (std::size_t k = terms; k-- > 0;) sum = sum * t + p[k];
+    return sum;
+}
+
+/// p(at + width t).
+Polynomial part_of(Polynomial p, double at, double width) {
+    Polynomial out{};
+    double scale = 1;
+    for (std::size_t k = 0; k < terms; ++k) {
+        out[k] = value(p, at) * scale;
+        p = derivative(p);
+        scale *= width / static_cast<double>(k + 1);
+    }
+    return out;
+}
+
+/// No less than |p| is anywhere within `half` of `middle`: its Taylor series there.
+double greatest(Polynomial p, double middle, double half) {
+    double sum = 0, scale = 1;
+    for (std::size_t k = 0; k < terms; ++k) {
+        sum += std::abs(value(p, middle)) * scale;
+        p = derivative(p);
+        scale *= half / static_cast<double>(k + 1);
+    }
+    return sum;
+}
+
+/// Of degree five, with value, slope and second derivative at 0 and at 1.
+Polynomial hermite(double p0, double d0, double b0, double p1, double d1, double b1) {
+    const double P = p1 - p0 - d0 - 0.5 * b0, D = d1 - d0 - b0, B = b1 - b0;
+    return {
+        p0, d0, 0.5 * b0, 10 * P - 4 * D + 0.5 * B, -15 * P + 7 * D - B, 6 * P - 3 * D + 0.5 * B};
+}
+
+void set(PathCurve& c, std::size_t axis, const Polynomial& p) {
+    c.origin[axis] = p[0];
+    c.u[axis] = p[1];
+    c.w[axis] = p[2];
+    c.slope[axis] = p[3];
+    c.fourth[axis] = p[4];
+    c.fifth[axis] = p[5];
+}
+
+/// The first three axes' way by t: its first derivative, and the product of first and second.
+struct Pace {
+    double speed = 0, change = 0;
+};
+
+Pace pace_at(const PathCurve& c, double t) {
+    double square = 0, product = 0;
+    for (std::size_t i = 0; i < path_space; ++i) {
+        const Polynomial first = derivative(polynomial_of(c, i));
+        const double x = value(first, t);
+        square += x * x;
+        product += x * value(derivative(first), t);
+    }
+    return {std::sqrt(square), product};
+}
+
+double length_of(const PathCurve& c) {
+    constexpr double places[] = {0.0, 0.5384693101056831, 0.9061798459386640};
+    constexpr double weights[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+    constexpr int parts = 8;
+    double sum = 0;
+    for (int part = 0; part < parts; ++part) {
+        const double middle = (part + 0.5) / parts, half = 0.5 / parts;
+        sum += weights[0] * pace_at(c, middle).speed;
+        for (std::size_t k = 1; k < 3; ++k)
+            sum += weights[k] * (pace_at(c, middle - half * places[k]).speed +
+                                 pace_at(c, middle + half * places[k]).speed);
+    }
+    return sum * 0.5 / parts;
+}
+
+/// t by the length: with the right first and second derivative at both ends.
+void find_map(PathCurve& c) {
+    const Pace a = pace_at(c, 0), b = pace_at(c, 1);
+    const auto bend = [&](const Pace& pace) {
+        const double square = pace.speed * pace.speed;
+        return -pace.change / (square * square) * c.length * c.length;
+    };
+    c.map = hermite(0, c.length / a.speed, bend(a), 1, c.length / b.speed, bend(b));
+}
+
+bool is_even(const PathCurve& c) {
+    constexpr double most = 1e-4;
+    constexpr int places = 33;
+    const Polynomial slope = derivative(c.map);
+    for (int k = 0; k < places; ++k) {
+        const double share = static_cast<double>(k) / (places - 1);
+        const double tangent =
+            pace_at(c, value(c.map, share)).speed * value(slope, share) / c.length;
+        if (!(std::abs(tangent - 1) <= most)) return false;
+    }
+    return true;
+}
+
+PathCurve quintic(const PathPoint& from, const PathPoint& to, double scale) {
+    PathCurve c;
+    c.kind = PathCurveKind::spline;
+    const double square = scale * scale;
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        set(c, i,
+            hermite(from.position[i], scale * from.tangent[i], square * from.bend[i],
+                    to.position[i], scale * to.tangent[i], square * to.bend[i]));
+    c.end = to.position;
+    return c;
+}
+
+/// The k-th of `count` parts.
+PathCurve part(const PathCurve& whole, std::size_t k, std::size_t count) {
+    PathCurve c = whole;
+    const double width = 1.0 / static_cast<double>(count);
+    for (std::size_t i = 0; i < most_path_axes; ++i) {
+        const Polynomial p = polynomial_of(whole, i);
+        set(c, i, part_of(p, static_cast<double>(k) * width, width));
+        if (k + 1 < count) c.end[i] = value(p, static_cast<double>(k + 1) * width);
+    }
+    c.length = length_of(c);
+    if (c.length > 0) find_map(c);
+    return c;
+}
+
+double distance(const PathVector& a, const PathVector& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < path_space; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return std::sqrt(sum);
+}
+
+/// From a point to the nearest one of a line or an arc near the length s.
+double distance_to(const PathCurve& curve, const PathVector& x, double s) {
+    for (int step = 0; step < 8; ++step) {
+        const PathPoint near = curve.at(s);
+        double along = 0;
+        for (std::size_t i = 0; i < path_space; ++i)
+            along += (x[i] - near.position[i]) * near.tangent[i];
+        s = std::clamp(s + along, 0.0, curve.length);
+    }
+    return distance(x, curve.at(s).position);
+}
+
+/// How far the transition that begins `far` before the joint is away from both curves: at 33 places
+/// and two hundredths more.
+double deviation_of(const PathCurve& before, const PathCurve& after, double far) {
+    const PathCurve c = quintic(before.at(before.length - far), after.at(far), 2 * far);
+    constexpr int places = 33;
+    double most = 0;
+    for (int k = 0; k < places; ++k) {
+        const double t = static_cast<double>(k) / (places - 1);
+        PathVector x{};
+        for (std::size_t i = 0; i < path_space; ++i) x[i] = value(polynomial_of(c, i), t);
+        const double near =
+            std::min(distance_to(before, x, before.length - std::max(0.0, far * (1 - 2 * t))),
+                     distance_to(after, x, std::max(0.0, far * (2 * t - 1))));
+        most = std::max(most, near);
+    }
+    return 1.02 * most;
+}
+
+}  // namespace
+
+std::size_t spline_between(const PathPoint& from, const PathPoint& to,
+                           std::span<PathCurve, most_spline_parts> out) {
+    double scale = distance(from.position, to.position);
+    if (!(scale > 0) || !std::isfinite(scale)) return 0;
+    for (int step = 0; step < 2; ++step) scale = length_of(quintic(from, to, scale));
+    const PathCurve whole = quintic(from, to, scale);
+    for (std::size_t count = 1; count <= out.size(); count *= 2) {
+        bool all = true;
+        for (std::size_t k = 0; k < count && all; ++k) {
+            out[k] = part(whole, k, count);
+            all = out[k].length > 0 && is_even(out[k]);
+        }
+        if (all) return count;
+    }
+    return 0;
+}
+
+PathPoint waypoint(const PathVector& before, const PathVector& at, const PathVector& after) {
+    const double h0 = distance(before, at), h1 = distance(at, after);
+    PathVector first{}, second{};
+    double square = 0, product = 0;
+    for (std::size_t i = 0; i < most_path_axes; ++i) {
+        const double d0 = (at[i] - before[i]) / h0, d1 = (after[i] - at[i]) / h1;
+        first[i] = h0 == 0 ? d1 : h1 == 0 ? d0 : (d0 * h1 + d1 * h0) / (h0 + h1);
+        second[i] = h0 == 0 || h1 == 0 ? 0 : 2 * (d1 - d0) / (h0 + h1);
+        if (i >= path_space) continue;
+        square += first[i] * first[i];
+        product += first[i] * second[i];
+    }
+    PathPoint out;
+    out.position = at;
+    for (std::size_t i = 0; i < most_path_axes; ++i) {
+        out.tangent[i] = first[i] / std::sqrt(square);
+        out.bend[i] = second[i] / square - first[i] * product / (square * square);
+    }
+    return out;
+}
+
+PathBound spline_bound(const PathCurve& c, std::size_t axis) {
+    constexpr int parts = 16;
+    constexpr double half = 0.5 / parts;
+    const Polynomial x1 = derivative(polynomial_of(c, axis)), x2 = derivative(x1),
+                     x3 = derivative(x2), t1 = derivative(c.map), t2 = derivative(t1),
+                     t3 = derivative(t2);
+    PathBound out;
+    for (int k = 0; k < parts; ++k) {
+        const double middle = (k + 0.5) / parts;
+        const double per = 1 / c.length;
+        const double a = greatest(t1, middle, half) * per;
+        const double b = greatest(t2, middle, half) * per * per;
+        const double d = greatest(t3, middle, half) * per * per * per;
+        const double t = value(c.map, middle), wide = a * half * c.length;
+        const double p = greatest(x1, t, wide), q = greatest(x2, t, wide),
+                     r = greatest(x3, t, wide);
+        out.tangent = std::max(out.tangent, p * a);
+        out.bend = std::max(out.bend, q * a * a + p * b);
+        out.twist = std::max(out.twist, r * a * a * a + 3 * q * a * b + p * d);
+    }
+    return out;
+}
+
+double transition_distance(double deviation, const PathCurve& before, const PathCurve& after) {
+    double least = 0, most = std::min(before.length, 0.5 * after.length);
+    if (!(deviation > 0)) return 0;
+    if (deviation_of(before, after, most) <= deviation) return most;
+    for (int step = 0; step < 24; ++step) {
+        const double middle = 0.5 * (least + most);
+        (deviation_of(before, after, middle) <= deviation ? least : most) = middle;
+    }
+    return least;
+}
+
+}  // namespace lineshaft

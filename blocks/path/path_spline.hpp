@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+
+#include "blocks/path/path_curve.hpp"
+
+namespace lineshaft {
+
+/// Over how many curves a spline is divided at most, so that each is run along evenly.
+inline constexpr std::size_t most_spline_parts = 8;
+
+/// A curve of degree five from a point to another, with their tangents and curvatures: x(s), x' and
+/// x'' go on through both. Each of the parts, halves or quarters or eighths, has as its length
+/// that of the way of the first three axes, and runs along it with |x'| = 1 up to 1e-4. Returns
+/// how many of `out` there are; 0 where the points are one, a tangent is 0, or eight are too few.
+std::size_t spline_between(const PathPoint& from, const PathPoint& to,
+                           std::span<PathCurve, most_spline_parts> out);
+
+/// Tangent and curvature at a point between two others, those of the parabola through all three.
+/// At the first of them, `before` is `at` and the tangent is that of the parabola there; likewise
+/// at the last one.
+PathPoint waypoint(const PathVector& before, const PathVector& at, const PathVector& after);
+
+/// Greatest sizes of an axis' derivatives along a curve, no less than they are anywhere between.
+struct PathBound {
+    double tangent = 0, bend = 0, twist = 0;
+};
+
+PathBound spline_bound(const PathCurve& spline, std::size_t axis);
+
+/// How far from the joint of two curves the transition between them may begin that stays within
+/// `deviation` of them [u].
+double transition_distance(double deviation, const PathCurve& before, const PathCurve& after);
+
+}  // namespace lineshaft
