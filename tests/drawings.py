@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Random networks of LD and FBD, written as PLCopen XML and as Structured Text by rules of their own: both runs write
+"""Random networks of LD and FBD, and instruction lists, written as PLCopen XML and as Structured Text by rules of their own: both runs write
 the same bytes.
 
 usage: drawings.py LINESHAFT [NETWORKS [SEED]]
@@ -65,7 +65,8 @@ class Network:
             return "".join(f'<variable name="{n}"><type>{kinds.get(k) or f"""<derived name="{k}"/>"""}</type></variable>' for n, k in of)
         outside = variables([(n, "BOOL") for n in BOOLS] + [(n, "INT") for n in NUMBERS])
         elements = self.elements[:]
-        self.draw.shuffle(elements)
+        if language != "IL":
+            self.draw.shuffle(elements)
         return (f'<pou name="{self.name}" pouType="program"><interface><externalVars>{outside}</externalVars>'
                 f'<localVars>{variables(self.declared)}</localVars></interface><body><{language}>'
                 + "\n".join(elements) + f"</{language}></body></pou>\n")
@@ -288,6 +289,76 @@ def diagram(draw, name):
     return net
 
 
+# ---- instruction lists: the text has the current result in a variable
+
+def instructions(draw, name):
+    net = Network(draw, name)
+    result, inner = net.own("BOOL"), net.own("BOOL")
+    number = net.own("INT")
+    labels = 0
+
+    def operand():
+        return draw.choice(BOOLS + ["b0", "b1", "b2"])
+
+    def put(line, *statements):
+        net.elements.append(line + draw.choice(["", "", " (* why *)"]))
+        return list(statements)
+
+    def operate(target):
+        """One operator on the result in `target`."""
+        op, no = draw.choice(["AND", "OR", "XOR"]), draw.random() < 0.3
+        if target == result and draw.random() < 0.25:
+            first = operand()
+            made = put(f"{op}{'N' if no else ''}( {first}", f"{inner} := {first};")
+            for _ in range(draw.randint(0, 2)):
+                made += operate(inner)
+            return made + put(")", f"{result} := {result} {op} {'NOT ' if no else ''}{inner};")
+        other = operand()
+        return put(f"{op}{'N' if no else ''} {other}", f"{target} := {target} {op} {'NOT ' if no else ''}{other};")
+
+    def load():
+        if draw.random() < 0.3:
+            a, b, op = draw.choice(NUMBERS + ["v0"]), draw.choice(NUMBERS + ["3"]), draw.choice(list(SIGNS))
+            plus = draw.choice(NUMBERS + ["v1", "2"])
+            return (put(f"LD {a}", f"{number} := {a};") + put(f"ADD {plus}", f"{number} := {number} + {plus};")
+                    + (put("ST v0", f"v0 := {number};") if draw.random() < 0.3 else [])
+                    + put(f"{op} {b}", f"{result} := {number} {SIGNS[op]} {b};"))
+        first, no = operand(), draw.random() < 0.3
+        return put(f"LD{'N' if no else ''} {first}", f"{result} := {'NOT ' if no else ''}{first};")
+
+    def store():
+        target, kind = draw.choice(["b0", "b1", "b2"]), draw.choice(["ST", "ST", "STN", "S", "R"])
+        if kind in "SR":
+            return put(f"{kind} {target}", f"IF {result} THEN {target} := {'TRUE' if kind == 'S' else 'FALSE'}; END_IF")
+        return put(f"{kind} {target}", f"{target} := {'NOT ' if kind == 'STN' else ''}{result};")
+
+    def segment(depth):
+        nonlocal labels
+        made = load()
+        for _ in range(draw.randint(0, 3)):
+            made += operate(result)
+        if draw.random() < 0.2:
+            timer = net.instance("TON")
+            source = operand()
+            made += put(f"CAL {timer}(IN := {source}, PT := T#25ms)", f"{timer}(IN := {source}, PT := T#25ms);")
+        if depth > 0 and draw.random() < 0.4:
+            labels += 1
+            label, no = f"l{labels}", draw.random() < 0.3
+            made += put(f"JMPC{'N' if no else ''} {label}")
+            inside = segment(depth - 1)
+            made += [f"IF {'' if no else 'NOT '}{result} THEN", *inside, "END_IF"]
+            made += put(f"{label}:" + draw.choice(["", " NOT"]))
+            if net.elements[-1].split(" (*")[0].endswith("NOT"):
+                made.append(f"{result} := NOT {result};")
+            return made + store()
+        made += store()
+        return made + (store() if draw.random() < 0.4 else [])
+
+    for _ in range(draw.randint(1, 4)):
+        net.statements += segment(2)
+    return net
+
+
 def run(folder, name, sources, nets):
     signals = [f"{net.name}.{v}" for net in nets for v in ("b0", "b1", "b2", "v0", "v1", "v2")]
     blocks = "".join(f"  {net.name}: {{type: {net.name}, task: main}}\n" for net in nets)
@@ -309,8 +380,8 @@ with tempfile.TemporaryDirectory() as temporary:
     (folder / "driver.st").write_text(DRIVER)
     while done < networks:
         draw = random.Random(f"{seed} {done}")
-        language = ("LD", "FBD")[done // batch % 2]
-        nets = [(ladder if language == "LD" else diagram)(draw, f"Net{i}") for i in range(batch)]
+        language, make = (("LD", ladder), ("FBD", diagram), ("IL", instructions))[done // batch % 3]
+        nets = [make(draw, f"Net{i}") for i in range(batch)]
         (folder / "drawn.xml").write_text('<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><pous>\n'
                                           + "".join(net.xml(language) for net in nets) + "</pous></types></project>\n")
         (folder / "said.st").write_text("".join(net.text() for net in nets))
@@ -327,4 +398,4 @@ with tempfile.TemporaryDirectory() as temporary:
         changing = len(set(a[1:]))
         assert changing > 10, f"the trace shows only {changing} different lines"
         done += batch
-print(f"{done} networks, drawn and written: the same bytes")
+print(f"{done} networks and lists, drawn and written: the same bytes")

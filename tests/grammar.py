@@ -71,7 +71,7 @@ if unknown or unused or not grammar:
 # What the sentences below the rules say: what a rule is within another.
 def within(rule, inside):
     rows = {
-        "Source": {"Var_Sections": "Var_Section *", "Section_Word": "'VAR_GLOBAL'", "Declaration": "POU | Action_Decl | Data_Type_Decl | Var_Section | Config_Decl",
+        "Source": {"Var_Sections": "Var_Section *", "Section_Word": "'VAR_GLOBAL'", "Action_Body": "Stmt_List", "Declaration": "POU | Action_Decl | Data_Type_Decl | Var_Section | Config_Decl",
                    "Stmt": "';' | Region | ( IF_Stmt | Case_Stmt | For_Stmt | While_Stmt | Repeat_Stmt ) ';' ? | "
                            "Jump_Stmt | Simple_Stmt",
                    "Variable_Name": "( 'THIS' '^' ? '.' ) ? Name", "Value": "Expression",

@@ -70,8 +70,41 @@ def check_page():
     assert "page/B.xml:5:99: error[L0904]: 'nobody' is not declared (network 1, contact 1)" in page, page
     assert run("check", "page/A.xml") == "ok  page/A.xml\n"
     assert "P.b" not in run("show", "page/A.xml") and "b := NOT a;\n" in run("show", "page/A.xml")
-    bad = write("bad.xml", drawn("").replace("<LD>\n\n</LD>", "<IL><p>LD a</p></IL>"))
-    assert "the body of 'P' is an instruction list (IL)" in run("show", bad, code=2)
+    listed = write("listed.xml", drawn("").replace("<LD>\n\n</LD>", "<IL><p>LD a\nSTN b</p></IL>"))
+    assert "b := NOT a;\n" in run("show", listed)
+    bad = write("bad.xml", drawn("").replace("<LD>\n\n</LD>", "<IL><p>ADD a</p></IL>"))
+    assert re.search(r"bad.xml:\d+:\d+: error.* there is no result that ADD takes", run("show", bad, code=2))
+
+
+def check_configuration():
+    """The tasks of a CONFIGURATION in Structured Text, which OpenPLC writes, are those of the program around it."""
+    write("configured.st", "PROGRAM Main VAR n : INT; END_VAR n := n + 1; END_PROGRAM\nPROGRAM Slow VAR n : INT; END_VAR n := n + 1; "
+          "END_PROGRAM\nCONFIGURATION c\n  RESOURCE r ON PLC\n    TASK quick(INTERVAL := T#5ms, PRIORITY := 0);\n"
+          "    TASK idle(PRIORITY := 3, INTERVAL := T#1s_500ms);\n    PROGRAM one WITH quick : Main;\n"
+          "    PROGRAM two WITH idle : Slow;\n  END_RESOURCE\nEND_CONFIGURATION\n")
+    run("new", "configured", "--from", "configured.st")
+    text = (work / "configured.yaml").read_text()
+    for line in ("quick: {every: 5 ms, priority: 2}", "idle: {every: 1500 ms, priority: 1}", "Main: {type: Main, task: quick}",
+                 "Slow: {type: Slow, task: idle}"):
+        assert line in text, text
+    run("run", "--quiet", "configured.yaml")
+
+
+def check_older_forms():
+    """CoDeSys 2.3 exports pictures and open addresses beside its units; B&R declares what is elsewhere, by any name."""
+    write("old/ALL.EXP", "(* @NESTEDCOMMENTS := 'Yes' *)\nPROGRAM PLC_PRG\nVAR n : ARRAY[1..3] OF INT := 3(7); m : ARRAY[1..2] OF INT := 0; "
+          "axis : MpAxis := (0); END_VAR\n(* @END_DECLARATION := '0' *)\nn[1] := m[2];\nEND_PROGRAM\nVISUALISATION View _VISU_TYPES : 1,1\n"
+          "_TEXT : '$R$N', ''not of the language {\nEND_VISUALISATION\nVAR_CONFIG\n  PLC_PRG.x AT %QX0.0 : BOOL;\nEND_VAR\n"
+          "FUNCTION Twice : INT\nVAR_INPUT x : INT; END_VAR\nTwice := 2 * x;\nEND_FUNCTION\n")
+    write("old/operator.fun", "FUNCTION AND : ANY\nVAR_INPUT IN1 : ANY; END_VAR\nEND_FUNCTION\nFUNCTION ADR : UDINT\nVAR_INPUT x : ANY; END_VAR\n"
+          "END_FUNCTION\n{REDUND_OK} FUNCTION_BLOCK MpAxis\nVAR_INPUT Continue : BOOL; to : UDINT; END_VAR\nEND_FUNCTION_BLOCK\n")
+    write("old/Global.var", "VAR\n  pins : pins_typ := (0);\n  flags : BOOL;\nEND_VAR\n")
+    write("old/Global.typ", "TYPE pins_typ : STRUCT\n  x, y : INT;\n END_STRUCT; END_TYPE\n")
+    assert run("check", "old").splitlines()[0] == "ok  old"
+    wrong = write("wrong.var", "VAR\n  pins : STRING := (0);\nEND_VAR\n")
+    assert "expected STRING, found a whole number" in run("check", wrong, code=2)
+    wrong = write("wrong.st", "FUNCTION_BLOCK B\nVAR_INPUT to : UDINT; END_VAR\nEND_FUNCTION_BLOCK\n")
+    assert "'to' is a word of the language, not a name" in run("check", wrong, code=2)
 
 
 def check_yaml_folder():
@@ -169,6 +202,8 @@ with tempfile.TemporaryDirectory() as temporary:
     work = pathlib.Path(temporary)
     check_new_from()
     check_page()
+    check_configuration()
+    check_older_forms()
     check_yaml_folder()
     check_automation_studio()
     check_apax()

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <fstream>
 
 #include <fmt/format.h>
 
+#include "runtime/projects/configuration.hpp"
 #include "runtime/projects/plcopen_text.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/input_file.hpp"
@@ -92,41 +92,10 @@ class PlcopenProject {
         to_.project.tasks.push_back(std::move(made));
     }
 
-    /// `PT0.02S`, `T#20ms`, `t#1m2s`; a bare number is in seconds, as CODESYS writes it. 0: none of
-    /// these.
-    static std::int64_t interval_of(std::string_view text);
-
     const XmlFile& file_;
     const DeclaredTypes declared_;
     const Reading& to_;
 };
-
-std::int64_t PlcopenProject::interval_of(std::string_view text) {
-    struct Unit {
-        std::string_view name;
-        double ns;
-    };
-    static constexpr Unit units[] = {{"ms", 1e6},   {"us", 1e3}, {"ns", 1}, {"d", 86400e9},
-                                     {"h", 3600e9}, {"m", 60e9}, {"s", 1e9}};
-    const std::string small = lower(text);
-    std::string_view rest = small;
-    for (const std::string_view prefix : {"pt", "time#", "t#"})
-        if (rest.starts_with(prefix)) rest.remove_prefix(prefix.size());
-    double sum = 0;
-    while (!rest.empty()) {
-        double number = 0;
-        const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
-        if (error != std::errc()) return 0;
-        rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
-        if (rest.empty()) return std::llround(std::clamp((sum + number * 1e9), 0.0, 1e18));
-        const auto* unit =
-            std::ranges::find_if(units, [&](const Unit& u) { return rest.starts_with(u.name); });
-        if (unit == std::end(units)) return 0;
-        rest.remove_prefix(unit->name.size());
-        sum += number * unit->ns;
-    }
-    return std::llround(std::clamp(sum, 0.0, 1e18));
-}
 
 }  // namespace
 

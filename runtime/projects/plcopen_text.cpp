@@ -211,13 +211,21 @@ void PlcopenText::add_list(pugi::xml_node values, const char* key, int depth) {
     }
 }
 
-void PlcopenText::add_body(pugi::xml_node owner, pugi::xml_node named) {
+BodyText PlcopenText::body_of(pugi::xml_node owner, pugi::xml_node named) {
     BodyContext context{file_, out_, NetworkTypes(declared_, pou_), *variables_, is_kept_};
+    BodyText all;
     for (const pugi::xml_node body : owner.children("body")) {
         const BodyText made = body_text(context, body, file_.plain(named.attribute("name")));
-        text_.append(made.members);
-        text_.append(made.statements);
+        all.members.append(made.members);
+        all.statements.append(made.statements);
     }
+    return all;
+}
+
+void PlcopenText::add_body(pugi::xml_node owner, pugi::xml_node named) {
+    const BodyText body = body_of(owner, named);
+    text_.append(body.members);
+    text_.append(body.statements);
 }
 
 /// `rest` stands behind the declarations, which those of its networks follow.
@@ -231,10 +239,12 @@ void PlcopenText::add_member(pugi::xml_node member) {
     const bool is_method = std::string_view(member.name()) == "Method";
     const pugi::xml_node interface = member.child("interface");
     if (!is_method) {
+        const BodyText body = body_of(member, member);
+        text_.append(body.members);
         write("ACTION ", member);
         file_.copy(text_, member.attribute("name"));
         write(":\n", member);
-        add_body(member, member);
+        text_.append(body.statements);
         return write("END_ACTION\n", member);
     }
     if (!add_plain(interface)) {

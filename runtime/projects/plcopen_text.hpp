@@ -37,6 +37,7 @@ class PlcopenText {
     void add_text_type(pugi::xml_node type);
     void add_value(pugi::xml_node value, int depth);
     void add_list(pugi::xml_node values, const char* key, int depth);
+    BodyText body_of(pugi::xml_node owner, pugi::xml_node named);
     void add_body(pugi::xml_node owner, pugi::xml_node named);
     void add_own_body(pugi::xml_node owner, pugi::xml_node named);
     void add_variables(const MadeVariables& made, Excerpts rest, pugi::xml_node owner);

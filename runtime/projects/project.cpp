@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "runtime/projects/automation_studio.hpp"
+#include "runtime/projects/configuration.hpp"
 #include "runtime/projects/fixtures.hpp"
 #include "runtime/projects/plcopen.hpp"
 #include "runtime/projects/twincat.hpp"
@@ -22,7 +23,10 @@ namespace fs = std::filesystem;
 namespace {
 
 void read_text(const Reading& to, const std::string& path, const Mark& where) {
-    if (auto source = read_source(path, to.out, where)) to.project.add(std::move(source));
+    auto source = read_source(path, to.out, where);
+    if (!source) return;
+    read_configuration(to, source);
+    to.project.add(std::move(source));
 }
 
 /// By the ending of a file's name, in small letters.

@@ -31,11 +31,11 @@ BodyText body_text(BodyContext& context, pugi::xml_node body, const std::string&
             BodyText chart = chart_text(context, language, owner_of(language));
             made.members.append(chart.members);
             made.statements.append(chart.statements);
+        } else if (form == "IL") {
+            made.statements.append(list_text(context, language));
         } else {
-            const bool is_list = form == "IL";
             context.out.add(code::not_supported, place,
-                            fmt::format("the body of '{}' is {} ({}), which is not read", name,
-                                        is_list ? "an instruction list" : "drawn",
+                            fmt::format("the body of '{}' is drawn ({}), which is not read", name,
                                         form == "addData" ? "CFC" : form),
                             "convert it to Structured Text, or leave it out");
         }

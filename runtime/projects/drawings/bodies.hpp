@@ -14,6 +14,9 @@ struct BodyText {
 /// written or drawn in. `name` is what messages call its owner.
 BodyText body_text(BodyContext& context, pugi::xml_node body, const std::string& name);
 
+/// `<IL>`: instructions, whose result is an expression until it is stored.
+Excerpts list_text(BodyContext& context, pugi::xml_node list);
+
 /// `<SFC>`: steps and transitions; `pou` has those that are named.
 BodyText chart_text(BodyContext& context, pugi::xml_node chart, pugi::xml_node pou);
 

@@ -15,6 +15,10 @@ namespace {
 
 constexpr std::size_t most_branches = 1000;  // that one transition may go through
 
+bool is(pugi::xml_node node, std::string_view name) {
+    return node.name() == name;
+}
+
 /// One chart of PLCopen XML as the text of it.
 class ChartText {
   public:
@@ -64,12 +68,7 @@ class ChartText {
     std::map<std::string, pugi::xml_node> by_id_;
     std::map<std::string, Nodes> behind_;  ///< by `localId`: what lines lead to
     BodyText made_;
-    int actions_ = 0;
 };
-
-bool is(pugi::xml_node node, std::string_view name) {
-    return node.name() == name;
-}
 
 double coordinate(const XmlFile& file, pugi::xml_node node, const char* axis) {
     const std::string digits = file.plain(node.child("position").attribute(axis));
@@ -88,14 +87,19 @@ std::vector<pugi::xml_node> ChartText::sources_of(pugi::xml_node node) const {
     return sources;
 }
 
-/// Those that a transition leaves: all that a simultaneous convergence joins, one otherwise.
+/// Those that a transition leaves: all that a simultaneous convergence joins, one otherwise. A
+/// branch that ends with a jump joins nothing; CODESYS draws it on to where others join.
 void ChartText::add_steps_before(pugi::xml_node node, Nodes& steps, Seen& seen) {
-    for (const pugi::xml_node source : sources_of(node)) {
+    Nodes sources = sources_of(node);
+    std::erase_if(sources, [](pugi::xml_node source) { return is(source, "jumpStep"); });
+    const bool is_only_one = sources.size() == 1 || !is(node, "selectionConvergence");
+    for (const pugi::xml_node source : sources) {
         if (!seen.insert(text(source, "localId")).second) continue;
-        if (is(source, "step")) {
+        if (is(source, "step") && is_only_one) {
             steps.push_back(source);
-        } else if (seen.size() < most_branches &&
-                   (is(source, "selectionDivergence") || is(source, "simultaneousConvergence"))) {
+        } else if (seen.size() < most_branches && is_only_one &&
+                   (is(source, "selectionDivergence") || is(source, "selectionConvergence") ||
+                    is(source, "simultaneousConvergence"))) {
             add_steps_before(source, steps, seen);
         } else {
             refuse(source, fmt::format("a transition does not follow a {} here", source.name()),
@@ -164,7 +168,7 @@ void ChartText::add_action(pugi::xml_node action) {
     if (reference) {
         file_.copy(made_.statements, reference.attribute("name"));
     } else {
-        const std::string name = fmt::format("_action{}", ++actions_);
+        const std::string name = context_.variables.name("_action");
         write(name, action);
         made_.members.write(fmt::format("ACTION {}:\n", name), place_of(action));
         made_.members.append(body_text(context_, body, name).statements);
@@ -284,7 +288,7 @@ Excerpts ChartText::condition_of_statements(Excerpts before, const Excerpts& val
                                             pugi::xml_node at) {
     if (before.is_empty()) return value;
     const Mark place = file_.mark_of_tag(at);
-    const std::string name = fmt::format("_transition{}", ++actions_);
+    const std::string name = context_.variables.name("_transition");
     made_.members.write(fmt::format("METHOD {} : BOOL\n", name), place);
     const bool is_named = is(at, "body") || is(at, "inline");
     if (is_named) {

@@ -148,10 +148,12 @@ void DrawingReader::add_lines(Pin& pin, pugi::xml_node point) {
         if (from != by_id_.end())
             pin.lines.push_back({from->second, text(connection, "formalParameter")});
         else
-            out_.add(code::not_an_object,
-                     file_.mark(file_.part(connection.attribute("refLocalId"))),
-                     fmt::format("a line comes from '{}', which is no element of this body", id),
-                     "refLocalId is the localId of another element");
+            out_.warn(
+                code::not_an_object, file_.mark(file_.part(connection.attribute("refLocalId"))),
+                fmt::format(
+                    "a line comes from '{}', which is no element of this body, and is left out",
+                    id),
+                "refLocalId is the localId of another element");
     }
 }
 

@@ -1,63 +1,40 @@
+#include "runtime/projects/drawings/jumps.hpp"
+
 #include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "runtime/projects/drawings/networks.hpp"
-#include "runtime/source/codes.hpp"
 #include "runtime/st/syntax/token.hpp"
 
 namespace lineshaft::projects {
 
-/// A jump or a return, if what leads there is TRUE.
-void NetworkText::leave(const Element& element) {
-    const Mark place = place_of(element);
-    Value when;
-    if (!element.inputs.empty()) when = value_of(element, element.inputs.front());
-    const bool is_always = when.is_empty() || when.is_always;
-    std::string what = "RETURN;";
-    const bool is_jump = element.kind == Drawn::jump;
-    const std::string target = attribute(element, "label");
-    if (is_jump) {
-        if (jump_.empty()) jump_ = context_.variables.make("_jump", "INT");
-        const std::size_t number = number_of_label(target);
-        if (number == 0)
-            return context_.out.add(code::not_declared, place,
-                                    fmt::format("there is no label '{}' in this body", target));
-        what = fmt::format("{} := {};", jump_, number);
-    }
-    if (!is_always) {
-        now_.write("IF ", place);
-        now_.append(when.text);
-        now_.write(" THEN ", place);
-    }
-    now_.write(what + (is_always ? "\n" : " END_IF\n"), place);
-    if (!is_jump) return;
-    end_stretch({}, place);
-    stretches_.back().target = target;
+std::size_t Jumps::number_of(std::string_view label) const {
+    const auto it = std::ranges::find_if(
+        labels_, [&](const std::string& known) { return st::same_name(known, label); });
+    return it == labels_.end() ? 0 : static_cast<std::size_t>(it - labels_.begin()) + 1;
 }
 
-/// From 1 on; 0: there is none.
-std::size_t NetworkText::number_of_label(std::string_view name) const {
-    std::size_t number = 0;
-    for (const Element& element : drawing_.elements) {
-        if (element.kind != Drawn::label) continue;
-        ++number;
-        if (st::same_name(attribute(element, "label"), name)) return number;
-    }
-    return 0;
+std::string Jumps::leaving(std::string_view label) {
+    if (jump_.empty()) jump_ = variables_.make("_jump", "INT");
+    return fmt::format("{} := {};", jump_, number_of(label));
 }
 
-/// What was written goes before a label, or before where a jump has gone.
-void NetworkText::end_stretch(std::string label, const Mark& place) {
-    stretches_.push_back({.statements = std::exchange(now_, {})});
-    stretches_.push_back({.label = std::move(label), .place = place});
+void Jumps::label(std::string name, Excerpts before, const Mark& place) {
+    stretches_.push_back({.statements = std::move(before)});
+    stretches_.push_back({.label = std::move(name), .place = place});
+}
+
+void Jumps::jump(std::string target, Excerpts before, const Mark& place) {
+    stretches_.push_back({.statements = std::move(before)});
+    stretches_.push_back({.target = std::move(target), .place = place});
 }
 
 /// What is jumped over is what stands between a jump, which leaves the number of its label, and
 /// that label, which takes it away. One that goes back has the whole body repeated.
-Excerpts NetworkText::with_jumps() {
-    stretches_.push_back({.statements = std::exchange(now_, {})});
+Excerpts Jumps::finish(Excerpts rest) {
+    stretches_.push_back({.statements = std::move(rest)});
     Excerpts made;
     const auto is_jump = [](const Stretch& stretch) { return !stretch.target.empty(); };
     const auto first = std::ranges::find_if(stretches_, is_jump);
@@ -78,7 +55,7 @@ Excerpts NetworkText::with_jumps() {
         });
         if (is_aim)
             made.write(fmt::format("IF {0} = {1} THEN {0} := 0; END_IF\n", jump_,
-                                   number_of_label(stretch.label)),
+                                   number_of(stretch.label)),
                        stretch.place);
         if (stretch.statements.is_empty()) continue;
         if (is_behind_jump) made.write(fmt::format("IF {} = 0 THEN\n", jump_), place);

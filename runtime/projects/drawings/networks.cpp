@@ -16,7 +16,7 @@ constexpr std::size_t longest_value = 1U << 16;
 }  // namespace
 
 std::string MadeVariables::make(std::string_view prefix, std::string_view type) {
-    std::string name = fmt::format("{}{}", prefix, ++count_);
+    std::string name = this->name(prefix);
     declarations_ += fmt::format("    {} : {};\n", name, type);
     return name;
 }
@@ -25,6 +25,7 @@ NetworkText::NetworkText(BodyContext& context, pugi::xml_node body)
     : context_(context),
       file_(context.file),
       drawing_(read_drawing(context.file, body, context.out)),
+      jumps_(context.variables, labels()),
       states_(drawing_.elements.size()) {
     for (std::size_t i = 0; i < drawing_.elements.size(); ++i) {
         const Element& element = drawing_.elements[i];
@@ -38,12 +39,19 @@ NetworkText::NetworkText(BodyContext& context, pugi::xml_node body)
         states_[drawing_.order[turn]].turn = turn;
 }
 
+std::vector<std::string> NetworkText::labels() const {
+    std::vector<std::string> all;
+    for (const Element& element : drawing_.elements)
+        if (element.kind == Drawn::label) all.push_back(attribute(element, "label"));
+    return all;
+}
+
 Excerpts NetworkText::statements() {
     for (const std::size_t i : drawing_.order) {
         turn_ = drawing_.elements[i].order;
         evaluate(i);
     }
-    return with_jumps();
+    return jumps_.finish(std::exchange(now_, {}));
 }
 
 Value NetworkText::condition(pugi::xml_node connection_point) {
@@ -265,7 +273,8 @@ void NetworkText::evaluate(std::size_t i) {
             return waits_for_use(i) ? void() : evaluate_box(i);
         case Drawn::label:
             state.is_done = true;
-            return end_stretch(attribute(element, "label"), place_of(element));
+            return jumps_.label(attribute(element, "label"), std::exchange(now_, {}),
+                                place_of(element));
         case Drawn::jump:
         case Drawn::return_:
             state.is_done = true;
@@ -273,6 +282,27 @@ void NetworkText::evaluate(std::size_t i) {
         default:
             return;
     }
+}
+
+/// A jump or a return, if what leads there is TRUE.
+void NetworkText::leave(const Element& element) {
+    const Mark place = place_of(element);
+    Value when;
+    if (!element.inputs.empty()) when = value_of(element, element.inputs.front());
+    const bool is_always = when.is_empty() || when.is_always;
+    const bool is_jump = element.kind == Drawn::jump;
+    const std::string target = attribute(element, "label");
+    if (is_jump && jumps_.number_of(target) == 0)
+        return context_.out.add(code::not_declared, place,
+                                fmt::format("there is no label '{}' in this body", target));
+    const std::string what = is_jump ? jumps_.leaving(target) : "RETURN;";
+    if (!is_always) {
+        now_.write("IF ", place);
+        now_.append(when.text);
+        now_.write(" THEN ", place);
+    }
+    now_.write(what + (is_always ? "\n" : " END_IF\n"), place);
+    if (is_jump) jumps_.jump(target, std::exchange(now_, {}), place);
 }
 
 /// A coil or a variable takes what comes to it, negated, at an edge, or set or reset by it.
@@ -287,8 +317,9 @@ void NetworkText::assign(std::size_t i) {
     states_[i].is_active = false;
     if (states_[i].is_written) return;
     if (value.is_empty())
-        return refuse(element, fmt::format("nothing leads to this {}", word_of(element.kind)),
-                      "draw a line to it, or remove it");
+        return context_.out.warn(code::not_supported, place,
+                                 fmt::format("nothing leads to this {}", word_of(element.kind)),
+                                 "it keeps its value: draw a line to it, or remove it");
     if (is_coil && !states_[i].uses.empty())
         states_[i].value = value =
             value.is_always ? value

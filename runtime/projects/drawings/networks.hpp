@@ -5,17 +5,22 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "runtime/projects/drawings/drawing.hpp"
+#include "runtime/projects/drawings/jumps.hpp"
 #include "runtime/projects/drawings/types.hpp"
 #include "runtime/projects/drawings/values.hpp"
 
 namespace lineshaft::projects {
 
-/// Variables that the bodies of a POU have beside those which it declares.
+/// What the bodies of a POU have beside what it declares.
 class MadeVariables {
   public:
     /// A new one: `_wire1`.
     std::string make(std::string_view prefix, std::string_view type);
+    /// Of what is no variable: `_action2`.
+    std::string name(std::string_view prefix) { return fmt::format("{}{}", prefix, ++count_); }
     /// `_wire1 : BOOL;` and so on; empty: none.
     const std::string& declarations() const { return declarations_; }
 
@@ -65,18 +70,13 @@ class NetworkText {
         Value enabled = {};               ///< what comes out at ENO
         std::vector<std::pair<std::string, Value>> outputs = {};  ///< of a function, beside that
     };
-    /// Statements, or a label, or where a jump goes away, in a row.
-    struct Stretch {
-        Excerpts statements = {};
-        std::string label = {};
-        std::string target = {};
-        Mark place = {};
-    };
     using Arguments = std::vector<std::pair<const Pin*, Value>>;
 
     // networks.cpp
     void evaluate(std::size_t i);
     void assign(std::size_t i);
+    void leave(const Element& element);
+    std::vector<std::string> labels() const;
     Value value_of(const Line& line);
     Value value_of(const Element& element, const Pin& pin);
     Value value_of_element(std::size_t i);
@@ -128,19 +128,12 @@ class NetworkText {
     std::string type_of_takers(std::size_t i) const;
     std::string type_of(const Line& line, std::set<std::size_t>& seen) const;
 
-    // jumps.cpp
-    void leave(const Element& element);
-    std::size_t number_of_label(std::string_view name) const;
-    void end_stretch(std::string label, const Mark& place);
-    Excerpts with_jumps();
-
     BodyContext& context_;
     const XmlFile& file_;
     Drawing drawing_;
+    Jumps jumps_;
     std::vector<State> states_;
-    std::vector<Stretch> stretches_;
     Excerpts now_;           ///< statements since the last label or jump
-    std::string jump_;       ///< the variable that has the label which is jumped to
     std::int64_t turn_ = 0;  ///< `executionOrderId` of the element whose turn it is
     int depth_ = 0;
     bool is_too_deep_ = false;  ///< which was told

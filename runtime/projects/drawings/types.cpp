@@ -27,10 +27,15 @@ constexpr std::string_view of_bits[] = {"and", "or", "xor", "not"};
 struct Fixed {
     std::string_view name, type;
 };
-constexpr Fixed fixed[] = {{"len", "INT"},       {"find", "INT"},      {"concat", "STRING"},
-                           {"left", "STRING"},   {"right", "STRING"},  {"mid", "STRING"},
-                           {"insert", "STRING"}, {"delete", "STRING"}, {"replace", "STRING"},
-                           {"trunc", "DINT"}};
+constexpr Fixed fixed[] = {
+    {"len", "INT"},        {"find", "INT"},           {"concat", "STRING"},
+    {"left", "STRING"},    {"right", "STRING"},       {"mid", "STRING"},
+    {"insert", "STRING"},  {"delete", "STRING"},      {"replace", "STRING"},
+    {"trunc", "DINT"},     {"add_time", "TIME"},      {"sub_time", "TIME"},
+    {"multime", "TIME"},   {"divtime", "TIME"},       {"mul_time", "TIME"},
+    {"div_time", "TIME"},  {"sub_date_date", "TIME"}, {"sub_tod_tod", "TIME"},
+    {"sub_dt_dt", "TIME"}, {"add_tod_time", "TOD"},   {"sub_tod_time", "TOD"},
+    {"add_dt_time", "DT"}, {"sub_dt_time", "DT"}};
 /// Outputs that the standard's blocks have.
 constexpr Fixed outputs[] = {{"q", "BOOL"},  {"qu", "BOOL"}, {"qd", "BOOL"},
                              {"q1", "BOOL"}, {"et", "TIME"}, {"cv", "INT"}};
@@ -42,6 +47,8 @@ constexpr std::string_view elementary[] = {"bool",  "byte", "word",   "dword",  
                                            "usint", "int",  "uint",   "dint",   "udint", "lint",
                                            "ulint", "real", "lreal",  "time",   "ltime", "date",
                                            "tod",   "dt",   "string", "wstring"};
+
+constexpr std::string_view dates[] = {"date", "tod", "dt"};
 
 template <class List>
 bool has(const List& list, std::string_view name) {
@@ -66,12 +73,15 @@ std::string common_type(const std::vector<std::string>& types, std::size_t skipp
     return upper(common);
 }
 
-/// Not by those that make a duration of two dates, or a real number of an integer.
+bool same(const std::vector<std::string>& types) {
+    return std::ranges::all_of(types,
+                               [&](const auto& type) { return lower(type) == lower(types[0]); });
+}
+
+/// Not by those that make a real number of an integer.
 bool is_kept_by(std::string_view function, std::string_view type) {
-    constexpr std::string_view dates[] = {"date", "tod", "dt"};
     constexpr std::string_view real[] = {"sqrt", "ln",  "log",  "exp",  "sin",
                                          "cos",  "tan", "asin", "acos", "atan"};
-    if (has(dates, type)) return function != "sub";
     return !has(real, function) || type.ends_with("real");
 }
 
@@ -186,6 +196,9 @@ std::string NetworkTypes::of_call(std::string_view function,
     const auto* like = std::ranges::find(like_arguments, name, &LikeArguments::name);
     if (like != std::end(like_arguments)) {
         if (arguments.empty()) return {};
+        const bool is_date = has(dates, lower(arguments.front()));
+        if (is_date && (name == "add" || name == "sub"))
+            return same(arguments) ? "TIME" : upper(arguments.front());
         std::string type = like->is_first ? common_type({arguments.front()}, 0)
                                           : common_type(arguments, like->skipped);
         if (type.empty() && has(of_bits, name)) return "BOOL";

@@ -25,7 +25,8 @@ constexpr Qualifier qualifiers[] = {{"N", false},  {"S", false},  {"R", false}, 
 /// Writes what a chart does as statements, which are checked as those of a user.
 struct ChartWriter {
     Checking& c;
-    Routine& routine;
+    Routine& routine;  ///< that has what the chart keeps
+    const Pou& pou;    ///< whose chart it is: the routine's, or one of its actions'
     Block out = {};
 
     Expression like(const Token& token) const {
@@ -36,7 +37,10 @@ struct ChartWriter {
     }
     /// `of.part`, as it is called in names: what a chart keeps beside what its user declares.
     std::string_view part_name(std::string_view of, std::string_view part) {
-        return c.checked.names.emplace_back(fmt::format("{}.{}", of, part));
+        return c.checked.names.emplace_back(fmt::format("{}{}.{}", within(), of, part));
+    }
+    std::string within() const {
+        return &pou == routine.pou ? std::string() : fmt::format("{}.", pou.name.text);
     }
     Expression* name(const Token& at, std::string_view text) {
         return make_name(c, like(at), text);
@@ -71,7 +75,7 @@ struct ChartWriter {
         return make_call_statement(c, make_call(c, *timer, timer, std::move(arguments)));
     }
 
-    void declare(const Token& at, std::string_view text, const Type* type) {
+    Variable& declare(const Token& at, std::string_view text, const Type* type) {
         Variable& made = routine.variables.emplace_back();
         made.name = at;
         made.text = text;
@@ -80,6 +84,14 @@ struct ChartWriter {
         made.used = true;
         routine.names.emplace(text, &made);
         depend(c, type, at.place);
+        return made;
+    }
+    /// Of an action's chart it is seen in the action alone.
+    Variable& declare_step(Routine& seen, const Token& at, const Type* type) {
+        const std::string_view full = c.checked.names.emplace_back(within() + std::string(at.text));
+        Variable& made = declare(at, full, type);
+        seen.names.emplace(at.text, &made);
+        return made;
     }
 };
 
@@ -110,7 +122,7 @@ void check_transitions(Checking& c, const Chart& chart) {
 }
 
 /// Its initial step, of which there is one.
-void check_steps(Checking& c, const Routine& routine, const Chart& chart) {
+void check_steps(Checking& c, const Pou& pou, const Chart& chart) {
     const ChartStep* initial = nullptr;
     for (const ChartStep& step : chart.steps) {
         if (!step.is_initial) continue;
@@ -121,12 +133,12 @@ void check_steps(Checking& c, const Routine& routine, const Chart& chart) {
         initial = &step;
     }
     if (!initial)
-        c.fail(code::something_else_expected, routine.pou->name.place,
-               fmt::format("the chart of '{}' has no initial step", routine.name),
+        c.fail(code::something_else_expected, pou.name.place,
+               fmt::format("the chart of '{}' has no initial step", pou.name.text),
                "write INITIAL_STEP in front of the step that it begins with");
-    if (!routine.pou->body.empty())
-        c.fail(code::wrong_place, routine.pou->body.front()->place,
-               "a statement stands beside a chart", "put it into an ACTION of a step");
+    if (!pou.body.empty())
+        c.fail(code::wrong_place, pou.body.front()->place, "a statement stands beside a chart",
+               "put it into an ACTION of a step");
 }
 
 bool check_association(Checking& c, const Routine& routine, const ChartAssociation& a) {
@@ -146,8 +158,8 @@ bool check_association(Checking& c, const Routine& routine, const ChartAssociati
                false;
     const auto method = routine.methods.find(a.action.text);
     if (method != routine.methods.end()) return true;
-    const auto variable = routine.names.find(a.action.text);
-    if (variable != routine.names.end() && variable->second->type == &bool_type) return true;
+    const Variable* variable = find_variable(c, a.action);
+    if (variable && variable->type == &bool_type) return true;
     return c.fail(code::not_declared, a.action.place,
                   fmt::format("'{}' is neither an ACTION nor a BOOL", a.action.text),
                   fmt::format("write ACTION {}: ... END_ACTION", a.action.text)),
@@ -320,12 +332,11 @@ void write_action(ChartWriter& w, const Token& action, const std::vector<Use>& u
     w.out.push_back(w.set(kept("ran"), kept("runs")));
 }
 
-}  // namespace
-
-void declare_chart(Checking& c, Routine& routine) {
-    if (!routine.pou->chart) return;
-    const Chart& chart = *routine.pou->chart;
-    ChartWriter w{c, routine};
+/// `seen` has the chart, and `routine`, if it is another, what this keeps.
+void declare_chart(Checking& c, Routine& routine, Routine& seen) {
+    if (!seen.pou->chart) return;
+    const Chart& chart = *seen.pou->chart;
+    ChartWriter w{c, routine, *seen.pou};
     Type& type = c.make_type(Kind::structure, "STEP");
     for (const auto& [name, part] : {std::pair("X", &bool_type), std::pair("T", &time_type)}) {
         Variable& member = c.checked.variables.emplace_back();
@@ -335,18 +346,18 @@ void declare_chart(Checking& c, Routine& routine) {
     }
     for (const ChartStep& step : chart.steps) {
         const Token& at = step.name;
-        if (const auto known = routine.names.find(at.text); known != routine.names.end()) {
+        if (const auto known = seen.names.find(at.text); known != seen.names.end()) {
             c.fail(code::declared_twice, at.place, fmt::format("'{}' is declared twice", at.text),
                    fmt::format("first in line {}", known->second->name.place.mark().line));
             continue;
         }
-        w.declare(at, at.text, &type);
+        Variable& variable = w.declare_step(seen, at, &type);
         if (step.is_initial) {
             Expression* list = make(c, E::list, w.like(at));
             Token x = at;
             x.text = "X";
             list->arguments = {{.name = x, .value = w.truth(at, true)}};
-            routine.variables.back().initial = list;
+            variable.initial = list;
         }
         w.declare(at, w.part_name(at.text, "timer"), standard_type(c, "ton"));
         w.declare(at, w.part_name(at.text, "before"), &bool_type);
@@ -362,18 +373,27 @@ void declare_chart(Checking& c, Routine& routine) {
             w.declare(action, w.part_name(use.kept, "timer"), standard_type(c, "ton"));
         }
     }
-    check_steps(c, routine, chart);
+    check_steps(c, *seen.pou, chart);
     check_transitions(c, chart);
+}
+
+}  // namespace
+
+void declare_charts(Checking& c, Routine& routine) {
+    if (routine.owner) return;
+    declare_chart(c, routine, routine);
+    for (Routine* method : routine.own_methods) declare_chart(c, routine, *method);
 }
 
 Block chart_statements(Checking& c, Routine& routine) {
     if (!routine.pou->chart) return {};
     const Chart& chart = *routine.pou->chart;
-    ChartWriter w{c, routine};
+    Routine& keeper = routine.owner ? *routine.owner : routine;
+    ChartWriter w{c, keeper, *routine.pou};
     bool is_right = c.out.empty();
     for (const ChartStep& step : chart.steps)
         for (const ChartAssociation& association : step.associations)
-            is_right = check_association(c, routine, association) && is_right;
+            is_right = check_association(c, keeper, association) && is_right;
     if (!is_right) return {};
     write_times(w, chart);
     write_evolution(w, chart);

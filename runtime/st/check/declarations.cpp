@@ -291,7 +291,7 @@ void declare_routine(Checking& c, Routine& routine) {
             if ((block.constant && block.section == Section::local) == constant)
                 declare(c, routine, block);
     declare_overlays(c, routine);
-    declare_chart(c, routine);
+    declare_charts(c, routine);
 }
 
 }  // namespace

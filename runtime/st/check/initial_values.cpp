@@ -45,6 +45,13 @@ void check_data_block(Checking& c, const Global& global) {
     c.routine = nullptr;
 }
 
+/// `(0)`, which B&R and CODESYS 2.3 write for the initial values of what has several.
+bool is_nothing(const Expression& value, const Type& type) {
+    const bool has_several =
+        type.kind == Kind::structure || type.kind == Kind::array || type.kind == Kind::block;
+    return has_several && value.kind == E::constant && value.token.text == "0";
+}
+
 /// Of several dimensions either a list of lists, or all elements in one, the last index first.
 void check_elements(Checking& c, Expression& list, const Type& array) {
     const bool nested = list.is_nested();
@@ -156,9 +163,14 @@ void check_initial(Checking& c, Expression*& value, const Type& type) {
         return;
     }
     if (value->kind == E::repeated && type.kind == Kind::array) {
-        Expression* list = make(c, E::list, *value);
+        Expression* list = make(c, E::list, *value->operands[0]);
         list->arguments.push_back({.value = value});
         value = list;
+        return check_initial(c, value, type);
+    }
+    if (is_nothing(*value, type)) {
+        value = make(c, E::list, *value);
+        value->token.word = type.kind == Kind::array ? Word::open_bracket : Word::open;
         return check_initial(c, value, type);
     }
     if (!check(c, value, &type)) return;

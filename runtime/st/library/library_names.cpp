@@ -207,8 +207,56 @@ void LibraryNames::note_qualified(const Tokens& tokens, std::size_t at) {
     }
 }
 
+void LibraryNames::note_pins(const Tree& tree) {
+    NameMap<std::string_view> instances;
+    for (const Declaration& declared : tree.declarations) {
+        const auto it =
+            declared.type ? index_.by_name.find(declared.type->name.text) : index_.by_name.end();
+        if (it != index_.by_name.end() &&
+            (it->second.size() > 1 || index_.of_catalog.contains(it->first)))
+            instances.emplace(declared.name.text, it->first);
+    }
+    if (instances.empty()) return;
+    for (const Expression& e : tree.expressions) {
+        const bool is_part = e.kind == Expression::Kind::call || e.kind == Expression::Kind::member;
+        const auto it =
+            is_part && e.operands[0] ? instances.find(e.operands[0]->token.text) : instances.end();
+        if (it == instances.end()) continue;
+        NameSet& pins = pins_[it->second];
+        if (e.kind == Expression::Kind::member) pins.insert(e.token.text);
+        for (const Argument& argument : e.arguments)
+            if (argument.is_named()) pins.insert(argument.name.text);
+    }
+}
+
+std::size_t LibraryNames::pins_of(const LibraryFile& file, std::string_view name) const {
+    const auto named = pins_.find(name);
+    const std::size_t begin = file.text.find(fmt::format("FUNCTION_BLOCK {}\n", name));
+    if (named == pins_.end() || begin == file.text.npos) return 0;
+    std::string_view unit = file.text.substr(begin);
+    unit = unit.substr(0, unit.find("END_FUNCTION_BLOCK"));
+    unit = unit.substr(0, unit.rfind("END_VAR"));
+    NameSet words;
+    for (std::string_view word = first_word(unit); !word.empty(); word = first_word(unit))
+        words.insert(word);
+    return static_cast<std::size_t>(std::ranges::count_if(
+        named->second, [&](std::string_view pin) { return words.contains(pin); }));
+}
+
+std::size_t LibraryNames::pins_of_catalog(std::string_view name) const {
+    const BlockType* type = catalog_.find(name);
+    const auto named = pins_.find(name);
+    if (!type || named == pins_.end()) return 0;
+    return static_cast<std::size_t>(std::ranges::count_if(
+        type->fields, [&](const Field& field) { return named->second.contains(field.name); }));
+}
+
 const LibraryFile* LibraryNames::choose(std::string_view name) const {
-    const auto& files = index_.by_name.at(name);
+    std::vector<const LibraryFile*> files = index_.by_name.at(name);
+    const auto pins = [&](const LibraryFile* file) { return pins_of(*file, name); };
+    const std::size_t most = pins(*std::ranges::max_element(files, {}, pins));
+    std::erase_if(files, [&](const LibraryFile* file) { return pins(file) < most; });
+    if (index_.of_catalog.contains(name) && most > pins_of_catalog(name)) return files.front();
     for (const LibraryFile* file : files)
         if (taken_libraries_.contains(file->library)) return file;
     if (of_twincat_.contains(name))
@@ -253,6 +301,7 @@ void LibraryNames::add_files(Tree& tree, Diagnostics& out) {
     if (catalog_.libraries().empty()) return;
     note_names(tree, true);
     if (names_.empty() && said_.empty()) return;
+    note_pins(tree);
     own_ = declared_namespaces(tree);
     std::erase_if(names_,
                   [declared = declared_names(tree)](auto name) { return declared.contains(name); });

@@ -15,12 +15,14 @@ namespace lineshaft::st {
 ///   - for a name of it that the sources use and nobody else has: they declare no type, unit,
 ///     global variable or value of an enumeration of that name, nor has the catalogue it;
 ///   - for a name that the catalogue has, too, if something else of that library is taken, or if it
-///     stands in a file of TwinCAT's and the library is one of its;
+///     stands in a file of TwinCAT's and the library is one of its, or if the sources name pins of
+///     it that the catalogue's block has not;
 ///   - for `Util.BLINK`, where `Util` is the library, whatever else has that name;
 ///   - for USING with its library, and for a name before which a library that is not open stands:
 ///   all;
 ///   - for a name that a taken file uses.
-/// Of several libraries that have a name, one is meant that is taken anyway, else the first. Names
+/// Of several libraries that have a name, the one is meant whose block of that name has most of the
+/// pins that the sources name of it, then one that is taken anyway, then the first. Names
 /// of a library that is not open, and of helpers, which begin with a small letter, are not looked
 /// for, nor names in SCL, nor what is the name of a variable everywhere. A library whose namespace
 /// the sources declare themselves is theirs.
@@ -45,6 +47,9 @@ class LibraryNames {
     void note(const Token& name);
     void note_names(const Tree& tree, bool are_users);
     void note_qualified(const Tokens& tokens, std::size_t at);
+    void note_pins(const Tree& tree);
+    std::size_t pins_of(const LibraryFile& file, std::string_view name) const;
+    std::size_t pins_of_catalog(std::string_view name) const;
     const LibraryFile* choose(std::string_view name) const;
     void take(const LibraryFile& file);
     void take_said();
@@ -55,7 +60,8 @@ class LibraryNames {
     const Index& index_;
     std::size_t types_ = 0, pous_ = 0, expressions_ = 0;  ///< of the tree that were looked at
     std::set<std::string_view> names_, of_twincat_;       ///< as libraries write them
-    std::set<std::string_view> said_;                     ///< libraries, and names in full
+    std::map<std::string_view, NameSet> pins_;  ///< that are named of what several libraries have
+    std::set<std::string_view> said_;           ///< libraries, and names in full
     std::set<std::string_view> taken_libraries_;
     std::set<const LibraryFile*> taken_;
     NameSet own_;  ///< libraries that the sources are themselves

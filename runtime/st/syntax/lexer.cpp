@@ -236,6 +236,7 @@ class Lexer {
             add(*word);
             return;
         }
+        if (skip_picture(text)) return;
         const std::optional<Word> word = word_of(text);
         const bool is_variable = word == Word::region_ && (!new_line_ || is_declared_or_assigned());
         if (!word || after_dot || is_variable) {
@@ -263,6 +264,15 @@ class Lexer {
     bool is_declared_or_assigned() const {
         const std::size_t next = text_.find_first_not_of(" \t", at_);
         return next != std::string_view::npos && (text_[next] == ':' || text_[next] == ',');
+    }
+
+    /// CODESYS 2.3 exports pictures beside its units, in a language of their own.
+    bool skip_picture(std::string_view word) {
+        constexpr std::string_view last = "END_VISUALISATION";
+        if (!new_line_ || !same_name(word, "visualisation")) return false;
+        const std::size_t end = text_.find(last, at_);
+        if (end != std::string_view::npos) at_ = end + last.size();
+        return end != std::string_view::npos;
     }
 
     /// `REGION any text`: up to the end of the line.

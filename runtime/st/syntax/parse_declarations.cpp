@@ -1,4 +1,5 @@
 #include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/grammar.hpp"
 #include "runtime/st/syntax/mistakes.hpp"
 #include "runtime/st/syntax/recovery.hpp"
@@ -72,6 +73,10 @@ Token parse_location(Parsing& p, const std::vector<Token>& names) {
 
 }  // namespace
 
+bool has_no_bodies(const Parsing& p) {
+    return lower(p.source->file->path).ends_with(".fun");
+}
+
 /// Var_Sections : ( Var_Section | Const_Section | Label_Section ) *
 void parse_sections(Parsing& p, Pou& pou, Word end) {
     while (!p.is(end) && !p.is(Word::end_of_file)) {
@@ -128,13 +133,14 @@ void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
     if ((p.is(Word::begin_) && !p.is_declared()) ||
         (p.is_name() && (behind == Word::assign || behind == Word::open || behind == Word::dot)))
         return refuse_statement(p);
-    if (!p.is_name() && p.here().word < Word::end_of_file && behind == Word::colon)
-        return refuse_reserved_name(p);
+    const bool is_reserved =
+        !p.is_name() && p.here().word < Word::end_of_file && behind == Word::colon;
+    if (is_reserved && !has_no_bodies(p)) return refuse_reserved_name(p);
     std::vector<Token> names;
     if (p.is(Word::at_) && p.next().word == Word::direct) {
         names.push_back(p.next());  // it is named by its address
     } else {
-        do names.push_back(expect_name(p, "the name of a variable"));
+        do names.push_back(is_reserved ? p.take() : expect_name(p, "the name of a variable"));
         while (p.accept(Word::comma));
     }
     const Token at = parse_location(p, names);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/grammar.hpp"
 #include "runtime/st/syntax/mistakes.hpp"
 #include "runtime/st/syntax/recovery.hpp"
@@ -9,6 +10,30 @@
 namespace lineshaft::st {
 
 namespace {
+
+/// What B&R declares of its language's own: AND, ADR, with inputs of ANY.
+bool is_of_language(const Parsing& p, const Pou& pou) {
+    if (pou.kind != PouKind::function || !has_no_bodies(p)) return false;
+    const auto is_any = [](const TypeText* type) {
+        return type && type->kind == TypeText::Kind::name &&
+               lower(type->name.text).starts_with("any");
+    };
+    return is_any(pou.result) ||
+           std::ranges::any_of(pou.blocks, [&](const DeclarationBlock& block) {
+               return std::ranges::any_of(block.declarations,
+                                          [&](const Declaration* d) { return is_any(d->type); });
+           });
+}
+
+/// Var_Config : 'VAR_CONFIG' Any_Token * 'END_VAR' ';' ?
+/// What CODESYS 2.3 has for addresses left open.
+bool skip_var_config(Parsing& p) {
+    if (!p.is(Word::name) || !p.here().first_in_line || !p.says("var_config")) return false;
+    while (!p.is(Word::end_of_file) && !p.is(Word::end_var_)) p.take();
+    p.accept(Word::end_var_);
+    p.accept(Word::semicolon);
+    return true;
+}
 
 /// Config_Decl : 'CONFIGURATION' ( Var_Section | Any_Token ) * 'END_CONFIGURATION' ';' ?
 /// Its variables are VAR_GLOBAL.
@@ -65,7 +90,8 @@ bool may_have_parts(const Pou& pou) {
            pou.kind == PouKind::interface;
 }
 
-/// Action_Decl : 'ACTION' Name ':' ? Stmt_List 'END_ACTION' ';' ?
+/// Action_Decl : 'ACTION' Name ':' ? Action_Body 'END_ACTION' ';' ?
+/// Action_Body : Stmt_List ( Chart_Element Stmt_List ) *
 Pou* parse_action(Parsing& p, PouKind kind) {
     const Token opener = p.take();
     Pou& action = p.tree.pous.emplace_back();
@@ -76,6 +102,11 @@ Pou* parse_action(Parsing& p, PouKind kind) {
     p.accept(Word::colon);
     const bool is_in_body = std::exchange(p.is_in_body, true);
     parse_statements(p, action.body, Word::end_action_);
+    while (p.at_chart() && kind == PouKind::method) {
+        parse_chart_element(p, action);
+        parse_statements(p, action.body, Word::end_action_);
+    }
+    if (p.at_chart()) refuse_chart(p);
     close(p, Word::end_action_, opener);
     p.is_in_body = is_in_body;
     p.accept(Word::semicolon);
@@ -131,17 +162,21 @@ void parse_globals(Parsing& p) {
 
 }  // namespace
 
-/// Declaration : POU | Action_Decl | Data_Type_Decl | Var_Section | Config_Decl | Test
+/// Declaration : POU | Action_Decl | Data_Type_Decl | Var_Section | Config_Decl | Var_Config | Test
 /// A METHOD stands within another unit, or behind it; variables beside units are VAR_GLOBAL or VAR,
 /// which is the same there; a Test stands in a file of tests.
 void parse_declaration(Parsing& p) {
     if (p.is(Word::end_of_file)) return;
     if (p.at_method()) return parse_late_method(p);
-    if (p.at_pou() && !p.is(Word::method_)) return p.tree.units.push_back(parse_pou(p));
+    if (p.at_pou() && !p.is(Word::method_)) {
+        Pou* pou = parse_pou(p);
+        return is_of_language(p, *pou) ? void() : p.tree.units.push_back(pou);
+    }
     if (p.is(Word::type_)) return parse_type_declarations(p);
     if (p.is(Word::var_global_) || p.is(Word::var_)) return parse_globals(p);
     if (p.is(Word::configuration_)) return parse_configuration(p);
     if (p.at_action()) return parse_action_beside(p);
+    if (skip_var_config(p)) return;
     if (p.is_name(1) && respell(p, declaration_words)) return parse_declaration(p);
     const bool is_tests = p.source->kind == SourceKind::tests;
     if (p.at_test() || (is_tests && p.is(Word::test_))) return parse_test(p);
@@ -169,7 +204,9 @@ Pou* parse_pou(Parsing& p) {
     pou.doc = doc;
     pou.is_class = opener.word == Word::class_;
     parse_pou_modifiers(p, pou);
-    pou.name = expect_name(p, fmt::format("the name of the {}", shown(opener.word)));
+    const bool is_operator = has_no_bodies(p) && !p.is_name();  // B&R declares AND and its like
+    pou.name = is_operator ? p.take()
+                           : expect_name(p, fmt::format("the name of the {}", shown(opener.word)));
     pou.place = opener.place.to(pou.name.place);
     if (p.accept(Word::colon)) pou.result = parse_type(p);
     if (p.panic) skip_line(p);

@@ -204,7 +204,7 @@ TEST_CASE("a message about a network names it and its element") {
                                  coil(4, 20, "c", from(3))))
               .messages == "6:124: 'nobody' is not declared (network 2, contact 3)\n");
     CHECK(read(program("FBD", out_variable(1, 0, "x", from(7)))).messages ==
-          "3:93: a line comes from '7', which is no element of this body\n"
+          "3:93: a line comes from '7', which is no element of this body, and is left out\n"
           "3:1: nothing leads to this variable (network 1, variable 1)\n");
     CHECK(read(program("FBD", in_variable(1, "x") + "<spiral localId=\"2\"/>\n")).messages ==
           "4:1: <spiral> is no element of a network\n");
@@ -271,6 +271,90 @@ TRANSITION FROM (Left, Right) TO Begin :=  Left.T > T#2s;
 END_TRANSITION
 TRANSITION FROM Begin TO Begin := c;
 END_TRANSITION
+END_PROGRAM
+)");
+}
+
+TEST_CASE("an instruction list is what its results are stored in") {
+    const Read made = read(program("IL", R"(LD a (* why *)
+AND( b
+ORN c
+)
+ST d
+S a
+CAL timer(IN := d,
+          PT := T#1s)
+LD x
+ADD 2
+MAX y
+GT z
+JMPC end
+LDN a
+end: STN b
+RETC
+)"));
+    CHECK(made.messages == "");
+    CHECK(made.text == R"(VAR
+    _result1 : BOOL;
+    _result2 : BOOL;
+    _jump3 : INT;
+END_VAR
+_jump3 := 0;
+d := a AND (b OR (NOT c));
+_result1 := d;
+IF _result1 THEN a := TRUE; END_IF
+timer(IN := d, PT := T#1s);
+_result2 := (MAX(x + 2, y)) > z;
+IF (MAX(x + 2, y)) > z THEN _jump3 := 1; END_IF
+IF _jump3 = 0 THEN
+_result2 := NOT a;
+END_IF
+IF _jump3 = 1 THEN _jump3 := 0; END_IF
+IF _jump3 = 0 THEN
+b := NOT _result2;
+IF NOT b THEN
+RETURN;
+END_IF
+END_IF
+END_PROGRAM
+)");
+    CHECK(read(program("IL", "LD a\nJMP nowhere\n")).messages ==
+          "4:1: there is no label 'nowhere' in this body\n");
+    CHECK(read(program("IL", "LD\nST b\n")).messages == "3:1: LD has no operand\n");
+}
+
+TEST_CASE("branches that end with a jump join nothing, and an action may have a chart") {
+    const std::string chart =
+        element("step", 1, 1, "", "name=\"Begin\" initialStep=\"true\"") +
+        element("selectionDivergence", 2, 2, in(from(1))) +
+        element("transition", 3, 3,
+                in(from(2)) + "<condition><inline><ST><p>a</p></ST></inline></condition>") +
+        element("step", 4, 4, in(from(3)), "name=\"Work\"") +
+        element("transition", 5, 5,
+                in(from(2)) + "<condition><inline><ST><p>b</p></ST></inline></condition>") +
+        element("jumpStep", 6, 6, in(from(5)), "targetName=\"Begin\"") +
+        element("selectionConvergence", 7, 7, in(from(4)) + in(from(6))) +
+        element("transition", 8, 8,
+                in(from(7)) + "<condition><inline><ST><p>c</p></ST></inline></condition>") +
+        element("jumpStep", 9, 9, in(from(8)), "targetName=\"Begin\"");
+    const Read made = read(program(
+        "ST", "<p>Run();</p>",
+        "<actions><action name=\"Run\"><body><SFC>" + chart + "</SFC></body></action></actions>"));
+    CHECK(made.messages == "");
+    CHECK(made.text == R"(ACTION Run:
+INITIAL_STEP Begin:
+END_STEP
+STEP Work:
+END_STEP
+TRANSITION FROM Begin TO Work := a;
+END_TRANSITION
+TRANSITION FROM Begin TO Begin := b;
+END_TRANSITION
+TRANSITION FROM Work TO Begin := c;
+END_TRANSITION
+END_ACTION
+Run();
+
 END_PROGRAM
 )");
 }

@@ -1,0 +1,101 @@
+#include "runtime/projects/configuration.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/cursor.hpp"
+
+namespace lineshaft::projects {
+
+namespace {
+
+using st::Token;
+using st::Word;
+
+Name name_of(const Token& token) {
+    return {std::string(token.text), token.place.mark()};
+}
+
+/// `TASK slow(INTERVAL := T#20ms, PRIORITY := 1);`
+ProjectTask read_task(st::Cursor& p) {
+    p.take();
+    ProjectTask made{.name = name_of(p.take())};
+    while (!p.is(Word::close) && !p.is(Word::semicolon) && !p.is(Word::end_of_file)) {
+        const Token key = p.take();
+        if (!p.accept(Word::assign)) continue;
+        const st::Place begin = p.here().place;
+        while (!p.is(Word::comma) && !p.is(Word::close) && !p.is(Word::end_of_file)) p.take();
+        const std::string_view value = begin.to(p.last().place).text();
+        if (st::same_name(key.text, "interval")) made.every = interval_of(value);
+        if (st::same_name(key.text, "priority"))
+            std::from_chars(value.data(), value.data() + value.size(), made.priority);
+    }
+    return made;
+}
+
+/// `PROGRAM main WITH slow : Main;`
+void read_program(st::Cursor& p, std::vector<ProjectTask>& tasks) {
+    p.take();
+    while (p.is(Word::retain_) || p.is(Word::non_retain_)) p.take();
+    p.take();
+    if (!p.says("with")) return;
+    p.take();
+    const Token task = p.take();
+    if (!p.accept(Word::colon)) return;
+    const auto is_its = [&](const ProjectTask& one) {
+        return st::same_name(one.name.text, task.text);
+    };
+    const auto found = std::ranges::find_if(tasks, is_its);
+    if (found != tasks.end()) found->programs.push_back(name_of(p.take()));
+}
+
+}  // namespace
+
+std::int64_t interval_of(std::string_view text) {
+    struct Unit {
+        std::string_view name;
+        double ns;
+    };
+    static constexpr Unit units[] = {{"ms", 1e6},   {"us", 1e3}, {"ns", 1}, {"d", 86400e9},
+                                     {"h", 3600e9}, {"m", 60e9}, {"s", 1e9}};
+    std::string small = lower(text);
+    std::erase(small, '_');
+    std::string_view rest = small;
+    for (const std::string_view prefix : {"pt", "time#", "t#"})
+        if (rest.starts_with(prefix)) rest.remove_prefix(prefix.size());
+    double sum = 0;
+    while (!rest.empty()) {
+        double number = 0;
+        const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+        if (error != std::errc()) return 0;
+        rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+        if (rest.empty()) return std::llround(std::clamp((sum + number * 1e9), 0.0, 1e18));
+        const auto* unit =
+            std::ranges::find_if(units, [&](const Unit& u) { return rest.starts_with(u.name); });
+        if (unit == std::end(units)) return 0;
+        rest.remove_prefix(unit->name.size());
+        sum += number * unit->ns;
+    }
+    return std::llround(std::clamp(sum, 0.0, 1e18));
+}
+
+void read_configuration(const Reading& to, const std::shared_ptr<const SourceFile>& source) {
+    if (upper(source->text).find("CONFIGURATION") == std::string::npos) return;
+    Diagnostics unread;
+    st::Cursor p{st::read_tokens(source, unread)};
+    while (!p.is(Word::end_of_file) && !p.is(Word::configuration_)) p.take();
+    std::vector<ProjectTask> tasks;
+    while (!p.is(Word::end_of_file)) {
+        if (p.is_name() && p.says("task") && p.is_name(1) && p.next(2).word == Word::open)
+            tasks.push_back(read_task(p));
+        else if (p.is(Word::program_))
+            read_program(p, tasks);
+        else
+            p.take();
+    }
+    to.project.tasks.insert(to.project.tasks.end(), tasks.begin(), tasks.end());
+}
+
+}  // namespace lineshaft::projects
