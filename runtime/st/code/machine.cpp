@@ -167,25 +167,18 @@ ended:
     return frames.end(fault, BEHIND - 1);
 }
 
-}  // namespace
-
-Probe::Probe(const Code& code) : marks_(code.instructions.size()) {
-    for (std::size_t i = code.statements.size(); i > 0; --i)
-        marks_[code.statements[i - 1].instruction] = static_cast<std::uint32_t>(i);
+[[gnu::always_inline]] inline Fault run_native(Frames& frames, const CodeRoutine& routine) {
+    const Code& code = frames.code;
+    return code.native->scan_of(code, routine)(frames.root, frames, frames.fuel);
 }
 
-Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, Scan& now,
-              const Context& context, std::int64_t fuel, const std::int64_t* times) {
-    Frames frames{code,
-                  now,
-                  context,
-                  fuel,
-                  instance,
-                  routine.levels,
-                  instance + 8 * std::size_t{code.calls_slot()}};
-    const bool steps = code.probe && code.probe->steps(routine, now);
-    if (!times && code.native && !steps)
-        return code.native->scan_of(code, routine)(instance, frames, fuel);
+/// With a probe, or counted, or without native code. Apart, as the way to that is short.
+[[gnu::noinline]] Fault run_otherwise(Frames& frames, const CodeRoutine& routine,
+                                      const std::int64_t* times) {
+    Probe* const probe = frames.code.probe;
+    std::byte* const instance = frames.root;
+    const bool steps = probe && probe->steps(routine, frames.now);
+    if (frames.code.native && !times && !steps) return run_native(frames, routine);
     if (!times && !steps) return run<false, false>(frames, routine);
     std::uint64_t counted[op_classes + 1] = {};
     frames.counted = counted;
@@ -196,6 +189,21 @@ Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance,
     const Wide taken = std::inner_product(times, times + op_classes, counted, Wide{0});
     set_word(instance, time_slot, static_cast<std::uint64_t>(std::min<Wide>(taken, never)));
     return fault;
+}
+
+}  // namespace
+
+Probe::Probe(const Code& code) : marks_(code.instructions.size()) {
+    for (std::size_t i = code.statements.size(); i > 0; --i)
+        marks_[code.statements[i - 1].instruction] = static_cast<std::uint32_t>(i);
+}
+
+Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, Scan& now,
+              const Context& context, std::int64_t fuel, const std::int64_t* times) {
+    std::byte* const calls = instance + 8 * std::size_t{code.calls_slot()};
+    Frames frames{code, now, context, fuel, instance, routine.levels, calls};
+    if (code.native && !times && !code.probe) return run_native(frames, routine);
+    return run_otherwise(frames, routine, times);
 }
 
 }  // namespace lineshaft::st
