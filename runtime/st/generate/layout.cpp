@@ -90,7 +90,9 @@ bool has_block(const Type& type) {
 
 void forget_places(Writing& w) {
     for (Routine& routine : w.checked.routines)
-        for (Variable& variable : routine.variables) variable.slot = unplaced;
+        for (Variable& variable : routine.variables)
+            if (variable.space == Space::frame || variable.space == Space::reference)
+                variable.slot = unplaced;
     for (const Type& type : w.checked.types)
         if (type.kind == Kind::structure && type.slots == 0 && has_block(type))
             for (Variable* member : type.members) member->slot = unplaced;
