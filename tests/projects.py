@@ -151,6 +151,94 @@ def check_apax():
     run("run", "package.yaml", "--quiet")
 
 
+def twincat(folder, kind, name, declaration, body="", members=""):
+    ending = {"POU": "TcPOU", "GVL": "TcGVL", "DUT": "TcDUT"}[kind]
+    code = f"<Implementation><ST><![CDATA[{body}]]></ST></Implementation>" if kind == "POU" else ""
+    write(f"{folder}/{name}.{ending}",
+          f'<?xml version="1.0" encoding="utf-8"?>\n<TcPlcObject Version="1.1.0.1"><{kind} Name="{name}">'
+          f"<Declaration><![CDATA[{declaration}]]></Declaration>{code}{members}</{kind}></TcPlcObject>\n")
+
+
+def method(declaration, body):
+    return (f'<Method Name="m"><Declaration><![CDATA[{declaration}]]></Declaration>'
+            f"<Implementation><ST><![CDATA[{body}]]></ST></Implementation></Method>")
+
+
+def plcproj(path, title, files, libraries=()):
+    listed = "".join(f'<Compile Include="{file}"/>' for file in files)
+    used = "".join(f'<PlaceholderReference Include="{name}"><Namespace>{space}</Namespace></PlaceholderReference>' for name, space in libraries)
+    write(path, f'<?xml version="1.0"?>\n<Project><PropertyGroup><Name>{title}</Name></PropertyGroup>\n<ItemGroup>{listed}</ItemGroup>'
+          f"<ItemGroup>{used}</ItemGroup></Project>\n")
+
+
+TASK = ('<?xml version="1.0"?>\n<TcPlcObject><Task Name="PlcTask"><CycleTime>10000</CycleTime><Priority>20</Priority>'
+        "<PouCall><Name>MAIN</Name></PouCall></Task></TcPlcObject>\n")
+
+
+def check_solution():
+    """Two projects with programs of one name, one the other's library, found by a solution and in a folder; tests of them."""
+    lib, app = "sln/lib/Lib", "sln/app/App"
+    twincat(lib, "POU", "Ramp", "FUNCTION_BLOCK Ramp\nVAR_OUTPUT n : INT; END_VAR", "n := n + Sizes.step + far;")
+    twincat(lib, "POU", "MAIN", "PROGRAM MAIN\nVAR ramp : Ramp; END_VAR", "ramp();")
+    twincat(lib, "GVL", "Sizes", "{attribute 'qualified_only'}\nVAR_GLOBAL CONSTANT\n step : INT := 2;\nEND_VAR")
+    twincat(lib, "GVL", "Far", "VAR_GLOBAL\n far : INT := 1;\nEND_VAR")
+    plcproj(f"{lib}/Lib.plcproj", "Ramps", ["Ramp.TcPOU", "MAIN.TcPOU", "Sizes.TcGVL", "Far.TcGVL"])
+    twincat(app, "POU", "MAIN", "PROGRAM MAIN\nVAR a : Ramp; b : R.Ramp; sum : INT; suite : Suite; END_VAR",
+            "a(); b(); sum := a.n + b.n + Sizes.step + R.Sizes.step; TcUnit.RUN();")
+    twincat(app, "POU", "Suite", "FUNCTION_BLOCK Suite EXTENDS TcUnit.FB_TestSuite\nVAR r : Ramp; END_VAR",
+            "TEST('counts'); r(); AssertEquals_INT(3, r.n, 'ramp'); TEST_FINISHED();")
+    write(f"{app}/PlcTask.TcTTO", TASK)
+    plcproj(f"{app}/App.plcproj", "App", ["MAIN.TcPOU", "Suite.TcPOU", "PlcTask.TcTTO"], [("Ramps", "R"), ("TcUnit", "TcUnit")])
+    write("sln/app/App.tsproj", '<?xml version="1.0"?>\n<TcSmProject><Project><Plc><Project File="App.xti"/></Plc></Project></TcSmProject>\n')
+    write("sln/app/_Config/PLC/App.xti", '<?xml version="1.0"?>\n<TcSmItem><Project PrjFilePath="..\\..\\App\\App.plcproj"/></TcSmItem>\n')
+    write("sln/app/App.sln", 'Project("{B1}") = "App", "App.tsproj", "{09}"\r\nEndProject\r\n')
+    assert "ok  sln\n" in run("check", "sln")
+    assert "ok  sln/app/App.sln\n" in run("check", "sln/app/App.sln", "--include-dir", "sln/lib")
+    alone = run("check", "sln/app/App.sln", code=2)
+    assert "0 of 2 POUs" in alone or "1 of 2 POUs" in alone, alone
+    assert "libraries that are not here: Ramps" in alone, alone
+    run("new", "both", "--from", "sln")
+    text = (work / "both.yaml").read_text()
+    assert 'sources: ["sln/app/App/App.plcproj", "sln/lib/Lib/Lib.plcproj"]' in text, text
+    write("both.yaml", text + "expect:\n  - {at: end, MAIN.sum: 610}\n")
+    run("run", "both.yaml", "--quiet")
+    assert run("test", "sln", "--list").strip() == "sln/app/App/App.plcproj: MAIN.suite: counts"
+    for named in (["sln"], ["sln/app/App.sln", "--source", "sln/lib"], ["sln/app/App/App.plcproj", "--source", "sln/lib"]):
+        assert "1 of 1" in run("test", *named), named
+    two = run("new", "two", "--from", "sln/lib", code=0)
+    assert "two.yaml" in two
+
+
+def check_named_programs():
+    """A PROGRAM is its one instance, which any block names, also one that it holds; what no task runs is not run."""
+    twincat("named", "POU", "MAIN", "PROGRAM MAIN\nVAR seed : INT := 5; cell : Cell; twice : ARRAY[1..2] OF Cell; got : INT; END_VAR",
+            "cell(); twice[2](); Side(); got := Side.count + cell.seen + twice[2].seen; seed := seed + 1;")
+    twincat("named", "POU", "Cell", "FUNCTION_BLOCK Cell\nVAR_OUTPUT seen : INT; END_VAR",
+            "seen := MAIN.seed + 10 * Lists.other.seen + GVL_left(1, );",
+            )
+    twincat("named", "POU", "GVL_left", "FUNCTION GVL_left : INT\nVAR_INPUT a : INT; END_VAR\nVAR t : TON; END_VAR",
+            "t(IN := TRUE, PT := T#0s); RETURN(a = 0); GVL_left := SEL(t.Q, 0, a);")
+    twincat("named", "POU", "Side", "PROGRAM Side\nVAR count : INT; END_VAR", "count := count + 1;")
+    twincat("named", "GVL", "Lists", "VAR_GLOBAL\n cells : ARRAY[0..3] OF Cell;\n other : Cell;\n plain : INT := 3;\nEND_VAR")
+    write("named/PlcTask.TcTTO", TASK)
+    assert "ok  named\n" in run("check", "named")
+    run("new", "named", "--from", "named")
+    text = (work / "named.yaml").read_text()
+    assert "Side:" not in text, text
+    write("named.yaml", text + "expect:\n  - {at: 5 ms, MAIN.got: 13}\n  - {at: end, MAIN.got: 313}\n  - {at: end, MAIN.seed: 106}\n")
+    run("run", "named.yaml", "--quiet")
+    run("run", "named.yaml", "--quiet", "--no-native")
+
+
+def check_foreign_names():
+    """A source with names of libraries that are not here is none without a mistake."""
+    twincat("foreign", "POU", "A", "FUNCTION_BLOCK A\nVAR x : FB_Strange; END_VAR", "x();")
+    twincat("foreign", "POU", "B", "FUNCTION_BLOCK B\nVAR x : INT; END_VAR", "x := 1;")
+    plcproj("foreign/P.plcproj", "P", ["A.TcPOU", "B.TcPOU"], [("Tc9_Strange", "Tc9_Strange")])
+    page = run("check", "foreign", code=2)
+    assert "foreign: 1 of 2 POUs, types and lists have no mistake" in page and "FB_Strange (foreign/A.TcPOU:3)" in page, page
+
+
 def check_hostile():
     contacts = 20000
     chain = '<leftPowerRail localId="0"/>' + "".join(
@@ -207,5 +295,8 @@ with tempfile.TemporaryDirectory() as temporary:
     check_yaml_folder()
     check_automation_studio()
     check_apax()
+    check_solution()
+    check_named_programs()
+    check_foreign_names()
     check_hostile()
 print("projects of others at the prompt: fine")

@@ -199,6 +199,7 @@ Machine lay_out(const Net& net) {
     place_tasks(layout);
     fill_blocks(layout);
     add_views(net, machine);
+    std::erase_if(layout.sequence, [&](int i) { return net.instance(i).is_only_named; });
     lay_out_calls(net, layout.sequence, layout.levels, machine);
     add_signals(net, machine);
     return machine;

@@ -104,6 +104,15 @@ void refer_to_global(Resolving& to, int number, const Field& field) {
     }
     const BlockType* kind = to.net.kinds ? to.net.kinds->find(field.refers) : nullptr;
     if (kind && kind->single) return;  // another block has its name, which has been told
+    if (kind && other < 0 && to.net.main_task >= 0) {
+        const auto added = static_cast<int>(to.net.instances.size());
+        Instance made{.name = std::string(field.global), .type = kind, .task = to.net.main_task};
+        construct(made);
+        made.is_only_named = true;
+        to.net.instance_numbers.emplace(made.name, added);
+        to.net.instances.push_back(std::move(made));
+        return refer_to_global(to, number, field);
+    }
     const auto plan = static_cast<std::size_t>(number);
     if (plan < to.program.blocks.size())
         refuse_global(to, block, to.program.blocks[plan].name, field, other);

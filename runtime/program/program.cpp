@@ -259,6 +259,16 @@ void ProgramReader::find_source(const Node& named) {
     for (const std::string& file : files) read_source_file(file, named.mark);
 }
 
+/// Of a `.plcproj` that one before it refers to as its library; empty: it is none.
+std::string ProgramReader::namespace_of(const std::string& path) {
+    if (fs::path(path).extension() != ".plcproj") return {};
+    const projects::ProjectNames& own = projects_.emplace_back(projects::names_of_plcproj(path));
+    for (const projects::ProjectNames& other : projects_)
+        for (const auto& library : other.libraries)
+            if (&other != &own && own.is_called(library.name)) return library.space;
+    return {};
+}
+
 void ProgramReader::read_source_file(const std::string& path, const Mark& mark) {
     Diagnostics& out = read_.diagnostics();
     const std::size_t before = out.count();
@@ -272,8 +282,10 @@ void ProgramReader::read_source_file(const std::string& path, const Mark& mark) 
         projects::read_sources({project, out, resolve}, path, mark);
         return project.sources;
     };
-    const auto texts = options_.files ? options_.files->texts(path, read, out) : read();
+    auto texts = options_.files ? options_.files->texts(path, read, out) : read();
     if (out.count() != before) program_.sources_known = false;
+    if (const std::string space = namespace_of(path); !space.empty())
+        for (auto& text : texts) text = projects::in_namespace(text, space);
     for (const auto& text : texts)
         if (std::ranges::none_of(program_.texts,
                                  [&](const auto& other) { return other->is_same_text(*text); }))

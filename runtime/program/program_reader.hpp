@@ -7,6 +7,7 @@
 
 #include "runtime/program/program.hpp"
 #include "runtime/program/substitution.hpp"
+#include "runtime/projects/solution.hpp"
 
 namespace lineshaft {
 
@@ -28,6 +29,7 @@ class ProgramReader {
     void check_attached(const Node& task) const;
     void find_file(ReplayPlan& replay) const;
     void find_source(const Node& named);
+    std::string namespace_of(const std::string& path);
     void read_source_file(const std::string& path, const Mark& mark);
     void force(const std::string& text);
     void recording();
@@ -36,6 +38,7 @@ class ProgramReader {
     Reader read_;
     Program program_;
     ParameterValues values_;
+    std::vector<projects::ProjectNames> projects_;  ///< of the `.plcproj` that were read
 };
 
 }  // namespace lineshaft

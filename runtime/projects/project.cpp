@@ -9,6 +9,7 @@
 #include "runtime/projects/configuration.hpp"
 #include "runtime/projects/fixtures.hpp"
 #include "runtime/projects/plcopen.hpp"
+#include "runtime/projects/solution.hpp"
 #include "runtime/projects/twincat.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
@@ -37,6 +38,8 @@ struct Form {
 constexpr Form forms[] = {{".tcpou", read_twincat_object}, {".tcdut", read_twincat_object},
                           {".tcgvl", read_twincat_object}, {".tcio", read_twincat_object},
                           {".tctto", read_twincat_object}, {".plcproj", read_plcproj},
+                          {".sln", read_solution},         {".tsproj", read_solution},
+                          {".tspproj", read_solution},     {".xti", read_solution},
                           {".xml", read_plcopen},          {".prg", read_iec_program}};
 
 const Form* form_of(const fs::path& file) {
@@ -73,7 +76,7 @@ bool is_test_file(const std::string& file) {
     return source && (has_fixtures(*source) || st::is_test_file(source));
 }
 
-/// What projects list themselves: all below a `.plcproj`, all beside a `.prg`.
+/// What projects list themselves: all below a `.plcproj`, all beside a `.prg`; and what lists them.
 void leave_to_projects(std::vector<std::string>& files) {
     std::vector<std::string> folders, programs;
     for (const std::string& file : files) {
@@ -83,6 +86,7 @@ void leave_to_projects(std::vector<std::string>& files) {
     }
     std::erase_if(files, [&](const std::string& file) {
         const Form* form = form_of(file);
+        if (is_solution(file)) return true;
         if (form && form->read == read_twincat_object)
             return std::ranges::any_of(folders, [&](const auto& f) { return file.starts_with(f); });
         const std::string folder = (fs::path(file).parent_path() / "").string();

@@ -164,9 +164,19 @@ ProjectTask task_of(const XmlFile& file, pugi::xml_node element) {
     return task;
 }
 
-/// `POUs\MAIN.TcPOU`, from the folder of the file that names it. Capital letters make no
-/// difference on Windows: where there is no such file, one that differs in them is meant.
-std::string path_of(const fs::path& named_by, std::string text) {
+/// `TcUnit` of `TcUnit,1.2.0.0,www.tcunit.org`.
+std::string before_comma(const std::string& reference) {
+    return reference.substr(0, reference.find(','));
+}
+
+/// A project does not list projects.
+bool is_same_form(const fs::path& a, const fs::path& b) {
+    return lower(a.extension().string()) == lower(b.extension().string());
+}
+
+}  // namespace
+
+std::string path_beside(const fs::path& named_by, std::string text) {
     std::ranges::replace(text, '\\', '/');
     std::error_code unknown;
     const fs::path folder = named_by.parent_path();
@@ -183,18 +193,6 @@ std::string path_of(const fs::path& named_by, std::string text) {
     }
     return fs::exists(found, unknown) ? found.lexically_normal().string() : path.string();
 }
-
-/// `TcUnit` of `TcUnit,1.2.0.0,www.tcunit.org`.
-std::string before_comma(const std::string& reference) {
-    return reference.substr(0, reference.find(','));
-}
-
-/// A project does not list projects.
-bool is_same_form(const fs::path& a, const fs::path& b) {
-    return lower(a.extension().string()) == lower(b.extension().string());
-}
-
-}  // namespace
 
 void read_twincat_object(const Reading& to, const std::string& path, const Mark& where) {
     const auto file = XmlFile::read(path, to.out, where);
@@ -229,7 +227,7 @@ void read_plcproj(const Reading& to, const std::string& path, const Mark& where)
             if (kind == "PlaceholderReference" || kind == "LibraryReference")
                 to.project.libraries.push_back({before_comma(file->plain(include)), mark});
             if (kind != "Compile") continue;
-            const std::string named = path_of(path, file->plain(include));
+            const std::string named = path_beside(path, file->plain(include));
             if (!is_source(named) || is_same_form(named, path)) continue;
             if (const auto allowed = to.resolve(named, mark)) read_sources(to, *allowed, mark);
         }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+
 #include "runtime/projects/project.hpp"
 
 namespace lineshaft::projects {
@@ -7,6 +9,10 @@ namespace lineshaft::projects {
 /// `.TcPOU`, `.TcDUT`, `.TcGVL`, `.TcIO`: one declaration with what belongs to it, as one text.
 /// `.TcTTO`: a task.
 void read_twincat_object(const Reading& to, const std::string& path, const Mark& where);
+
+/// `POUs\MAIN.TcPOU`, from the folder of the file that names it. Capital letters make no
+/// difference on Windows: where there is no such file, one that differs in them is meant.
+std::string path_beside(const std::filesystem::path& named_by, std::string text);
 
 /// `.plcproj`: the files that it lists, and the libraries that it refers to.
 void read_plcproj(const Reading& to, const std::string& path, const Mark& where);

@@ -9,6 +9,7 @@
 #include "tools/lineshaft/check_file.hpp"
 #include "tools/lineshaft/check_project.hpp"
 #include "tools/lineshaft/command.hpp"
+#include "tools/lineshaft/once.hpp"
 #include "tools/lineshaft/test_files.hpp"
 
 namespace lineshaft {
@@ -19,29 +20,6 @@ struct CheckCommand {
     CommonOptions common;
     std::vector<std::string> files;
     bool strict = false;
-};
-
-/// Tells once what several programs find in a source that they share.
-class Once {
-  public:
-    explicit Once(Diagnostics& out) : out_(out) {}
-    void add(const Diagnostics& found) {
-        for (const Diagnostic& d : found.list())
-            if (is_new(d)) out_.add(d.code, d.mark, d.message, d.help);
-        for (const Diagnostic& d : found.warnings())
-            if (is_new(d)) out_.warn(d.code, d.mark, d.message, d.help);
-    }
-
-  private:
-    bool is_new(const Diagnostic& d) {
-        const std::string path = d.mark.file ? d.mark.file->path : "";
-        return told_
-            .insert(fmt::format("{}:{}:{}: {}", path, d.mark.line, d.mark.column, d.message))
-            .second;
-    }
-
-    Diagnostics& out_;
-    std::set<std::string> told_;
 };
 
 /// All below a folder: programs, studies, fits, TESTs, and what is left of Structured Text, a file

@@ -8,8 +8,11 @@
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/program/whole_project.hpp"
+#include "runtime/projects/solution.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/st/library/library.hpp"
+#include "tools/lineshaft/once.hpp"
 
 namespace lineshaft {
 
@@ -39,10 +42,10 @@ struct Lines {
 
 using PartsOfFiles = std::map<std::string, std::vector<Lines>>;
 
-PartsOfFiles parts_of(const projects::Project& project) {
+PartsOfFiles parts_of(const WholeProject& project) {
     PartsOfFiles parts;
-    for (std::size_t i = 0; i < project.sources.size(); ++i) {
-        const SourceFile& source = *project.sources[i];
+    for (std::size_t i = 0; i < project.own; ++i) {
+        const SourceFile& source = *project.project.sources[i];
         Lines lines{i, source.excerpts.empty() ? 1 : source.excerpts.front().place.line, 0};
         for (const Excerpt& excerpt : source.excerpts) {
             lines.first = std::min(lines.first, excerpt.place.line);
@@ -53,9 +56,14 @@ PartsOfFiles parts_of(const projects::Project& project) {
     return parts;
 }
 
-/// Texts of the project with a mistake in them. The last that begins before the mistake has it.
-std::set<std::size_t> with_mistakes(const PartsOfFiles& parts, const Diagnostics& out) {
+/// Texts of the project with a mistake in them, or a name of a library that is not here. The last
+/// that begins before the mistake has it.
+std::set<std::size_t> with_mistakes(const WholeProject& project, const Diagnostics& out,
+                                    const std::set<const SourceFile*>& foreign) {
+    const PartsOfFiles parts = parts_of(project);
     std::set<std::size_t> wrong;
+    for (std::size_t i = 0; i < project.own; ++i)
+        if (foreign.contains(project.project.sources[i].get())) wrong.insert(i);
     for (const Diagnostic& diagnostic : out.list()) {
         const auto file =
             diagnostic.mark.file ? parts.find(diagnostic.mark.file->path) : parts.end();
@@ -127,20 +135,34 @@ bool is_project(const std::string& path) {
     };
     if (!std::filesystem::is_directory(path, error)) {
         const std::string ending = std::filesystem::path(path).extension().string();
-        return is_other(path) && (ending == ".plcproj" || ending == ".xml");
+        return projects::is_solution(path) ||
+               (is_other(path) && (ending == ".plcproj" || ending == ".xml"));
     }
     const auto files = projects::sources_below(path, error);
     return std::ranges::any_of(files, is_other);
 }
 
 std::string check_project(const std::string& path, const LoadOptions& options, Diagnostics& out) {
-    const projects::Project project = read_project(path, options.include_dirs, out);
-    st::compile(project.sources, standard_blocks(), out, {.references = references_of(project)});
-    const std::size_t whole = project.sources.size();
-    const std::size_t wrong = with_mistakes(parts_of(project), out).size();
+    Once once(out);
+    std::size_t whole = 0, wrong = 0, tasks = 0, libraries = 0;
+    Diagnostics unread;
+    const std::vector<WholeProject> all = read_projects(path, options.include_dirs, unread);
+    for (const WholeProject& each : all) {
+        Diagnostics found = unread;
+        std::set<const SourceFile*> foreign;
+        st::compile(
+            each.project.sources, standard_blocks(), found,
+            {.references = references_of(each.project), .addresses = {}, .foreign = &foreign});
+        whole += each.own;
+        wrong += with_mistakes(each, found, foreign).size();
+        tasks += each.project.tasks.size();
+        libraries += each.project.libraries.size();
+        once.add(found);
+    }
     std::string page =
         fmt::format("{}: {} of {} POUs, types and lists have no mistake; {} tasks, {} libraries\n",
-                    path, whole - wrong, whole, project.tasks.size(), project.libraries.size());
+                    path, whole - wrong, whole, tasks, libraries);
+    if (all.size() > 1) page += fmt::format("  {} projects\n", all.size());
     if (!out.empty()) page += table_of(out);
     return page;
 }

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "blocks/catalog.hpp"
-#include "runtime/program/program.hpp"
+#include "runtime/program/whole_project.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/library/library.hpp"
@@ -149,6 +150,36 @@ std::string quoted(const std::string& word) {
     return made + "'";
 }
 
+/// Of several the one that has tasks, or that no other is built on.
+std::optional<WholeProject> chosen_project(const std::string& path, Diagnostics& out) {
+    std::vector<WholeProject> all = read_projects(path, {}, out);
+    if (all.size() == 1) return all.front();
+    const auto keep_if = [&](auto wanted) {
+        std::vector<WholeProject> kept;
+        std::ranges::copy_if(all, std::back_inserter(kept), wanted);
+        if (!kept.empty()) all = std::move(kept);
+    };
+    std::set<std::string> libraries;
+    for (const WholeProject& project : all)
+        libraries.insert(project.library_paths.begin(), project.library_paths.end());
+    keep_if([](const WholeProject& project) { return !project.project.tasks.empty(); });
+    keep_if([&](const WholeProject& project) { return !libraries.contains(project.path); });
+    if (all.size() == 1) return all.front();
+    std::vector<std::string> paths;
+    for (const WholeProject& project : all) paths.push_back(project.path);
+    out.add(code::entry_is_missing, {}, fmt::format("'{}' has several projects", path),
+            fmt::format("name one of them: {}", fmt::join(paths, ", ")));
+    return {};
+}
+
+/// Where its sources are: its own, then its libraries.
+std::string sources_text(const WholeProject& project, const std::filesystem::path& file) {
+    std::string text = fmt::format("\"{}\"", path_from(file, project.path));
+    for (const std::string& path : project.library_paths)
+        text += fmt::format(", \"{}\"", path_from(file, path));
+    return text;
+}
+
 }  // namespace
 
 std::string include_option(const std::string& project, const std::filesystem::path& program) {
@@ -162,7 +193,9 @@ std::string include_option(const std::string& project, const std::filesystem::pa
 
 std::string program_around(const std::string& path, const std::filesystem::path& file,
                            Diagnostics& out) {
-    const projects::Project project = read_project(path, {}, out);
+    const auto chosen = chosen_project(path, out);
+    if (!chosen) return {};
+    const projects::Project& project = chosen->project;
     const auto library = out.empty() ? st::compile(project.sources, standard_blocks(), out)
                                      : std::optional<st::Library>();
     if (!library) return {};
@@ -181,8 +214,8 @@ std::string program_around(const std::string& path, const std::filesystem::path&
         "# Around a project of another tool. Try, and then change:\n"
         "#   lineshaft run {0}.yaml --trace {0}.csv{1}\n"
         "#   lineshaft check {0}.yaml{1}\n"
-        "lineshaft: 1\ntitle: {0}\nsources: [\"{2}\"]\n{3}run: {{for: 1 s}}\n",
-        name, include_option(path, file), path_from(file, path), text_of(tasks, blocks));
+        "lineshaft: 1\ntitle: {0}\nsources: [{2}]\n{3}run: {{for: 1 s}}\n",
+        name, include_option(path, file), sources_text(*chosen, file), text_of(tasks, blocks));
     const std::vector<std::string> signals = signals_of(*library, programs.front());
     if (!signals.empty())
         text += fmt::format("trace: {{task: {}, signals: [{}]}}\n", programs.front().task,

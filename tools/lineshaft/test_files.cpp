@@ -7,7 +7,9 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/fit/fit.hpp"
+#include "runtime/program/whole_project.hpp"
 #include "runtime/projects/fixtures.hpp"
+#include "runtime/projects/solution.hpp"
 #include "runtime/run/single_run.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
@@ -86,8 +88,23 @@ void add_sources(st::SourcePool& pool, const std::string& path, bool below) {
         for (const auto& source : read_project(file, {}, unread).sources) pool.add(source);
 }
 
+/// A project's own sources, and those of its libraries, which are looked for in `folders`.
+std::shared_ptr<const st::SourcePool> sources_of_project(const std::string& path,
+                                                         const std::vector<std::string>& folders) {
+    auto pool = std::make_shared<st::SourcePool>();
+    Diagnostics unread;
+    for (const WholeProject& project : read_projects(path, folders, unread))
+        for (const auto& source : project.project.sources) pool->add(source);
+    return pool;
+}
+
+bool is_plcproj(const fs::path& path) {
+    return path.extension() == ".plcproj";
+}
+
 std::shared_ptr<const st::SourcePool> sources_for(const std::string& path,
                                                   const std::vector<std::string>& more) {
+    if (is_plcproj(path)) return sources_of_project(path, more);
     auto pool = std::make_shared<st::SourcePool>();
     for (const std::string& source : more) add_sources(*pool, source, true);
     if (fs::is_directory(path)) {
@@ -338,15 +355,28 @@ std::vector<SuiteEntry> test_structured_text(const TestFile& tests,
 }  // namespace
 
 std::vector<TestFile> find_tests(const std::string& path, const std::vector<std::string>& sources) {
-    const auto pool = sources_for(path, sources);
     std::vector<TestFile> tests;
+    if (projects::is_solution(path)) {
+        std::vector<std::string> folders = sources;
+        const std::string own = fs::path(path).parent_path().string();
+        folders.push_back(own.empty() ? "." : own);
+        for (const std::string& file : projects::plcprojs_of(path))
+            if (has_suites(file)) tests.push_back({file, sources_of_project(file, folders), true});
+        if (tests.empty()) tests.push_back({path, sources_for(path, sources), true});
+        return tests;
+    }
+    const auto pool = sources_for(path, sources);
     for (const std::string& file : files_of(path, true, can_be_tested))
         tests.push_back({.path = file, .sources = pool, .is_named = file == path});
     if (!fs::is_directory(path)) return tests;
     std::error_code unread;
+    std::vector<std::string> folders = sources;
+    folders.push_back(path);
     for (const std::string& file : projects::sources_below(path, unread))
         if (is_of_project(file) && has_suites(file))
-            tests.push_back({.path = file, .sources = pool, .is_named = false});
+            tests.push_back({.path = file,
+                             .sources = is_plcproj(file) ? sources_of_project(file, folders) : pool,
+                             .is_named = false});
     std::ranges::sort(tests, {}, &TestFile::path);
     return tests;
 }

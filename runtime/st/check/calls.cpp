@@ -311,7 +311,10 @@ const Type* check_instance_call(Checking& c, Expression*& e, const Type& type, b
                           fmt::format("{} is a CLASS, and has no body", type.name),
                           "call one of its methods");
         e->is_dispatched = type.routine->is_replaced && may_be_derived(instance);
-        note_call(c, *e, instance.kind == E::self ? type.routine : nullptr);
+        const Variable* root = root_of(instance).variable;
+        const bool is_elsewhere =
+            instance.kind == E::self || (root && root->space == Space::global);
+        note_call(c, *e, is_elsewhere ? type.routine : nullptr);
         e->routine = type.routine;
         if (root_of(*e->operands[0]).kind == E::deref) depend(c, &type, e->place);
         check_arguments(c, e, *type.routine);
@@ -373,6 +376,7 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
             }
         }
     }
+    if (callee.kind == E::name && !find_variable(c, callee.token)) declare_program(c, callee.token);
     if (callee.kind == E::name && !is_instance(c, callee.token) && !is_own_instance(c, callee)) {
         const std::string_view name = callee.token.text;
         for (const Routine* r = c.routine; r; r = r->owner)

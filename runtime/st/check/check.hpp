@@ -20,6 +20,7 @@ struct Checked {
     std::deque<std::string> names;   ///< of variables that no source declares
     bool dispatches = false;         ///< calls find routines by instances
     Image image = {};                ///< the process image
+    std::unordered_set<const Source*> foreign_users;  ///< that have names of libraries not here
 };
 
 struct NameUse;

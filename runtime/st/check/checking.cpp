@@ -63,6 +63,7 @@ bool Checking::is_lost(const Token& name) const {
 bool Checking::may_be_foreign(const Token& name) {
     if (missing_libraries.empty()) return false;
     foreign.emplace(name.text, name.place);
+    checked.foreign_users.insert(name.place.source);
     return true;
 }
 

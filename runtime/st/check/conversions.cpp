@@ -25,11 +25,16 @@ bool is_same_pattern(const Type& from, const Type& to) {
     return mixes && from.bits <= to.bits && !to.is_subrange;
 }
 
-/// A REAL loses of a DINT what is above 2^24.
+/// A REAL loses of a DINT what is above 2^24. CODESYS lets a REAL take an LREAL, and an integer one
+/// of its width with another sign.
 bool rounds(Checking& c, const Expression& e, const Type& to) {
     const Type& from = e.type->plain();
-    if (!e.place.dialect().dint_becomes_real || from.kind != Kind::integer || from.bits != 32 ||
-        !is_single(to))
+    const Dialect& dialect = e.place.dialect();
+    const bool of_dint = from.kind == Kind::integer && from.bits == 32 && is_single(to);
+    const bool is_real = from.kind == Kind::real && is_single(to);
+    const bool changes_sign = from.kind == Kind::integer && to.kind == Kind::integer &&
+                              from.bits == to.bits && !to.is_subrange;
+    if (!(dialect.dint_becomes_real && of_dint) && !(dialect.is_loose && (is_real || changes_sign)))
         return false;
     c.warn(code::conversion_may_lose, e.place,
            fmt::format("{} does not hold every {}", describe(to), from.name),
@@ -67,7 +72,14 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
         if (fits) convert(c, e, to);
         return fits;
     }
-    if (!to.has_numbers || !is_constant(*e) || !from.is_integer()) return false;
+    if (!to.has_numbers || !from.is_integer()) return false;
+    if (!is_constant(*e)) {
+        constexpr std::int64_t most_numbers = 4096;
+        const auto [least, most] = std::ranges::minmax(to.numbers);
+        const bool fits = e->place.dialect().is_loose && most - least < most_numbers;
+        if (fits) convert(c, e, to);
+        return fits;
+    }
     const auto it = std::ranges::find(to.numbers, e->constant.integer);
     if (it == to.numbers.end()) return false;
     e = make_constant(c, *e, to, {.integer = it - to.numbers.begin()});

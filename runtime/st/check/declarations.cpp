@@ -52,7 +52,7 @@ const Type* make_untyped_constant(Checking& c, Variable& variable) {
 
 /// A constant scalar takes no memory.
 void make_constant(Checking& c, Variable& variable) {
-    if (variable.type && variable.type->is_instance())
+    if (variable.type && variable.type->is_instance() && !variable.name.place.dialect().is_loose)
         c.fail(code::wrong_place, variable.name.place,
                "an instance changes when it is called, so it is no constant",
                "declare it in VAR, without CONSTANT");
@@ -76,11 +76,16 @@ std::string_view name_in_list(Checking& c, const DeclarationBlock& block,
     return c.checked.names.emplace_back(fmt::format("{}.{}", block.list, declared.name.text));
 }
 
+/// A list of a library's project is seen as all that stands in its namespace.
+Token name_of_global(Checking& c, const Declaration& declared) {
+    return is_library(declared.name) ? declared.name : name_with_namespace(c, declared.name);
+}
+
 Variable* declare_global(Checking& c, const DeclarationBlock& block, const Declaration& declared) {
     if (!is_library(declared.name)) global_variables(c);
     const Type* type = resolve(c, *declared.type);
     const std::string_view in_list = name_in_list(c, block, declared);
-    Token name = declared.name;
+    Token name = name_of_global(c, declared);
     if (block.is_qualified_only) name.text = in_list;
     if (!is_new_name(c, name, c.users.places)) return nullptr;
     Variable* variable = add(c, c.checked.variables, declared, type);
@@ -99,7 +104,7 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
     refuse_abstract(c, type, declared.name.place);
     if (block.constant) make_constant(c, *variable);
     if (variable->space == Space::global) global_variables(c).members.push_back(variable);
-    if (!block.is_qualified_only) c.globals.emplace(declared.name.text, variable);
+    if (!block.is_qualified_only) c.globals.emplace(name.text, variable);
     return variable;
 }
 
@@ -226,8 +231,9 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
                    : it->second->section == Section::result
                        ? "the function's own name is that of its result"
                        : fmt::format("first in line {}", it->second->name.place.mark().line));
-        if (type && type->is_instance() && !routine.has_instances() && !routine.is_test() &&
-            section != Section::in_out && section != Section::kept)
+        const bool is_kept = routine.has_instances() || routine.is_test() ||
+                             section == Section::kept || section == Section::in_out;
+        if (type && type->is_instance() && !is_kept && !declared->name.place.dialect().is_loose)
             c.fail(code::wrong_place, declared->name.place,
                    "a function keeps nothing from call to call, so it has no instances",
                    "pass the instance as VAR_IN_OUT");

@@ -109,7 +109,6 @@ const Type* use(Checking& c, Expression*& e, Variable& variable) {
         return variable.type;
     }
     if (variable.space == Space::overlay) return use_overlay(c, e, variable);
-    if (variable.space == Space::global) depend(c, variable.type, e->place);
     if (c.routine && variable.type->is_object()) c.routine->objects.push_back(variable.global);
     return variable.type;
 }
@@ -149,8 +148,9 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
             return expected;
         }
     }
-    if (Variable* variable = find_variable(c, token))
-        return variable->edge ? use_edge(c, e, *variable) : use(c, e, *variable);
+    Variable* variable = find_variable(c, token);
+    if (!variable) variable = declare_program(c, token);
+    if (variable) return variable->edge ? use_edge(c, e, *variable) : use(c, e, *variable);
     if (is_own_instance(c, *e)) return check_own_instance(c, e);
     if (Routine* getter = find_accessor(c, *e, Accessor::get)) return check_getter(c, e, *getter);
     if (expected && expected->kind == Kind::interface && same_name(token.text, "null")) {

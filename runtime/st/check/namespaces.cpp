@@ -69,6 +69,14 @@ const Expression* root_of(Checking& c, const Expression& member) {
 }  // namespace
 
 void collect_namespaces(Checking& c) {
+    for (const auto& source : c.tree.sources) {  // CODESYS' language has none: those of libraries
+        const auto scopes = c.tree.scopes.find(source.get());
+        const bool is_project = source->dialect.is_loose && scopes != c.tree.scopes.end();
+        if (!is_project || scopes->second.front().path.empty()) continue;
+        const std::string_view space = scopes->second.front().path;
+        if (std::ranges::find(c.open_libraries, space) == c.open_libraries.end())
+            c.open_libraries.push_back(space);
+    }
     for (const LibraryFile& file : c.catalog.libraries()) {
         const bool is_taken = std::ranges::any_of(c.tree.sources, [&](const auto& source) {
             return source->is_library() && source->file->path == file.path;

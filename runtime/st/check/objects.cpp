@@ -35,6 +35,20 @@ void make_object(Checking& c, Variable& variable) {
     c.checked.globals.push_back({std::string(variable.text), &own});
 }
 
+Variable* declare_program(Checking& c, const Token& name) {
+    const bool is_plain = name.place.source && !name.quoted && !name.local;
+    const Routine* program =
+        is_plain && name.place.dialect().is_loose ? c.find_routine(name) : nullptr;
+    if (!program || program->pou->kind != PouKind::program) return nullptr;
+    Variable& variable = c.checked.variables.emplace_back();
+    variable.name = program->pou->name;
+    variable.text = program->name;
+    variable.type = program->type;
+    declare_object(c, variable);
+    c.checked.globals.back().object = nullptr;
+    return &variable;
+}
+
 const Type* use_object(Checking& c, Expression*& e, const Type& type) {
     Variable& variable = c.checked.variables.emplace_back();
     variable.name = e->token;

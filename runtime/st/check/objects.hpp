@@ -4,6 +4,10 @@
 
 namespace lineshaft::st {
 
+/// A PROGRAM that CODESYS names as its one instance, no variable being called so: a global from
+/// then on. Null: it is none.
+Variable* declare_program(Checking& c, const Token& name);
+
 /// The kind of block that an AXIS_REF refers to.
 const Type* object_type(Checking& c, const Type& handle);
 /// `VAR_GLOBAL Axis_1 : AXIS_REF`: the program has the block.

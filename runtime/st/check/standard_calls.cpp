@@ -12,6 +12,7 @@
 #include "runtime/st/check/standard_types.hpp"
 #include "runtime/st/functions/standard.hpp"
 #include "runtime/st/vendors/instead.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
@@ -66,8 +67,10 @@ bool order_arguments(Checking& c, Expression*& e, const StandardFunction& f) {
     if (f.typing == Typing::chosen && f.most > f.least && has_else) names.back() = "INELSE";
     for (int i = 0; i < count; ++i) {
         const Argument& argument = call.arguments[static_cast<std::size_t>(i)];
+        const bool is_codesys = f.typing == Typing::texts && call.place.dialect().is_loose;
         const auto is_called = [&](const std::string& name) {
-            return same_name(name, argument.name.text);
+            return same_name(name, argument.name.text) ||
+                   (is_codesys && same_name(name, standard_argument_name(argument.name.text)));
         };
         const bool named = argument.is_named();
         const auto it = named ? std::ranges::find_if(names, is_called) : names.begin() + i;

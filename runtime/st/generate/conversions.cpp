@@ -1,5 +1,7 @@
 #include "runtime/st/generate/conversions.hpp"
 
+#include <algorithm>
+
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/texts.hpp"
 #include "runtime/st/generate/values.hpp"
@@ -14,6 +16,17 @@ Slot look_up(Writing& w, Slot slot, const std::vector<std::int64_t>& numbers) {
     const std::uint64_t first = w.code.numbers.size();
     w.code.numbers.insert(w.code.numbers.end(), numbers.begin(), numbers.end());
     return w.emit(Op::look_up, none, slot, w.table({0, numbers.size(), 1, first}));
+}
+
+/// Of a number that is none of them a number that is no place.
+Slot look_up_place(Writing& w, Slot slot, const std::vector<std::int64_t>& numbers) {
+    const auto [least, most] = std::ranges::minmax(numbers);
+    std::vector<std::int64_t> places(static_cast<std::size_t>(most - least) + 1, -1);
+    for (std::size_t i = numbers.size(); i > 0; --i)
+        places[static_cast<std::size_t>(numbers[i - 1] - least)] = static_cast<std::int64_t>(i) - 1;
+    const std::uint64_t first = w.code.numbers.size();
+    w.code.numbers.insert(w.code.numbers.end(), places.begin(), places.end());
+    return w.emit(Op::look_up, none, slot, w.table({least, places.size(), 1, first}));
 }
 
 Slot convert_real(Writing& w, Slot slot, const Type& from, const Type& to, bool truncates,
@@ -124,6 +137,8 @@ Slot convert(Writing& w, Slot slot, const Type& given_from, const Type& given_to
     }
     if (to.kind == Kind::enumeration) {
         if (!to.of_number.empty() && from.is_integer()) slot = look_up(w, slot, to.of_number);
+        if (to.has_numbers && !to.counted && from.is_integer())
+            slot = look_up_place(w, slot, to.numbers);
         if (from.is_real()) slot = convert_real(w, slot, from, lint_type, truncates, none);
         w.put(Op::within, 0, slot, w.table({0, to.values.size(), 1}));
         return slot;

@@ -88,6 +88,7 @@ void finish(Writing& w, Routine& routine) {
     if (!is_function) w.image->resize(end, 0);
     code.frame = end;
     frame_of.frame = std::max(frame_of.frame, end);
+    --w.unwritten_parts[&frame_of];
 }
 
 void write(Writing& w, Routine& routine) {
@@ -115,14 +116,23 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
     }
     prepare_dispatch(w);
     w.fuses = !w.options.counted && !w.options.covered && !w.has_tests;
+    forget_places(w);
+    const auto is_list = [](const Global& global) {
+        return global.type->kind == Kind::structure && global.name != image_name;
+    };
     for (const Global& global : w.checked.globals)
-        if (global.type->kind != Kind::block && global.name != image_name)
+        if (is_list(global))
+            lay_out_members(w, *global.type, false);
+        else if (global.type->kind != Kind::block && global.name != image_name)
             slots_of(w, *global.type);
     for (Routine* routine : w.checked.order) {
         if (!w.out.empty()) return {};
         write(w, *routine);
     }
     finish_dispatch(w);
+    for (const Global& global : w.checked.globals)
+        if (is_list(global)) lay_out_members(w, *global.type, true);
+    finish_late(w);
     for (const Global& global : w.checked.globals) {
         Writing::Image image(slots_of(w, *global.type), 0);
         fill_default(w, image, 0, *global.type);

@@ -76,6 +76,61 @@ bool is_in_signature(const Variable& variable, bool is_given) {
                     : section == Section::result || section == Section::output;
 }
 
+namespace {
+
+bool has_block(const Type& type) {
+    if (type.kind == Kind::array) return has_block(*type.element);
+    return type.kind == Kind::block || (type.kind == Kind::structure &&
+                                        std::ranges::any_of(type.members, [](const Variable* m) {
+                                            return has_block(*m->type);
+                                        }));
+}
+
+}  // namespace
+
+void forget_places(Writing& w) {
+    for (Routine& routine : w.checked.routines)
+        for (Variable& variable : routine.variables)
+            if (variable.space == Space::frame || variable.space == Space::reference)
+                variable.slot = unplaced;
+    for (const Type& type : w.checked.types)
+        if (type.kind == Kind::structure && type.slots == 0 && has_block(type))
+            for (Variable* member : type.members) member->slot = unplaced;
+    for (const Routine* routine : w.checked.order)
+        ++w.unwritten_parts[routine->owner ? routine->owner : routine];
+}
+
+bool is_growing(const Writing& w, const Type& type) {
+    if (type.kind == Kind::array) return is_growing(w, *type.element);
+    if (type.kind == Kind::structure)
+        return std::ranges::any_of(type.members,
+                                   [&](const Variable* m) { return is_growing(w, *m->type); });
+    if (type.kind != Kind::block) return false;
+    const auto it = w.unwritten_parts.find(type.routine);
+    return it != w.unwritten_parts.end() && it->second > 0;
+}
+
+void lay_out_members(Writing& w, const Type& list, bool with_blocks) {
+    std::uint64_t slots = with_blocks ? list.slots : 0;
+    for (Variable* member : list.members) {
+        if (has_block(*member->type) != with_blocks) continue;
+        member->slot = static_cast<std::uint32_t>(std::min(slots, most_slots));
+        slots += slots_of(w, *member->type);
+        check_size(w, slots, member->name.place, member->text);
+    }
+    const_cast<Type&>(list).slots = static_cast<std::uint32_t>(std::min(slots, most_slots));
+}
+
+void finish_late(Writing& w) {
+    for (const Writing::Late& late : w.late) {
+        const std::uint64_t one = late.member ? late.member->slot : slots_of(w, *late.type);
+        if (late.is_stride)
+            w.code.tables[late.at].stride = static_cast<std::uint32_t>(one);
+        else
+            w.code.instructions[late.at].c = late.times * one;
+    }
+}
+
 std::uint32_t slots_of(Writing& w, const Type& type) {
     if (type.kind == Kind::block) return type.routine->frame;
     if (type.slots != 0) return type.slots;

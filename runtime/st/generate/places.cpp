@@ -76,12 +76,13 @@ Location locate(Writing& w, const Expression& e) {
     if (variable.space == Space::global) {
         const Slot address = w.new_temporary();
         w.put(Op::set_global, address, static_cast<Slot>(variable.global));
-        return {Mode::address, 0, address, variable.slot};
+        return part(w, {Mode::address, 0, address, 0}, variable);
     }
     return {Mode::slot, variable.slot};
 }
 
 Location part(Writing& w, Location of, const Variable& member) {
+    if (member.slot == unplaced) return behind(w, of, {.member = &member});
     if (member.is_byte) {
         if (of.mode == Mode::indexed) of = as_address(w, of);
         of.byte = member.byte;
@@ -97,23 +98,38 @@ Location part(Writing& w, Location of, const Variable& member) {
     return behind(of, member.slot);
 }
 
+namespace {
+
+/// Of elements whose size is not known yet it is no other's.
+std::uint32_t table_of(Writing& w, const IndexTable& made, bool is_late, const Type* array) {
+    if (!is_late) return w.table(made);
+    const auto number = static_cast<std::uint32_t>(w.code.tables.size());
+    w.code.tables.push_back(made);
+    w.late.push_back({.type = array->element, .is_stride = true, .at = number});
+    return number;
+}
+
+}  // namespace
+
 Location element(Writing& w, Location at, const Expression& e) {
     const Type* type = e.operands[0]->type;
     Slot index = none;
     for (const Argument& argument : e.arguments) {
-        const std::uint32_t stride = slots_of(w, *type->element);
+        const bool is_late = is_growing(w, *type->element);
+        const std::uint32_t stride = is_late ? 1 : slots_of(w, *type->element);
         const Expression& number = *argument.value;
         if (number.kind == E::constant) {
             const auto place = static_cast<std::uint32_t>(number.constant.integer - type->lower);
-            at = behind(at, place * stride);
+            at = is_late ? behind(w, at, {.type = type->element, .times = place})
+                         : behind(at, place * stride);
         } else {
             const IndexTable made{
                 type->lower, static_cast<std::uint64_t>(type->upper - type->lower) + 1, stride};
             const Slot given = value(w, number);
             if (index == none)
-                index = w.emit(Op::index, none, given, w.table(made));
+                index = w.emit(Op::index, none, given, table_of(w, made, is_late, type));
             else
-                w.put(Op::index_more, index, given, w.table(made));
+                w.put(Op::index_more, index, given, table_of(w, made, is_late, type));
         }
         type = type->element;
     }
@@ -129,6 +145,16 @@ Location element(Writing& w, Location at, const Expression& e) {
 Location behind(Location of, std::uint32_t slots) {
     (of.mode == Mode::address ? of.offset : of.slot) += slots;
     return of;
+}
+
+Location behind(Writing& w, const Location& of, Writing::Late distance) {
+    const Slot from = address_of(w, of);
+    w.land();
+    const Slot to = w.emit(Op::offset, none, from, 0);
+    distance.at = w.next() - 1;
+    w.late.push_back(distance);
+    w.land();
+    return {Mode::address, 0, to, 0};
 }
 
 Location as_address(Writing& w, Location location) {

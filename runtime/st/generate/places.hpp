@@ -33,6 +33,8 @@ Location part(Writing& w, Location of, const Variable& member);
 /// Of the array at `of`, the one that `e` indexes.
 Location element(Writing& w, Location of, const Expression& e);
 Location behind(Location of, std::uint32_t slots);  ///< so many slots on
+/// So far on as will be known when all is laid out.
+Location behind(Writing& w, const Location& of, Writing::Late distance);
 Location as_address(Writing& w, Location location);
 Slot address_of(Writing& w, Location location);
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/generate/calls.hpp"
 #include "runtime/st/generate/layout.hpp"
 #include "runtime/st/generate/packed.hpp"
@@ -55,6 +56,13 @@ Slot refer_to_part(Writing& w, Slot base, const Expression& part, const Expressi
         const Location whole = locate_through(base, *root.type, iec);
         return reference_to_packed(w, packed_path(w, part, root, whole));
     }
+    if (is_growing(w, *root.type)) {
+        w.out.add(code::contains_itself, part.place.mark(),
+                  "this refers to a part of what holds the block that refers to it",
+                  "refer to the block, or pass the part on as VAR_IN_OUT");
+        return base;
+    }
+    slots_of(w, *root.type);
     const Location at = path(w, part, root);
     if (at.mode == Mode::slot && at.slot == 0) return base;
     Slot slots = w.constant_slot(at.slot);

@@ -93,6 +93,19 @@ struct Writing {
     std::unordered_map<const Type*, std::uint32_t> own_pieces = {};  ///< of THIS
     std::map<IndexTable, std::uint32_t> tables = {};                 ///< their numbers
 
+    /// What is known when all is laid out: so many times the place of a member, or the size of a
+    /// type, is the stride of a table, or the distance of an Op::offset.
+    struct Late {
+        const Variable* member = nullptr;
+        const Type* type = nullptr;
+        std::uint64_t times = 1;
+        bool is_stride = false;
+        std::uint32_t at = 0;  ///< of the table, or of the instruction
+    };
+    std::vector<Late> late = {};
+    std::unordered_map<const Routine*, std::size_t> unwritten_parts =
+        {};  ///< of blocks: bodies and methods
+
     // Of the routine that is being written.
     Routine* routine = nullptr;
     Image* image = nullptr;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/st/library/fields.hpp"
 #include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft::st {
@@ -46,8 +47,10 @@ Bench::Bench(const Compiled& made, const Options& options, const Type& unit, Tol
         assertions_.emplace(assertion.instruction, &assertion);
     std::vector<std::size_t> begins;
     for (const Global& global : made.checked.globals) {
+        const bool is_unit = is_program(global) && global.type == &unit;
+        begins.push_back(is_unit ? 0 : 8 * memory_.size());
+        if (is_unit) continue;
         const auto& image = made.generated.images.at(global.type);
-        begins.push_back(8 * memory_.size());
         memory_.insert(memory_.end(), image.begin(), image.end());
     }
     for (const std::size_t begin : begins) places_.push_back(bytes() + begin);

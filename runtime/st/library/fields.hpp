@@ -4,6 +4,11 @@
 
 namespace lineshaft::st {
 
+/// A PROGRAM that sources name: its memory is that of the program's block of its name.
+inline bool is_program(const Global& global) {
+    return !global.pou && !global.object && global.type->kind == Type::Kind::block;
+}
+
 /// The fields of a PROGRAM or a FUNCTION_BLOCK, and of them those that are kept, checked or given
 /// by a call.
 void write_fields(Library::Made& made, KindContext& kind, const Routine& routine);

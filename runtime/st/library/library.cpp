@@ -60,7 +60,11 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
         if (!is_here(standard, reference.name)) made->missing_libraries.push_back(reference);
     const CodeOptions code_options{.overflow_faults = options.overflow_faults,
                                    .counted = options.times.has_value()};
-    if (!compile(*made, standard, out, code_options)) return {};
+    const bool is_compiled = compile(*made, standard, out, code_options);
+    if (options.foreign)
+        for (const Source* source : made->checked.foreign_users)
+            options.foreign->insert(source->file.get());
+    if (!is_compiled) return {};
     make_native(made->generated.code, options);
     std::unordered_map<const Routine*, const CodeRoutine*> codes;
     const CodeRoutine* code = made->generated.code.routines.data();
@@ -70,7 +74,8 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
             routine.pou->place.source->is_users())
             add_routine(*made, routine, *codes.at(&routine), options);
     for (const Global& global : made->checked.globals)
-        if (!global.object && global.name != image_name) add_global(*made, global, options);
+        if (!global.object && !is_program(global) && global.name != image_name)
+            add_global(*made, global, options);
     Library library;
     library.made_ = made;
     for (const KindContext& kind : made->kinds) library.kinds_.push_back(block_type(kind, made));

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,8 @@ struct Options {
 
     std::vector<ImageAddress> addresses =
         {};  ///< of the process image, that a program's file names
+
+    std::set<const SourceFile*>* foreign = nullptr;  ///< gets the sources that have such names
 
     bool operator==(const Options&) const = default;
 };

@@ -118,6 +118,8 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
         for (const Declaration* variable : block.declarations) {
             const std::string name = lower(fmt::format("{}.{}", block.list, variable->name.text));
             entry.types.emplace(name, name);
+            if (const auto point = block.list.find('.'); point != block.list.npos)
+                entry.types.emplace(name.substr(point + 1), name);
         }
     for (const DeclarationBlock& block : tree.globals)
         for (const Declaration* variable : block.declarations)
@@ -160,7 +162,9 @@ std::vector<const SourcePool::Entry*> SourcePool::nearest(const std::string& nam
         const auto [first, last] = entry.types.equal_range(name);
         for (auto it = first; it != last; ++it) {
             const std::string space = it->second.substr(0, it->second.size() - name.size());
-            if (space.empty() || user.spaces.contains(space)) add(it->second, entry);
+            const bool is_of_project = !entry.file->excerpts.empty();
+            if (space.empty() || is_of_project || user.spaces.contains(space))
+                add(it->second, entry);
         }
         if (first == last && !user.own.contains(name) && entry.values.contains(name))
             add(name, entry);

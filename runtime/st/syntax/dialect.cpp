@@ -26,7 +26,8 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .dint_becomes_real = true,
                          .numbers_stand_for_names = false,
                          .texts_of_integers_have_signs = false,
-                         .bits_count_in_reals = true};
+                         .bits_count_in_reals = true,
+                         .is_loose = true};
 
 const Dialect scl = {.sign_precedes_power = false,
                      .constants_have_values = false,

@@ -17,7 +17,9 @@ struct Dialect {
     bool numbers_stand_for_names;       ///< 1 for `mcPositiveDirection`, as Siemens counts them
     bool texts_of_integers_have_signs;  ///< INT_TO_STRING(5) is '+5', else '5'
     bool bits_count_in_reals = false;   ///< DWORD_TO_REAL(1) is 1.0, else the REAL of these bits
-    bool packs_as_s7 = false;           ///< bytes of packed memory: the highest first, words even
+    bool is_loose =
+        false;  ///< `f(a, )`, `RETURN(done);`, a value as a statement, CONCAT(STR1 := a)
+    bool packs_as_s7 = false;  ///< bytes of packed memory: the highest first, words even
 };
 
 /// IEC 61131-3:2013, CODESYS and Beckhoff's TwinCAT, and the SCL of Siemens' TIA Portal.

@@ -90,7 +90,11 @@ std::optional<Wide> read_integer(std::string_view text) {
     const std::size_t sharp = text.find('#');
     if (sharp == std::string_view::npos) return read_digits(text, 10);
     const std::string_view base = text.substr(0, sharp);
-    const int number = base == "16" ? 16 : base == "8" ? 8 : base == "2" ? 2 : 0;
+    const int number = base == "16"   ? 16
+                       : base == "10" ? 10
+                       : base == "8"  ? 8
+                       : base == "2"  ? 2
+                                      : 0;
     if (number == 0) return {};
     return read_digits(text.substr(sharp + 1), number);
 }

@@ -115,7 +115,8 @@ DeclarationBlock parse_section(Parsing& p, Section section) {
     p.section_left = false;
     while (!p.section_left && !is_end(p.here().word) && !p.is(Word::end_of_file) && !p.at_pou() &&
            !find_section(p.here().word))
-        parse_variables(p, block.declarations);
+        if (!p.source->dialect.is_loose || !p.accept(Word::semicolon))
+            parse_variables(p, block.declarations);
     if (p.section_left) p.panic = false;
     if (!p.section_left) close(p, Word::end_var_, opener);
     p.accept(Word::semicolon);

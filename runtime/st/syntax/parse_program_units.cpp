@@ -212,6 +212,7 @@ Pou* parse_pou(Parsing& p) {
     if (p.panic) skip_line(p);
     if (pou.result) p.accept(Word::semicolon);
     parse_header(p, pou);
+    if (p.source->dialect.is_loose) p.accept(Word::semicolon);
     if (pou.doc.empty()) pou.doc = comment_before(p, p.at, true);
     parse_sections(p, pou, words.end);
     if (std::exchange(p.is_spoiled, false)) return skip_past(p, words.end), &pou;

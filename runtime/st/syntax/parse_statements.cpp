@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "runtime/st/syntax/grammar.hpp"
 #include "runtime/st/syntax/mistakes.hpp"
 #include "runtime/st/syntax/recovery.hpp"
@@ -209,9 +211,34 @@ void parse_repeat(Parsing& p, Block& to) {
     if (statement->value) to.push_back(statement);
 }
 
+/// `n := a > 0`: what is assigned is the value.
+Expression* parse_assigned(Parsing& p, Block& to) {
+    const std::size_t before = p.at;
+    Expression* value = parse_expression(p);
+    if (p.panic || !p.is(Word::assign)) return value;
+    Statement* assignment = p.make(Statement::Kind::assign, p.take());
+    assignment->target = value;
+    assignment->value = parse_expression(p);
+    to.push_back(assignment);
+    const std::size_t behind = std::exchange(p.at, before);
+    value = parse_access(p);
+    p.at = behind;
+    return value;
+}
+
 /// Jump_Stmt : ( 'EXIT' | 'CONTINUE' | 'RETURN' ) ';'
+/// `RETURN(n > 0);` of CODESYS leaves if that holds.
 void parse_jump(Parsing& p, Statement::Kind kind, Block& to) {
-    to.push_back(p.make(kind, p.take()));
+    Statement* jump = p.make(kind, p.take());
+    if (kind == Statement::Kind::return_ && p.source->dialect.is_loose && p.is(Word::open)) {
+        Statement* test = p.make(Statement::Kind::if_, p.take());
+        Branch& branch = test->branches.emplace_back();
+        branch.condition = parse_assigned(p, to);
+        branch.body = {jump};
+        jump = test;
+        expect(p, Word::close);
+    }
+    to.push_back(jump);
     end_statement(p);
 }
 

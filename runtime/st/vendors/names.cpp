@@ -48,6 +48,9 @@ constexpr Renamed parts[] = {{"reset", "r"},
                              {"enable_positive", "enablepositive"},
                              {"enable_negative", "enablenegative"}};
 
+constexpr Renamed arguments[] = {{"str", "in"}, {"str1", "in1"}, {"str2", "in2"},
+                                 {"size", "l"}, {"len", "l"},    {"pos", "p"}};
+
 constexpr std::string_view libraries[] = {
     "standard", "standard64",  "tc2_standard", "tc2_mc2",        "sm3_basic",      "sm3_robotics",
     "plcopen",  "system.math", "system.timer", "system.strings", "system.datetime"};
@@ -72,6 +75,12 @@ std::string_view standard_part_name(std::string_view name) {
     const auto* it = std::ranges::find_if(
         parts, [&](const Renamed& renamed) { return same_name(renamed.theirs, name); });
     return it == std::end(parts) ? std::string_view() : it->standard;
+}
+
+std::string_view standard_argument_name(std::string_view name) {
+    const auto* it = std::ranges::find_if(
+        arguments, [&](const Renamed& renamed) { return same_name(renamed.theirs, name); });
+    return it == std::end(arguments) ? name : it->standard;
 }
 
 bool is_vendor_library(std::string_view name) {

@@ -1,0 +1,132 @@
+#include "runtime/program/whole_project.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "runtime/projects/solution.hpp"
+#include "runtime/source/letters.hpp"
+
+namespace lineshaft {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_plcproj(const std::string& path) {
+    return lower(fs::path(path).extension().string()) == ".plcproj";
+}
+
+/// `.plcproj` below a folder, or what a file leads to.
+std::vector<std::string> plcprojs_of(const std::string& path) {
+    std::error_code error;
+    if (projects::is_solution(path)) return projects::plcprojs_of(path);
+    if (!fs::is_directory(path, error))
+        return is_plcproj(path) ? std::vector{path} : std::vector<std::string>();
+    auto files = projects::sources_below(path, error);
+    std::erase_if(files, [](const std::string& file) { return !is_plcproj(file); });
+    return files;
+}
+
+/// All projects in reach, each read once.
+class Projects {
+  public:
+    Projects(const std::string& path, std::vector<std::string> include_dirs, Diagnostics& out)
+        : allowed_(std::move(include_dirs)), out_(out) {
+        std::error_code error;
+        const fs::path folder = fs::path(path).parent_path();
+        allowed_.push_back(fs::is_directory(path, error) ? path
+                           : folder.empty()              ? "."
+                                                         : folder.string());
+        for (const std::string& dir : allowed_)
+            for (const std::string& file : plcprojs_of(dir)) add(file);
+        for (const std::string& file : plcprojs_of(path)) add(file);
+    }
+
+    WholeProject whole(const std::string& path) {
+        WholeProject made{.path = path, .project = read(path)};
+        made.own = made.project.sources.size();
+        std::vector<std::string> taken{path};
+        take_libraries(made, path, taken);
+        return made;
+    }
+
+  private:
+    void add(const std::string& file) {
+        names_.try_emplace(fs::path(file).lexically_normal().string(),
+                           projects::names_of_plcproj(file));
+    }
+
+    const projects::Project& read(const std::string& path) {
+        const auto [it, is_new] = read_.try_emplace(path);
+        if (is_new) it->second = read_project(path, allowed_, out_);
+        return it->second;
+    }
+
+    /// That is called so: of several the one that is nearest in the tree of folders.
+    const std::string* find(const std::string& name, const std::string& user) const {
+        const std::string* best = nullptr;
+        std::size_t most = 0;
+        for (const auto& [path, names] : names_) {
+            if (!names.is_called(name) || path == user) continue;
+            const auto same =
+                static_cast<std::size_t>(std::ranges::mismatch(path, user).in1 - path.begin());
+            if (!best || same > most) best = &path, most = same;
+        }
+        return best;
+    }
+
+    void take_libraries(WholeProject& to, const std::string& user,
+                        std::vector<std::string>& taken) {
+        const auto names = names_.find(fs::path(user).lexically_normal().string());
+        if (names == names_.end()) return;
+        for (const auto& library : names->second.libraries) {
+            const std::string* path = find(library.name, names->first);
+            if (!path) continue;
+            std::erase_if(to.project.libraries, [&](const projects::Name& name) {
+                return lower(name.text) == lower(library.name);
+            });
+            if (std::ranges::find(taken, *path) != taken.end()) continue;
+            taken.push_back(*path);
+            to.library_paths.push_back(*path);
+            for (const auto& source : read(*path).sources)
+                to.project.sources.push_back(projects::in_namespace(source, library.space));
+            take_libraries(to, *path, taken);
+        }
+    }
+
+    std::vector<std::string> allowed_;
+    Diagnostics& out_;
+    std::map<std::string, projects::ProjectNames> names_;  ///< by path
+    std::map<std::string, projects::Project> read_;
+};
+
+}  // namespace
+
+std::vector<WholeProject> read_projects(const std::string& path,
+                                        const std::vector<std::string>& include_dirs,
+                                        Diagnostics& out) {
+    const std::vector<std::string> files = plcprojs_of(path);
+    std::vector<WholeProject> made;
+    std::error_code error;
+    const bool is_folder = fs::is_directory(path, error);
+    if (files.empty()) {
+        made.push_back({.path = path, .project = read_project(path, include_dirs, out)});
+        made.back().own = made.back().project.sources.size();
+        return made;
+    }
+    Projects all(path, include_dirs, out);
+    for (const std::string& file : files) made.push_back(all.whole(file));
+    if (!is_folder) return made;
+    WholeProject rest{.path = path, .project = {}};
+    for (const std::string& file : projects::sources_below(path, error)) {
+        if (is_plcproj(file)) continue;
+        for (auto& source : read_project(file, include_dirs, out).sources)
+            rest.project.add(std::move(source));
+    }
+    rest.own = rest.project.sources.size();
+    if (rest.own > 0) made.push_back(std::move(rest));
+    return made;
+}
+
+}  // namespace lineshaft
