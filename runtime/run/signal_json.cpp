@@ -4,12 +4,16 @@
 
 namespace lineshaft {
 
+nlohmann::ordered_json json_number(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
 nlohmann::ordered_json to_json(const Signal& signal, const Value& value) {
     if (const auto* b = std::get_if<bool>(&value)) return *b;
     if (signal.type == Type::enumeration) return signal.describe(value);
     if (const auto* i = std::get_if<std::int64_t>(&value)) return *i;
     const double real = std::get<double>(value);
-    return std::isfinite(real) ? nlohmann::ordered_json(real) : nlohmann::ordered_json(nullptr);
+    return json_number(real);
 }
 
 }  // namespace lineshaft

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 
 #include <fmt/core.h>
@@ -157,10 +156,6 @@ void ProgressLine::show(const std::function<std::string(double)>& text) {
     shown_ = elapsed;
     fmt::print(stderr, "\r\033[K{}", text(static_cast<double>(elapsed) / 1e3));
     std::fflush(stderr);
-}
-
-nlohmann::ordered_json json_number(double value) {
-    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
 }  // namespace lineshaft

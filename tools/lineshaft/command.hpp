@@ -84,9 +84,6 @@ Exit write_report(std::vector<std::string> inputs, std::vector<std::string> sign
 /// The same of what study_json() made, and of the traces that it names.
 Exit report_study(const nlohmann::ordered_json& study, const std::string& output, bool quiet);
 
-/// A real number for JSON: null when it is not finite.
-nlohmann::ordered_json json_number(double value);
-
 /// `name` of the subcommand on `app`; `result` gets its exit code.
 using AddCommand = void (*)(CLI::App& app, Exit& result);
 void add_new(CLI::App& app, Exit& result);

@@ -11,6 +11,7 @@
 #include "blocks/contour/command_path.hpp"
 #include "blocks/contour/magnitude_statistics.hpp"
 #include "runtime/csv/csv_reader.hpp"
+#include "runtime/run/signal_json.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
 #include "tools/lineshaft/command.hpp"

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "runtime/run/signal_json.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/trace/compare.hpp"

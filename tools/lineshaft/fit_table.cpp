@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/run/signal_json.hpp"
 #include "runtime/study/text_table.hpp"
 
 namespace lineshaft {
@@ -152,10 +153,6 @@ std::string start_line(const FitReport& report) {
                        converged ? "" : "; the search had not converged");
 }
 
-Json finite(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json row_json(const FitRow& row) {
     Json set = Json::object();
     for (const Setting& s : row.cell->run.settings) set[s.name] = s.value;
@@ -165,9 +162,9 @@ Json row_json(const FitRow& row) {
             {"signal", row.comparison->name()},
             {"unit", row.comparison->unit},
             {"given", trace ? Json(nullptr) : Json(row.given)},
-            {"ours", trace ? Json(nullptr) : finite(row.ours)},
-            {"difference", finite(row.difference)},
-            {"residual", finite(row.residual)},
+            {"ours", trace ? Json(nullptr) : json_number(row.ours)},
+            {"difference", json_number(row.difference)},
+            {"residual", json_number(row.residual)},
             {"samples", row.samples},
             {"held_out", row.cell->hold_out},
             {"ok", row.ok}};
@@ -175,7 +172,7 @@ Json row_json(const FitRow& row) {
 
 Json numbers(const std::vector<double>& values) {
     Json list = Json::array();
-    for (const double value : values) list.push_back(finite(value));
+    for (const double value : values) list.push_back(json_number(value));
     return list;
 }
 
@@ -206,17 +203,18 @@ Json fit_json(const FitPlan& plan, const FitReport& report) {
     Json parameters = Json::array(), cells = Json::array(), starts = Json::array();
     for (const FitValue& v : report.values)
         parameters.push_back({{"name", v.parameter->name},
-                              {"value", finite(v.value)},
+                              {"value", json_number(v.value)},
                               {"unit", v.parameter->unit.text},
-                              {"standard_error", finite(v.standard_error)},
+                              {"standard_error", json_number(v.standard_error)},
                               {"correlations", numbers(v.correlations)},
                               {"from", v.parameter->from},
                               {"to", v.parameter->to},
                               {"at_bound", v.at_bound}});
     for (const FitRow& row : report.rows) cells.push_back(row_json(row));
     for (const FitStart& start : report.starts)
-        starts.push_back(
-            {{"values", start.values}, {"sum", finite(start.sum)}, {"converged", start.converged}});
+        starts.push_back({{"values", start.values},
+                          {"sum", json_number(start.sum)},
+                          {"converged", start.converged}});
     Json object{{"title", plan.title},
                 {"parameters", parameters},
                 {"cells", cells},

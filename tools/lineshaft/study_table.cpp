@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/run/signal_json.hpp"
 #include "runtime/study/text_table.hpp"
 #include "tools/lineshaft/study_matrix.hpp"
 
@@ -89,10 +90,6 @@ std::string claim_table(const StudyReport& report) {
     return align(rows);
 }
 
-nlohmann::ordered_json finite(double value) {
-    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
 nlohmann::ordered_json paper_json(const Bounds& bounds, double scale) {
     return bounds.paper ? nlohmann::ordered_json(*bounds.paper * scale)
                         : nlohmann::ordered_json(nullptr);
@@ -148,12 +145,12 @@ nlohmann::ordered_json study_json(const Study& study, const StudyReport& report)
                                       {"signal", row.comparison->name()},
                                       {"unit", row.comparison->unit},
                                       {"paper", paper_json(row.comparison->bounds, 1)},
-                                      {"ours", finite(row.ours)},
+                                      {"ours", json_number(row.ours)},
                                       {"ok", row.ok}};
         if (row.of->repeat > 1) object["repeats"] = row.of->repeat;
         if (row.of->repeat > 1 && row.comparison->statistic == Statistic::mean) {
-            object["least"] = finite(row.least);
-            object["greatest"] = finite(row.greatest);
+            object["least"] = json_number(row.least);
+            object["greatest"] = json_number(row.greatest);
         }
         if (!row.traces.empty()) object["traces"] = row.traces;
         rows.push_back(std::move(object));
@@ -167,7 +164,7 @@ nlohmann::ordered_json study_json(const Study& study, const StudyReport& report)
                           {"signal", row.claim->text},
                           {"unit", row.claim->percent ? "%" : ""},
                           {"paper", paper_json(row.claim->bounds, scale)},
-                          {"ours", finite(row.ours * scale)},
+                          {"ours", json_number(row.ours * scale)},
                           {"ok", row.ok},
                           {"formula", row.claim->formula}});
     }

@@ -76,6 +76,43 @@ Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std:
                       : suggest(argument.name.text, names));
 }
 
+/// A variable of type `given` stands for an output or a VAR_IN_OUT.
+void check_given(Checking& c, const Argument& argument, const Variable& parameter,
+                 const Type& given) {
+    Expression* const value = argument.value;
+    const Type* type = parameter.type;
+    if (argument.is_negated && (type->kind != Kind::boolean || given.kind != Kind::boolean)) {
+        c.fail(code::type_does_not_fit, argument.name.place,
+               fmt::format("NOT takes a BOOL to a BOOL, not {} to {}", describe(*type),
+                           describe(given)),
+               "take the output as it is");
+        return;
+    }
+    if (parameter.section == Section::in_out && is_packed(*value)) {
+        c.fail(
+            code::wrong_arguments, value->place,
+            fmt::format("'{}' takes a variable, not bytes of {}", parameter.text,
+                        root_of(*value).variable && root_of(*value).variable->space == Space::image
+                            ? "the process image"
+                            : "a UNION"),
+            "copy it to a variable, give that, and copy it back");
+        return;
+    }
+    const bool texts = given.kind == Kind::text && type->kind == Kind::text;
+    const bool derives = parameter.section == Section::in_out && given.kind == Kind::block &&
+                         type->kind == Kind::block && is_a(*given.routine, *type->routine);
+    const bool fits = same_type(given, *type) || derives ||
+                      (parameter.section == Section::in_out
+                           ? texts && type->is_open
+                           : texts || (type->is_scalar() && widens(*type, given)));
+    note_lending(c, *value);
+    if (!fits)
+        c.fail(code::type_does_not_fit, value->place,
+               fmt::format("'{}' is {}, and {} is given", parameter.text, describe(*type),
+                           describe(given)),
+               texts ? "a VAR_IN_OUT of type STRING, without a length, takes any" : "");
+}
+
 void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     Expression*& value = argument.value;
     const Type* type = parameter.type;
@@ -109,36 +146,7 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
                    "declare one and give it here");
         return;
     }
-    if (argument.is_negated && (type->kind != Kind::boolean || given->kind != Kind::boolean)) {
-        c.fail(code::type_does_not_fit, argument.name.place,
-               fmt::format("NOT takes a BOOL to a BOOL, not {} to {}", describe(*type),
-                           describe(*given)),
-               "take the output as it is");
-        return;
-    }
-    if (parameter.section == Section::in_out && is_packed(*value)) {
-        c.fail(
-            code::wrong_arguments, value->place,
-            fmt::format("'{}' takes a variable, not bytes of {}", parameter.text,
-                        root_of(*value).variable && root_of(*value).variable->space == Space::image
-                            ? "the process image"
-                            : "a UNION"),
-            "copy it to a variable, give that, and copy it back");
-        return;
-    }
-    const bool texts = given->kind == Kind::text && type->kind == Kind::text;
-    const bool derives = parameter.section == Section::in_out && given->kind == Kind::block &&
-                         type->kind == Kind::block && is_a(*given->routine, *type->routine);
-    const bool fits = same_type(*given, *type) || derives ||
-                      (parameter.section == Section::in_out
-                           ? texts && type->is_open
-                           : texts || (type->is_scalar() && widens(*type, *given)));
-    note_lending(c, *value);
-    if (!fits)
-        c.fail(code::type_does_not_fit, value->place,
-               fmt::format("'{}' is {}, and {} is given", parameter.text, describe(*type),
-                           describe(*given)),
-               texts ? "a VAR_IN_OUT of type STRING, without a length, takes any" : "");
+    check_given(c, argument, parameter, *given);
 }
 
 /// A VAR_IN_OUT that a test does not give stays what it was; at first it is a variable of its own.

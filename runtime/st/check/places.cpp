@@ -40,6 +40,30 @@ const Routine* declaring_block(const Routine& block, const Variable& variable) {
     return found;
 }
 
+/// `type` has no member `name`: nothing, and what is there instead is said.
+const Type* fail_member(Checking& c, const Expression& e, const Type& type, std::string_view name) {
+    std::vector<std::string> names;
+    if (type.kind == Kind::block)
+        for (const Variable* variable : all_variables(*type.routine))
+            names.emplace_back(variable->text);
+    if (type.routine && type.routine->has_unknown_base) return nullptr;
+    if (type.kind == Kind::interface)
+        for (const auto known : {&Routine::methods, &Routine::getters})
+            for (const auto& [method, routine] : type.routine->*known) names.emplace_back(method);
+    for (const Variable* member : type.members) names.emplace_back(member->text);
+    if (names.empty())
+        return c.fail(code::type_does_not_fit, e.token.place,
+                      fmt::format("{} has no parts", describe(type)),
+                      "'.' takes a part of a structure or of an instance");
+    if (type.is_object())
+        for (const auto& [routine, part] : c.prelude.routines)
+            if (routine.starts_with(std::string(type.standard->handle) + '.'))
+                names.emplace_back(routine.substr(type.standard->handle.size() + 1));
+    std::ranges::sort(names);
+    return c.fail(code::not_declared, e.token.place,
+                  fmt::format("{} has no '{}'", describe(type), name), suggest(name, names));
+}
+
 }  // namespace
 
 const Type* check_member(Checking& c, Expression*& e) {
@@ -89,26 +113,7 @@ const Type* check_member(Checking& c, Expression*& e) {
         e = e->operands[0];
         return type;
     }
-    std::vector<std::string> names;
-    if (type->kind == Kind::block)
-        for (const Variable* variable : all_variables(*type->routine))
-            names.emplace_back(variable->text);
-    if (type->routine && type->routine->has_unknown_base) return nullptr;
-    if (type->kind == Kind::interface)
-        for (const auto known : {&Routine::methods, &Routine::getters})
-            for (const auto& [method, routine] : type->routine->*known) names.emplace_back(method);
-    for (const Variable* member : type->members) names.emplace_back(member->text);
-    if (names.empty())
-        return c.fail(code::type_does_not_fit, e->token.place,
-                      fmt::format("{} has no parts", describe(*type)),
-                      "'.' takes a part of a structure or of an instance");
-    if (type->is_object())
-        for (const auto& [routine, part] : c.prelude.routines)
-            if (routine.starts_with(std::string(type->standard->handle) + '.'))
-                names.emplace_back(routine.substr(type->standard->handle.size() + 1));
-    std::ranges::sort(names);
-    return c.fail(code::not_declared, e->token.place,
-                  fmt::format("{} has no '{}'", describe(*type), name), suggest(name, names));
+    return fail_member(c, *e, *type, name);
 }
 
 const Type* check_index(Checking& c, Expression*& node) {

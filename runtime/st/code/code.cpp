@@ -41,15 +41,47 @@ std::span<const std::int64_t> numbers_of(const Code& code, const Instruction& in
     return std::span(code.numbers).subspan(first, count);
 }
 
+bool jumps_out(const Code& code, const CodeRoutine& routine, const Instruction& in) {
+    const auto targets = numbers_of(code, in);
+    return targets.empty() || std::ranges::any_of(targets, [&](std::int64_t x) {
+               return !is_jump(code, routine, static_cast<std::uint64_t>(x));
+           });
+}
+
+/// A reference is three slots.
+std::string reference_error(const Code& code, const CodeRoutine& routine, const Instruction& in) {
+    constexpr const char* broken = "a reference that is not whole";
+    switch (in.op) {
+        case Op::reach:
+            return in.b + 2 >= routine.frame || in.c >= code.shapes.size() ? broken : "";
+        case Op::load_through:
+        case Op::store_through:
+        case Op::load_text_through:
+        case Op::store_text_through:
+        case Op::copy_from_through:
+        case Op::copy_to_through:
+            return in.b + 2 >= routine.frame || in.c >> 32 >= code.shapes.size() ? broken : "";
+        case Op::copy_memory:
+        case Op::move_reference:
+            return in.a + 2 >= routine.frame || in.b + 2 >= routine.frame ? broken : "";
+        case Op::fill_memory:
+            return in.a + 2 >= routine.frame ? broken : "";
+        case Op::compare_memory:
+        case Op::compare_references:
+        case Op::reference_distance:
+            return in.b + 2 >= routine.frame || in.c + 2 >= routine.frame ? broken : "";
+        default:
+            return "";
+    }
+}
+
 std::string instruction_error(const Code& code, const CodeRoutine& routine, const Instruction& in) {
+    constexpr const char* beyond = "a copy beyond the frame";
     const std::string_view kinds = info(in.op).operands;
     const std::uint64_t operands[] = {in.a, in.b, in.c, in.d};
     for (std::size_t i = 0; i < 4; ++i)
         if (std::string error = operand_error(code, routine, kinds[i], operands[i]); !error.empty())
             return error;
-    const auto is_outside = [&](std::int64_t x) {
-        return !is_jump(code, routine, static_cast<std::uint64_t>(x));
-    };
     const std::uint64_t last_to = std::uint64_t{in.a} + in.c,
                         last_from = std::uint64_t{in.b} + in.c;
     switch (in.op) {
@@ -62,12 +94,11 @@ std::string instruction_error(const Code& code, const CodeRoutine& routine, cons
         case Op::text_append:
             return in.c + 1 >= routine.frame ? "one value of two" : "";
         case Op::copy:
-            return last_to > routine.frame || last_from > routine.frame ? "a copy beyond the frame"
-                                                                        : "";
+            return last_to > routine.frame || last_from > routine.frame ? beyond : "";
         case Op::copy_from:
-            return last_to > routine.frame ? "a copy beyond the frame" : "";
+            return last_to > routine.frame ? beyond : "";
         case Op::copy_to:
-            return last_from > routine.frame ? "a copy beyond the frame" : "";
+            return last_from > routine.frame ? beyond : "";
         case Op::initialise:
             return last_to > routine.frame || last_from > code.images.size()
                        ? "an image that is not there"
@@ -86,39 +117,10 @@ std::string instruction_error(const Code& code, const CodeRoutine& routine, cons
             return in.a >= code.points.size() ? "a point that is not there" : "";
         case Op::bytes_of_slots:
             return in.c >= code.shapes.size() ? "a shape that is not there" : "";
-        case Op::reach:
-            return in.b + 2 >= routine.frame || in.c >= code.shapes.size()
-                       ? "a reference that is not whole"
-                       : "";
-        case Op::load_through:
-        case Op::store_through:
-        case Op::load_text_through:
-        case Op::store_text_through:
-        case Op::copy_from_through:
-        case Op::copy_to_through:
-            return in.b + 2 >= routine.frame || in.c >> 32 >= code.shapes.size()
-                       ? "a reference that is not whole"
-                       : "";
-        case Op::copy_memory:
-        case Op::move_reference:
-            return in.a + 2 >= routine.frame || in.b + 2 >= routine.frame
-                       ? "a reference that is not whole"
-                       : "";
-        case Op::fill_memory:
-            return in.a + 2 >= routine.frame ? "a reference that is not whole" : "";
-        case Op::compare_memory:
-        case Op::compare_references:
-        case Op::reference_distance:
-            return in.b + 2 >= routine.frame || in.c + 2 >= routine.frame
-                       ? "a reference that is not whole"
-                       : "";
         case Op::look_up:
             return numbers_of(code, in).empty() ? "a list of numbers that is not there" : "";
         case Op::choose:
-            return numbers_of(code, in).empty() ||
-                           std::ranges::any_of(numbers_of(code, in), is_outside)
-                       ? "a jump out of the routine"
-                       : "";
+            return jumps_out(code, routine, in) ? "a jump out of the routine" : "";
         case Op::load_element:
         case Op::store_element: {
             const IndexTable& table = code.tables[in.d];
@@ -128,7 +130,7 @@ std::string instruction_error(const Code& code, const CodeRoutine& routine, cons
                        : "";
         }
         default:
-            return "";
+            return reference_error(code, routine, in);
     }
 }
 
