@@ -250,6 +250,22 @@ void write_fields(Library::Made& made, KindContext& kind, const Routine& routine
     }
 }
 
+void write_test_fields(Library::Made& made, KindContext& kind, const Routine& fixture) {
+    std::set<int> objects;
+    for (std::size_t i = 0; i < made.checked.globals.size(); ++i)
+        objects.insert(static_cast<int>(i));
+    FieldWriter(made, kind).write_header(fixture, objects);
+}
+
+void add_data_blocks(Library::Made& made, const Options& options) {
+    for (const Global& global : made.checked.globals) {
+        if (global.object || global.name == image_name) continue;
+        KindContext& kind = add_kind(made, global.name, *global.type, options);
+        kind.doc = global.pou ? "DATA_BLOCK" : "VAR_GLOBAL";
+        write_fields(made, kind, global);
+    }
+}
+
 void write_fields(Library::Made& made, KindContext& kind, const Global& global) {
     FieldWriter fields(made, kind);
     if (global.type->kind == Type::Kind::block) {

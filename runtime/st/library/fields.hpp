@@ -10,6 +10,12 @@ void write_fields(Library::Made& made, KindContext& kind, const Routine& routine
 /// Those of a data block.
 void write_fields(Library::Made& made, KindContext& kind, const Global& global);
 
+/// Of a block of tests, which names all that is beside it.
+void write_test_fields(Library::Made& made, KindContext& kind, const Routine& fixture);
+
+/// A kind of each data block and `VAR_GLOBAL`.
+void add_data_blocks(Library::Made& made, const Options& options);
+
 /// What comments say, in one line.
 std::string text_of_comments(std::string_view written);
 
