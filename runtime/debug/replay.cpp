@@ -42,7 +42,8 @@ void Session::reset() {
     for (Replay& replay : machine_.replays) replay.skip_to(before_all);
 }
 
-/// What is kept takes a hundredth of the processor's time, whatever else runs there; `at_once`: now.
+/// What is kept takes a hundredth of the processor's time, whatever else runs there; `at_once`:
+/// now.
 void Session::keep(bool at_once) {
     constexpr std::int64_t least = 2 * ms;
     const std::int64_t now = cpu_time();
