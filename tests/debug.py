@@ -331,6 +331,57 @@ def test_pause_and_terminate():
     assert client.end() == 130
 
 
+def test_structured_text_tests():
+    """A TEST is a machine whose only scan runs it; what fails is told, SETUP and TEARDOWN are scans of their own."""
+    tests = folder / "mark_test.st"
+    tests.write_text("FUNCTION_BLOCK Adder VAR_INPUT a : INT; END_VAR VAR_OUTPUT sum : INT; END_VAR\n"
+                     "sum := sum + a;\nEND_FUNCTION_BLOCK\n"
+                     "SETUP\nVAR adder : Adder; END_VAR\nadder(a := 40);\nEND_SETUP\n"
+                     "TEST 'adds'\nVAR more : INT; END_VAR\nmore := 2;\nadder(a := more);\nASSERT_EQ(adder.sum, 42);\nEND_TEST\n"
+                     "TEST 'adds wrong'\nASSERT_EQ(adder.sum, 41);\nEND_TEST\n"
+                     "TEARDOWN\nadder(a := 0);\nEND_TEARDOWN\n", encoding="utf-8")
+    client = Client(lineshaft)
+    placed = client.launch(tests, {tests: [2, 11]}, test="adds")
+    assert [b["verified"] for b in placed[tests]] == [True, True], placed
+    seen = []
+    client.event("stopped")
+    for _ in range(3):
+        seen.append(client.line())
+        client.step("continue")
+    assert seen == [("Adder", 2), ("TEST 'adds' (TEST)", 11), ("Adder", 2)], seen
+    frame = client.stack()[1]["id"]
+    assert client.line() == ("Adder", 2) and client.stack()[1]["line"] == 18, client.stack()
+    assert client.request("evaluate", expression="adder.sum", frameId=frame)["result"] == "42"
+    client.step("reverseContinue")
+    assert client.line() == ("Adder", 2) and client.stack()[1]["line"] == 11, client.stack()
+    client.step("reverseContinue")
+    assert client.line() == ("TEST 'adds' (TEST)", 11) and client.value("Locals", "more") == "2", client.line()
+    client.breakpoints(tests)
+    client.request("continue", threadId=1)
+    assert client.event("exited") == {"exitCode": 0}
+    client.end()
+    client = Client(lineshaft)
+    client.launch(tests, test="adds wrong")
+    assert client.event("exited") == {"exitCode": 1}
+    told = "".join(e["body"]["output"] for e in client.events if e["event"] == "output")
+    assert client.end() == 1
+    client = Client(lineshaft, tests, "--test", "nothing")
+    client.request("initialize")
+    try:
+        raise AssertionError(client.request("launch"))
+    except Refused as why:
+        assert "adds, adds wrong" in str(why), why
+    client.end()
+
+
+def test_protocols_own_client():
+    if not (source / "tools/report/node_modules/@vscode/debugadapter-testsupport").exists():
+        print("SKIPPED: @vscode/debugadapter-testsupport; tools/setup --tests installs it")
+        return
+    answer = subprocess.run(["node", source / "tests/debug_client.mjs", lineshaft, source], capture_output=True, text=True, timeout=200)
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+
+
 def test_refusals():
     client = Client(lineshaft)
     client.request("initialize")

@@ -28,12 +28,16 @@ std::string text_in(const Json& from, const char* key, const std::string& otherw
 
 std::int64_t number_in(const Json& from, const char* key, std::int64_t otherwise = 0) {
     const auto it = from.find(key);
-    return it != from.end() && it->is_number() ? it->get<std::int64_t>() : otherwise;
+    return it != from.end() && it->is_number_integer() ? it->get<std::int64_t>() : otherwise;
 }
 
 bool flag_in(const Json& from, const char* key, bool otherwise = false) {
     const auto it = from.find(key);
     return it != from.end() && it->is_boolean() ? it->get<bool>() : otherwise;
+}
+
+Json read_json(const std::string& text) {
+    return Json::parse(text, nullptr, false);
 }
 
 Json source_of(const std::string& path) {
@@ -52,7 +56,7 @@ int Adapter::serve() {
     while (!is_gone_) {
         const auto message = messages_.next();
         if (!message) break;
-        handle(*message);
+        handle(read_json(*message));
         if (is_configured_ && !has_run_) run();
     }
     return exit_code_;
@@ -181,9 +185,8 @@ void Adapter::stopped(const Stop& stop) {
     send_event("stopped", std::move(body));
     while (!goes_on_) {
         const auto message = messages_.next();
-        if (!message) is_gone_ = goes_on_ = true;
-        if (!message) session_->end();
-        if (message) handle(*message);
+        if (!message) return leave();
+        handle(read_json(*message));
     }
     stands_ = false;
     forget();
@@ -192,10 +195,14 @@ void Adapter::stopped(const Stop& stop) {
 void Adapter::look() {
     while (messages_.waits() && !is_gone_) {
         const auto message = messages_.next();
-        if (!message) is_gone_ = true;
-        if (!message) return session_->end();
-        handle(*message);
+        if (!message) return leave();
+        handle(read_json(*message));
     }
+}
+
+void Adapter::leave() {
+    is_gone_ = goes_on_ = true;
+    session_->end();
 }
 
 Session& Adapter::session() {
@@ -230,6 +237,8 @@ Json Adapter::launch(const Json& arguments) {
     if (const auto it = arguments.find("args"); it != arguments.end() && it->is_array())
         for (const Json& arg : *it)
             if (arg.is_string()) args.push_back(arg.get<std::string>());
+    if (const std::string test = text_in(arguments, "test"); !test.empty())
+        args.insert(args.end(), {"--test", test});
     if (const std::string folder = text_in(arguments, "cwd"); !folder.empty()) {
         std::error_code error;
         std::filesystem::current_path(folder, error);
@@ -328,6 +337,13 @@ Json Adapter::set_variable(const Json& arguments) {
     return {{"value", value}};
 }
 
+int Adapter::task_in(const Json& arguments) {
+    const std::int64_t number = number_in(arguments, "threadId", 1);
+    if (number < 1 || number > std::ssize(session().loaded().linked.machine.tasks))
+        throw Refused("there is no such task");
+    return static_cast<int>(number) - 1;
+}
+
 Json Adapter::state(const Json&) {
     const Session& session = standing();
     const Position& here = session.here();
@@ -373,11 +389,10 @@ Json Adapter::threads(const Json&) {
 
 void Adapter::add_task_frame(Json& frames, int task) {
     const Loaded& loaded = session_->loaded();
-    const auto index = static_cast<std::size_t>(task);
-    if (index >= loaded.linked.machine.tasks.size()) throw Refused("there is no such task");
     frames.push_back(
         {{"id", first_task_frame + task},
-         {"name", fmt::format("task {} at {}", loaded.linked.machine.tasks[index].name,
+         {"name", fmt::format("task {} at {}",
+                              loaded.linked.machine.tasks[static_cast<std::size_t>(task)].name,
                               format_time(std::max<std::int64_t>(session_->here().time, 0)))},
          {"source", source_of(loaded.program.file->path)},
          {"line", first_line_is_0_ ? 0 : 1},
@@ -393,7 +408,7 @@ const std::vector<Frame>& Adapter::frames() {
 
 Json Adapter::stack_trace(const Json& arguments) {
     Session& session = standing();
-    const int task = static_cast<int>(number_in(arguments, "threadId", 1)) - 1;
+    const int task = task_in(arguments);
     const st::Halt* halt = session.halt();
     Json frames = Json::array();
     if (halt && halt->context.task == task) {
@@ -477,7 +492,7 @@ Json Adapter::pause(const Json&) {
 }
 
 Json Adapter::go_on(const Json& arguments, Way way) {
-    const int task = static_cast<int>(number_in(arguments, "threadId", 1)) - 1;
+    const int task = task_in(arguments);
     standing().command({.way = way, .task = task});
     goes_on_ = true;
     return way == Way::go ? Json{{"allThreadsContinued", true}} : Json::object();

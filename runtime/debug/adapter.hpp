@@ -3,9 +3,9 @@
 #include <map>
 #include <memory>
 
-#include "runtime/debug/messages.hpp"
 #include "runtime/debug/session.hpp"
 #include "runtime/debug/values.hpp"
+#include "runtime/messages/messages.hpp"
 
 namespace lineshaft::debug {
 
@@ -39,6 +39,7 @@ class Adapter final : Front {
     void send_event(const char* name, Json body);
     void tell(const char* category, const std::string& text);
     void run();
+    void leave();
 
     // Front
     void stopped(const Stop& stop) override;
@@ -70,6 +71,7 @@ class Adapter final : Front {
 
     Session& session();
     Session& standing();
+    int task_in(const Json& arguments);
     Shown variable_in(const Json& arguments);
     const std::vector<Frame>& frames();
     void forget();

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <ctime>
 #include <filesystem>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -10,30 +12,46 @@
 
 namespace lineshaft::debug {
 
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+
+/// Of this thread [ns].
+std::int64_t cpu_time() {
+    timespec now{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return now.tv_sec * 1000 * ms + now.tv_nsec;
+}
+
+}  // namespace
+
 void Session::note_beginning() {
     fresh_ = machine_.memory;
     fresh_forces_ = machine_.forces;
     StateWriter out;
     executive_->save(out);
     history_.keep(-1, {out.bytes()});
-    kept_ = Clock::now();
+    kept_ = cpu_time();
 }
 
 /// As the run began.
 void Session::reset() {
     std::ranges::copy(fresh_, machine_.memory.begin());
     machine_.forces = fresh_forces_;
+    constexpr std::int64_t before_all = std::numeric_limits<std::int64_t>::min();
+    for (Replay& replay : machine_.replays) replay.skip_to(before_all);
 }
 
-/// What is kept takes a fiftieth of the time.
-void Session::keep() {
-    constexpr auto least = std::chrono::milliseconds(2);
-    const auto now = Clock::now();
-    if (now - kept_ < std::max<Clock::duration>(least, 50 * keep_cost_)) return;
+/// What is kept takes a hundredth of the processor's time, whatever else runs there; `at_once`:
+/// now.
+void Session::keep(bool at_once) {
+    constexpr std::int64_t least = 2 * ms;
+    const std::int64_t now = cpu_time();
+    if (!at_once && now - kept_ < std::max(least, 100 * keep_cost_)) return;
     StateWriter out;
     executive_->save(out);
     history_.keep(executive_->time(), {out.bytes(), next_change_, hits_});
-    kept_ = Clock::now();
+    kept_ = cpu_time();
     keep_cost_ = kept_ - now;
 }
 
@@ -49,9 +67,11 @@ void Session::start_at(Executive& executive, std::int64_t time) {
     instant_ = -1;
     recounts_ = made_ && breakpoints_.are_counted();
     if (made_) made_->generated.code.probe = recounts_ ? looking_.get() : nullptr;
+    const std::int64_t begun = cpu_time();
     while (executive.time() < time - 1)
         if (!run_freely(time - 1, true)) break;
     recounts_ = false;
+    if (cpu_time() - begun > ms) keep(true);  // who looked here looks again
     signals_.begin(time);
 }
 

@@ -6,8 +6,6 @@ namespace lineshaft::debug {
 
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
-
 const st::Library::Made* find_made(const Machine& machine) {
     for (const BlockType* type : machine.types)
         if (const st::Library::Made* made = type ? st::made_of(*type) : nullptr) return made;

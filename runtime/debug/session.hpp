@@ -167,7 +167,7 @@ class Session final : Observer, EventSink {
     // Backwards: replay.cpp.
     void note_beginning();
     void reset();
-    void keep();
+    void keep(bool at_once = false);
     Position target();
     std::optional<Position> last_before(const Position& end, const Plan& plan);
     std::optional<Position> search(std::int64_t from, const Position& end, const Plan& plan);
@@ -191,8 +191,8 @@ class Session final : Observer, EventSink {
     std::vector<std::byte> fresh_;            ///< the memory as the run began
     std::vector<Force> fresh_forces_;
     History history_;
-    Clock::time_point kept_ = {};
-    Clock::duration keep_cost_ = {};
+    std::int64_t kept_ = 0,
+                 keep_cost_ = 0;      ///< when last, and what that took of the processor [ns]
     std::int64_t chunk_ = 1'000'000;  ///< virtual time between two looks at the front [ns]
 
     Executive* executive_ = nullptr;

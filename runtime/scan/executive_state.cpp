@@ -146,17 +146,21 @@ void Executive::restore(StateReader& in) {
     in.require(is_count(result_.time_errors));
     if (!in.ok()) return;
     forces_.look_ahead(known_until_ - 1);
-    for (Replay& replay : machine_.replays) replay.skip_to(now_);
+    constexpr std::int64_t before_all = std::numeric_limits<std::int64_t>::min();
+    for (Replay& replay : machine_.replays) replay.skip_to(has_run_ ? now_ : before_all);
 }
 
 void Executive::recall(StateReader& in) {
-    StateReader memory = in;
+    StateReader before = in, memory = in;
+    before.get(machine_.memory);
     restore(in);
     memory.get(machine_.memory);
 }
 
 void Executive::restore_memory(StateReader& in, KeptMemory& memory, const std::byte* kept) {
     const std::byte* const first = machine_.memory.data();
+    // recall() has taken it as a whole.
+    if (std::equal(machine_.memory.begin(), machine_.memory.end(), kept)) return;
     for (const Signal& signal : machine_.signals) {
         if (signal.port.instance >= 0) continue;
         std::byte* const place = machine_.live(signal.port);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <memory>
 
 #include <arpa/inet.h>
 #include <fmt/core.h>
@@ -9,9 +10,12 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "blocks/catalog.hpp"
 #include "runtime/debug/adapter.hpp"
 #include "runtime/source/codes.hpp"
+#include "runtime/source/encoding.hpp"
 #include "tools/lineshaft/run_command.hpp"
+#include "tools/lineshaft/test_files.hpp"
 
 namespace lineshaft {
 
@@ -21,14 +25,15 @@ constexpr const char* debug_help =
     "Speaks the Debug Adapter Protocol on its standard streams, or with one client at --port: an\n"
     "editor starts it. Arguments of 'launch': program, the file (else the one of this command\n"
     "line); args, options as of this command, ['--set', 'x=1', '--trace', 'FILE.csv']; cwd;\n"
-    "stopOnEntry; stopAtEnd. Breakpoints stand in Structured Text; tasks are threads; stepBack "
-    "and\n"
-    "reverseContinue go back. The run is that of 'lineshaft run', to the same bytes.\n"
+    "stopOnEntry; stopAtEnd; test, the name of a TEST, if the file is one of tests. Breakpoints\n"
+    "stand in Structured Text; tasks are threads; stepBack and reverseContinue go back. The run "
+    "is\n"
+    "that of 'lineshaft run', to the same bytes.\n"
     "runtime/debug/README.md says how an editor connects.";
 
 struct DebugOptions {
     RunCommand run;
-    std::string record;
+    std::string record, test;
 };
 
 struct DebugCommand {
@@ -64,6 +69,10 @@ void add_options(CLI::App& app, DebugOptions& options) {
     app.add_option("--recording", options.run.recording,
                    "Do again what was done from outside, as a recording has it")
         ->type_name("FILE.yaml");
+    app.add_option("--test", options.test,
+                   "Run this TEST of the program, which is a file of tests: its name, or the "
+                   "beginning of it")
+        ->type_name("NAME");
     app.add_option("--record", options.record,
                    "Write what was changed by hand to this file, for --recording")
         ->type_name("FILE.yaml");
@@ -91,21 +100,69 @@ void take_arguments(DebugOptions& options, const std::string& program,
                 "leave --json, --resume and --checkpoint-every out");
 }
 
+/// The one of that name, else the first that begins so: its suite and number there.
+std::optional<std::pair<st::TestSuite, std::size_t>> find_test(
+    const std::vector<st::TestSuite>& suites, const std::string& name) {
+    std::optional<std::pair<st::TestSuite, std::size_t>> found;
+    for (const st::TestSuite& suite : suites)
+        for (std::size_t i = 0; i < suite.tests().size(); ++i) {
+            if (suite.tests()[i].name == name) return std::pair(suite, i);
+            if (!found && suite.tests()[i].name.starts_with(name)) found.emplace(suite, i);
+        }
+    return found;
+}
+
+/// A machine whose first scan is the test.
+std::optional<Loaded> load_test(const DebugOptions& options, Diagnostics& out) {
+    const std::string& path = options.run.program;
+    const auto file = read_source(path, out);
+    const std::vector<TestFile> files = file ? find_tests(path, {}) : std::vector<TestFile>();
+    if (files.empty()) return {};
+    const std::vector<st::TestSuite> suites = compile_tests(files.front(), file, out);
+    if (!out.empty()) return {};
+    const auto test = find_test(suites, options.test);
+    if (!test) {
+        std::vector<std::string> names;
+        for (const st::TestSuite& suite : suites)
+            for (const st::Test& each : suite.tests()) names.push_back(each.name);
+        out.add(code::unusable_option, {}, fmt::format("{} has no TEST '{}'", path, options.test),
+                fmt::format("there are: {}", fmt::join(names, ", ")));
+        return {};
+    }
+    auto kinds = std::make_shared<Catalog>();
+    for (const BlockType& kind : test->first.kinds(test->second)) kinds->add(kind);
+    std::string text =
+        "lineshaft: 1\ntasks: {test: {every: 1 ms}}\nrun: {for: 0.5 ms}\nblocks:\n"
+        "  TEST: {type: TEST, task: test}\n";
+    for (const auto& [name, kind] : test->first.objects())
+        text += fmt::format("  {}: {{type: {}, task: test}}\n", name, kind);
+    const auto program = std::make_shared<SourceFile>(SourceFile{"TEST.yaml", text});
+    Loaded loaded{.program = read_program(program, {}, out), .linked = {}};
+    loaded.program.file = file;
+    loaded.linked = link(loaded.program, standard_blocks(), out, std::move(kinds));
+    return loaded;
+}
+
 std::unique_ptr<debug::Launched> launch(DebugOptions options, const std::string& program,
                                         const std::vector<std::string>& args, std::string& error) {
     Diagnostics out;
     take_arguments(options, program, args, out);
     const RunCommand& command = options.run;
     RunOptions how = run_options(command, out);
-    auto loaded = out.empty() ? load(command, {options.record}, out) : std::nullopt;
+    std::optional<Loaded> loaded;
+    if (out.empty())
+        loaded =
+            options.test.empty() ? load(command, {options.record}, out) : load_test(options, out);
     if (!loaded || !out.empty()) {
         error = out.render();
         return {};
     }
     auto made = std::make_unique<debug::Launched>(
         debug::Launched{std::move(*loaded), std::move(how), {}, options.record});
-    made->tell = [command, &program_run = made->loaded](const RunReport& report) {
-        return static_cast<int>(tell(command, program_run, report));
+    made->tell = [command, is_test = !options.test.empty(),
+                  &program_run = made->loaded](const RunReport& report) {
+        const Exit exit = tell(command, program_run, report);
+        return static_cast<int>(is_test && exit == Exit::fault ? Exit::failed : exit);
     };
     return made;
 }
@@ -120,12 +177,13 @@ Exit execute(const DebugCommand& command) {
     }
     // What the run prints is not for the protocol's stream.
     ::dup2(STDERR_FILENO, STDOUT_FILENO);
-    debug::Messages messages(in, out);
+    Messages messages(in, out);
     debug::Adapter adapter(messages,
                            [&](const std::string& program, const auto& args, std::string& error) {
                                return launch(command.options, program, args, error);
                            });
-    return static_cast<Exit>(adapter.serve());
+    const auto exit = static_cast<Exit>(adapter.serve());
+    return exit == Exit::fine && interrupt_requested ? Exit::interrupted : exit;
 }
 
 }  // namespace

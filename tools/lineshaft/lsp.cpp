@@ -1,7 +1,6 @@
-#include <cstdio>
-
 #include <unistd.h>
 
+#include "runtime/messages/messages.hpp"
 #include "runtime/st/code/native/native.hpp"
 #include "tools/lineshaft/command.hpp"
 #include "tools/lineshaft/lsp/server.hpp"
@@ -12,14 +11,16 @@ namespace {
 
 Exit serve_editor() {
     st::switch_native_off();  // nothing runs here
-    lsp::Server server([](const lsp::Json& message) {
-        const std::string text = lsp::framed(message);
-        std::fwrite(text.data(), 1, text.size(), stdout);
-        std::fflush(stdout);
-    });
-    lsp::serve(
-        STDIN_FILENO, [&](const std::string& message) { server.receive(message); },
-        [&] { return server.work(); }, [&] { return server.ended().has_value() || is_unread(); });
+    Messages messages(STDIN_FILENO, STDOUT_FILENO);
+    lsp::Server server([&](const Json& message) { messages.send(message); });
+    const auto is_ended = [&] { return server.ended().has_value() || is_unread(); };
+    while (!is_ended()) {
+        if (!messages.waits() && server.work()) continue;
+        const auto message = messages.next();
+        if (!message) break;
+        server.receive(*message);
+    }
+    while (!interrupt_requested && !is_ended() && server.work()) continue;
     if (interrupt_requested) return Exit::interrupted;
     return server.ended() == 0 ? Exit::fine : Exit::failed;
 }

@@ -23,21 +23,32 @@ bool is_written(Place at, std::string_view name) {
     return same_name(text, name.substr(name.rfind('.') + 1)) || same_name(text, name);
 }
 
+/// `T` of `a.b.T`.
+Place last_part(Place name) {
+    const std::string_view text = name.text();
+    if (!text.ends_with('"')) name.begin += static_cast<std::uint32_t>(text.rfind('.') + 1);
+    return name;
+}
+
 }  // namespace
 
 void Checking::note(Place at, const Variable& variable) {
     if (uses && is_written(at, variable.text))
-        uses->push_back({at, variable.name.place, &variable, nullptr, variable.type});
+        uses->push_back({last_part(at), variable.name.place, &variable, nullptr, variable.type});
 }
 
 void Checking::note(Place at, const Routine& called) {
     if (uses && is_written(at, called.name))
-        uses->push_back({at, called.pou->name.place, nullptr, &called, called.type});
+        uses->push_back({last_part(at), called.pou->name.place, nullptr, &called, called.type});
 }
 
 void Checking::note(Place at, const Type& type, Place declared) {
     if (uses && at.source && at.source->is_users())
-        uses->push_back({at, declared, nullptr, nullptr, &type});
+        uses->push_back({last_part(at), declared, nullptr, nullptr, &type});
+}
+
+void Checking::note(Place at, const NamedType& named) {
+    if (named.type) note(at, *named.type, named.declaration->name.place);
 }
 
 const Prefixes* Checking::prefixes_at(Place place) const {

@@ -398,6 +398,7 @@ void declare_globals(Checking& c) {
         variable.global = number;
         c.checked.globals.push_back({std::string(pou->name.text), type, pou});
         c.globals.emplace(pou->name.text, &variable);
+        c.note(variable.name.place, variable);
     }
 }
 

@@ -105,7 +105,10 @@ const Type* check_typed(Checking& c, Expression*& e) {
     Expression*& value = e->operands[0];
     const Token& name = e->token;
     const Type* type = find_prefix(name.text);
-    if (const NamedType* named = c.look_up(&Names::types, name)) type = named->type;
+    if (const NamedType* named = c.look_up(&Names::types, name)) {
+        type = named->type;
+        c.note(name.place, *named);
+    }
     if (!type) {
         if (resolve_name(c, name))
             c.fail(code::not_declared, name.place,

@@ -121,7 +121,9 @@ const Type* enumeration_of(Checking& c, const Expression& member) {
     if (variable && !(variable->type && variable->type->is_scalar())) return nullptr;
     const NamedType* named = c.look_up(&Names::types, *name);
     const Type* type = named ? named->type : nullptr;
-    return type && type->kind == Kind::enumeration ? type : nullptr;
+    if (!type || type->kind != Kind::enumeration) return nullptr;
+    c.note(of.place, *named);
+    return type;
 }
 
 const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, const Token& name) {

@@ -216,7 +216,7 @@ const Type* resolve_name(Checking& c, const Token& name) {
     if (const Type* type = find_elementary(name.text); type && !name.quoted) return type;
     if (NamedType* named = c.look_up(&Names::types, name)) {
         const Type* type = resolve_declared(c, *named);
-        if (type) c.note(name.place, *type, named->declaration->name.place);
+        c.note(name.place, *named);
         return type;
     }
     if (const Routine* routine = c.find_routine(name)) {

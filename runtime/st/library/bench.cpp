@@ -53,24 +53,32 @@ Bench::Bench(const Compiled& made, const Options& options, const Type& unit, Tol
         const auto& image = made.generated.images.at(global.type);
         memory_.insert(memory_.end(), image.begin(), image.end());
     }
-    for (const std::size_t begin : begins) places_.push_back(bytes() + begin);
+    unit_ = reinterpret_cast<std::byte*>(memory_.data());
+    for (const std::size_t begin : begins) places_.push_back(unit_ + begin);
+    context_ = {.instances = places_.data(),
+                .seen = places_.data(),
+                .memory = unit_,
+                .task = 0,
+                .published = &never};
     for (std::size_t i = 0; i < places_.size(); ++i)
         if (const Variable* object = made.checked.globals[i].object)
             objects_.emplace_back(object->type->standard, places_[i]);
 }
 
+Bench::Bench(const Compiled& made, const Options& options, std::byte* unit, const Context& context,
+             Told told)
+    : made_(made), options_(options), told_(std::move(told)), unit_(unit), context_(context) {
+    for (const Assertion& assertion : made.generated.assertions)
+        assertions_.emplace(assertion.instruction, &assertion);
+}
+
 TestResult Bench::run(const CodeRoutine& routine, std::byte* instance) {
     const Code& code = made_.generated.code;
-    const Context context{.instances = places_.data(),
-                          .seen = places_.data(),
-                          .memory = bytes(),
-                          .task = 0,
-                          .published = &never};
     root_ = instance;
     for (std::uint64_t i = 0; i < places_.size(); ++i)
         std::memcpy(instance + 8 * (globals_slot + i), &i, sizeof i);
     code.witness = this;
-    const Fault fault = execute(code, routine, instance, now_, context, options_.fuel, nullptr);
+    const Fault fault = execute(code, routine, instance, now_, context_, options_.fuel, nullptr);
     code.witness = nullptr;
     if (fault == Fault::none) return {};
     if (fault == Fault::assertion) return std::move(ended_);
@@ -81,17 +89,12 @@ TestResult Bench::run(const CodeRoutine& routine, std::byte* instance) {
 
 void Bench::advance(std::int64_t by) {
     constexpr std::int64_t step = 1'000'000;
-    const Context context{.instances = places_.data(),
-                          .seen = places_.data(),
-                          .memory = bytes(),
-                          .task = 0,
-                          .published = &never};
     for (std::int64_t left = by; left > 0; left -= step) {
         now_.interval = std::min(step, left);
         now_.time += now_.interval;
         ++now_.index;
         for (const auto& [type, block] : objects_) {
-            Context inner = context;
+            Context inner = context_;
             inner.kind = type->context;
             type->scan_blocks(block, 1, now_, inner);
         }
@@ -100,7 +103,7 @@ void Bench::advance(std::int64_t by) {
 }
 
 std::optional<Mark> Bench::cut() {
-    return cut_of(made_.generated.code, bytes());
+    return cut_of(made_.generated.code, unit_);
 }
 
 bool Bench::ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_t depth) {
@@ -113,13 +116,9 @@ bool Bench::ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_
     return ends;
 }
 
-std::byte* Bench::bytes() {
-    return reinterpret_cast<std::byte*>(memory_.data());
-}
-
 const std::byte* Bench::place(std::uint64_t address) {
     const std::uint64_t space = address >> 32;
-    return (space == 0 ? root_ : places_[space - 1]) + 8 * (address & 0xFFFF'FFFF);
+    return (space == 0 ? root_ : context_.instances[space - 1]) + 8 * (address & 0xFFFF'FFFF);
 }
 
 std::string_view Bench::text_at(std::uint64_t address) {

@@ -22,6 +22,9 @@ class Bench : Witness {
     using Told = std::function<bool(TestResult)>;
 
     Bench(const Compiled& made, const Options& options, const Type& unit, Told told);
+    /// On the memory of a machine that runs a scan of the unit, whose time this is.
+    Bench(const Compiled& made, const Options& options, std::byte* unit, const Context& context,
+          Told told);
     Bench(const Bench&) = delete;
     Bench& operator=(const Bench&) = delete;
 
@@ -31,14 +34,13 @@ class Bench : Witness {
     /// A cycle goes by: the blocks beside the unit, such as axes, are scanned in each millisecond.
     void advance(std::int64_t by);
 
-    std::byte* unit() { return bytes(); }
+    std::byte* unit() { return unit_; }
     std::byte* global(std::size_t number) { return places_[number]; }
     std::int64_t time() const { return now_.time; }
     std::optional<Mark> cut();
 
   private:
     bool ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_t depth) override;
-    std::byte* bytes();
     const std::byte* place(std::uint64_t address);
     std::string_view text_at(std::uint64_t address);
     std::uint64_t word(std::uint64_t slot);
@@ -54,6 +56,8 @@ class Bench : Witness {
     std::unordered_map<std::uint64_t, const Assertion*> assertions_;  ///< by their instruction
     std::vector<std::uint64_t> memory_;  ///< of the unit, then the data blocks and objects
     std::vector<std::byte*> places_;
+    std::byte* unit_ = nullptr;
+    Context context_;
     std::vector<std::pair<const BlockType*, std::byte*>> objects_;
     Scan now_{0, 1'000'000, 0};
     std::byte* root_ = nullptr;  ///< the instance that runs

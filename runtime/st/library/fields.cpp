@@ -1,5 +1,6 @@
 #include "runtime/st/library/fields.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <set>
 
@@ -247,6 +248,24 @@ void write_fields(Library::Made& made, KindContext& kind, const Routine& routine
         if (variable.space != Space::reference) continue;
         kind.references.push_back(variable.slot);
         fields.write_reference(variable);
+    }
+}
+
+void write_test_fields(Library::Made& made, KindContext& kind, const Routine& fixture) {
+    std::set<int> objects;
+    for (std::size_t i = 0; i < made.checked.globals.size(); ++i)
+        objects.insert(static_cast<int>(i));
+    FieldWriter(made, kind).write_header(fixture, objects);
+}
+
+void add_data_blocks(Library::Made& made, const Options& options) {
+    for (const Global& global : made.checked.globals) {
+        const auto is_its = [&](const KindContext& kind) { return kind.type == global.type; };
+        const bool is_there = is_program(global) && std::ranges::any_of(made.kinds, is_its);
+        if (global.object || is_there || global.name == image_name) continue;
+        KindContext& kind = add_kind(made, global.name, *global.type, options);
+        kind.doc = global.pou ? "DATA_BLOCK" : "VAR_GLOBAL";
+        write_fields(made, kind, global);
     }
 }
 

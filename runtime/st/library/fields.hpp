@@ -15,6 +15,12 @@ void write_fields(Library::Made& made, KindContext& kind, const Routine& routine
 /// Those of a data block.
 void write_fields(Library::Made& made, KindContext& kind, const Global& global);
 
+/// Of a block of tests, which names all that is beside it.
+void write_test_fields(Library::Made& made, KindContext& kind, const Routine& fixture);
+
+/// A kind of each data block and `VAR_GLOBAL`, and of a PROGRAM that is named and has none yet.
+void add_data_blocks(Library::Made& made, const Options& options);
+
 /// What comments say, in one line.
 std::string text_of_comments(std::string_view written);
 

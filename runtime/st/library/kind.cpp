@@ -40,6 +40,11 @@ bool refuse(const KindContext& kind, std::byte* instance, Fault fault) {
 
 bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
               const Context& context) {
+    if (kind.run_test) {
+        kind.failure = kind.run_test(instance, context);
+        if (!kind.failure.empty()) refuse(kind, instance, Fault::assertion);
+        return !kind.failure.empty();
+    }
     for (const std::uint32_t slot : kind.references) {
         std::uint64_t address = 0;
         std::memcpy(&address, instance + 8 * std::size_t{slot}, sizeof address);
@@ -62,7 +67,9 @@ bool scan_blocks(std::byte* first, std::size_t count, const Scan& now, const Con
 }
 
 std::string why(const std::byte* block, const Context& context, const NameOf&) {
-    const FaultPlace found = fault_of(*static_cast<const KindContext*>(context.kind)->code, block);
+    const auto& kind = *static_cast<const KindContext*>(context.kind);
+    if (!kind.failure.empty()) return kind.failure;
+    const FaultPlace found = fault_of(*kind.code, block);
     std::string text =
         fmt::format("at {}:{}:{}", found.mark.file->path, found.mark.line, found.mark.column);
     for (std::size_t i = 0; i < found.calls.size(); ++i)
@@ -295,10 +302,20 @@ std::size_t element_slots(const Type& array) {
     return element.kind == Kind::block ? element.routine->frame : element.slots;
 }
 
-void find_moments(KindContext& kind) {
-    visit_standard(*kind.type, [&](const BlockType& inner, std::size_t offset) {
+KindContext& add_kind(Library::Made& made, std::string name, const Type& type,
+                      const Options& options) {
+    KindContext& kind = made.kinds.emplace_back();
+    kind.code = &made.generated.code;
+    kind.options = options;
+    kind.name = std::move(name);
+    const auto& image = made.generated.images.at(&type);
+    kind.image = image.data();
+    kind.size = 8 * image.size();
+    kind.type = &type;
+    visit_standard(type, [&](const BlockType& inner, std::size_t offset) {
         if (inner.shift) kind.with_moments.push_back({offset, &inner});
     });
+    return kind;
 }
 
 BlockType block_type(const KindContext& kind, const std::shared_ptr<const Library::Made>& made) {

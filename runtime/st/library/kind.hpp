@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 
 #include "runtime/st/library/compiled.hpp"
 #include "runtime/st/types/packed.hpp"
@@ -30,6 +31,9 @@ struct KindContext {
     const Type* type = nullptr;             ///< of the instances
     std::vector<Check> checks;              ///< inputs narrower than what a wire brings
     std::vector<std::uint32_t> references;  ///< slots of VAR_IN_OUT, which a call fills
+    /// Of a test: runs it; what it says that does not hold goes to `failure`.
+    std::function<std::string(std::byte* instance, const Context& context)> run_test = {};
+    mutable std::string failure = {};  ///< of the last scan
 };
 
 /// What the block with the process image works by.
@@ -55,8 +59,9 @@ struct Library::Made : Compiled {
 
 std::size_t element_slots(const Type& array);
 
-/// Notes which instances of the catalogue the kind's have in them.
-void find_moments(KindContext& kind);
+/// A kind of block without fields, whose instances are as the type's image.
+KindContext& add_kind(Library::Made& made, std::string name, const Type& type,
+                      const Options& options);
 
 /// What the kind is compiled from; null of one that is not Structured Text, and of the image.
 const Library::Made* made_of(const BlockType& kind);

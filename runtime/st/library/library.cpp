@@ -12,20 +12,6 @@ namespace lineshaft::st {
 
 namespace {
 
-KindContext& add_kind(Library::Made& made, std::string name, const Type& type,
-                      const Options& options) {
-    KindContext& kind = made.kinds.emplace_back();
-    kind.code = &made.generated.code;
-    kind.options = options;
-    kind.name = std::move(name);
-    const auto& image = made.generated.images.at(&type);
-    kind.image = image.data();
-    kind.size = 8 * image.size();
-    kind.type = &type;
-    find_moments(kind);
-    return kind;
-}
-
 void add_routine(Library::Made& made, const Routine& routine, const CodeRoutine& code,
                  const Options& options) {
     KindContext& kind = add_kind(made, routine.name, *routine.type, options);
@@ -35,12 +21,6 @@ void add_routine(Library::Made& made, const Routine& routine, const CodeRoutine&
                            routine.pou->name.place.source->file->path);
     if (!routine.pou->doc.empty()) kind.doc += ": " + text_of_comments(routine.pou->doc);
     write_fields(made, kind, routine);
-}
-
-void add_global(Library::Made& made, const Global& global, const Options& options) {
-    KindContext& kind = add_kind(made, global.name, *global.type, options);
-    kind.doc = global.pou ? "DATA_BLOCK" : "VAR_GLOBAL";
-    write_fields(made, kind, global);
 }
 
 /// Of those whose names are here without them, too.
@@ -73,9 +53,7 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
         if (routine.has_instances() && !routine.owner && !routine.pou->is_abstract &&
             routine.pou->place.source->is_users())
             add_routine(*made, routine, *codes.at(&routine), options);
-    for (const Global& global : made->checked.globals)
-        if (!global.object && !is_program(global) && global.name != image_name)
-            add_global(*made, global, options);
+    add_data_blocks(*made, options);
     Library library;
     library.made_ = made;
     for (const KindContext& kind : made->kinds) library.kinds_.push_back(block_type(kind, made));

@@ -1,12 +1,15 @@
 #include "runtime/st/library/test_suite.hpp"
 
+#include <fmt/format.h>
+
 #include "runtime/st/library/bench.hpp"
+#include "runtime/st/library/fields.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft::st {
 
-struct TestSuite::Made : Compiled {
+struct TestSuite::Made : Library::Made {
     Options options;
     const Routine* fixture = nullptr;
     const CodeRoutine *setup = nullptr, *teardown = nullptr;
@@ -22,6 +25,17 @@ struct TestSuite::Made : Compiled {
         if (word == Word::setup_ || word == Word::teardown_) return;
         tests.push_back({printable(name_of(*routine.pou)), routine.pou->place.mark()});
         codes.push_back(&code);
+    }
+
+    /// The failure is the first thing that is found.
+    TestResult run(Bench& bench, std::size_t test) const {
+        const auto run = [&](const CodeRoutine* routine) {
+            return routine ? bench.run(*routine, bench.unit()) : TestResult{};
+        };
+        TestResult result = run(setup);
+        if (result.failure.empty()) result = run(codes[test]);
+        TestResult last = run(teardown);
+        return result.failure.empty() ? last : result;
     }
 
     /// Without its quotes.
@@ -56,15 +70,34 @@ std::span<const Test> TestSuite::tests() const {
 TestResult TestSuite::run(std::size_t test) const {
     Bench bench(*made_, made_->options, *made_->fixture->type,
                 [](const TestResult&) { return true; });
-    const auto run = [&](const CodeRoutine* routine) {
-        return routine ? bench.run(*routine, bench.unit()) : TestResult{};
-    };
-    TestResult result = run(made_->setup);
-    if (result.failure.empty()) result = run(made_->codes[test]);
-    TestResult last = run(made_->teardown);
-    if (result.failure.empty()) result = last;
+    TestResult result = made_->run(bench, test);
     result.cut = bench.cut();
     return result;
+}
+
+std::vector<BlockType> TestSuite::kinds(std::size_t test) const {
+    made_->kinds.clear();
+    add_data_blocks(*made_, made_->options);
+    KindContext& kind = add_kind(*made_, "TEST", *made_->fixture->type, made_->options);
+    kind.routine = made_->codes[test];
+    kind.run_test = [made = made_.get(), test](std::byte* instance, const Context& context) {
+        Bench bench(*made, made->options, instance, context,
+                    [](const TestResult&) { return true; });
+        const TestResult result = made->run(bench, test);
+        if (result.failure.empty()) return std::string();
+        return fmt::format("{}:{}: {}", result.mark.file->path, result.mark.line, result.failure);
+    };
+    write_test_fields(*made_, kind, *made_->fixture);
+    std::vector<BlockType> kinds;
+    for (const KindContext& each : made_->kinds) kinds.push_back(block_type(each, made_));
+    return kinds;
+}
+
+std::vector<std::pair<std::string, std::string>> TestSuite::objects() const {
+    std::vector<std::pair<std::string, std::string>> found;
+    for (const Global& global : made_->checked.globals)
+        if (global.object) found.emplace_back(global.name, global.type->standard->name);
+    return found;
 }
 
 }  // namespace lineshaft::st

@@ -38,13 +38,19 @@ class TestSuite {
     /// is told 1 ms.
     TestResult run(std::size_t test) const;
 
+    /// For a machine that is looked at from inside: the kind of block `TEST` that runs this test in
+    /// its first scan as run() does, and those of the data blocks beside it. It names the blocks
+    /// of the program that `objects` tells, each with its kind.
+    std::vector<BlockType> kinds(std::size_t test) const;
+    std::vector<std::pair<std::string, std::string>> objects() const;
+
   private:
     friend std::optional<TestSuite> compile_tests(
         const std::shared_ptr<const SourceFile>& file,
         const std::vector<std::shared_ptr<const SourceFile>>& sources, const Catalog& standard,
         Diagnostics& out, const Options& options);
 
-    std::shared_ptr<const Made> made_;
+    std::shared_ptr<Made> made_;
 };
 
 /// Compiles the tests of `file` together with `sources`. In tests, other than in blocks, outputs

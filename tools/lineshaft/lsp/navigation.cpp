@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -82,19 +83,99 @@ bool is_same(const st::Place& a, const st::Place& b) {
            a.source->file->part == b.source->file->part;
 }
 
+/// Names in a program's file that mean what is declared in its sources: in `job.table[3].x`, the
+/// block `job` of a kind, `x` of what `table` has.
+class NamesInYaml {
+  public:
+    NamesInYaml(std::shared_ptr<const SourceFile> file, const st::Place& wanted,
+                std::set<Reference>& to)
+        : file_(std::move(file)), text_(file_->text), wanted_(wanted), to_(to) {}
+
+    void find(const Program& program, const Meaning& meaning) {
+        const Text text(text_);
+        for (const BlockPlan& block : program.blocks) {
+            const st::Routine* kind = meaning.find_block(block.type.text);
+            if (!kind) continue;
+            types_[lower(block.name.text)] = kind->type;
+            const auto [begin, end] = text.bytes_of(block.type.mark);
+            if (is_same(kind->pou->name.place, wanted_)) add(begin, end);
+            for (const auto& [key, value] : block.ports)
+                follow(text.bytes_of(key.mark).first, kind->type);
+        }
+        for (const st::Global& global : meaning.compiled.checked.globals) {
+            const bool is_it = global.pou && is_same(global.pou->name.place, wanted_);
+            if (types_.emplace(lower(global.name), global.type).second && is_it)
+                owner_ = lower(global.name);
+        }
+        for (const Node& kept : program.retain)
+            if (const auto [begin, end] = text.bytes_of(kept.mark); lower(kept.text) == owner_)
+                add(begin, end);
+        for (std::size_t at = 0; at < text_.size(); ++at) {
+            const bool begins = at == 0 || (!is_of_name(text_[at - 1]) && text_[at - 1] != '.');
+            if (begins && is_of_name(text_[at])) follow_owner(at);
+        }
+    }
+
+  private:
+    std::size_t end_of_name(std::size_t at) const {
+        while (at < text_.size() && is_of_name(text_[at])) ++at;
+        return at;
+    }
+    void add(std::size_t begin, std::size_t end) {
+        to_.insert({mark_of(file_, begin, end), text_.substr(begin, end - begin)});
+    }
+    void follow_owner(std::size_t begin) {
+        const std::size_t end = end_of_name(begin);
+        if (end == text_.size() || text_[end] != '.') return;
+        const auto it = types_.find(lower(std::string_view(text_).substr(begin, end - begin)));
+        if (it == types_.end()) return;
+        if (it->first == owner_) add(begin, end);
+        follow(end + 1, it->second);
+    }
+    void follow(std::size_t at, const st::Type* type) {
+        while (at < text_.size() && (text_[at] == '"' || text_[at] == '\'')) ++at;
+        while (type) {
+            const std::size_t end = end_of_name(at);
+            const st::Variable* part = part_of(*type, text_.substr(at, end - at));
+            if (!part) return;
+            if (is_same(part->name.place, wanted_)) add(at, end);
+            type = part->type;
+            at = end;
+            while (at < text_.size() && text_[at] == '[') at = text_.find(']', at) + 1;
+            if (at == 0 || at >= text_.size() || text_[at++] != '.') return;
+        }
+    }
+    /// Of an array, of its elements.
+    static const st::Variable* part_of(const st::Type& whole, std::string_view name) {
+        const st::Type* type = &whole;
+        while (type && type->kind == st::Type::Kind::array) type = type->element;
+        if (!type) return nullptr;
+        const bool is_block = type->kind == st::Type::Kind::block;
+        for (const st::Variable* part :
+             is_block ? st::all_variables(*type->routine) : type->members)
+            if (st::same_name(part->text, name)) return part;
+        return nullptr;
+    }
+
+    std::shared_ptr<const SourceFile> file_;
+    const std::string& text_;
+    const st::Place& wanted_;
+    std::set<Reference>& to_;
+    std::map<std::string, const st::Type*> types_;  ///< of blocks, by their names in small letters
+    std::string owner_;                             ///< the data block that is looked for
+};
+
 /// Within the file of a program that has the block among its sources.
-void add_in_yaml(Session& session, const std::string& root, const st::NameUse& use,
-                 std::set<Reference>& to) {
+void add_in_yaml(Session& session, const std::string& root, const Meaning& meaning,
+                 const st::Place& wanted, std::set<Reference>& to) {
     Diagnostics untold;
     const auto file = read_source(root, untold);
-    const st::Routine* block = use.routine;
-    const std::string kind = block              ? block->name
-                             : use.variable->of ? std::string(use.variable->of->name.text)
-                                                : std::string();
-    if (!file || kind.empty()) return;
-    const std::string port = block ? std::string() : std::string(use.variable->text);
-    for (const auto& [begin, end] : places_of(session, *file, kind, port))
-        to.insert({mark_of(file, begin, end), file->text.substr(begin, end - begin)});
+    if (!file) return;
+    const auto it = session.programs.find(root);
+    if (it != session.programs.end())
+        NamesInYaml(file, wanted, to).find(it->second->program, meaning);
+    else
+        NamesInYaml(file, wanted, to).find(read_program(file, {}, untold), meaning);
 }
 
 std::set<Reference> references_to(Session& session, const st::NameUse& wanted) {
@@ -109,8 +190,8 @@ std::set<Reference> references_to(Session& session, const st::NameUse& wanted) {
                 is_there = true;
                 found.insert({use.at.mark(), std::string(use.at.text())});
             }
-        if (is_there && !is_structured_text(root) && (wanted.routine || wanted.variable))
-            add_in_yaml(session, root, wanted, found);
+        if (is_there && !is_structured_text(root))
+            add_in_yaml(session, root, *meaning, wanted.declared, found);
     }
     return found;
 }
@@ -126,8 +207,11 @@ std::string about_function(const Asked& where) {
     return f ? fmt::format("```st\n{}\n```\n{}", f->signature, f->doc) : std::string();
 }
 
+/// A block of the program that a source names, `"Axis_1"`, is declared in no source.
 bool can_be_changed(const Found& found) {
-    return found.use && found.use->declared.source && found.use->declared.source->is_users();
+    if (!found.use || !found.use->declared.source) return false;
+    const st::Type* type = found.use->variable ? found.use->variable->type : nullptr;
+    return found.use->declared.source->is_users() && !(type && type->is_object());
 }
 
 /// A name that stands somewhere already would mean both.

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/messages/messages.hpp"
 #include "runtime/source/diagnostic.hpp"
-#include "tools/lineshaft/lsp/connection.hpp"
 
 namespace lineshaft::lsp {
 

@@ -1,6 +1,7 @@
 #include "tools/lineshaft/lsp/yaml_places.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -13,6 +14,10 @@
 #include "tools/lineshaft/block_text.hpp"
 
 namespace lineshaft::lsp {
+
+bool is_of_name(char c) {
+    return is_letter(c) || is_digit(c);
+}
 
 namespace {
 
@@ -119,10 +124,6 @@ Scan scan_to(const std::string& text, std::size_t offset) {
         begin = end + 1;
     }
     return scan;
-}
-
-bool is_of_name(char c) {
-    return is_letter(c) || is_digit(c);
 }
 
 const BlockType* find_kind(const Session& session, const std::string& path, std::string_view name) {
@@ -290,14 +291,13 @@ void add_signals(const Session& session, const std::string& path, const std::str
     }
 }
 
-constexpr std::string_view unit_names[] = {
-    "m",      "cm",    "mm",     "um",    "nm",      "rad",   "mrad", "deg",   "rev",
-    "s",      "ms",    "us",     "ns",    "min",     "h",     "Hz",   "mm/s",  "m/s",
-    "mm/s^2", "m/s^2", "mm/s^3", "rad/s", "rad/s^2", "deg/s", "rpm",  "pulse", "1/s"};
-
+/// Those of one dimension: alone, and with what stands behind the first of the factors.
 void add_units(std::string_view unit, Items& to) {
     const auto wanted = Unit::parse(unit);
-    for (const std::string_view name : unit_names)
+    const std::string others(unit.substr(std::min(unit.find('/'), unit.size())));
+    std::set<std::string> names;
+    for (const std::string& name : unit_names()) names.insert({name, name + others});
+    for (const std::string& name : names)
         if (const auto known = Unit::parse(name); known && wanted && known->same_dimension(*wanted))
             to.add(name, of_unit, "", "");
 }
@@ -386,40 +386,6 @@ std::string kind_meant(const Session& session, const std::string& path, const Ya
     for (const BlockPlan& block : it->second->program.blocks)
         if (block.name.text == name.owner) return block.type.text;
     return {};
-}
-
-std::vector<std::pair<std::size_t, std::size_t>> places_of(const Session& session,
-                                                           const SourceFile& program,
-                                                           const std::string& kind,
-                                                           const std::string& port) {
-    std::vector<std::pair<std::size_t, std::size_t>> found;
-    const Text text(program.text);
-    Diagnostics untold;
-    const auto it = session.programs.find(program.path);
-    std::optional<Program> read;
-    if (it == session.programs.end())
-        read = read_program(std::make_shared<SourceFile>(program), {}, untold);
-    const Program& known = read ? *read : it->second->program;
-    const std::string& all = program.text;
-    const auto is_name_at = [&](std::size_t at, const std::string& name) {
-        const bool begins = at == 0 || (!is_of_name(all[at - 1]) && all[at - 1] != '.');
-        const bool ends = at + name.size() >= all.size() || !is_of_name(all[at + name.size()]);
-        return begins && ends;
-    };
-    for (const BlockPlan& block : known.blocks) {
-        if (!st::same_name(block.type.text, kind)) continue;
-        if (port.empty()) {
-            found.push_back(text.bytes_of(block.type.mark));
-            continue;
-        }
-        for (const auto& [key, value] : block.ports)
-            if (st::same_name(key.text, port)) found.push_back(text.bytes_of(key.mark));
-        const std::string wire = lower(block.name.text + "." + port), small = lower(all);
-        for (std::size_t at = small.find(wire); at != small.npos; at = small.find(wire, at + 1))
-            if (is_name_at(at, wire))
-                found.emplace_back(at + wire.size() - port.size(), at + wire.size());
-    }
-    return found;
 }
 
 std::optional<Mark> declared_in_yaml(const Session& session, const Asked& where) {

@@ -32,11 +32,8 @@ std::optional<YamlName> name_at(const std::string& text, std::size_t offset);
 /// The kind of block that the name is, or is a pin of; empty: neither.
 std::string kind_meant(const Session& session, const std::string& path, const YamlName& name);
 
-/// Where a program names a kind of block, or a pin of its blocks: bytes.
-std::vector<std::pair<std::size_t, std::size_t>> places_of(const Session& session,
-                                                           const SourceFile& program,
-                                                           const std::string& kind,
-                                                           const std::string& port);
+/// Part of a word of a YAML text.
+bool is_of_name(char c);
 
 /// Where the block, input, output, task or parameter is written that stands there.
 std::optional<Mark> declared_in_yaml(const Session& session, const Asked& where);
