@@ -160,16 +160,18 @@ void in_structured_text(benchmark::State& state, const char* name, Way way) {
     measure(state, scan, std::get<double>(result), result_by_hand<Block>());
 }
 
-/// Of the object that `peers` made: `NAME_scan(n, now)` gives `out`.
+/// Of the object that `peers` made: `NAME_begin()`, then `NAME_scan(n, now)` gives `out`.
 template <class Block>
-void by_peer(benchmark::State& state, const char* name) {
+void by_peer(benchmark::State& state, const std::string& name) {
     const char* file = std::getenv("LINESHAFT_PEER");
     void* const object = file ? ::dlopen(file, RTLD_NOW) : nullptr;
-    using Scan = double (*)(std::int32_t, std::int64_t);
-    const auto call =
-        object ? reinterpret_cast<Scan>(::dlsym(object, (std::string(name) + "_scan").c_str()))
-               : nullptr;
-    if (!call) return state.SkipWithError("LINESHAFT_PEER has no such scan");
+    const auto find = [&](const char* what) {
+        return object ? ::dlsym(object, (name + what).c_str()) : nullptr;
+    };
+    const auto begin = reinterpret_cast<void (*)()>(find("_begin"));
+    const auto call = reinterpret_cast<double (*)(std::int32_t, std::int64_t)>(find("_scan"));
+    if (!begin || !call) return state.SkipWithError("LINESHAFT_PEER has no such scan");
+    begin();
     double result = 0;
     for (int i = 0; i < scans; ++i) result = call(input(i), i * interval);
     const auto scan = [&](int i) { benchmark::DoNotOptimize(call(input(i), i * interval)); };

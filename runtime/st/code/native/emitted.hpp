@@ -86,11 +86,15 @@ constexpr Fault goes_on{-1};
         goes_on, fuel \
     }
 #define code frames.code
-#define SCAN(number)                                                                \
-    Fault scan_##number(STATE) {                                                    \
-        const Fault fault = routine_##number(base, frames, fuel).fault;             \
-        return fault == goes_on ? native_end(base, frames, 1, Fault::none) : fault; \
+#define SCAN(number)                                                    \
+    static Fault scan_##number(STATE) {                                 \
+        const Fault fault = routine_##number(base, frames, fuel).fault; \
+        if (fault != goes_on) return fault;                             \
+        set_word(base, error_slot, 0);                                  \
+        set_word(base, error_id_slot, 0);                               \
+        return Fault::none;                                             \
     }
+
 /// What the program calls when it has loaded this. Null where the self-test says something else.
 #define BEGIN                                                                            \
     extern "C" [[gnu::visibility("default")]] const void* native_begin(                  \
