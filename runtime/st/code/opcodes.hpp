@@ -91,7 +91,7 @@
     OP(skip_loop_unsigned, jump, "rsj-", if (!is_within<std::uint64_t>(at(a), at(b))) GO(to))        \
     OP(call, call, "sf--", CALL(frames.address_of(a), b))                                            \
     OP(call_at, call, "rf--", CALL(U(a), b))                                                         \
-    OP(find_routine, call, "wrn-", if (U(b) == 0) FAIL(no_reference); put(a, frames.find(U(b), c).routine); set_word(at(a), 1, U(b) + frames.find(U(b), c).first)) \
+    OP(find_routine, call, "wrn-", if (U(b) == 0) FAIL(no_reference); const FoundRoutine found = frames.find(U(b), c); const std::uint64_t frame = U(b) + found.first; put(a, found.routine); set_word(at(a), 1, frame)) \
     OP(call_found, call, "rr--", const std::uint64_t found = U(b); if (!frames.has_room(found)) FAIL(no_end); CALL(U(a), found)) \
     OP(begin_once, call, "w---", if (U(a) != 0) FAIL(runs_already); put(a, std::uint64_t{1}))        \
     OP(call_block, call, "sn--", frames.call_block(at(a), b))                                        \
