@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """A program with interfaces, references, pointers, a UNION, a process image and a sequence is resumed from its checkpoint
-at scans drawn at random: the trace is that of a run that was not resumed.
+at scans drawn at random, with native code or without before and behind: the trace and the last checkpoint are those of a run
+that was not resumed.
 
 usage: resume.py LINESHAFT [STOPS [SEED]]
 """
@@ -94,13 +95,13 @@ class Runs:
         (folder / "program.yaml").write_text(PROGRAM.format(scans=SCANS), encoding="utf-8")
 
     def run(self, every, *arguments):
-        """Its trace; a checkpoint is written each time so many scans have passed."""
+        """Its trace and its last checkpoint, of which one is written each time so many scans have passed."""
         trace, kept = self.folder / "out.csv", self.folder / "kept.checkpoint"
         answer = subprocess.run([self.lineshaft, "run", "program.yaml", "--quiet", "--trace", trace, "--checkpoint", kept,
                                  "--checkpoint-every", f"{every} ms", *arguments], cwd=self.folder, capture_output=True,
                                 text=True, timeout=60)
         assert answer.returncode == 0, answer.stderr
-        return trace.read_bytes()
+        return trace.read_bytes(), kept.read_bytes()
 
 
 def main():
@@ -110,12 +111,15 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(lineshaft, pathlib.Path(folder))
         whole = runs.run(SCANS)
-        rows = whole.decode().splitlines()[1:]
+        rows = whole[0].decode().splitlines()[1:]
         assert len({row.split(",", 1)[1] for row in rows}) > SCANS // 2, "its state hardly changes"
         for stop in (draw.randrange(SCANS // 2 + 1, SCANS) for _ in range(stops)):
-            runs.run(stop)  # the last checkpoint is of that scan
-            assert runs.run(SCANS, "--resume") == whole, f"stopped at {stop}: another trace"
-    print(f"resumed {stops} times: the same trace")
+            first, second = ([["--no-native"], []][draw.randrange(2)] for _ in range(2))
+            runs.run(stop, *first)  # the last checkpoint is of that scan
+            trace, kept = runs.run(SCANS, "--resume", *second)
+            assert trace == whole[0], f"stopped at {stop}: another trace"
+            assert kept == whole[1], f"stopped at {stop}: another checkpoint"
+    print(f"resumed {stops} times: the same trace and checkpoint")
 
 
 main()

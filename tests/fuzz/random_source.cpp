@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -29,7 +30,8 @@ enum class Kind {
     enumeration,
     array,
     structure,
-    block
+    block,
+    interface
 };
 
 struct Type {
@@ -50,12 +52,16 @@ struct Type {
     std::vector<Part> parts = {};
     std::vector<std::string> values = {};  ///< of an enumeration
     bool counted = true;
+    bool is_union = false;                ///< of a structure
+    std::vector<const Type*> bases = {};  ///< of a block or an interface: all that it is as well
+    bool is_abstract = false;
 };
 
 struct Variable {
     std::string name;
     const Type* type = nullptr;
     bool writable = true, global = false, constant = false;
+    bool has_place = true;  ///< goes to VAR_IN_OUT, may be referred to
 };
 
 enum class Section { input, in_out, output };
@@ -74,7 +80,28 @@ struct Callable {
     bool is_method = false;
     bool pure = true;  ///< changes nothing but its result
     std::vector<Parameter> parameters = {};
+    bool is_abstract = false;
 };
+
+struct Parameters {
+    std::vector<Variable> inputs, in_outs, outputs;
+};
+
+struct Method {
+    Callable call;
+    Parameters given;
+};
+
+/// A block that others derive from, or an interface.
+struct Class {
+    const Type* type = nullptr;
+    Callable call = {};
+    std::vector<Variable> given = {}, in_outs = {}, locals = {};  ///< those of its bases too
+    std::vector<Method> methods = {};                             ///< likewise
+};
+
+/// What it uses of a variable.
+enum class Use { read, write, place };
 
 enum Strength { or_, xor_, and_, equal, compare, add, multiply, power, unary, atom };
 
@@ -123,23 +150,51 @@ bool is_whole(const Type& type) {
     return type.kind == Kind::integer || type.kind == Kind::bits;
 }
 
-bool contains(const Type& type, const Type& wanted, bool write) {
+bool contains(const Type& type, const Type& wanted, Use use) {
     if (&type == &wanted) return true;
-    if (type.kind == Kind::array) return contains(*type.element, wanted, write);
+    if (type.kind == Kind::array) return contains(*type.element, wanted, use);
+    if (type.is_union && use == Use::place) return false;
     return std::ranges::any_of(type.parts, [&](const Type::Part& part) {
-        return (part.writable || !write) && contains(*part.type, wanted, write);
+        return (part.writable || use == Use::read) && contains(*part.type, wanted, use);
     });
+}
+
+bool is_derived(const Type& type, const Type& base) {
+    return &type == &base || std::ranges::find(type.bases, &base) != type.bases.end();
+}
+
+/// How many bytes a controller has of it; 0 of what has other bits than those of whole numbers,
+/// some of which would be no value.
+std::size_t whole_bytes(const Type& type) {
+    if (is_whole(type)) return type.base ? 0 : static_cast<std::size_t>(type.bits / 8);
+    std::size_t count = 0;
+    if (type.kind == Kind::array) {
+        count = whole_bytes(*type.element);
+        for (const auto& [lower, upper] : type.ranges)
+            count *= static_cast<std::size_t>(upper - lower + 1);
+    }
+    if (type.kind != Kind::structure) return count;
+    for (const Type::Part& part : type.parts) {
+        const std::size_t bytes = whole_bytes(*part.type);
+        if (bytes == 0) return 0;
+        count = type.is_union ? std::max(count, bytes) : count + bytes;
+    }
+    return count;
 }
 
 class SourceMaker {
   public:
-    explicit SourceMaker(Choices& choices) : choices_(choices) {}
+    SourceMaker(Choices& choices, Pointers pointers) : choices_(choices), pointers_(pointers) {}
 
     std::string make() {
+        subject_ = below(4);
         declare_types();
         declare_globals();
+        for (std::size_t i = subject_ > 1 ? below(3) : 0; i > 0; --i) write_interface();
+        for (std::size_t i = subject_ > 1 ? 2 + below(3) : 0; i > 0; --i) write_class();
         for (std::size_t i = below(3); i > 0; --i) write_function();
         for (std::size_t i = below(3); i > 0; --i) write_block();
+        if (pointers_ == Pointers::wild) write_lender();
         write_program();
         return out_;
     }
@@ -224,10 +279,13 @@ class SourceMaker {
     }
 
     void declare_type() {
-        switch (below(6)) {
+        switch (below(has_bytes() ? 8 : 6)) {
             case 0:
             case 1:
                 return declare_structure();
+            case 6:
+            case 7:
+                return declare_union();
             case 2:
                 return declare_enumeration();
             case 3:
@@ -256,6 +314,25 @@ class SourceMaker {
         }
         --indent_;
         line("END_STRUCT;");
+        aggregates_.push_back(&type);
+    }
+
+    /// A real number of it is only read: bits of one that is none may differ.
+    void declare_union() {
+        Type& type = add_type(Kind::structure, "Raw");
+        type.is_union = true;
+        line(fmt::format("{} : UNION", type.name));
+        ++indent_;
+        for (std::size_t i = 2 + below(3); i > 0; --i) {
+            const Type* part = &elementaries()[below(elementaries().size())];
+            if (below(3) == 2) part = &array_of(named("BYTE"));
+            if (below(4) == 3 && !aggregates_.empty()) part = choices_.one_of(aggregates_);
+            if (part->kind != Kind::real && whole_bytes(*part) == 0) part = &named("DWORD");
+            type.parts.push_back({new_name("m"), part, part->kind != Kind::real});
+            line(fmt::format("{} : {};", type.parts.back().name, written_type(*part)));
+        }
+        --indent_;
+        line("END_UNION;");
         aggregates_.push_back(&type);
     }
 
@@ -340,7 +417,7 @@ class SourceMaker {
 
     /// Rows in several dimensions could be read in two ways.
     static bool can_begin(const Type& type) {
-        if (type.kind == Kind::block) return false;
+        if (type.kind >= Kind::block || type.is_union) return false;
         if (type.kind == Kind::array)
             return (type.ranges.size() == 1 || type.element->kind != Kind::array) &&
                    can_begin(*type.element);
@@ -480,6 +557,7 @@ class SourceMaker {
     std::string spelled(const Variable& variable) {
         const std::size_t how = below(12);
         std::string name = variable.name;
+        if (name.starts_with('%') || name == "THIS^" || name == "SUPER^") return name;
         if (how == 11)
             std::ranges::transform(name, name.begin(), [](char c) {
                 return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
@@ -489,9 +567,22 @@ class SourceMaker {
     }
 
     std::optional<std::string> place(const Type& wanted, bool write) {
+        return place(wanted, write ? Use::write : Use::read);
+    }
+
+    static bool fits(const Variable& v, const Type& wanted, Use use) {
+        return (v.writable || use == Use::read) && (v.has_place || use != Use::place) &&
+               contains(*v.type, wanted, use);
+    }
+
+    bool is_there(const Type& wanted, Use use) const {
+        return std::ranges::any_of(scope_, [&](const Variable& v) { return fits(v, wanted, use); });
+    }
+
+    std::optional<std::string> place(const Type& wanted, Use use) {
         std::vector<const Variable*> fitting;
         for (const Variable& v : scope_)
-            if ((v.writable || !write) && contains(*v.type, wanted, write)) fitting.push_back(&v);
+            if (fits(v, wanted, use)) fitting.push_back(&v);
         if (fitting.empty()) return {};
         ++reads_;
         const Variable& variable = *choices_.one_of(fitting);
@@ -505,7 +596,7 @@ class SourceMaker {
             }
             std::vector<const Type::Part*> parts;
             for (const Type::Part& part : type->parts)
-                if ((part.writable || !write) && contains(*part.type, wanted, write))
+                if ((part.writable || use == Use::read) && contains(*part.type, wanted, use))
                     parts.push_back(&part);
             const Type::Part& part = *choices_.one_of(parts);
             text += "." + part.name;
@@ -578,6 +669,7 @@ class SourceMaker {
     }
 
     Text expression(const Type& type, int depth) {
+        if (type.kind == Kind::interface) return {instance(type).value_or("NULL")};
         if (type.kind >= Kind::array) return aggregate(type, depth);
         if (depth <= 0) return leaf(type);
         if (type.base) return into_subrange(type, depth);
@@ -689,12 +781,12 @@ class SourceMaker {
         const Type& of = *choices_.one_of(fitting);
         const auto found = place(of, false);
         if (!found) return {};
-        return Text{*found + part_of(of, bits)};
+        return Text{*found + part_of(of, bits, found->front() != '%')};
     }
 
-    std::string part_of(const Type& of, int bits) {
+    std::string part_of(const Type& of, int bits, bool may_be_short) {
         const std::size_t number = below(static_cast<std::size_t>(of.bits / bits));
-        if (bits == 1 && below(3) == 2) return fmt::format(".{}", number);
+        if (bits == 1 && below(3) == 2 && may_be_short) return fmt::format(".{}", number);
         const char letter = bits == 1 ? 'X' : bits == 8 ? 'B' : bits == 16 ? 'W' : 'D';
         return fmt::format(".%{}{}", letter, number);
     }
@@ -1072,17 +1164,45 @@ class SourceMaker {
     std::optional<Text> function_call(const Type& type, int depth) {
         std::vector<const Callable*> fitting;
         for (const Callable& callable : callables_)
-            if (callable.result == &type && !callable.is_method) fitting.push_back(&callable);
+            if (callable.result == &type && can_be_called(callable)) fitting.push_back(&callable);
         if (fitting.empty()) return {};
         const Callable& callable = *choices_.one_of(fitting);
+        if (callable.of && callable.of->kind == Kind::interface) return {};
         const auto given = arguments(callable, depth - 1);
         if (!given) return {};
-        return Text{callable.name + *given};
+        const std::string of = callable.of ? receiver(callable) + "." : "";
+        if (callable.is_abstract && of == "SUPER^.") return {};
+        return Text{of + callable.name + *given};
+    }
+
+    static Use use_of(const Callable& callable) {
+        return callable.of->kind == Kind::interface ? Use::read : Use::write;
+    }
+
+    bool can_be_called(const Callable& callable) const {
+        return !callable.of || is_there(*callable.of, use_of(callable));
+    }
+
+    /// An instance that the method, or the call, is of.
+    std::string receiver(const Callable& callable) {
+        return *place(*callable.of, use_of(callable));
+    }
+
+    /// What a variable of an interface is given, or a VAR_IN_OUT of a block's type.
+    std::optional<std::string> instance(const Type& type) {
+        std::vector<const Type*> fitting;
+        for (const Class& one : classes_)
+            if (is_derived(*one.type, type) && is_there(*one.type, Use::place))
+                fitting.push_back(one.type);
+        if (type.kind == Kind::interface && is_there(type, Use::read)) fitting.push_back(&type);
+        if (fitting.empty()) return {};
+        const Type& found = *choices_.one_of(fitting);
+        return place(found, found.kind == Kind::interface ? Use::read : Use::place);
     }
 
     bool can_be_given(const Type& type) {
         const bool aggregate = type.kind == Kind::array || type.kind == Kind::structure;
-        return !aggregate || place(type, false).has_value();
+        return !aggregate || is_there(type, Use::read);
     }
 
     /// `(a, b)` or `(a := a, q => b)`; none when there is no variable for a VAR_IN_OUT.
@@ -1097,12 +1217,13 @@ class SourceMaker {
                 if (by_name && (below(6) == 5 || !can_be_given(*p.type))) continue;
                 value = expression(*p.type, depth).text;
             } else if (p.section == Section::in_out) {
-                const auto found = place(*p.type, true);
+                const auto found =
+                    p.type->kind == Kind::block ? instance(*p.type) : place(*p.type, Use::place);
                 if (!found) return {};
                 value = *found;
             } else {
                 if (!by_name || below(2) == 0) continue;
-                const auto found = place(*p.type, true);
+                const auto found = place(*p.type, Use::place);
                 if (!found) continue;
                 value = *found;
             }
@@ -1119,14 +1240,25 @@ class SourceMaker {
     void call_something() {
         std::vector<const Callable*> fitting;
         for (const Callable& callable : callables_)
-            if (!callable.of || place(*callable.of, true)) fitting.push_back(&callable);
+            if (can_be_called(callable)) fitting.push_back(&callable);
+        const auto is_plain = [](const Callable* callable) { return !callable->is_method; };
+        if (subject_ > 1 && below(2) == 1 && !std::ranges::all_of(fitting, is_plain))
+            std::erase_if(fitting, is_plain);
         if (fitting.empty()) return assign();
         const Callable& callable = *choices_.one_of(fitting);
-        std::string text = callable.name;
+        std::string text = callable.name, guard;
         if (callable.of) {
-            const std::string instance = *place(*callable.of, true);
+            const std::string instance = receiver(callable);
+            if (callable.is_abstract && instance == "SUPER^") return assign();
             text = callable.is_method ? instance + "." + callable.name : instance;
+            if (callable.of->kind == Kind::interface && below(8) != 7) guard = instance;
         }
+        if (!guard.empty()) line(fmt::format("IF {} <> NULL THEN", guard));
+        call(callable, std::move(text));
+        if (!guard.empty()) line("END_IF;");
+    }
+
+    void call(const Callable& callable, std::string text) {
         auto given = arguments(callable, 2);
         if (!given) return assign();
         const bool by_name = *given == "()" || given->find(" := ") != std::string::npos;
@@ -1158,7 +1290,10 @@ class SourceMaker {
                 assign();
                 break;
             case 2:
-                rarer();
+                if (subject_ > 0 && below(2) == 1)
+                    of_subject();
+                else
+                    rarer();
                 break;
             case 3:
                 accumulate();
@@ -1200,6 +1335,22 @@ class SourceMaker {
                          expression(narrower(type), 1 + static_cast<int>(below(4))).text));
     }
 
+    /// What programs with classes, or with bytes that are seen in two ways, have.
+    void of_subject() {
+        switch (below(4)) {
+            default:
+                return give_instance();
+            case 1:
+                return set_property();
+            case 2:
+                return use_memory();
+            case 3:
+                return move_pointer();
+        }
+    }
+
+    bool has_bytes() const { return subject_ % 2 == 1; }
+
     /// What fewer programs have, of Siemens' SCL mostly.
     void rarer() {
         const Type& boolean = named("BOOL");
@@ -1226,6 +1377,95 @@ class SourceMaker {
         }
     }
 
+    void give_instance() {
+        if (interfaces_.empty()) return assign();
+        const Type& type = *choices_.one_of(interfaces_)->type;
+        const auto to = place(type, Use::write);
+        if (!to) return assign();
+        line(fmt::format("{} := {};", *to, expression(type, 1).text));
+    }
+
+    void set_property() {
+        if (properties_.empty()) return assign();
+        const auto& [of, property] = choices_.one_of(properties_);
+        const auto instance = place(*of, of->kind == Kind::interface ? Use::read : Use::write);
+        if (!instance || *instance == "SUPER^") return assign();
+        const bool is_real = property.type->kind == Kind::real;
+        line(fmt::format("{}.{} {} {};", *instance, property.name,
+                         is_real && below(3) == 2 ? "+=" : ":=", sub(*property.type, 3)));
+    }
+
+    /// A variable, nothing but whole numbers, that may be seen as bytes.
+    std::optional<Variable> variable_of_bytes() {
+        std::vector<const Variable*> fitting;
+        for (const Variable& v : scope_)
+            if (v.writable && v.has_place && whole_bytes(*v.type) > 0 &&
+                v.name.find_first_of("^[") == std::string::npos)
+                fitting.push_back(&v);
+        if (fitting.empty()) return {};
+        return *choices_.one_of(fitting);
+    }
+
+    void use_memory() {
+        const auto to = variable_of_bytes(), from = variable_of_bytes();
+        if (!to) return assign();
+        const std::size_t room = whole_bytes(*to->type), there = whole_bytes(*from->type);
+        const std::size_t count = 1 + below(std::min(room, there));
+        switch (below(3)) {
+            case 0:
+                return line(fmt::format("{}(ADR({}), ADR({}), {});",
+                                        below(2) == 0 ? "MEMCPY" : "MEMMOVE", to->name, from->name,
+                                        count));
+            case 1:
+                return line(fmt::format("MEMSET(ADR({}), {}, {});", to->name,
+                                        below(2) == 0 ? "0" : sub(named("BYTE"), 2), count));
+            default:
+                if (const auto order = place(named("DINT"), true))
+                    line(fmt::format("{} := MEMCMP(ADR({}), ADR({}), {});", *order, to->name,
+                                     from->name, count));
+        }
+    }
+
+    /// By some elements, now and then out of what it is in.
+    void move_pointer() {
+        if (walking_.empty()) return assign();
+        const Variable& pointer = choices_.one_of(walking_);
+        if (pointers_ == Pointers::wild) return move_wildly(pointer);
+        line(fmt::format("{0} := {0} {1} {2}SIZEOF({3});", pointer.name, below(2) == 0 ? '+' : '-',
+                         below(2) == 0 ? "" : "2 * ", pointer.type->name));
+    }
+
+    /// To anything, by anything; out of what calls have.
+    void move_wildly(const Variable& pointer) {
+        const std::string &p = pointer.name, &type = pointer.type->name;
+        const Type& dint = named("DINT");
+        switch (below(8)) {
+            default:
+                return line(fmt::format("{0} := {0} + {1};", p, sub(dint, 2)));
+            case 1:
+                return line(fmt::format("{}[{}] := {};", p, sub(dint, 2), sub(*pointer.type, 2)));
+            case 2:
+                return line(fmt::format("MEMSET({} + {}, {}, {});", p, sub(dint, 1),
+                                        sub(named("BYTE"), 1), sub(dint, 1)));
+            case 3: {
+                const std::string &other = choices_.one_of(walking_).name, count = sub(dint, 1);
+                return line(fmt::format("MEMCPY({}, {} - {}, {});", p, other, below(9), count));
+            }
+            case 4:
+            case 5:
+                if (const auto to = place(*pointer.type, Use::place))
+                    line(fmt::format("{} := ADR({});", p, *to));
+                return;
+            case 6:
+                if (const auto to = place(*pointer.type, Use::write))
+                    line(fmt::format("{} := {}^;", *to, p));
+                return;
+            case 7:
+                return line(fmt::format("{} := {};", p,
+                                        lends_.contains(type) ? lends_[type] + "()" : "NULL"));
+        }
+    }
+
     void assign_twice() {
         const Type& type = any_type();
         const auto first = place(type, true), second = place(type, true);
@@ -1247,7 +1487,7 @@ class SourceMaker {
     void scatter() {
         if (flags_.empty()) return assign();
         const auto& [flags, bits] = choices_.one_of(flags_);
-        const auto one = place(*flags, true), other = place(*bits, true);
+        const auto one = place(*flags, Use::place), other = place(*bits, Use::place);
         if (!one || !other) return assign();
         if (below(2) == 0) return line(fmt::format("SCATTER(IN := {}, OUT := {});", *other, *one));
         line(fmt::format("GATHER(IN := {}, OUT := {});", *one, *other));
@@ -1265,7 +1505,7 @@ class SourceMaker {
     std::string enable() { return fmt::format("EN := {}, ", sub(named("BOOL"), 2)); }
 
     std::string enabled() {
-        const auto to = place(named("BOOL"), true);
+        const auto to = place(named("BOOL"), Use::place);
         return to ? fmt::format(", ENO => {}", *to) : "";
     }
 
@@ -1293,7 +1533,7 @@ class SourceMaker {
         const auto to = is_whole(type) ? place(type, true) : std::nullopt;
         if (!to) return assign();
         const int bits = below(2) == 1 && type.bits > 8 ? 8 : 1;
-        line(fmt::format("{}{} := {};", *to, part_of(type, bits),
+        line(fmt::format("{}{} := {};", *to, part_of(type, bits, to->front() != '%'),
                          expression(named(bits == 1 ? "BOOL" : "BYTE"), 2).text));
     }
 
@@ -1432,6 +1672,7 @@ class SourceMaker {
             for (Variable& v : made) v.global = true;
             globals_ = made;
         }
+        if (has_bytes()) declare_addresses();
         if (below(4) != 3) return;
         Type& type = add_type(Kind::structure, "DB");
         auto made = variables("d", 1 + below(3), true);
@@ -1441,6 +1682,37 @@ class SourceMaker {
         line("END_DATA_BLOCK");
         for (const Variable& v : made) type.parts.push_back({v.name, v.type});
         globals_.push_back({type.name, &type, true, true});
+    }
+
+    /// Variables of whole numbers in the first bytes of each area, which cross as it happens, and
+    /// addresses without a name.
+    void declare_addresses() {
+        const auto address = [&](int bits) {
+            const char letter = bits == 1    ? 'X'
+                                : bits == 8  ? 'B'
+                                : bits == 16 ? 'W'
+                                : bits == 32 ? 'D'
+                                             : 'L';
+            std::string text = fmt::format("%{}{}{}", "MQI"[below(3)], letter, below(12));
+            if (bits == 1) text += fmt::format(".{}", below(8));
+            return text;
+        };
+        for (std::size_t i = below(8) / 2; i > 0; --i) {
+            const char* const types[] = {"INT", "WORD", "BOOL", "DINT", "BYTE", "LWORD", "USINT"};
+            const Type& type = named(types[below(7)]);
+            Variable made{new_name("im"), &type, true, true, false, false};
+            const std::string at = address(type.bits);
+            if (type.bits > 1 && below(3) == 2) made.type = &array_of(type);
+            line(fmt::format("VAR_GLOBAL {} AT {} : {}{}; END_VAR", made.name,
+                             made.type == &type ? at : address(8), written_type(*made.type),
+                             initial(*made.type)));
+            globals_.push_back(made);
+        }
+        for (std::size_t i = below(8) / 3; i > 0; --i) {
+            const char* const types[] = {"WORD", "BYTE", "BOOL", "DWORD", "LWORD"};
+            const Type& type = named(types[below(5)]);
+            globals_.push_back({address(type.bits), &type, true, true, false, false});
+        }
     }
 
     /// The body is written first, for it makes the counters.
@@ -1453,47 +1725,250 @@ class SourceMaker {
         return before;
     }
 
-    struct Parameters {
-        std::vector<Variable> inputs, in_outs, outputs;
-    };
-
     Parameters parameters(Callable& callable, bool pure) {
         Parameters made;
         made.inputs = variables("a", 1 + below(3), false);
+        if (!interfaces_.empty() && below(4) == 3)
+            made.inputs.push_back({new_name("a"), choices_.one_of(interfaces_)->type, false});
         if (!pure) {
             made.in_outs = variables("r", below(3), true);
             made.outputs = variables("q", below(3), true);
+            if (!blocks_.empty() && below(4) == 3)
+                made.in_outs.push_back({new_name("r"), choices_.one_of(blocks_)->type, true});
         }
+        note(callable, made);
+        return made;
+    }
+
+    static void note(Callable& callable, const Parameters& made) {
         for (const Variable& v : made.inputs)
             callable.parameters.push_back({v.name, v.type, Section::input});
         for (const Variable& v : made.in_outs)
             callable.parameters.push_back({v.name, v.type, Section::in_out});
         for (const Variable& v : made.outputs)
             callable.parameters.push_back({v.name, v.type, Section::output});
-        return made;
     }
 
-    void declare(const Parameters& parameters) {
-        section("VAR_INPUT", parameters.inputs, true);
+    void declare(const Parameters& parameters, bool with_initial = true) {
+        section("VAR_INPUT", parameters.inputs, with_initial);
         section("VAR_IN_OUT", parameters.in_outs, false);
-        section("VAR_OUTPUT", parameters.outputs, true);
+        section("VAR_OUTPUT", parameters.outputs, with_initial);
     }
 
     void write_routine(Callable& callable, const std::string& keyword) {
-        const Parameters given = parameters(callable, callable.pure);
-        const auto locals = variables("t", below(4), true);
+        write_routine(callable, keyword, parameters(callable, callable.pure), true);
+    }
+
+    void write_head(const Callable& callable, const std::string& keyword) {
+        line(fmt::format("{} {} : {}", keyword, callable.name,
+                         callable.result ? written_type(*callable.result) : "Void"));
+    }
+
+    void write_routine(const Callable& callable, const std::string& keyword,
+                       const Parameters& given, bool with_initial) {
+        const auto locals = variables("t", below(callable.is_method ? 2 : 4), true);
         const std::size_t kept = scope_.size();
         enter(given.inputs, given.in_outs, given.outputs, locals);
         if (callable.result) scope_.push_back({callable.name, callable.result});
         has_eno_ = true;
-        const std::string body = written_body(1 + below(5));
-        line(fmt::format("{} {} : {}", keyword, callable.name,
-                         callable.result ? written_type(*callable.result) : "Void"));
-        declare(given);
+        const std::string body = written_body(1 + below(callable.is_method ? 2 : 5));
+        write_head(callable, keyword);
+        declare(given, with_initial);
         section("VAR", locals, true);
         section("VAR_TEMP", counters_, false);
         out_ += body;
         scope_.resize(kept);
+    }
+
+    // Classes.
+
+    Method new_method(const Type& of) {
+        Method made;
+        made.call.of = &of;
+        made.call.is_method = true;
+        made.call.pure = false;
+        made.call.result = result_type();
+        made.call.name = new_name("Do");
+        made.given.inputs = variables("a", 1 + below(4) / 3, false);
+        made.given.in_outs = variables("r", below(4) / 3, true);
+        made.given.outputs = variables("q", below(4) / 3, true);
+        if (!interfaces_.empty() && below(6) == 5)
+            made.given.inputs.push_back({new_name("a"), choices_.one_of(interfaces_)->type, false});
+        note(made.call, made.given);
+        return made;
+    }
+
+    static void take_over(Class& derived, Type& type, const Class& base) {
+        type.bases.push_back(base.type);
+        type.bases.insert(type.bases.end(), base.type->bases.begin(), base.type->bases.end());
+        type.parts.insert(type.parts.end(), base.type->parts.begin(), base.type->parts.end());
+        for (const Method& method : base.methods) {
+            derived.methods.push_back(method);
+            derived.methods.back().call.of = &type;
+        }
+    }
+
+    const Type& property_type() {
+        const char* const types[] = {"LREAL", "BOOL", "TIME"};
+        return named(types[below(3)]);
+    }
+
+    void write_interface() {
+        Type& type = add_type(Kind::interface, "Like");
+        Class made{&type};
+        std::string extends;
+        if (!interfaces_.empty() && below(2) == 1) {
+            const Class& base = *choices_.one_of(interfaces_);
+            take_over(made, type, base);
+            extends = " EXTENDS " + base.type->name;
+        }
+        line("INTERFACE " + type.name + extends);
+        for (std::size_t i = 1 + below(2); i > 0; --i) {
+            made.methods.push_back(new_method(type));
+            write_head(made.methods.back().call, "METHOD");
+            declare(made.methods.back().given, false);
+            line("END_METHOD");
+        }
+        if (below(3) == 2) {
+            type.parts.push_back({new_name("Prop"), &property_type(), false});
+            line(fmt::format("PROPERTY {} : {} GET END_GET SET END_SET END_PROPERTY",
+                             type.parts.back().name, type.parts.back().type->name));
+            properties_.emplace_back(&type, type.parts.back());
+        }
+        line("END_INTERFACE");
+        for (const Method& method : made.methods) callables_.push_back(method.call);
+        classes_.push_back(std::move(made));
+        interfaces_.push_back(&classes_.back());
+    }
+
+    /// A method that replaces what a base has, or is the first of its name.
+    void write_method(Class& of, Method& method, const char* kind, std::string& text) {
+        std::string before;
+        std::swap(out_, before);
+        method.call.is_abstract = of.type->is_abstract && below(3) == 2;
+        if (method.call.is_abstract) {
+            write_head(method.call, "METHOD PUBLIC ABSTRACT");
+            declare(method.given, false);
+        } else {
+            write_routine(method.call, fmt::format("METHOD PUBLIC {}", kind), method.given, false);
+        }
+        line("END_METHOD");
+        std::swap(out_, before);
+        text += before;
+    }
+
+    void write_property(Class& of, const Type::Part& property, std::string& text) {
+        text += fmt::format("PROPERTY {} : {}\n", property.name, property.type->name);
+        for (const bool is_get : {true, false}) {
+            const std::size_t kept = scope_.size();
+            scope_.push_back({property.name, property.type, is_get});
+            has_eno_ = false;
+            text += is_get ? "GET\n" : "SET\n";
+            const std::string body = written_body(1 + below(2));
+            std::string declared, before;
+            std::swap(out_, declared);
+            section("VAR", counters_, false);
+            std::swap(out_, declared);
+            text += declared + body + (is_get ? "END_GET\n" : "END_SET\n");
+            scope_.resize(kept);
+        }
+        text += "END_PROPERTY\n";
+        properties_.emplace_back(of.type, property);
+    }
+
+    /// Its methods call those before them, which may be replaced, and those of the base.
+    void write_class() {
+        const Class* base = blocks_.empty() || below(4) == 3 ? nullptr : choices_.one_of(blocks_);
+        const Class* interface =
+            interfaces_.empty() || below(3) == 0 ? nullptr : choices_.one_of(interfaces_);
+        if (base && interface && is_derived(*base->type, *interface->type)) interface = nullptr;
+        Type& type = add_type(Kind::block, "Unit");
+        Class& made = classes_.emplace_back();
+        made.type = &type;
+        if (base) {
+            take_over(made, type, *base);
+            made.call = base->call;
+            made.given = base->given;
+            made.in_outs = base->in_outs;
+            made.locals = base->locals;
+        }
+        type.is_abstract = below(4) == 3;
+        made.call.of = &type;
+        made.call.pure = false;
+        std::vector<Method> inherited;
+        std::swap(inherited, made.methods);
+        scope_ = globals_;
+        Parameters given;
+        given.inputs = variables("a", base ? below(2) : 1 + below(2), false);
+        given.outputs = variables("q", below(2), true);
+        if (!base) given.in_outs = variables("r", below(6) / 4, true);
+        note(made.call, given);
+        auto locals = variables("s", 1 + below(3), true);
+        instances(locals);
+        if (!interfaces_.empty() && below(2) == 1)
+            locals.push_back({new_name("link"), choices_.one_of(interfaces_)->type, true});
+        for (const auto* list : {&given.inputs, &given.outputs})
+            made.given.insert(made.given.end(), list->begin(), list->end());
+        made.in_outs.insert(made.in_outs.end(), given.in_outs.begin(), given.in_outs.end());
+        made.locals.insert(made.locals.end(), locals.begin(), locals.end());
+        enter(made.given, made.locals);
+        scope_.push_back({"THIS^", &type});
+        if (base) scope_.push_back({"SUPER^", base->type, true, false, false, false});
+        for (const auto* list : {&given.inputs, &given.outputs, &locals})
+            for (const Variable& v : *list)
+                type.parts.push_back({v.name, v.type, list == &given.inputs});
+        std::string methods;
+        const auto add = [&](Method method, const char* kind) {
+            method.call.of = &type;
+            if (kind) write_method(made, method, kind, methods);
+            made.methods.push_back(method);
+            callables_.push_back(method.call);
+        };
+        for (Method& method : inherited) {
+            const bool replaces = (method.call.is_abstract && !type.is_abstract) || below(2) == 1;
+            add(method, replaces ? "OVERRIDE" : nullptr);
+        }
+        if (interface) write_promised(type, made, *interface, add, methods);
+        for (std::size_t i = below(base ? 2 : 3); i > 0; --i) add(new_method(type), "");
+        if (below(3) == 2) {
+            const Type::Part property{new_name("Prop"), &property_type(), false};
+            write_property(made, property, methods);
+            type.parts.push_back(property);
+        }
+        enter(made.in_outs);
+        has_eno_ = true;
+        const std::string body = written_body(1 + below(2));
+        line(fmt::format("FUNCTION_BLOCK {}{}{}{}", type.is_abstract ? "ABSTRACT " : "", type.name,
+                         base ? " EXTENDS " + base->type->name : "",
+                         interface ? " IMPLEMENTS " + interface->type->name : ""));
+        declare(given);
+        section("VAR", locals, true);
+        section("VAR_TEMP", counters_, false);
+        out_ += body + methods;
+        line("END_FUNCTION_BLOCK");
+        blocks_.push_back(&made);
+        callables_.push_back(made.call);
+        if (!type.is_abstract) own_.push_back(&type);
+    }
+
+    /// What the interface asks for and no base has.
+    void write_promised(Type& type, Class& made, const Class& interface, const auto& add,
+                        std::string& text) {
+        type.bases.push_back(interface.type);
+        type.bases.insert(type.bases.end(), interface.type->bases.begin(),
+                          interface.type->bases.end());
+        for (const Method& method : interface.methods)
+            if (std::ranges::none_of(made.methods, [&](const Method& known) {
+                    return known.call.name == method.call.name;
+                }))
+                add(method, "");
+        for (const Type::Part& property : interface.type->parts)
+            if (std::ranges::none_of(type.parts, [&](const Type::Part& known) {
+                    return known.name == property.name;
+                })) {
+                write_property(made, property, text);
+                type.parts.push_back(property);
+            }
     }
 
     const Type* result_type() { return below(6) == 5 ? nullptr : &any_type(); }
@@ -1562,9 +2037,9 @@ class SourceMaker {
     }
 
     void instances(std::vector<Variable>& locals) {
-        for (std::size_t i = below(3); i > 0; --i) {
+        for (std::size_t i = below(3) + (subject_ > 1 && !own_.empty()); i > 0; --i) {
             const Type* type = choices_.one_of(standard_);
-            if (!own_.empty() && below(2) == 1) type = choices_.one_of(own_);
+            if (!own_.empty() && below(subject_ > 1 ? 4 : 2) != 0) type = choices_.one_of(own_);
             if (below(5) == 4) type = &array_of(*type);
             locals.push_back({new_name("fb"), type});
         }
@@ -1576,7 +2051,7 @@ class SourceMaker {
         std::string bound;
         for (std::size_t i = below(6) / 2; i > 0; --i) {
             const Type& type = any_type();
-            const auto target = type.name.empty() ? std::nullopt : place(type, true);
+            const auto target = type.name.empty() ? std::nullopt : place(type, Use::place);
             const std::string_view letters = target ? std::string_view(*target) : "";
             const auto first = letters.find_first_not_of('#');
             const bool is_part_of_standard_block =
@@ -1590,7 +2065,72 @@ class SourceMaker {
             bound += fmt::format(fmt::runtime(given[how]), name, *target);
             scope_.push_back({how == 0 ? name : name + "^", &type});
         }
+        for (const Class* one : blocks_) {
+            const auto target = below(3) == 2 ? instance(*one->type) : std::nullopt;
+            if (!target) continue;
+            const std::string name = new_name("r");
+            declared += fmt::format("VAR {} : REFERENCE TO {}; END_VAR\n", name, one->type->name);
+            bound += fmt::format("{} REF= {};\n", name, *target);
+            scope_.push_back({name, one->type});
+        }
+        for (const Class* one : interfaces_) {
+            const std::string name = new_name("i");
+            declared += fmt::format("VAR {} : {}; END_VAR\n", name, one->type->name);
+            if (below(8) != 7)
+                bound += fmt::format("{} := {};\n", name, expression(*one->type, 1).text);
+            scope_.push_back({name, one->type});
+        }
+        for (std::size_t i = has_bytes() ? 1 + below(4) : 0; i > 0; --i)
+            bound += see_bytes(declared);
         return bound;
+    }
+
+    /// A pointer into a variable, or a second view of it: `p^`, `p[2]`, `view` are in scope then.
+    std::string see_bytes(std::string& declared) {
+        const auto seen = variable_of_bytes();
+        if (!seen) return {};
+        const char* const types[] = {"BYTE", "INT", "WORD", "DINT", "USINT", "LWORD"};
+        const Type* type = &named(types[below(6)]);
+        const Type* element = seen->type;
+        while (element->kind == Kind::array) element = element->element;
+        if (below(2) == 0 && is_whole(*element)) type = element;
+        const std::size_t room = whole_bytes(*seen->type),
+                          step = static_cast<std::size_t>(type->bits / 8);
+        if (room < step) return {};
+        if (below(4) == 3 && !seen->global && !seen->name.starts_with('r')) {
+            Type& view = array_of(*type);
+            view.ranges = {{0, static_cast<std::int64_t>(room / step) - 1}};
+            const std::string name = new_name("view");
+            declared +=
+                fmt::format("VAR {} AT {} : {}; END_VAR\n", name, seen->name, written_type(view));
+            scope_.push_back({name, &view, true, false, false, false});
+            return {};
+        }
+        const std::string name = new_name("p");
+        std::size_t shift = below(room - step + 1);
+        if (type == element) shift -= shift % step;
+        declared += fmt::format("VAR {} : POINTER TO {}; END_VAR\n", name, type->name);
+        scope_.push_back({name + "^", type, true, false, false, false});
+        for (int i = 0; i < 3; ++i) {
+            const std::size_t at = below(room / step);
+            scope_.push_back({fmt::format("{}[{}]", name,
+                                          static_cast<std::int64_t>(at) -
+                                              static_cast<std::int64_t>(shift / step)),
+                              type, true, false, false, false});
+        }
+        walking_.push_back({name, type});
+        return fmt::format("{0} := ADR({1});\n{0} := {0} + {2};\n", name, seen->name, shift);
+    }
+
+    /// A function that gives where a variable of its call is.
+    void write_lender() {
+        const Type& type = named(below(2) == 0 ? "BYTE" : "DINT");
+        const std::string name = new_name("Lend");
+        line(fmt::format("FUNCTION {} : POINTER TO {}", name, type.name));
+        line(fmt::format("VAR local : ARRAY[0..3] OF {}; END_VAR", type.name));
+        line(fmt::format("{} := ADR(local[{}]);", name, below(4)));
+        line("END_FUNCTION");
+        lends_[type.name] = name;
     }
 
     void write_program() {
@@ -1623,21 +2163,28 @@ class SourceMaker {
     std::string out_;
     int names_ = 0, indent_ = 0, nesting_ = 0, loops_ = 0, index_depth_ = 0, reads_ = 0;
     bool has_eno_ = false;
+    Pointers pointers_;
+    std::size_t subject_ = 0;  ///< 1: UNION, pointers, addresses; 2: classes; 3: both
     std::deque<Type> types_;
     std::vector<const Type*> scalars_, texts_, aggregates_, standard_, own_;
     std::vector<std::pair<const Type*, const Type*>> flags_;  ///< and bit strings of as many bits
     std::deque<Callable> callables_;
     std::vector<Variable> globals_, scope_, counters_, constants_;
+    std::deque<Class> classes_;
+    std::vector<const Class*> interfaces_, blocks_;
+    std::vector<std::pair<const Type*, Type::Part>> properties_;  ///< and what has them
+    std::vector<Variable> walking_;             ///< pointers, and what they are to
+    std::map<std::string, std::string> lends_;  ///< functions that give a pointer to such a type
 };
 
 }  // namespace
 
-std::string random_source(Choices& choices) {
-    return SourceMaker(choices).make();
+std::string random_source(Choices& choices, Pointers pointers) {
+    return SourceMaker(choices, pointers).make();
 }
 
 std::string random_constant(Choices& choices, std::string_view type) {
-    return SourceMaker(choices).make_constant(type);
+    return SourceMaker(choices, Pointers::tame).make_constant(type);
 }
 
 }  // namespace lineshaft::test

@@ -97,9 +97,11 @@ std::string broken_invariant(const std::string& text, int scans, std::uint64_t s
     Diagnostics out;
     const auto file = std::make_shared<const SourceFile>(SourceFile{"random.st", text});
     const auto library = st::compile({file}, catalog, out, {.fuel = most_passes});
+    const auto interpreted =
+        st::compile({file}, catalog, out, {.fuel = most_passes, .native = false});
     if (!library) return out.render();
     Random first(seed, "inputs"), second = first;
-    Blocks whole(*library), parted(*library);
+    Blocks whole(*library), parted(*interpreted);
     const int resumed =
         static_cast<int>(Random(seed, "resume").below(static_cast<std::uint64_t>(scans)));
     for (int i = 0; i < scans; ++i) whole.scan(i, first);
@@ -109,7 +111,7 @@ std::string broken_invariant(const std::string& text, int scans, std::uint64_t s
     }
     if (whole.disagrees) return "the outcome of a scan is not what its header says";
     if (whole.memory() != parted.memory())
-        return fmt::format("other bytes after going on from scan {}", resumed);
+        return fmt::format("other bytes where native code is off, moved at scan {}", resumed);
     return {};
 }
 

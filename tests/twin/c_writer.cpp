@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -52,21 +53,37 @@ class CWriter {
     std::string write() {
         for (std::size_t i = 0; i < checked_.globals.size(); ++i) {
             const Type& type = *checked_.globals[i].type;
-            if (type.kind != Kind::block) declare(type);
+            if (type.kind != Kind::block && !is_image(i)) declare(type);
             for (const Variable* member : type.members)
                 global_parts_.emplace(member, static_cast<int>(i));
         }
         for (const Routine* routine : checked_.order)
             if (routine->has_instances() && !routine->owner) declare(*routine->type);
         for (std::size_t i = 0; i < checked_.globals.size(); ++i)
-            out_ +=
-                fmt::format("static {} {}g{};\n", c_type(*checked_.globals[i].type), prefix_, i);
-        for (const Routine* routine : checked_.order) write(*routine);
+            if (is_image(i))
+                put("static u8 {}image[{}];", prefix_, checked_.image.bytes + 8);
+            else
+                put("static {} {}g{};", c_type(*checked_.globals[i].type), prefix_, i);
+        for (const Variable* variable : checked_.image.variables) declare(*variable->type);
+        for (const Routine& routine : checked_.routines)
+            if (routine.is_prototype() && routine.owner) announce(routine);
+        for (const Routine* routine : checked_.order)
+            if (!routine->is_prototype()) announce(*routine);
+        for (const Routine* routine : checked_.order)
+            if (has_body(*routine))
+                write(*routine);
+            else if (!routine->is_prototype())
+                put("{} {{ __builtin_trap(); }}", head(*routine, false));
+        for (const Routine* routine : dispatched_) write_dispatch(*routine);
         write_ends();
         return std::move(out_);
     }
 
   private:
+    bool is_image(std::size_t global) const {
+        return checked_.image.global == static_cast<int>(global);
+    }
+
     template <class... T>
     void put(fmt::format_string<T...> format, T&&... values) {
         fmt::format_to(std::back_inserter(out_), format, std::forward<T>(values)...);
@@ -96,7 +113,11 @@ class CWriter {
             case Kind::any_integer:
                 return "i64";
             case Kind::reference:
-                return c_type(*type.element) + "*";
+                return "pointer";
+            case Kind::interface:
+                return "block*";
+            case Kind::union_:
+                return fmt::format("union {}t{}", prefix_, number_of(&type));
             case Kind::standard:
                 return "struct " + small(type.standard->name);
             default:
@@ -114,12 +135,17 @@ class CWriter {
     }
 
     void declare(const Type& type) {
-        if (type.is_reference()) return declare(*type.element);
+        if (type.is_reference()) {
+            if (!type.element->is_instance()) declare(*type.element);
+            return;
+        }
         if (type.is_scalar() || type.kind == Kind::standard || declared_[&type]) return;
         declared_[&type] = true;
         std::string inside;
         const auto add = [&](const Variable& variable) {
-            if (variable.space == Space::constant) return;
+            if (variable.space != Space::frame && variable.space != Space::reference &&
+                variable.space != Space::global)
+                return;
             const bool reference = variable.space == Space::reference;
             if (!reference || variable.type->kind != Kind::block) declare(*variable.type);
             inside += fmt::format("{} {}{}; ", c_type(*variable.type), reference ? "*" : "",
@@ -131,13 +157,32 @@ class CWriter {
             declare(*type.element);
             inside = fmt::format("{} e[{}];", c_type(*type.element), type.upper - type.lower + 1);
         }
-        if (type.kind == Kind::structure)
-            for (const Variable* member : type.members) add(*member);
-        if (type.kind == Kind::block)
-            for (const Variable& variable : type.routine->variables) add(variable);
+        for (const Variable* member : type.members) add(*member);
+        if (type.kind == Kind::block) {
+            inside += "i64 kind; ";
+            for (const Routine* level : levels_of(*type.routine)) {
+                for (const Variable& variable : level->variables) add(variable);
+                inside += fmt::format("i64 {}; ", mark_of(*level));
+                for (const Routine* method : level->own_methods)
+                    inside += fmt::format("i64 {}; ", mark_of(*method));
+            }
+        }
         put("{} {{ {} }};", c_type(type), inside);
         write_begin(type);
         write_dump(type);
+    }
+
+    /// A block begins as its base does, whose base is the first.
+    static std::vector<const Routine*> levels_of(const Routine& block) {
+        std::vector<const Routine*> levels;
+        for (const Routine* level = &block; level; level = level->base)
+            levels.insert(levels.begin(), level);
+        return levels;
+    }
+
+    /// What says in which scan a routine of an instance runs.
+    std::string mark_of(const Routine& routine) {
+        return fmt::format("runs{}", number_of(&routine));
     }
 
     /// How a value begins.
@@ -153,12 +198,25 @@ class CWriter {
             begin("p->e[k]", *type.element);
             put("}}");
         } else if (type.kind == Kind::block) {
-            for (const Variable& variable : type.routine->variables) member(variable);
+            put("memset(p, 0, sizeof *p);\np->kind = {};", number_of(&type));
+            for (const Variable* variable : all_variables(*type.routine)) member(*variable);
         } else {
-            for (const Variable* variable : type.members) member(*variable);
+            if (type.kind == Kind::union_) put("memset(p, 0, sizeof *p);");
+            for (const Variable* variable : type.members)
+                if (type.kind != Kind::union_)
+                    member(*variable);
+                else
+                    begin_part(*variable);
         }
         if (type.initial_value) give("(*p)", type, *type.initial_value);
         put("}}");
+    }
+
+    /// A part of a UNION that begins with nothing but 0 says nothing of bytes that others share.
+    void begin_part(const Variable& variable) {
+        put("{{ {} part;", c_type(*variable.type));
+        begin(variable, "part");
+        put("if (twin_is_set(&part, sizeof part)) p->{} = part; }}", name_of(variable));
     }
 
     void begin(const Variable& variable, const std::string& place) {
@@ -174,7 +232,7 @@ class CWriter {
             for (const auto& [name, value] : type.presets)
                 put("{}.{} = {};", place, name, static_cast<std::int64_t>(value.integer));
         } else if (type.is_reference()) {
-            put("{} = 0;", place);
+            put("{} = (pointer){{0, 0, 0}};", place);
         } else if (type.is_scalar()) {
             put("{} = {};", place, constant(type, type.initial));
         } else {
@@ -230,8 +288,10 @@ class CWriter {
             put("}}");
         }
         if (type.kind == Kind::block)
-            for (const Variable& variable : type.routine->variables)
-                if (variable.space == Space::frame) dump("p->" + name_of(variable), *variable.type);
+            for (const Variable* variable : all_variables(*type.routine))
+                if (variable->space == Space::frame)
+                    dump("p->" + name_of(*variable), *variable->type);
+        if (type.kind == Kind::union_) put("to = twin_put_bytes(to, p, sizeof *p);");
         if (type.kind == Kind::structure)
             for (const Variable* member : type.members)
                 dump("p->" + name_of(*member), *member->type);
@@ -239,7 +299,7 @@ class CWriter {
     }
 
     void dump(const std::string& place, const Type& type) {
-        if (type.is_reference()) return;
+        if (type.is_reference() || type.kind == Kind::interface) return;
         if (type.kind == Kind::text)
             put("to = twin_put_text(to, &{});", place);
         else if (type.kind == Kind::standard)
@@ -264,17 +324,23 @@ class CWriter {
         return fmt::format("{}f{}", prefix_, number_of(&routine));
     }
 
-    void write(const Routine& routine) {
-        for (const Variable& variable : routine.variables)
-            if (variable.space != Space::constant) declare(*variable.type);
-        routine_ = &routine;
+    static bool has_body(const Routine& routine) {
+        return !routine.is_prototype() && !routine.pou->is_abstract;
+    }
+
+    static bool has_instance(const Routine& routine) {
+        return routine.has_instances() || routine.owner;
+    }
+
+    /// `dispatches`: what finds the method of the instance that is given.
+    std::string head(const Routine& routine, bool dispatches) {
         std::string parameters;
         const auto add = [&](const std::string& text) {
             parameters += (parameters.empty() ? "" : ", ") + text;
         };
         const bool is_block = routine.has_instances();
         const Routine* block = is_block ? &routine : routine.owner;
-        if (block) add(c_type(*block->type) + "* self");
+        if (block) add((dispatches ? "block" : c_type(*block->type)) + "* self");
         for (const Variable& v : routine.variables) {
             if (is_block || v.space == Space::constant) continue;
             if (v.section == Section::input) add(c_type(*v.type) + " " + name_of(v));
@@ -282,8 +348,80 @@ class CWriter {
             if (v.section == Section::output) add(c_type(*v.type) + "* out_" + name_of(v));
         }
         const Variable* result = routine.result;
-        put("static {} {}({}) {{", result ? c_type(*result->type) : "void", name_of(routine),
-            parameters.empty() ? "void" : parameters);
+        return fmt::format("static {} {}({})", result ? c_type(*result->type) : "void",
+                           dispatches ? dispatch_of(routine) : name_of(routine),
+                           parameters.empty() ? "void" : parameters);
+    }
+
+    void announce(const Routine& routine) {
+        for (const Variable& variable : routine.variables)
+            if (variable.space != Space::constant) declare(*variable.type);
+        if (!routine.is_prototype()) put("{};", head(routine, false));
+        if (has_instance(routine)) put("{};", head(routine, true));
+    }
+
+    std::string dispatch_of(const Routine& routine) {
+        return fmt::format("{}d{}", prefix_, number_of(&routine));
+    }
+
+    /// The method of that name that stands nearest to the block, on the way to its first base.
+    static const Routine* nearest(const Routine& block, const Routine& wanted) {
+        for (const Routine* level = &block; level; level = level->base)
+            for (const Routine* method : level->own_methods)
+                if (same_name(method->pou->name.text, wanted.pou->name.text) &&
+                    method->pou->accessor == wanted.pou->accessor)
+                    return method;
+        return nullptr;
+    }
+
+    /// What `wanted` was given, for `found`, whose types are equal and have C names of their own.
+    std::string passed_on(const Routine& wanted, const Routine& found) {
+        std::vector<std::string> types;
+        for (const Variable& v : found.variables)
+            if (v.space != Space::constant && (is_input(v) || v.section == Section::output))
+                types.push_back(c_type(*v.type));
+        std::string given;
+        for (const Variable& v : wanted.variables) {
+            if (v.space == Space::constant || !(is_input(v) || v.section == Section::output))
+                continue;
+            const std::string name =
+                v.section == Section::output ? "out_" + name_of(v) : name_of(v);
+            given += v.section == Section::input ? fmt::format(", *({}*)&{}", types.front(), name)
+                                                 : ", (void*)" + name;
+            types.erase(types.begin());
+        }
+        return given;
+    }
+
+    void write_dispatch(const Routine& wanted) {
+        put("{} {{\nswitch (self->kind) {{", head(wanted, true));
+        const Routine& root = wanted.owner ? *wanted.owner : wanted;
+        for (const Routine* block : checked_.order) {
+            if (!block->has_instances() || block->owner || !is_a(*block, root)) continue;
+            const Routine* found = wanted.owner ? nearest(*block, wanted) : block;
+            if (!found || !has_body(*found) || !has_body(*block)) continue;
+            const Routine& of = found->owner ? *found->owner : *found;
+            const std::string call =
+                fmt::format("{}(({}*)self{})", name_of(*found), c_type(*of.type),
+                            wanted.owner ? passed_on(wanted, *found) : "");
+            if (wanted.result)
+                put("case {}: {{ {} r = {}; return *({}*)&r; }}", number_of(block->type),
+                    c_type(*found->result->type), call, c_type(*wanted.result->type));
+            else
+                put("case {}: return {};", number_of(block->type), call);
+        }
+        put("}}\n__builtin_trap();\n}}");
+    }
+
+    void write(const Routine& routine) {
+        routine_ = &routine;
+        const bool is_block = routine.has_instances();
+        const Variable* result = routine.result;
+        put("{} {{", head(routine, false));
+        if (has_instance(routine))
+            put("if (self->{0} == twin_scan) twin_fault(runs_already, {1});\n"
+                "self->{0} = twin_scan;",
+                mark_of(routine), routine.pou->place.mark().line);
         for (const Variable& v : routine.variables) {
             if (v.space != Space::frame || (is_block ? v.section != Section::temp : is_input(v)))
                 continue;
@@ -292,6 +430,7 @@ class CWriter {
         }
         write(routine.body);
         put("leave:;");
+        if (has_instance(routine)) put("self->{} = 0;", mark_of(routine));
         for (const Variable& v : routine.variables)
             if (!is_block && v.section == Section::output && v.space == Space::frame)
                 put("*out_{0} = {0};", name_of(v));
@@ -308,6 +447,10 @@ class CWriter {
         put("{0}begin{1}(&{0}main);", prefix_, number_of(main_.type));
         for (std::size_t i = 0; i < checked_.globals.size(); ++i) {
             const Global& global = checked_.globals[i];
+            if (is_image(i)) {
+                begin_image();
+                continue;
+            }
             put("{0}begin{1}(&{0}g{2});", prefix_, number_of(global.type), i);
             for (const Statement* s : global.pou ? global.pou->body : Block())
                 give(place(*s->target), *s->target->type, *s->value);
@@ -323,13 +466,47 @@ class CWriter {
                 put("{} = ({})in[{}];", to, c_type(*v.type), input);
             ++input;
         }
-        put("i64 fault = setjmp(twin_end);\nif (fault == 0) {}(&{}main);\nreturn fault;\n}}",
+        put("++twin_scan;\ni64 fault = setjmp(twin_end);\nif (fault == 0) {}(&{}main);\nreturn "
+            "fault;\n}}",
             name_of(main_), prefix_);
         put("static u64* {}dump(u64* to) {{", prefix_);
         put("to = {0}dump{1}(&{0}main, to);", prefix_, number_of(main_.type));
         for (std::size_t i = 0; i < checked_.globals.size(); ++i)
-            put("to = {0}dump{1}(&{0}g{2}, to);", prefix_, number_of(checked_.globals[i].type), i);
+            if (is_image(i))
+                put("to = twin_put_bytes(to, {}image, {});", prefix_, checked_.image.bytes);
+            else
+                put("to = {0}dump{1}(&{0}g{2}, to);", prefix_, number_of(checked_.globals[i].type),
+                    i);
         put("return to;\n}}");
+    }
+
+    void begin_image() {
+        put("memset({0}image, 0, sizeof {0}image);", prefix_);
+        for (const Variable* v : checked_.image.variables)
+            if (v->initial && v->address.bits == 1)
+                set_bit(*v, constant(*v->type, v->initial->constant));
+            else if (v->initial)
+                begin(*v, in_image(*v));
+    }
+
+    /// The byte of the process image where the variable begins.
+    std::string byte_of(const Variable& v) const {
+        return fmt::format("{}image[{}]", prefix_,
+                           checked_.image.begin(v.address.area) + v.address.byte);
+    }
+
+    std::string in_image(const Variable& v) {
+        return fmt::format("(*({}*)&{})", c_type(*v.type), byte_of(v));
+    }
+
+    void set_bit(const Variable& v, const std::string& bit) {
+        put("{0} = (u8)(({0} & ~(1u << {1})) | ({2} & 1u) << {1});", byte_of(v),
+            static_cast<int>(v.address.bit), bit);
+    }
+
+    static bool is_image_bit(const Expression& e) {
+        return e.kind == E::name && e.variable && e.variable->space == Space::image &&
+               e.variable->address.bits == 1;
     }
 
     // Statements.
@@ -379,6 +556,7 @@ class CWriter {
             const std::string to = value(*s.value);
             return put("{} = {};", place(target), to);
         }
+        if (is_image_bit(target)) return set_bit(*target.variable, value(*s.value));
         if (target.kind == E::bit) {
             const std::string bits = value(*s.value), whole = place(*target.operands[0]);
             const auto [first, mask] = bits_of(target);
@@ -496,11 +674,14 @@ class CWriter {
     }
 
     std::string value(const Expression& e) {
+        if (e.type && e.type->is_reference()) return pointer(e);
+        if (e.type && e.type->kind == Kind::interface) return instance(e);
+        if (is_image_bit(e))
+            return made(*e.type, fmt::format("{} >> {} & 1", byte_of(*e.variable),
+                                             static_cast<int>(e.variable->address.bit)));
         switch (e.kind) {
             case E::constant:
                 return constant(*e.type, e.constant);
-            case E::refer:
-                return "&" + place(*e.operands[0]);
             case E::name:
             case E::member:
             case E::deref:
@@ -529,15 +710,74 @@ class CWriter {
                                 value(*e.arguments[0].value), line_));
     }
 
+    /// The bytes of the variable that it is in, and one of them.
+    std::string pointer(const Expression& e) {
+        switch (e.kind) {
+            case E::constant:
+                return made("pointer", "{0, 0, 0}");
+            case E::refer:
+                return referred(*e.operands[0]);
+            case E::converted:
+                return e.operands[0]->type->is_reference() ? pointer(*e.operands[0])
+                                                           : referred(*e.operands[0]);
+            case E::binary: {
+                const std::string name = made("pointer", pointer(*e.operands[0]));
+                const std::string by = value(*e.operands[1]);
+                put("if ({0}.lo) {0}.at {1}= {2};", name, e.op == Word::minus ? "-" : "+", by);
+                return name;
+            }
+            case E::call:
+                return call(e);
+            default:
+                return made("pointer", place(e));
+        }
+    }
+
+    std::string referred(const Expression& e) {
+        const Expression& root = root_of(e);
+        std::string first, lo, hi;
+        if (root.kind == E::deref) {
+            const std::string of = pointer(*root.operands[0]);
+            first = of + ".at", lo = of + ".lo", hi = of + ".hi";
+        } else {
+            lo = first = made("u8*", "(u8*)&" + place(root));
+            hi = fmt::format("{} + sizeof({})", lo, c_type(*root.type));
+        }
+        known_.emplace_back(&root, fmt::format("(*({}*){})", c_type(*root.type), first));
+        const std::string at = place(e);
+        known_.pop_back();
+        return made("pointer", fmt::format("{{(u8*)&{}, {}, {}}}", at, lo, hi));
+    }
+
+    std::string reached(const Expression& pointer_to) {
+        const std::string from = pointer(pointer_to), type = c_type(*pointer_to.type->element);
+        return fmt::format(
+            "(*({0}*){1})", type,
+            made("u8*", fmt::format("twin_reach({}, sizeof({}), {})", from, type, line_)));
+    }
+
+    std::string instance(const Expression& e) {
+        if (e.kind == E::constant) return "(block*)0";
+        if (e.kind == E::call) return call(e);
+        if (e.kind != E::converted) return made("block*", place(e));
+        const Expression& of = *e.operands[0];
+        return of.type->kind == Kind::interface ? instance(of)
+                                                : made("block*", "(block*)&" + place(of));
+    }
+
     std::string place(const Expression& e) {
+        for (const auto& [known, place] : known_)
+            if (known == &e) return place;
         if (e.kind == E::index) return element(e);
-        if (e.kind == E::deref) return "(*" + place(*e.operands[0]) + ")";
+        if (e.kind == E::deref) return reached(*e.operands[0]);
+        if (e.kind == E::self) return fmt::format("(*({}*)self)", c_type(*e.type));
         const Variable& v = *e.variable;
         if (e.kind == E::member) {
             const std::string of = place(*e.operands[0]);
             const std::string name = of + "." + name_of(v);
             return v.space == Space::reference ? reference(name) : name;
         }
+        if (v.space == Space::image) return in_image(v);
         if (v.space == Space::global) {
             if (const auto it = global_parts_.find(&v); it != global_parts_.end())
                 return fmt::format("{}g{}.{}", prefix_, it->second, name_of(v));
@@ -578,7 +818,7 @@ class CWriter {
     /// What a function takes: of an array or a structure its address.
     std::string argument(const Expression& e) {
         if (e.type->kind == Kind::text) return text(e);
-        return e.type->is_scalar() ? value(e) : "&" + aggregate(e);
+        return e.type->is_scalar() || e.type->is_reference() ? value(e) : "&" + aggregate(e);
     }
 
     std::string unary(const Expression& e) {
@@ -600,6 +840,11 @@ class CWriter {
             return made(type, fmt::format("twin_compare({}, {}) {} 0", a, b, op));
         }
         const std::string a = value(*e.operands[0]), b = value(*e.operands[1]);
+        if (e.operands[0]->type->is_reference()) {
+            if (e.op == Word::minus) return made(type, fmt::format("{}.at - {}.at", a, b));
+            return made(type,
+                        fmt::format("({0}.at == {1}.at && {0}.lo == {1}.lo) {2} 1", a, b, op));
+        }
         if (e.op >= Word::less && e.op <= Word::unequal)
             return made(type, fmt::format("{} {} {}", a, op, b));
         if (type.kind == Kind::time) return of_times(e, a, b);
@@ -841,11 +1086,16 @@ class CWriter {
             given += (given.empty() ? "" : ", ") + text;
         };
         if (routine.owner) {
-            const Expression& callee = *e.operands[0];
-            add(callee.kind == E::member
-                    ? made(c_type(*routine.owner->type) + "*", "&" + place(*callee.operands[0]))
-                    : "self");
+            const Expression* of =
+                e.operands[0]->kind == E::member ? e.operands[0]->operands[0] : nullptr;
+            const std::string type = e.is_dispatched ? "block" : c_type(*routine.owner->type);
+            const bool through = of && of->type->kind == Kind::interface;
+            const std::string self = through ? instance(*of) : of ? "&" + place(*of) : "self";
+            add(made(type + "*", fmt::format("({}*){}", type, self)));
+            if (through) put("if (!{}) {};", given, fault("no_reference"));
         }
+        if (e.is_dispatched) dispatched_.insert(&routine);
+        const std::string callee = e.is_dispatched ? dispatch_of(routine) : name_of(routine);
         std::unordered_map<const Variable*, std::string> values;
         for (const Argument& argument : e.arguments)
             if (is_input(*argument.variable)) values[argument.variable] = argument_of(argument);
@@ -863,9 +1113,9 @@ class CWriter {
         }
         const std::string name = new_name();
         if (routine.result)
-            put("{} {} = {}({});", c_type(*routine.result->type), name, name_of(routine), given);
+            put("{} {} = {}({});", c_type(*routine.result->type), name, callee, given);
         else
-            put("{}({});", name_of(routine), given);
+            put("{}({});", callee, given);
         for (const Argument& argument : e.arguments)
             if (is_eno(*argument.variable))
                 take("twin_eno", argument);
@@ -880,7 +1130,7 @@ class CWriter {
         const std::string type = c_type(*v.type);
         if (v.section == Section::in_out)
             return made(type + "*", fmt::format("({}*)&{}", type, place(*argument.value)));
-        if (v.type->is_scalar()) return value(*argument.value);
+        if (v.type->is_scalar() || v.type->is_reference()) return value(*argument.value);
         const std::string name = new_name();
         put("{} {};", type, name);
         assign(name, *v.type, *argument.value);
@@ -913,7 +1163,10 @@ class CWriter {
                 assign(self + "->" + name_of(v), *v.type, *argument.value);
         }
         for (const auto& [v, given] : later) put("{}->{} = {};", self, name_of(*v), given);
-        if (type.kind == Kind::block)
+        if (e.is_dispatched) {
+            dispatched_.insert(type.routine);
+            put("{}((block*){});", dispatch_of(*type.routine), self);
+        } else if (type.kind == Kind::block)
             put("{}({});", name_of(*type.routine), self);
         else
             put("call_{}({});", small(type.standard->name), self);
@@ -932,6 +1185,9 @@ class CWriter {
         std::vector<std::string> a;
         for (const Argument& argument : e.arguments) a.push_back(this->argument(*argument.value));
         const std::string_view name = f.name;
+        if (name == "MEMCPY" || name == "MEMMOVE" || name == "MEMSET" || name == "MEMCMP")
+            return made(
+                type, fmt::format("twin_{}({}, {}, {}, {})", small(name), a[0], a[1], a[2], line_));
         if (name == "SQR") return made(type, fmt::format("{0} * {0}", a[0]));
         if (name == "FRAC") return made(type, fmt::format("{0} - trunc({0})", a[0]));
         if (name == "IS_VALID") return made(type, fmt::format("{0} - {0} == 0", a[0]));
@@ -1036,6 +1292,8 @@ class CWriter {
     std::unordered_map<const void*, int> numbers_;
     std::unordered_map<const Type*, bool> declared_;
     std::unordered_map<const Variable*, int> global_parts_;
+    std::set<const Routine*, std::less<>> dispatched_;  ///< whose instance says what runs
+    std::vector<std::pair<const Expression*, std::string>> known_;  ///< C of what was computed
     const Routine* routine_ = nullptr;
     int line_ = 0, temporaries_ = 0, labels_ = 0;
     std::vector<int> loops_;
@@ -1043,20 +1301,23 @@ class CWriter {
 
 void add_parts(std::vector<Part>& to, const std::string& name, const Type& type, std::size_t offset,
                int global) {
-    if (type.is_reference()) return;
-    if (type.kind == Kind::array) {
+    if (type.is_reference() || type.kind == Kind::interface) return;
+    if (type.kind == Kind::union_) {
+        to.push_back({name, &type, global, offset, false, 8 * std::size_t{type.slots}});
+    } else if (type.kind == Kind::array) {
         const Type& element = *type.element;
         const std::size_t step =
             8 * (element.kind == Kind::block ? element.routine->frame : element.slots);
         for (std::int64_t i = type.lower; i <= type.upper; ++i, offset += step)
             add_parts(to, fmt::format("{}[{}]", name, i), element, offset, global);
     } else if (type.kind == Kind::block) {
-        for (const Variable& v : type.routine->variables)
-            if (v.space == Space::frame)
-                add_parts(to, fmt::format("{}.{}", name, v.text), *v.type, offset + 8 * v.slot,
+        for (const Variable* v : all_variables(*type.routine))
+            if (v->space == Space::frame)
+                add_parts(to, fmt::format("{}.{}", name, v->text), *v->type, offset + 8 * v->slot,
                           global);
-    } else if (!type.members.empty()) {
+    } else if (type.kind == Kind::structure || !type.members.empty()) {
         for (const Variable* v : type.members) {
+            if (v->space == Space::image) continue;
             const std::size_t at = offset + (v->is_byte ? v->byte : 8 * v->slot);
             const std::string part = fmt::format("{}.{}", name, v->text);
             if (v->is_byte)
@@ -1079,7 +1340,12 @@ std::vector<Part> parts_of(const Checked& checked, const Routine& main) {
     std::vector<Part> parts;
     add_parts(parts, "Main", *main.type, 0, -1);
     for (std::size_t i = 0; i < checked.globals.size(); ++i)
-        add_parts(parts, checked.globals[i].name, *checked.globals[i].type, 0, static_cast<int>(i));
+        if (checked.image.global == static_cast<int>(i))
+            parts.push_back(
+                {"%", checked.globals[i].type, static_cast<int>(i), 0, false, checked.image.bytes});
+        else
+            add_parts(parts, checked.globals[i].name, *checked.globals[i].type, 0,
+                      static_cast<int>(i));
     return parts;
 }
 

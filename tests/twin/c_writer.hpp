@@ -13,13 +13,14 @@ namespace lineshaft::st {
 /// dump is what parts_of() lists.
 std::string write_c(const Checked& checked, const Routine& main, int number);
 
-/// A scalar, or a text, of an instance.
+/// A scalar, a text, or bytes of an instance.
 struct Part {
     std::string name;
     const Type* type = nullptr;
     int global = -1;         ///< the data block that it is of; -1: the program itself
     std::size_t offset = 0;  ///< in bytes
     bool is_byte = false;
+    std::size_t bytes = 0;  ///< of a UNION, or of the process image
 };
 
 /// All that lives in a program and in the data blocks, after generate() has given it memory.

@@ -6,10 +6,46 @@
 
 jmp_buf twin_end;
 i64 twin_now;
+i64 twin_scan;
 u8 twin_eno;
 
 void twin_fault(int fault, int line) {
     longjmp(twin_end, fault * 1000000 + line);
+}
+
+u8* twin_reach(pointer p, i64 size, int line) {
+    if (!p.lo) twin_fault(no_reference, line);
+    if (p.at < p.lo || p.hi - p.at < size) twin_fault(outside_of_variable, line);
+    return p.at;
+}
+
+u8 twin_is_set(const void* bytes, i64 n) {
+    for (const u8* at = bytes; n > 0; --n)
+        if (*at++) return 1;
+    return 0;
+}
+
+i64 twin_memcpy(pointer to, pointer from, i64 n, int line) {
+    u8* const first = twin_reach(to, n, line);
+    memmove(first, twin_reach(from, n, line), (size_t)n);
+    return n;
+}
+
+i64 twin_memset(pointer to, i64 value, i64 n, int line) {
+    memset(twin_reach(to, n, line), (u8)value, (size_t)n);
+    return n;
+}
+
+i64 twin_memcmp(pointer a, pointer b, i64 n, int line) {
+    u8* const first = twin_reach(a, n, line);
+    const int order = memcmp(first, twin_reach(b, n, line), (size_t)n);
+    return order < 0 ? -1 : order > 0;
+}
+
+u64* twin_put_bytes(u64* to, const void* from, i64 n) {
+    memset(to, 0, (size_t)(n + 7) / 8 * 8);
+    memcpy(to, from, (size_t)n);
+    return to + (n + 7) / 8;
 }
 
 static const text* as_text(const void* t) {

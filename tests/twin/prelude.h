@@ -4,27 +4,43 @@
 #include <stdint.h>
 #include <string.h>
 
+/* So that bytes of one variable may be those of another; structs have no holes for it. */
+#define ANYWHERE __attribute__((aligned(1)))
+
 typedef int8_t i8;
-typedef int16_t i16;
-typedef int32_t i32;
-typedef int64_t i64;
+typedef int16_t i16 ANYWHERE;
+typedef int32_t i32 ANYWHERE;
+typedef int64_t i64 ANYWHERE;
 typedef uint8_t u8;
-typedef uint16_t u16;
-typedef uint32_t u32;
-typedef uint64_t u64;
-typedef float f32;
-typedef double f64;
+typedef uint16_t u16 ANYWHERE;
+typedef uint32_t u32 ANYWHERE;
+typedef uint64_t u64 ANYWHERE;
+typedef float f32 ANYWHERE;
+typedef double f64 ANYWHERE;
 typedef __int128 i128;
 
 /* Of what need not be fast, so that compiling it is. */
 #define COLD __attribute__((cold, noinline))
 
-enum { array_bounds = 1, division_by_zero, out_of_range, no_reference };
+enum { array_bounds = 1, division_by_zero, out_of_range, no_reference, no_end, runs_already, outside_of_variable };
 
 extern jmp_buf twin_end;
 extern i64 twin_now;
+extern i64 twin_scan; /* its number, from 1 on */
 extern u8 twin_eno; /* of the routine that ended last */
 void twin_fault(int fault, int line) __attribute__((noreturn));
+
+/* An instance of a block that others may stand for: which one it is. */
+typedef struct { i64 kind; } block;
+
+/* A byte of a variable, and all bytes of that; `lo` is 0 of what refers to nothing. */
+typedef struct { u8 *at, *lo, *hi; } pointer;
+u8* twin_reach(pointer p, i64 size, int line);
+u8 twin_is_set(const void* bytes, i64 n); /* not all are 0 */
+i64 twin_memcpy(pointer to, pointer from, i64 n, int line);
+#define twin_memmove twin_memcpy
+i64 twin_memset(pointer to, i64 value, i64 n, int line);
+i64 twin_memcmp(pointer a, pointer b, i64 n, int line);
 
 /* Texts: any struct that begins so. `room` is how many characters it holds; results hold 254. */
 typedef struct { i64 length; char c[]; } text;
@@ -47,6 +63,7 @@ u64 twin_to_bcd(u64 value, int digits, int line);
 i64 twin_read_integer(const void* from, int line);
 f64 twin_read_real(const void* from, int line);
 
+u64* twin_put_bytes(u64* to, const void* from, i64 n);
 u64* twin_put_text(u64* to, const void* from);
 static inline u64* twin_put(u64* to, i64 value) { *to = (u64)value; return to + 1; }
 static inline u64* twin_put_real(u64* to, f64 value) {

@@ -165,6 +165,12 @@ class Machine {
   private:
     static void dump(const Part& part, const std::byte* place, Words& to) {
         if (part.is_byte) return to.push_back(static_cast<std::uint64_t>(*place));
+        if (part.bytes > 0) {
+            const std::size_t first = to.size();
+            to.resize(first + (part.bytes + 7) / 8);
+            std::memcpy(&to[first], place, part.bytes);
+            return;
+        }
         std::uint64_t word = 0;
         std::memcpy(&word, place, 8);
         if (part.type->is_real() && std::bit_cast<double>(word) != std::bit_cast<double>(word))
@@ -320,7 +326,7 @@ std::string text_of(const Bytes& bytes) {
 
 Bytes random_bytes(std::uint64_t seed) {
     Random random(seed, "twin");
-    Bytes bytes(100 + random.below(900));
+    Bytes bytes(300 + random.below(1700));
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random.next());
     return bytes;
 }

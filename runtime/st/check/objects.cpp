@@ -1,7 +1,5 @@
 #include "runtime/st/check/objects.hpp"
 
-#include <algorithm>
-
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/names.hpp"

@@ -118,6 +118,33 @@ std::uint64_t rotate_right(std::uint64_t value, std::uint64_t places) {
     return rotate_left<bits>(value, bits - places % bits);
 }
 
+inline std::uint64_t sum(std::uint64_t a, std::uint64_t b) {
+    return a + b;
+}
+
+inline std::uint64_t product(std::uint64_t a, std::uint64_t b) {
+    return a * b;
+}
+
+/// Of two NaNs the first one. A compiler may take either, another one in each place.
+inline double sum(double a, double b) {
+#ifdef __x86_64__
+    asm("addsd %1, %0" : "+x"(a) : "xm"(b));
+    return a;
+#else
+    return a + b;
+#endif
+}
+
+inline double product(double a, double b) {
+#ifdef __x86_64__
+    asm("mulsd %1, %0" : "+x"(a) : "xm"(b));
+    return a;
+#else
+    return a * b;
+#endif
+}
+
 inline double exact(double value) {
     return value;
 }

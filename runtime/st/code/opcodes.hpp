@@ -120,13 +120,13 @@
     LINESHAFT_ST_ORDER(OP, signed, integer, I) LINESHAFT_ST_ORDER(OP, unsigned, integer, U)          \
     LINESHAFT_ST_ORDER(OP, float, real, R)                                                           \
     LINESHAFT_ST_EQUAL(OP, word, integer, U) LINESHAFT_ST_EQUAL(OP, float, real, R)                  \
-    OP(add_lreal, real, "wrr-", put(a, R(b) + R(c)))                                                 \
+    OP(add_lreal, real, "wrr-", put(a, sum(R(b), R(c))))                                             \
     OP(sub_lreal, real, "wrr-", put(a, R(b) - R(c)))                                                 \
-    OP(mul_lreal, real, "wrr-", put(a, R(b) * R(c)))                                                 \
+    OP(mul_lreal, real, "wrr-", put(a, product(R(b), R(c))))                                         \
     OP(div_lreal, real, "wrr-", put(a, R(b) / R(c)))                                                 \
-    OP(add_real, real, "wrr-", put(a, narrow(R(b) + R(c))))                                          \
+    OP(add_real, real, "wrr-", put(a, narrow(sum(R(b), R(c)))))                                      \
     OP(sub_real, real, "wrr-", put(a, narrow(R(b) - R(c))))                                          \
-    OP(mul_real, real, "wrr-", put(a, narrow(R(b) * R(c))))                                          \
+    OP(mul_real, real, "wrr-", put(a, narrow(product(R(b), R(c)))))                                  \
     OP(div_real, real, "wrr-", put(a, narrow(R(b) / R(c))))                                          \
     OP(mod_lreal, real, "wrr-", put(a, std::fmod(R(b), R(c))))                                       \
     OP(neg_lreal, real, "wr--", put(a, -R(b)))                                                       \
@@ -241,14 +241,14 @@
 /// Two operations, each rounded or wrapped (`to`): `add_mul` is `(b + c) * d`, `add_from` is
 /// `d - (b + c)`.
 #define LINESHAFT_ST_PAIRS(OP, type, class, V, to)                                                   \
-    LINESHAFT_ST_PAIR(OP, add, type, class, V, to, V(b) + V(c))                                      \
+    LINESHAFT_ST_PAIR(OP, add, type, class, V, to, sum(V(b), V(c)))                                  \
     LINESHAFT_ST_PAIR(OP, sub, type, class, V, to, V(b) - V(c))                                      \
-    LINESHAFT_ST_PAIR(OP, mul, type, class, V, to, V(b) * V(c))
+    LINESHAFT_ST_PAIR(OP, mul, type, class, V, to, product(V(b), V(c)))
 
 #define LINESHAFT_ST_PAIR(OP, first, type, class, V, to, value)                                      \
-    OP(first##_add_##type, class, "wrrr", put(a, to(to(value) + V(d))))                              \
+    OP(first##_add_##type, class, "wrrr", put(a, to(sum(to(value), V(d)))))                          \
     OP(first##_sub_##type, class, "wrrr", put(a, to(to(value) - V(d))))                              \
-    OP(first##_mul_##type, class, "wrrr", put(a, to(to(value) * V(d))))                              \
+    OP(first##_mul_##type, class, "wrrr", put(a, to(product(to(value), V(d)))))                      \
     OP(first##_from_##type, class, "wrrr", put(a, to(V(d) - to(value))))
 
 /// The end of a WHILE that counts.

@@ -12,9 +12,6 @@ namespace lineshaft::st {
 
 namespace {
 
-using Kind = Type::Kind;
-using Mode = Location::Mode;
-
 /// Of what counts the calls of an instance: this bit says that it is mocked, those below how often
 /// it was called.
 constexpr std::uint64_t mocked_bit = std::uint64_t{1} << 63;

@@ -16,10 +16,6 @@ namespace lineshaft::st {
 
 namespace {
 
-using Kind = Type::Kind;
-using E = Expression::Kind;
-using Mode = Location::Mode;
-
 /// What a call is given only when all its arguments are known.
 struct Later {
     Location to;

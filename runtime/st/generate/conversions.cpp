@@ -10,8 +10,6 @@ namespace lineshaft::st {
 
 namespace {
 
-using Kind = Type::Kind;
-
 Slot look_up(Writing& w, Slot slot, const std::vector<std::int64_t>& numbers) {
     const std::uint64_t first = w.code.numbers.size();
     w.code.numbers.insert(w.code.numbers.end(), numbers.begin(), numbers.end());

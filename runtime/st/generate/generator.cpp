@@ -14,8 +14,6 @@ namespace lineshaft::st {
 
 namespace {
 
-using Kind = Type::Kind;
-
 void begin(Writing& w, Routine& routine) {
     w.routine = &routine;
     if (routine.owner || routine.is_function())

@@ -12,8 +12,6 @@ namespace lineshaft::st {
 
 namespace {
 
-using Kind = Type::Kind;
-
 std::uint64_t bits_of(const Type& type, const Constant& value) {
     if (type.is_real()) return std::bit_cast<std::uint64_t>(value.real);
     return static_cast<std::uint64_t>(value.integer);

@@ -12,8 +12,6 @@ namespace lineshaft::st {
 
 namespace {
 
-using Kind = Type::Kind;
-
 constexpr std::uint64_t most_slots = 1U << 26;
 
 void check_size(Writing& w, std::uint64_t slots, Place place, std::string_view name) {

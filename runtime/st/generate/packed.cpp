@@ -1,6 +1,5 @@
 #include "runtime/st/generate/packed.hpp"
 
-#include <bit>
 #include <cstring>
 
 #include "runtime/st/generate/images.hpp"
@@ -12,9 +11,6 @@
 namespace lineshaft::st {
 
 namespace {
-
-using Kind = Type::Kind;
-using Mode = Location::Mode;
 
 /// A bit of an address, else as it stands in packed memory of the dialect.
 PackedFormat format_of(const Variable& variable) {

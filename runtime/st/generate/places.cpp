@@ -12,10 +12,6 @@ namespace lineshaft::st {
 
 namespace {
 
-using Kind = Type::Kind;
-using E = Expression::Kind;
-using Mode = Location::Mode;
-
 /// What a reference refers to.
 Location locate_object(Writing& w, const Expression& e) {
     const Slot address = w.emit(Op::address_of_number, none, value(w, *e.operands[0]));

@@ -27,6 +27,8 @@ struct Location {
     Slot capacity = none;               ///< of a text of any length: what it holds is in that slot
 };
 
+using Mode = Location::Mode;
+
 Location locate(Writing& w, const Expression& e);
 Location locate_global(Writing& w, const Variable& variable);
 Location part(Writing& w, Location of, const Variable& member);

@@ -15,10 +15,6 @@ namespace lineshaft::st {
 
 namespace {
 
-using Kind = Type::Kind;
-using E = Expression::Kind;
-using Mode = Location::Mode;
-
 Slot null_reference(Writing& w) {
     const auto first = static_cast<Slot>(w.constants.size());
     w.constants.insert(w.constants.end(), reference_slots, 0);

@@ -16,10 +16,6 @@ namespace lineshaft::st {
 
 namespace {
 
-using Kind = Type::Kind;
-using E = Expression::Kind;
-using Mode = Location::Mode;
-
 /// As the timer begins, but with the time that was given to it.
 void reset_timer(Writing& w, const Expression& timer) {
     const Type& type = *timer.type;

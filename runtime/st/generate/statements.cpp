@@ -13,9 +13,6 @@ namespace lineshaft::st {
 
 namespace {
 
-using Kind = Type::Kind;
-using S = Statement::Kind;
-
 void write_assignment(Writing& w, const Statement& s) {
     if (s.target->kind == Expression::Kind::bit)
         return store_bits(w, *s.target, value_before(w, *s.value, *s.target));

@@ -14,9 +14,6 @@ namespace lineshaft::st {
 
 namespace {
 
-using Kind = Type::Kind;
-using E = Expression::Kind;
-
 constexpr std::uint32_t result_slots = 1 + (longest_result + 7) / 8;
 
 Slot text_conversion(Writing& w, const Expression& e) {

@@ -10,9 +10,6 @@ namespace lineshaft::st {
 
 namespace {
 
-using Kind = Type::Kind;
-using E = Expression::Kind;
-
 /// What is beyond its type is a fault. Of a narrow type as a LINT, which holds it all.
 Slot exact(Writing& w, Word op, const Type& type, Slot a, Slot b, Slot wanted) {
     const bool narrow = type.bits < 64;

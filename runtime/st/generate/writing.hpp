@@ -10,6 +10,10 @@
 
 namespace lineshaft::st {
 
+using Kind = Type::Kind;
+using E = Expression::Kind;
+using S = Statement::Kind;
+
 /// Of a Slot: while a routine is being written its temporaries, constants and the frames of the
 /// functions that it calls are counted from 0 each; the end of the routine puts them behind its
 /// variables.

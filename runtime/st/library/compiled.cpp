@@ -1,6 +1,5 @@
 #include "runtime/st/library/compiled.hpp"
 
-#include <algorithm>
 #include <cstring>
 #include <set>
 #include <stdexcept>

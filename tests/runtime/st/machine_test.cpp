@@ -168,6 +168,13 @@ TEST_CASE("Structured Text: native code leaves the memory that the machine leave
     CHECK(compare(job("b := Inner(a, 2) + Inner(a, 3);"), {}).empty());
     CHECK(compare(job("s := DINT_TO_STRING(n * 1000);"), {}).empty());
     CHECK(compare(job("b := Inner(a, b);"), {}) == Faults{"2 division_by_zero"});
+    // Of two NaNs with other bits, of SQRT and of ATAN2, the first one is the sum and the product.
+    CHECK(compare("PROGRAM Main VAR a, b, s, t, p, q, r : LREAL; f, g, h : REAL; END_VAR\n"
+                  "a := SQRT(-1.0 - a); b := ATAN2(a, a); s := a + b; t := b + a; p := a * b; "
+                  "q := b * (a * 2.0); r := a + b * 2.0; f := TO_REAL(a) * TO_REAL(b); "
+                  "g := TO_REAL(b) * TO_REAL(a); h := f + g; END_PROGRAM\n",
+                  {})
+              .empty());
     CHECK(compare(job("t[n] := n;"), {}) == Faults{"7 array_bounds"});
     CHECK(compare(job("WHILE TRUE DO b := b + 1; END_WHILE;"), {.fuel = 100}) ==
           Faults{"7 no_end"});
