@@ -129,4 +129,11 @@ std::vector<WholeProject> read_projects(const std::string& path,
     return made;
 }
 
+std::vector<LibraryReference> references_of(const projects::Project& project) {
+    std::vector<LibraryReference> references;
+    for (const projects::Name& library : project.libraries)
+        references.push_back({library.text, library.mark});
+    return references;
+}
+
 }  // namespace lineshaft

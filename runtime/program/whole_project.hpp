@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/model/library_reference.hpp"
 #include "runtime/program/program.hpp"
 
 namespace lineshaft {
@@ -21,5 +22,8 @@ struct WholeProject {
 std::vector<WholeProject> read_projects(const std::string& path,
                                         const std::vector<std::string>& include_dirs,
                                         Diagnostics& out);
+
+/// The libraries that it refers to and that are not here, for the compiler to name.
+std::vector<LibraryReference> references_of(const projects::Project& project);
 
 }  // namespace lineshaft

@@ -119,13 +119,6 @@ std::string table_of(const Diagnostics& out) {
     return text;
 }
 
-std::vector<LibraryReference> references_of(const projects::Project& project) {
-    std::vector<LibraryReference> references;
-    for (const projects::Name& library : project.libraries)
-        references.push_back({library.text, library.mark});
-    return references;
-}
-
 }  // namespace
 
 bool is_project(const std::string& path) {

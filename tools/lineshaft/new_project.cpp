@@ -196,7 +196,8 @@ std::string program_around(const std::string& path, const std::filesystem::path&
     const auto chosen = chosen_project(path, out);
     if (!chosen) return {};
     const projects::Project& project = chosen->project;
-    const auto library = out.empty() ? st::compile(project.sources, standard_blocks(), out)
+    const auto library = out.empty() ? st::compile(project.sources, standard_blocks(), out,
+                                                   {.references = references_of(project)})
                                      : std::optional<st::Library>();
     if (!library) return {};
     const std::vector<NewTask> tasks = tasks_of(project);

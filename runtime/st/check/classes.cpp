@@ -233,8 +233,9 @@ void resolve_bases(Checking& c) {
     for (Routine& routine : c.checked.routines) {
         if (!routine.type) continue;
         const bool is_interface = routine.is_interface();
-        for (const Token& name : routine.pou->bases) add_base(c, routine, name, is_interface);
-        for (const Token& name : routine.pou->implemented) add_base(c, routine, name, true);
+        const auto own = [&](const Token& name) { return without_project(c, name).value_or(name); };
+        for (const Token& name : routine.pou->bases) add_base(c, routine, own(name), is_interface);
+        for (const Token& name : routine.pou->implemented) add_base(c, routine, own(name), true);
     }
     std::unordered_set<const Routine*> seen;
     for (Routine& routine : c.checked.routines) link_methods(c, routine, seen);

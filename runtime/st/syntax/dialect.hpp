@@ -18,7 +18,7 @@ struct Dialect {
     bool texts_of_integers_have_signs;  ///< INT_TO_STRING(5) is '+5', else '5'
     bool bits_count_in_reals = false;   ///< DWORD_TO_REAL(1) is 1.0, else the REAL of these bits
     bool is_loose =
-        false;  ///< `f(a, )`, `RETURN(done);`, a value as a statement, CONCAT(STR1 := a)
+        false;  ///< `f(a, )`, `RETURN(done);`, `;;`, CONCAT(STR1 := a), PROGRAMs by name
     bool packs_as_s7 = false;  ///< bytes of packed memory: the highest first, words even
 };
 

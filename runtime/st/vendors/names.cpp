@@ -51,9 +51,10 @@ constexpr Renamed parts[] = {{"reset", "r"},
 constexpr Renamed arguments[] = {{"str", "in"}, {"str1", "in1"}, {"str2", "in2"},
                                  {"size", "l"}, {"len", "l"},    {"pos", "p"}};
 
-constexpr std::string_view libraries[] = {
-    "standard", "standard64",  "tc2_standard", "tc2_mc2",        "sm3_basic",      "sm3_robotics",
-    "plcopen",  "system.math", "system.timer", "system.strings", "system.datetime"};
+constexpr std::string_view libraries[] = {"standard",     "standard64",     "tc2_standard",
+                                          "tc2_system",   "tc2_mc2",        "sm3_basic",
+                                          "sm3_robotics", "plcopen",        "system.math",
+                                          "system.timer", "system.strings", "system.datetime"};
 
 constexpr AddedInput added_inputs[] = {
     {"StartMode"},    {"StopMode"},    {"Restart"},    {"PositionControlled"},
