@@ -114,14 +114,14 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
         if (!type.name.text.empty()) entry.used.insert(lower(type.name.text));
     for (const Declaration& variable : tree.declarations)
         entry.own.insert(lower(variable.name.text));
-    for (const DeclarationBlock& block : tree.globals) {
-        if (block.section == Section::external) continue;
+    for (const DeclarationBlock& block : tree.globals)
         for (const Declaration* variable : block.declarations) {
             const std::string name = lower(fmt::format("{}.{}", block.list, variable->name.text));
             entry.types.emplace(name, name);
-            entry.values.insert(lower(variable->name.text));
         }
-    }
+    for (const DeclarationBlock& block : tree.globals)
+        for (const Declaration* variable : block.declarations)
+            if (block.section == Section::global) entry.values.insert(lower(variable->name.text));
     for (const Expression& e : tree.expressions) {
         if (e.kind == Expression::Kind::member) add_used(entry.used, entry.own, e);
         const bool is_name = e.kind == Expression::Kind::name || e.kind == Expression::Kind::typed;
