@@ -108,6 +108,24 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
     return variable;
 }
 
+/// What a VAR_EXTERNAL says of a variable that no VAR_GLOBAL here declares, as those of a
+/// controller's modules, which other tools make.
+void declare_externals(Checking& c) {
+    for (const DeclarationBlock& block : c.tree.globals)
+        for (const Declaration* declared : block.declarations) {
+            const Token& name = declared->name;
+            if (block.section != Section::external || c.globals.contains(name.text) ||
+                c.users.places.contains(name.text))
+                continue;
+            const Type* type = resolve(c, *declared->type);
+            if (!type || type->kind == Kind::handle) continue;
+            c.warn(code::not_declared, name.place,
+                   fmt::format("no VAR_GLOBAL declares '{}'", name.text),
+                   "it is a variable of its own here: declare it where its value comes from");
+            declare_global(c, {.section = Section::global}, *declared);
+        }
+}
+
 /// Functions and methods of one name whose arguments are of other types.
 bool is_overload(const Pou& routine, const Routine* first,
                  const NameMap<std::vector<Routine*>>& overloads, std::string_view name) {
@@ -333,7 +351,7 @@ void collect_names(Checking& c) {
     }
     for (const DeclarationBlock& block : c.tree.globals)
         for (const Declaration* declared : block.declarations)
-            if (block.constant) {
+            if (block.constant && block.section == Section::global) {
                 const Checking::GlobalConstant constant{&block, declared};
                 c.constants.emplace(name_in_list(c, block, *declared), constant);
                 if (!block.is_qualified_only) c.constants.emplace(declared->name.text, constant);
@@ -369,8 +387,10 @@ Variable* declare_early(Checking& c, const Checking::GlobalConstant& constant) {
 void declare_globals(Checking& c) {
     for (const DeclarationBlock& block : c.tree.globals)
         for (const Declaration* declared : block.declarations)
-            if (!block.constant || c.begun_constants.insert(declared).second)
+            if (block.section == Section::global &&
+                (!block.constant || c.begun_constants.insert(declared).second))
                 declare_global(c, block, *declared);
+    declare_externals(c);
     c.constants.clear();
     for (Pou* pou : c.tree.units) {
         if (pou->kind != PouKind::data_block) continue;

@@ -45,13 +45,6 @@ void check_data_block(Checking& c, const Global& global) {
     c.routine = nullptr;
 }
 
-/// `(0)`, which B&R and CODESYS 2.3 write for the initial values of what has several.
-bool is_nothing(const Expression& value, const Type& type) {
-    const bool has_several =
-        type.kind == Kind::structure || type.kind == Kind::array || type.kind == Kind::block;
-    return has_several && value.kind == E::constant && value.token.text == "0";
-}
-
 /// Of several dimensions either a list of lists, or all elements in one, the last index first.
 void check_elements(Checking& c, Expression& list, const Type& array) {
     const bool nested = list.is_nested();
@@ -112,6 +105,13 @@ void check_members(Checking& c, Expression& list, const Type& type) {
             check_initial(c, argument.value, *found->type);
         }
     }
+}
+
+/// `(0)`, which B&R and CODESYS 2.3 write for the initial values of what has several.
+bool is_nothing(const Expression& value, const Type& type) {
+    const bool has_several =
+        type.kind == Kind::structure || type.kind == Kind::array || type.kind == Kind::block;
+    return has_several && value.kind == E::constant && value.token.text == "0";
 }
 
 }  // namespace

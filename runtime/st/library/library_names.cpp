@@ -108,7 +108,8 @@ NameSet declared_names(const Tree& tree) {
         if (type.kind == TypeText::Kind::enumeration)
             for (const Argument& value : type.values) names.insert(value.name.text);
     for (const DeclarationBlock& block : tree.globals)
-        for (const Declaration* variable : block.declarations) names.insert(variable->name.text);
+        for (const Declaration* variable : block.declarations)
+            if (block.section == Section::global) names.insert(variable->name.text);
     return names;
 }
 

@@ -123,7 +123,7 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
         }
     for (const DeclarationBlock& block : tree.globals)
         for (const Declaration* variable : block.declarations)
-            entry.values.insert(lower(variable->name.text));
+            if (block.section == Section::global) entry.values.insert(lower(variable->name.text));
     for (const Expression& e : tree.expressions) {
         if (e.kind == Expression::Kind::member) add_used(entry.used, entry.own, e);
         const bool is_name = e.kind == Expression::Kind::name || e.kind == Expression::Kind::typed;

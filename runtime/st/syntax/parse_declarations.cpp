@@ -100,7 +100,8 @@ void parse_sections(Parsing& p, Pou& pou, Word end) {
         DeclarationBlock block = parse_section(p, is_kept   ? Section::kept
                                                   : is_inst ? Section::local
                                                             : word->section);
-        if (block.section != Section::external) pou.blocks.push_back(std::move(block));
+        const bool is_external = block.section == Section::external;
+        (is_external ? p.tree.globals : pou.blocks).push_back(std::move(block));
     }
 }
 

@@ -304,8 +304,8 @@ d := a AND (b OR (NOT c));
 _result1 := d;
 IF _result1 THEN a := TRUE; END_IF
 timer(IN := d, PT := T#1s);
-_result2 := (MAX(x + 2, y)) > z;
-IF (MAX(x + 2, y)) > z THEN _jump3 := 1; END_IF
+_result2 := MAX(x + 2, y) > z;
+IF MAX(x + 2, y) > z THEN _jump3 := 1; END_IF
 IF _jump3 = 0 THEN
 _result2 := NOT a;
 END_IF
@@ -354,7 +354,6 @@ TRANSITION FROM Work TO Begin := c;
 END_TRANSITION
 END_ACTION
 Run();
-
 END_PROGRAM
 )");
 }
