@@ -89,6 +89,10 @@ const Type* check_member(Checking& c, Expression*& e) {
         e = e->operands[0];
         return type;
     }
+    if (type->is_instance() && same_name(name, "eno")) {  // what has no such output was executed
+        e = make_boolean(c, *e, true);
+        return &bool_type;
+    }
     std::vector<std::string> names;
     if (type->kind == Kind::block)
         for (const Variable* variable : all_variables(*type->routine))

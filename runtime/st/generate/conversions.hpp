@@ -5,6 +5,9 @@
 namespace lineshaft::st {
 
 /// An expression that is a conversion.
+/// Of `?=`: where the instance is, or 0 if it is not of the type.
+Slot attempted(Writing& w, const Expression& e, Slot wanted);
+
 Slot converted(Writing& w, const Expression& e, Slot wanted);
 
 /// A number, a time or a boolean in `slot` as one of another type; a real one is rounded, or cut.

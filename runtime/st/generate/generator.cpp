@@ -30,6 +30,7 @@ void begin(Writing& w, Routine& routine) {
     w.constants.clear();
     w.constant_slots.clear();
     w.loops.clear();
+    w.labels.clear();
     w.numbers[&routine] = static_cast<std::uint32_t>(w.code.routines.size());
     w.code.routines.push_back({.name = routine.name,
                                .entry = w.next(),
@@ -115,13 +116,13 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
     }
     prepare_dispatch(w);
     w.fuses = !w.options.counted && !w.options.covered && !w.has_tests;
-    for (const Global& global : w.checked.globals)
-        if (global.type->kind != Kind::block && global.name != image_name)
-            slots_of(w, *global.type);
+    GlobalLayout layout(w);
     for (Routine* routine : w.checked.order) {
         if (!w.out.empty()) return {};
         write(w, *routine);
+        layout.place_known();
     }
+    layout.finish();
     finish_dispatch(w);
     for (const Global& global : w.checked.globals) {
         Writing::Image image(slots_of(w, *global.type), 0);

@@ -60,6 +60,15 @@ void place_mark(Routine& routine, std::uint32_t& at) {
     if (routine.may_meet_itself && !routine.is_function()) routine.mark = at++;
 }
 
+/// Also how long its instances are.
+bool is_known(const Type& type) {
+    if (type.kind == Kind::block) return type.routine->frame != 0;
+    if (type.kind == Kind::array) return is_known(*type.element);
+    return type.kind != Kind::structure ||
+           std::ranges::all_of(type.members,
+                               [](const Variable* member) { return is_known(*member->type); });
+}
+
 }  // namespace
 
 std::uint32_t slots_in_frame(Writing& w, const Variable& variable) {
@@ -138,6 +147,32 @@ void lay_out_call(Writing& w, Routine& routine) {
     Writing::Image& image = block ? w.images[block->type] : w.function_images[&routine];
     image.resize(at, 0);
     for (const Variable& variable : routine.variables) fill(w, image, variable.slot, variable);
+}
+
+GlobalLayout::GlobalLayout(Writing& w) : w_(w) {
+    for (const Global& global : w.checked.globals) {
+        if (global.type->kind == Kind::block || global.name == image_name) continue;
+        if (is_known(*global.type))
+            slots_of(w, *global.type);
+        else if (global.type->kind == Kind::structure && !global.pou)
+            late_ = const_cast<Type*>(global.type);
+    }
+    if (late_) waiting_.assign(late_->members.begin(), late_->members.end());
+    place_known();
+}
+
+void GlobalLayout::place_known() {
+    std::erase_if(waiting_, [&](Variable* variable) {
+        if (!is_known(*variable->type)) return false;
+        variable->slot = static_cast<std::uint32_t>(slots_);
+        slots_ += slots_of(w_, *variable->type);
+        check_size(w_, slots_, variable->name.place, variable->text);
+        return true;
+    });
+}
+
+void GlobalLayout::finish() {
+    if (late_) late_->slots = static_cast<std::uint32_t>(std::min(slots_, most_slots));
 }
 
 }  // namespace lineshaft::st

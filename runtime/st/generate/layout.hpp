@@ -19,4 +19,21 @@ bool is_in_signature(const Variable& variable, bool is_given);
 /// What is given to a function or a method comes first. A method's frame is a part of its block's.
 void lay_out_call(Writing& w, Routine& routine);
 
+/// Instances among the variables beside the blocks have their places once their blocks are
+/// written, which is before who names them: their size is not known earlier.
+class GlobalLayout {
+  public:
+    explicit GlobalLayout(Writing& w);
+    /// What can be by now.
+    void place_known();
+    /// All blocks are written.
+    void finish();
+
+  private:
+    Writing& w_;
+    Type* late_ = nullptr;
+    std::vector<Variable*> waiting_ = {};
+    std::uint64_t slots_ = 0;
+};
+
 }  // namespace lineshaft::st
