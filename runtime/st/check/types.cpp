@@ -128,8 +128,8 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
     std::int64_t number = 0;
     for (const Argument& value : text.values) {
         if (!value.is_named())
-            return c.fail(code::something_else_expected, value.value->place,
-                          "expected the name of a value", "write values as name := 1");
+            return c.fail(code::wrong_arguments, value.value->place,
+                          "a value of an enumeration has a name", "write values as name := 1");
         if (Expression* given = value.value)
             if (const auto whole = check_whole(c, given,
                                                !has_base   ? lint_type

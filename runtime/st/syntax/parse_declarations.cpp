@@ -126,8 +126,9 @@ DeclarationBlock parse_section(Parsing& p, Section section) {
     return block;
 }
 
-/// Var_Decl : ( Variable_List | Name Located_At | 'AT' Direct ) ':' Data_Type ( 'AT' Direct ) ?
+/// Var_Decl : ( Variable_List | Name Located_At | 'AT' Direct ) ':' Data_Type
 ///            ( 'R_EDGE' | 'F_EDGE' ) ? ( ':=' Var_Init ) ? ';'
+///          | Name ':' Data_Type 'AT' Direct ( ':=' Var_Init ) ? ';'
 /// Variable_List : Name ( ',' Name ) *
 /// Without a name an address is its name. OpenPLC writes it behind the type.
 void parse_variables(Parsing& p, std::vector<Declaration*>& to) {

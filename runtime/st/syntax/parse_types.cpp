@@ -49,9 +49,10 @@ void parse_structure(Parsing& p, TypeText& type, TypeText::Kind kind) {
 
 /// Enum_Spec : Enum_Values Name ?
 /// Enum_Values : '(' Enum_Value ( ',' Enum_Value ) * ')'
-/// Enum_Value : Name ( ':=' Expression ) ? | Expression
+/// Enum_Value : Name ( ':=' Expression ) ?
+/// Init_Values : '(' ( Enum_Value | Expression ) ( ',' ( Enum_Value | Expression ) ) * ')'
 /// The name is that of the numbers' type, where none stands before. Behind a block's name these are
-/// arguments of its FB_init, by position, too.
+/// arguments of its FB_init.
 void parse_enumeration(Parsing& p, TypeText& type) {
     type.kind = TypeText::Kind::enumeration;
     expect(p, Word::open);
@@ -90,7 +91,7 @@ bool has_range(const Parsing& p) {
 
 /// Type_Access : ( '_' '.' ) ? Qualified_Name
 ///             | 'STRING' Text_Length | 'WSTRING' Text_Length
-///             | Name Enum_Values | Name '(' Subrange ')'
+///             | Name Init_Values | Name '(' Subrange ')'
 void parse_named_type(Parsing& p, TypeText& type) {
     if (p.here().text == "_" && p.next().word == Word::dot) p.at += 2;
     type.name = parse_qualified_name(p, "a type");
