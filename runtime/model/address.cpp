@@ -36,6 +36,16 @@ std::optional<ImageAddress> read_address(std::string_view text) {
     const auto first = take_number(text);
     if (!first) return {};
     address.byte = *first;
+    constexpr std::uint32_t most_inner = 256;
+    bool is_hierarchical = false;
+    while (text.starts_with('.') && (address.bits > 1 || text.find('.', 1) != text.npos)) {
+        text.remove_prefix(1);
+        const auto inner = take_number(text);
+        if (!inner || *inner >= most_inner || address.byte > longest_area) return {};
+        address.byte = address.byte * most_inner + *inner;
+        is_hierarchical = true;
+    }
+    if (is_hierarchical) address.byte *= (address.bits + 7U) / 8;
     if (address.bits > 1) return text.empty() ? std::optional(address) : std::nullopt;
     if (text.empty()) {
         address.byte = *first / 8;

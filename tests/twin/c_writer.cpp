@@ -542,6 +542,10 @@ class CWriter {
                 return put("goto next{};", loops_.back());
             case S::return_:
                 return put("goto leave;");
+            case S::label:
+                return put("label_{}: ;", s.value->token.text);
+            case S::goto_:
+                return put("goto label_{};", s.value->token.text);
             case S::action:
             case S::sequence:
                 return write(s.body);

@@ -25,6 +25,8 @@ const OtherAssertion assertions[] = {
     {"AxUnit.Assert.NotEqual", "ASSERT_NEQ", {"expected", "actual"}, true},
     {"AxUnit.Assert.LessThan", "ASSERT_LT", {"left", "right"}, false},
     {"AxUnit.Assert.GreaterThan", "ASSERT_GT", {"left", "right"}, false},
+    {"AxUnit.ResultFunctions.axunit_Fail", "ASSERT_TRUE", {"message", "file", "line"}, false},
+    {"AxUnit.ResultFunctions.axunit_Succeed", "ASSERT_TRUE", {}, false},
     {"ASSERT_EQUAL", "ASSERT_EQ", {"expected", "actual"}, true},
     {"ASSERT_NOT_EQUAL", "ASSERT_NEQ", {"expected", "actual"}, true},
     {"ASSERT_GREATER", "ASSERT_GT", {"value", "bound"}, false},
@@ -63,7 +65,8 @@ const OtherAssertion* find(Checking& c, const Expression& call) {
 }  // namespace
 
 bool is_namespace_of_assertions(std::string_view path) {
-    return same_name(path, space) || same_name(path, space.substr(0, space.find('.')));
+    return same_name(path, space) || same_name(path, space.substr(0, space.find('.'))) ||
+           same_name(path, "AxUnit.ResultFunctions");
 }
 
 Expression* assertion_call(Checking& c, const Expression& call) {
@@ -83,6 +86,11 @@ Expression* assertion_call(Checking& c, const Expression& call) {
         if (given.is_named()) at = static_cast<std::size_t>(name - declared.begin());
         if (at >= declared.size() || arguments[at].value) return wrong(given.value->place);
         arguments[at].value = given.value;
+    }
+    const bool is_result = known->name.starts_with("AxUnit.R");
+    if (is_result) {  // the file and the line are those of the call here
+        arguments.resize(std::min<std::size_t>(arguments.size(), 1));
+        arguments.insert(arguments.begin(), {.value = make_boolean(c, call, arguments.empty())});
     }
     for (const Argument& argument : arguments)
         if (!argument.value) return wrong(call.operands[0]->place);

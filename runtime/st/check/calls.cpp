@@ -188,7 +188,19 @@ void give_open_arrays(Checking& c, Expression*& e, const Routine& routine) {
     e = make_with(c, *e, std::move(given));
 }
 
+/// `EN := TRUE` of a call within an expression says nothing.
+void leave_out_enable(Checking& c, Expression*& e, const Routine& routine) {
+    const auto is_enable = [&](Argument& a) {
+        return same_name(a.name.text, "en") && !routine.names.contains("en") && check(c, a.value) &&
+               a.value->kind == E::constant && a.value->type->kind == Kind::boolean &&
+               a.value->constant.integer == 1;
+    };
+    std::vector<Argument> left = e->arguments;
+    if (std::erase_if(left, is_enable) > 0) e = make_with(c, *e, std::move(left));
+}
+
 void check_arguments(Checking& c, Expression*& e, Routine& routine) {
+    leave_out_enable(c, e, routine);
     Expression& call = *e;
     std::size_t position = 0;
     std::vector<const Variable*> given;

@@ -96,6 +96,7 @@ const Type* standard_type(Checking& c, std::string_view name) {
     if (const auto it = c.catalog_types.find(name); it != c.catalog_types.end()) return it->second;
     const std::string_view wanted = standard_type_name(name);
     if (const Type* handle = handle_type(c, wanted)) return handle;
+    if (const Type* number = wanted == name ? nullptr : find_elementary(wanted)) return number;
     const NamedKind named = find_kind(c.catalog, wanted);
     if (!named.kind) return nullptr;
     const BlockType& kind = *named.kind;

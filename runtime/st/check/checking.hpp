@@ -56,7 +56,7 @@ inline bool is_dtl(const Type& type) {
 struct Prefixes {
     const Scope* scope = nullptr;
     std::vector<std::string_view> paths = {};  ///< of namespaces, from the innermost on
-    bool is_whole = true;                      ///< false: a USING is unknown, which was told
+    bool is_whole = true;                      ///< false: a USING is unknown
 };
 
 /// What check() knows while it works. The work is done by functions that take it first, in a file
@@ -75,7 +75,8 @@ struct Checking {
     Names users = {}, prelude = {};
     NameMap<bool> namespaces = {};  ///< `a`, `a.b`; false: there is none of that name, told once
     std::unordered_map<const Source*, std::vector<Prefixes>> prefixes =
-        {};  ///< as the tree's scopes
+        {};                                  ///< as the tree's scopes
+    std::vector<Token> unknown_usings = {};  ///< namespaces that are not there
     std::vector<std::string_view> open_libraries =
         {};  ///< whose names are seen behind all others without theirs
     NameMap<Variable*> globals = {};
@@ -95,8 +96,16 @@ struct Checking {
     bool has_tests = false;
     Type* mocks = nullptr;  ///< of the global that has what MOCK_FUNCTION says
 
-    Routine* routine = nullptr;                                   ///< that is being checked
-    int loops = 0;                                                ///< around the statement
+    Routine* routine = nullptr;  ///< that is being checked
+    /// The variable whose initial value is being checked, and the way to the part at hand.
+    struct Beginning {
+        Variable* variable = nullptr;
+        std::vector<std::pair<std::string_view, std::int64_t>> path = {};  ///< members, or indices
+        bool is_repeated = false;                                          ///< of `3(x)`
+        bool is_made = false;  ///< something of it is no constant
+    } beginning = {};
+    int loops = 0;                     ///< around the statement
+    std::vector<NameSet> labels = {};  ///< of each list of statements around it
     std::unordered_map<const Routine*, NameSet> undeclared = {};  ///< names that were told
     std::span<const LibraryReference> missing_libraries = {};     ///< that a project refers to
     NameMap<Place> foreign = {};  ///< names that may be of a library that is not here

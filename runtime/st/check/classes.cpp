@@ -247,7 +247,8 @@ void inherit_variables(Routine& block) {
 
 void check_classes(Checking& c) {
     for (Routine& routine : c.checked.routines) {
-        if (routine.overrides) check_signature(c, routine, *routine.overrides);
+        const bool is_constructor = same_name(routine.pou->name.text, "fb_init");
+        if (routine.overrides && !is_constructor) check_signature(c, routine, *routine.overrides);
         if (!routine.type || routine.is_interface()) continue;
         check_interfaces(c, routine);
         check_abstract(c, routine);

@@ -221,10 +221,23 @@ const Type& longer_string(Checking& c) {
     return type;
 }
 
+/// `Motor(number := 3)` of a block, which is written as an enumeration with a base; null: it is
+/// one.
+const std::vector<Argument>* constructor_arguments(Checking& c, const TypeText& text) {
+    const bool may_be =
+        text.kind == TypeText::Kind::enumeration && text.name.word != Word::end_of_file;
+    if (!may_be || standard_type(c, text.name.text)) return nullptr;
+    const Type* type = resolve_name(c, text.name);
+    return type && type->kind == Kind::block ? &text.values : nullptr;
+}
+
 void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
     for (const Declaration* declared : block.declarations) {
         const bool is_given = block.section == Section::in_out || block.section == Section::input;
+        const auto* constructed =
+            declared->type ? constructor_arguments(c, *declared->type) : nullptr;
         const Type* type = !declared->type ? nullptr
+                           : constructed   ? resolve_name(c, declared->type->name)
                            : is_given      ? resolve_parameter(c, *declared->type)
                                            : resolve(c, *declared->type);
         const bool is_value = takes_values(block, type);
@@ -234,6 +247,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         if (section == Section::in_out && type == &string_type) type = &open_string_type;
         Variable* variable = add(c, routine.variables, *declared, type);
         variable->section = section;
+        variable->constructed = constructed;
         variable->constant = constant;
         variable->retain = block.retain;
         variable->of = routine.pou;

@@ -1,10 +1,12 @@
 #include "runtime/st/check/initial_values.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
+#include "runtime/st/check/beginnings.hpp"
 #include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
@@ -45,6 +47,13 @@ void check_data_block(Checking& c, const Global& global) {
     c.routine = nullptr;
 }
 
+void check_part(Checking& c, Expression*& value, const Type& type, std::string_view member,
+                std::int64_t index = 0) {
+    c.beginning.path.emplace_back(member, index);
+    check_initial(c, value, type);
+    c.beginning.path.pop_back();
+}
+
 /// Of several dimensions either a list of lists, or all elements in one, the last index first.
 void check_elements(Checking& c, Expression& list, const Type& array) {
     const bool nested = list.is_nested();
@@ -53,18 +62,24 @@ void check_elements(Checking& c, Expression& list, const Type& array) {
     for (const Type* inner = &array; !nested && inner->has_inner; inner = inner->element)
         room *= Wide{inner->element->upper} - inner->element->lower + 1;
     Wide count = 0;
+    const bool outer = c.beginning.is_repeated;
+    c.beginning.is_repeated |= !nested && array.has_inner;  // one index does not say which
     for (Argument& argument : list.arguments) {
         Expression* value = argument.value;
         if (value->kind != E::repeated) {
-            check_initial(c, argument.value, element);
+            check_part(c, argument.value, element, {},
+                       array.lower + static_cast<std::int64_t>(count));
             ++count;
             continue;
         }
+        const bool was_repeated = std::exchange(c.beginning.is_repeated, true);
         const auto times = check_whole(c, value->operands[0], lint_type);
         for (Argument& repeated : value->arguments) check_initial(c, repeated.value, element);
+        c.beginning.is_repeated = was_repeated;
         const Wide one = static_cast<Wide>(std::max<std::size_t>(value->arguments.size(), 1));
         if (times && *times >= 0 && *times <= most_elements) count += *times * one;
     }
+    c.beginning.is_repeated = outer;
     if (count > room)
         c.fail(code::value_out_of_range, list.place,
                fmt::format("{} values for {} elements", static_cast<std::int64_t>(count),
@@ -84,7 +99,7 @@ void check_members(Checking& c, Expression& list, const Type& type) {
     for (std::size_t i = 0; by_place && i < list.arguments.size(); ++i) {
         Variable& member = *type.members[i];
         list.arguments[i].variable = &member;
-        if (member.type) check_initial(c, list.arguments[i].value, *member.type);
+        if (member.type) check_part(c, list.arguments[i].value, *member.type, member.text);
     }
     for (Argument& argument : list.arguments) {
         if (by_place) break;
@@ -102,7 +117,7 @@ void check_members(Checking& c, Expression& list, const Type& type) {
                    fmt::format("{} has no '{}'", describe(type), argument.name.text),
                    suggest(argument.name.text, names));
         } else if (found->type) {
-            check_initial(c, argument.value, *found->type);
+            check_part(c, argument.value, *found->type, found->text);
         }
     }
 }
@@ -130,6 +145,7 @@ void check_initial_values(Checking& c) {
                 c.fail(code::wrong_place, variable.name.place, "a VAR_IN_OUT has no initial value",
                        "leave ':= ...' out; the caller gives the variable");
             check_one(variable);
+            begin_instance(c, variable);
         }
     }
     c.routine = nullptr;
@@ -139,7 +155,11 @@ void check_initial(Checking& c, Variable& variable) {
     Expression& written = *variable.initial;
     if (!written.initial) {
         Expression* value = &written;
+        const Checking::Beginning own{.variable = c.routine && variable.of ? &variable : nullptr};
+        Checking::Beginning outer = std::exchange(c.beginning, own);
         check_initial(c, value, *variable.type);
+        const bool is_made = std::exchange(c.beginning, std::move(outer)).is_made;
+        if (is_made) return void(variable.initial = value);
         written.initial = value;
     }
     variable.initial = written.initial;
@@ -176,7 +196,7 @@ void check_initial(Checking& c, Expression*& value, const Type& type) {
     if (!check(c, value, &type)) return;
     evaluate(c, value);
     if (!coerce(c, value, type)) return;
-    if (!evaluate(c, value) && value->type)
+    if (!evaluate(c, value) && value->type && !begin_with(c, value, type))
         c.fail(code::not_a_constant, value->place, "an initial value is a constant",
                "assign it in the body, behind IF NOT started");
 }

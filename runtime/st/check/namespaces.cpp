@@ -104,7 +104,7 @@ void collect_namespaces(Checking& c) {
                     if (is_namespace(c, used.text) || is_namespace_of_assertions(used.text))
                         made.paths.push_back(used.text);
                     else
-                        refuse_namespace(c, used.place, used.text), made.is_whole = false;
+                        c.unknown_usings.push_back(used), made.is_whole = false;
                 }
             }
         }
@@ -196,9 +196,20 @@ bool refuse_member_of_namespace(Checking& c, const Expression& member) {
     return true;
 }
 
-bool may_be_elsewhere(const Checking& c, Place place) {
+bool may_be_elsewhere(Checking& c, Place place) {
     const Prefixes* here = c.prefixes_at(place);
-    return here && !here->is_whole;
+    if (!here || here->is_whole) return false;
+    for (const Token& used : c.unknown_usings)
+        if (used.place.source == place.source) refuse_namespace(c, used.place, used.text);
+    return true;
+}
+
+void warn_of_usings(Checking& c) {
+    for (const Token& used : c.unknown_usings)
+        if (c.namespaces.emplace(used.text, false).second)
+            c.warn(code::not_declared, used.place,
+                   fmt::format("there is no namespace '{}'", used.text),
+                   "nothing of it is named: remove the USING");
 }
 
 }  // namespace lineshaft::st

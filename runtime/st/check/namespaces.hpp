@@ -28,6 +28,8 @@ void refuse_qualified(Checking& c, const Token& name);
 bool refuse_member_of_namespace(Checking& c, const Expression& member);
 
 /// What stands there may be of a namespace that is unknown.
-bool may_be_elsewhere(const Checking& c, Place place);
+bool may_be_elsewhere(Checking& c, Place place);
+/// Of a USING whose namespace is not there, and of which nothing is named.
+void warn_of_usings(Checking& c);
 
 }  // namespace lineshaft::st

@@ -113,6 +113,10 @@ const Type* check_member(Checking& c, Expression*& e) {
         e = e->operands[0];
         return type;
     }
+    if (type->is_instance() && same_name(name, "eno")) {  // what has no such output was executed
+        e = make_boolean(c, *e, true);
+        return &bool_type;
+    }
     return fail_member(c, *e, *type, name);
 }
 

@@ -138,12 +138,15 @@ bool bind(Checking& c, Expression*& e, const Type& to) {
         e = make_constant(c, *e, to, {});
         return true;
     }
-    if (e->type->is_reference() && e->type->element && is_target(to, *e->type->element)) {
+    const Type& from = *e->type;
+    const bool sees_bytes = from.is_pointer() && from.element && to.element &&
+                            is_of_bytes(*from.element) && packed_bits(*to.element, iec) > 0;
+    if (from.is_reference() && from.element && (is_target(to, *from.element) || sees_bytes)) {
         e = make_converted(c, e, to);
         return true;
     }
     if (!to.element) return false;
-    if (!is_target(to, *e->type)) return refuse_target(c, *e, to, *e->type);
+    if (!is_target(to, from)) return refuse_target(c, *e, to, from);
     return refer(c, e, to);
 }
 
@@ -328,6 +331,34 @@ const Type* check_pointer_index(Checking& c, Expression*& e) {
 void note_lending(Checking& c, const Expression& place) {
     const Expression& root = root_of(place);
     if (c.routine && root.variable && root.variable->ends_with_call()) c.routine->lends = true;
+}
+
+void check_attempt(Checking& c, Statement& s) {
+    const Type* type = check(c, s.target);
+    if (!check(c, s.value, type) || !type) return;
+    Expression *&target = without_alias(s.target), *&given = without_alias(s.value);
+    const auto is_of_block = [](const Type& t) {
+        return t.kind == Kind::block || t.kind == Kind::interface;
+    };
+    const auto refers_to_block = [&](const Type& t) {
+        return t.is_reference() && t.element && is_of_block(*t.element);
+    };
+    const Type &to = *target->type, &from = *given->type;
+    const bool fits = (to.kind == Kind::interface || refers_to_block(to)) &&
+                      (is_of_block(from) || refers_to_block(from) || is_null(*given));
+    if (!fits)
+        return (void)c.fail(
+            code::type_does_not_fit, s.place,
+            fmt::format("'?=' does not go with {} and {}", describe(to), describe(from)),
+            "it gives a variable of an interface, or a reference to a block, what is of its type");
+    s.op = Word::assign;
+    s.target = target;
+    if (!check_target(c, *target) || is_null(*given)) return (void)coerce(c, given, to);
+    if (from.kind == Kind::block) note_lending(c, *given);
+    if (Variable* root = root_of(*given).variable) root->used = true;
+    given = make_converted(c, given, to);
+    given->conversion.is_attempt = c.checked.dispatches = true;
+    s.value = given;
 }
 
 void check_reference_assignment(Checking& c, Statement& s) {

@@ -24,6 +24,9 @@ const Type* check_pointer_index(Checking& c, Expression*& e);
 void note_lending(Checking& c, const Expression& place);
 
 /// `r REF= x;`
+/// `target ?= value;`: NULL, where what the value is to is not of the target's type.
+void check_attempt(Checking& c, Statement& s);
+
 void check_reference_assignment(Checking& c, Statement& s);
 /// ADR, REF, SIZEOF, __ISVALIDREF; __NEW and __DELETE, which are refused. Empty: none of them.
 std::optional<const Type*> check_reference_call(Checking& c, Expression*& e, const Type* expected);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/source/codes.hpp"
+#include "runtime/st/check/block_moves.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -106,6 +107,7 @@ void check_special(Checking& c, Statement*& s) {
     call.type = &bool_type;  // which nothing takes
     if (f.least == 1) return check_timer(c, call.arguments[0].value, f.name);
     if (f.name == "SCATTER" || f.name == "GATHER") return rewrite_bits(c, s, f.name == "SCATTER");
+    if (f.name.ends_with("_BLK")) return rewrite_block_move(c, s);
     Expression*& timer = call.arguments[1].value;
     check_timer(c, timer, f.name);
     if (!timer->type) return;

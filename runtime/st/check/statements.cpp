@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/source/codes.hpp"
+#include "runtime/st/check/beginnings.hpp"
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/charts.hpp"
 #include "runtime/st/check/classes.hpp"
@@ -20,17 +21,37 @@ namespace {
 
 bool leaves(const Statement& statement) {
     return statement.kind == S::return_ || statement.kind == S::exit ||
-           statement.kind == S::continue_;
+           statement.kind == S::continue_ || statement.kind == S::goto_;
+}
+
+NameSet labels_of(Checking& c, const Block& block) {
+    NameSet labels;
+    for (const Statement* s : block)
+        if (s->kind == S::label && !labels.emplace(s->value->token.text).second)
+            c.fail(code::declared_twice, s->place,
+                   fmt::format("the label '{}' stands twice", s->value->token.text),
+                   "take another name");
+    return labels;
+}
+
+void check_goto(Checking& c, const Statement& s) {
+    const auto has = [&](const NameSet& labels) { return labels.contains(s.value->token.text); };
+    if (std::ranges::any_of(c.labels, has)) return;
+    c.fail(code::not_declared, s.place,
+           fmt::format("there is no label '{}' here", s.value->token.text),
+           "it stands in the statements around the GOTO, not within another one");
 }
 
 void check(Checking& c, Block& block) {
+    c.labels.push_back(labels_of(c, block));
     for (std::size_t i = 0; i < block.size(); ++i) {
         check(c, block[i]);
-        if (leaves(*block[i]) && i + 1 < block.size()) {
+        if (leaves(*block[i]) && i + 1 < block.size() && block[i + 1]->kind != S::label) {
             c.warn(code::statement_never_reached, block[i + 1]->place, "this is never reached",
                    "the statement before it leaves");
         }
     }
+    c.labels.pop_back();
 }
 
 /// The value of a standard function may be left, as that of any other.
@@ -62,9 +83,10 @@ const Routine* find_action(Checking& c, Expression& name) {
 void check_action(Checking& c, Statement*& s) {
     Expression* name = s->value;
     if (!find_action(c, *name)) {
-        if (name->kind == E::member && !name->operands[0]->type) return;
-        return (void)c.fail(code::something_else_expected, s->place, "this does nothing",
-                            "write 'name := value;', or a call 'name();'");
+        if (check(c, s->value))
+            c.warn(code::something_else_expected, s->place, "this does nothing",
+                   "write 'name := value;', or a call 'name();'");
+        return void(s = make_sequence(c, s->place, {}));
     }
     s = make_call_statement(c, make_call(c, *name, name, {}));
     check(c, s);
@@ -135,7 +157,9 @@ void check_for(Checking& c, Statement& s) {
 void check_body(Checking& c, Routine& routine) {
     c.routine = &routine;
     c.loops = 0;
-    routine.body = edge_calls(c, routine);
+    routine.body = beginnings(c, routine);
+    const Block edges = edge_calls(c, routine);
+    routine.body.insert(routine.body.end(), edges.begin(), edges.end());
     const Block chart = chart_statements(c, routine);
     routine.body.insert(routine.body.end(), chart.begin(), chart.end());
     routine.body.insert(routine.body.end(), routine.pou->body.begin(), routine.pou->body.end());
@@ -177,7 +201,10 @@ void check(Checking& c, Statement*& slot) {
                        fmt::format("{} stands outside of a loop", s.place.text()),
                        "RETURN leaves the block");
             return;
+        case S::goto_:
+            return check_goto(c, s);
         case S::return_:
+        case S::label:
             return;
         case S::sequence:
             return check(c, s.body);
@@ -186,6 +213,7 @@ void check(Checking& c, Statement*& slot) {
 
 void check_assignment(Checking& c, Statement*& s) {
     if (s->op == Word::reference_assign) return check_reference_assignment(c, *s);
+    if (s->op == Word::attempt_assign) return check_attempt(c, *s);
     if (rewrite_property(c, s)) return;
     const Type* type = check(c, s->target);
     if (s->op != Word::assign && type) {

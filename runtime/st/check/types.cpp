@@ -127,6 +127,9 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
     NameMap<Place> names;
     std::int64_t number = 0;
     for (const Argument& value : text.values) {
+        if (!value.is_named())
+            return c.fail(code::wrong_arguments, value.value->place,
+                          "a value of an enumeration has a name", "write values as name := 1");
         if (Expression* given = value.value)
             if (const auto whole = check_whole(c, given,
                                                !has_base   ? lint_type

@@ -109,6 +109,8 @@ std::string instruction_error(const Code& code, const CodeRoutine& routine, cons
         case Op::set_global:
         case Op::set_global_number:
             return in.b >= code.globals ? "a data block that is not there" : "";
+        case Op::attempt:
+            return in.c >= code.methods ? "a kind that is not there" : "";
         case Op::find_routine:
             return in.c >= code.methods        ? "a method that is not there"
                    : in.a + 1 >= routine.frame ? "one slot of two"

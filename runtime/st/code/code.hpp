@@ -38,7 +38,7 @@ struct CodeRoutine {
 /// The method of a kind of instance that a call finds.
 struct FoundRoutine {
     std::uint64_t routine = 0;
-    std::uint64_t first = 0;  ///< slot of the first that is given to it
+    std::uint64_t first = 0;  ///< slot of the first that is given to it; 0: it has no such method
 };
 
 /// What an Op::cover counts the passes of.

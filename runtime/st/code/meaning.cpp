@@ -155,6 +155,10 @@ void Frames::find(std::byte* to, std::uint64_t address, std::uint32_t method) co
     set_word(to, 1, address + found.first);
 }
 
+bool Frames::has(std::uint64_t address, std::uint32_t method) const {
+    return code.found[word(place(address), code.kind_slot()) * code.methods + method].first != 0;
+}
+
 bool Frames::has_room(std::uint64_t routine) const {
     const auto running = static_cast<std::uint64_t>(top - bottom) / 16;
     return running + 1 + code.routines[routine].depth <= levels;

@@ -285,6 +285,8 @@ struct Frames {
     /// Of the instance at the address, which is one: what that method is, to slot 0, and the
     /// address of what is given to it, to the next one.
     void find(std::byte* to, std::uint64_t address, std::uint32_t method) const;
+    /// Whether it has that method, or is of that block.
+    bool has(std::uint64_t address, std::uint32_t method) const;
 
     bool has_room(std::uint64_t routine) const;
 

@@ -12,6 +12,12 @@ constexpr StandardFunction arrays[] = {
      Typing::upper_bound, nullptr},
     {"CountOfElements(IN: ARRAY): DINT", "how many elements the array has, in all its dimensions",
      Typing::element_count, nullptr},
+    {"MOVE_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "copies COUNT elements from IN on, of an array, to those from OUT on",
+     Typing::statement, nullptr},
+    {"UMOVE_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "the same as MOVE_BLK", Typing::statement, nullptr},
+    {"FILL_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "writes IN to COUNT elements of an array, from OUT on",
+     Typing::statement, nullptr},
+    {"UFILL_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "the same as FILL_BLK", Typing::statement, nullptr},
 };
 // clang-format on
 

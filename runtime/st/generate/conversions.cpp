@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "runtime/st/generate/dispatch.hpp"
 #include "runtime/st/generate/places.hpp"
+#include "runtime/st/generate/references.hpp"
 #include "runtime/st/generate/texts.hpp"
 #include "runtime/st/generate/values.hpp"
 
@@ -95,10 +97,22 @@ Slot convert_bcd(Writing& w, const Expression& e, Slot wanted) {
 
 }  // namespace
 
+Slot attempted(Writing& w, const Expression& e, Slot wanted) {
+    const Expression& given = *e.operands[0];
+    const Slot from =
+        given.type->is_reference()            ? reference(w, given)
+        : given.type->kind == Kind::interface ? value(w, given)
+                                              : w.emit(Op::lasting, none,
+                                                       address_of(w, locate(w, given)));
+    const Type& block = e.type->is_reference() ? *e.type->element : *e.type;
+    return w.emit(Op::attempt, wanted, from, method_number(w, *block.routine));
+}
+
 Slot converted(Writing& w, const Expression& e, Slot wanted) {
     const Expression& operand = *e.operands[0];
     if (e.type->kind == Kind::handle)
         return w.emit(Op::set_global_number, wanted, static_cast<Slot>(operand.variable->global));
+    if (e.conversion.is_attempt) return attempted(w, e, wanted);
     if (e.type->kind == Kind::interface) {
         if (operand.type->kind == Kind::interface) return value(w, operand, wanted);
         return w.emit(Op::lasting, wanted, address_of(w, locate(w, operand)));

@@ -4,6 +4,9 @@
 
 namespace lineshaft::st {
 
+/// Of `?=`: where the instance is, or 0 if it is not of the type.
+Slot attempted(Writing& w, const Expression& e, Slot wanted);
+
 /// An expression that is a conversion.
 Slot converted(Writing& w, const Expression& e, Slot wanted);
 

@@ -78,7 +78,7 @@ void finish_dispatch(Writing& w) {
         for (const auto& [wanted, number] : w.method_numbers)
             if (const Routine* found = find_in(*block, *wanted))
                 w.code.found[kind * w.code.methods + number] = {w.routine_number(*found),
-                                                                found->first};
+                                                                found->owner ? found->first : 1};
 }
 
 }  // namespace lineshaft::st

@@ -28,6 +28,7 @@ void begin(Writing& w, Routine& routine) {
     w.constants.clear();
     w.constant_slots.clear();
     w.loops.clear();
+    w.labels.clear();
     w.numbers[&routine] = static_cast<std::uint32_t>(w.code.routines.size());
     w.code.routines.push_back({.name = routine.name,
                                .entry = w.next(),

@@ -6,6 +6,7 @@
 
 #include "runtime/source/codes.hpp"
 #include "runtime/st/generate/calls.hpp"
+#include "runtime/st/generate/conversions.hpp"
 #include "runtime/st/generate/layout.hpp"
 #include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/values.hpp"
@@ -190,6 +191,18 @@ void finish_shape(Writing& w, std::uint32_t number) {
     w.code.shapes[number] = made;
 }
 
+/// Of `?=`: to the instance itself, or NULL.
+Slot attempted_reference(Writing& w, const Expression& e) {
+    const Slot made = w.new_temporary(reference_slots);
+    const Slot at = attempted(w, e, made);
+    if (at != made) w.put(Op::move, made, at);
+    const std::uint64_t piece = piece_number(w, *e.type->element);
+    const Slot is_there = w.emit(Op::ne_word, none, made, w.constant_slot(0));
+    w.put(Op::mul_lint, made + 1, is_there, w.constant_slot((piece + 1) << 32));
+    w.put(Op::move, made + 2, w.constant_slot(0));
+    return made;
+}
+
 /// Of an overlay, where a variable is seen as another type.
 bool is_view(const Expression& refer) {
     const Expression& place = *refer.operands[0];
@@ -215,7 +228,8 @@ Slot reference(Writing& w, const Expression& e) {
         case E::refer:
             return reference_to(w, *e.operands[0]);
         case E::converted:
-            return reference(w, *e.operands[0]);
+            return e.conversion.is_attempt ? attempted_reference(w, e)
+                                           : reference(w, *e.operands[0]);
         case E::binary:
             return moved(w, e);
         case E::call:

@@ -235,6 +235,21 @@ void write_call(Writing& w, const Expression& e) {
         value(w, e);
 }
 
+void write_label(Writing& w, const Statement& s) {
+    Writing::Label& label = w.labels[s.value->token.text];
+    w.land(label.jumps);
+    w.land();
+    label.at = w.next();
+}
+
+void write_goto(Writing& w, const Statement& s) {
+    Writing::Label& label = w.labels[s.value->token.text];
+    if (label.at)
+        w.put(Op::repeat, 0, 0, *label.at);
+    else
+        w.jump(Op::jump, 0, 0, label.jumps);
+}
+
 void write_statement(Writing& w, const Statement& s) {
     w.place = s.place;
     switch (s.kind) {
@@ -257,6 +272,10 @@ void write_statement(Writing& w, const Statement& s) {
             return w.jump(Op::jump, 0, 0, w.loops.back().nexts);
         case S::return_:
             return w.leave();
+        case S::label:
+            return write_label(w, s);
+        case S::goto_:
+            return write_goto(w, s);
         case S::action:  // a call by now
         case S::sequence:
             w.cover_branch(s, 0);

@@ -123,6 +123,11 @@ struct Writing {
         Jumps exits, nexts;
     };
     std::vector<Loop> loops = {};
+    struct Label {
+        Jumps jumps;                      ///< from before it
+        std::optional<std::uint32_t> at;  ///< its instruction
+    };
+    NameMap<Label> labels = {};
 };
 
 }  // namespace lineshaft::st

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -123,21 +124,37 @@ class Lexer {
     /// Stops at the comment's last character.
     void skip_comment() {
         const std::size_t begin = at_;
+        if (at("(*DBG:")) return skip_debug_line();
         const bool standard = at("(*"), translated = at("(/*");
         const std::string_view open = standard ? "(*" : translated ? "(/*" : "/*";
         const std::string_view close = standard ? "*)" : translated ? "*/)" : "*/";
         int depth = 0;
+        std::size_t first_end = 0;
         for (; at_ < text_.size(); ++at_) {
             if (at(open)) {
                 if (++depth > deepest_comment) return too_deep(place(at_, at_ + 2));
                 at_ += open.size() - 1;
             } else if (at(close)) {
                 at_ += close.size() - 1;
+                if (first_end == 0) first_end = at_;
                 if (--depth == 0) return;
             }
         }
+        if (first_end != 0) {
+            at_ = first_end;
+            return out_.warn(code::character_of_no_word, place(begin, begin + 2).mark(),
+                             fmt::format("this comment is read up to its first '{}'", close),
+                             fmt::format("a comment in it has no '{}' of its own", close));
+        }
         fail(place(begin, begin + 2), "the comment does not end",
              fmt::format("it ends with '{}'; comments nest, so each '{}' needs one", close, open));
+    }
+
+    /// What OpenPLC puts behind a program for its debugger, C with its own `*)`, line by line.
+    void skip_debug_line() {
+        const std::string_view line = text_.substr(at_, text_.find('\n', at_) - at_);
+        const std::size_t end = line.rfind("*)");
+        at_ += end == line.npos ? line.size() : end + 1;
     }
 
     void too_deep(Place where) {
@@ -148,7 +165,21 @@ class Lexer {
         at_ = text_.size();
     }
 
+    /// `{{ C }}` of matiec's compilers, which a program runs as well without.
+    bool skip_foreign_code() {
+        const std::size_t end = at("{{") ? text_.find("}}", at_) : std::string_view::npos;
+        if (end == std::string_view::npos) return false;
+        if (!std::exchange(has_foreign_code_, true))
+            out_.warn(code::not_supported, place(at_, at_ + 2).mark(),
+                      "what is written in C is left out",
+                      "between {{ and }} stands what another compiler gives to its own");
+        tokens_.pragmas.push_back({tokens_.tokens.size(), new_line_, place(at_, end + 2)});
+        at_ = end + 1;
+        return true;
+    }
+
     void skip_pragma() {
+        if (skip_foreign_code()) return;
         const std::size_t begin = at_;
         for (; at_ < text_.size() && text_[at_] != '}'; ++at_)
             if (const std::size_t end = end_of_quoted(at_)) at_ = end;
@@ -437,8 +468,9 @@ class Lexer {
     std::size_t at_ = 0, start_ = 0;
     std::size_t last_foreign_ = std::string_view::npos;  ///< end of the last character of no token
     bool new_line_ = true;
-    std::vector<Place> choices_;  ///< each `{IF}` that is open
-    NameSet defined_;             ///< by `{define}`
+    bool has_foreign_code_ = false;  ///< which was told
+    std::vector<Place> choices_;     ///< each `{IF}` that is open
+    NameSet defined_;                ///< by `{define}`
 };
 
 }  // namespace

@@ -17,10 +17,6 @@ struct Unsupported {
 };
 
 constexpr Unsupported unsupported[] = {
-    {Word::goto_, "GOTO is", "write IF, CASE, EXIT or RETURN"},
-    {Word::attempt_assign, "attempts to refer (?=) are",
-     "write REF= or ':=' with what is of the type"},
-    {Word::var_access_, "access paths are", "declare the variable in VAR_GLOBAL"},
     {Word::test_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
     {Word::setup_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
     {Word::teardown_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
@@ -98,9 +94,10 @@ void refuse_chart(Parsing& p) {
     while (!p.is(Word::end_of_file) && !ends_pou(p.here().word)) p.take();
 }
 
-bool refuse_section(Parsing& p) {
+bool skip_section(Parsing& p) {
     if (!p.is(Word::var_access_)) return false;
-    refuse_unsupported(p);
+    p.out.warn(code::not_supported, p.here().place.mark(), "access paths are not taken",
+               "others name a variable by its block: block.variable");
     skip_past(p, Word::end_var_);
     p.accept(Word::semicolon);
     return true;
@@ -159,13 +156,7 @@ bool refuse_rung(Parsing& p) {
 }
 
 void refuse_value(Parsing& p, const Expression& value) {
-    if (p.is(Word::colon) && value.token.word == Word::name)
-        fail(p, code::not_supported, value.place, "labels are not supported",
-             "write IF, CASE, EXIT or RETURN");
-    else if (p.is(Word::name) && same_name(value.token.text, "jmp"))
-        fail(p, code::not_supported, value.place, "JMP is not supported",
-             "write IF, CASE, EXIT or RETURN");
-    else if (p.is(Word::semicolon) || p.here().first_in_line)
+    if (p.is(Word::semicolon) || p.here().first_in_line)
         fail(p, code::something_else_expected, value.place, "this does nothing",
              p.cases > 0 ? "a value of CASE has a ':' behind it, a call '()'"
                          : "write 'name := value;', or a call 'name();'");

@@ -23,7 +23,7 @@ void refuse_chart(Parsing& p);
 // In declarations.
 
 /// VAR_ACCESS. False: it is none.
-bool refuse_section(Parsing& p);
+bool skip_section(Parsing& p);
 /// VAR_INST and VAR_STAT where nothing stays.
 void refuse_static(Parsing& p, PouKind kind);
 void refuse_shared_place(Parsing& p);

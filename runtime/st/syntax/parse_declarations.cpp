@@ -54,7 +54,7 @@ DeclarationBlock parse_constants(Parsing& p) {
 }
 
 /// Label_Section : 'LABEL' Name ( ',' Name ) * ';' 'END_LABEL' ';' ?
-/// What they are for is told where one is used.
+/// A label is known by where it stands, too.
 void parse_labels(Parsing& p) {
     while (!p.is(Word::end_of_file) && !is_end(p.here().word) && !p.says("end_label")) p.take();
     if (p.says("end_label")) p.take();
@@ -69,6 +69,15 @@ Token parse_location(Parsing& p, const std::vector<Token>& names) {
     if (p.is(Word::direct) || p.is_name()) return p.take();
     expected(p, "an address", "after AT");
     return {};
+}
+
+/// Of a file's path or a line's number, which nobody need give.
+Expression* value_of_caller(Parsing& p, const TypeText& type) {
+    const bool is_text = type.kind == TypeText::Kind::text || same_name(type.name.text, "string");
+    Token token = type.name;
+    token.word = is_text ? Word::text : Word::integer;
+    token.text = is_text ? "" : "0";
+    return p.make(Expression::Kind::constant, token);
 }
 
 }  // namespace
@@ -89,7 +98,7 @@ void parse_sections(Parsing& p, Pou& pou, Word end) {
             continue;
         }
         const bool is_inst = p.is(Word::name) && p.here().first_in_line && p.says("var_inst");
-        if (refuse_section(p)) continue;
+        if (skip_section(p)) continue;
         const bool is_list = p.next(2).word == Word::colon || p.next(2).word == Word::comma;
         if (!is_inst && p.is_name(1) && is_list) respell(p, variable_words);
         const SectionWord* word = find_section(p.here().word);
@@ -126,8 +135,9 @@ DeclarationBlock parse_section(Parsing& p, Section section) {
 
 /// Var_Decl : ( Variable_List | Name Located_At | 'AT' Direct ) ':' Data_Type
 ///            ( 'R_EDGE' | 'F_EDGE' ) ? ( ':=' Var_Init ) ? ';'
+///          | Name ':' Data_Type 'AT' Direct ( ':=' Var_Init ) ? ';'
 /// Variable_List : Name ( ',' Name ) *
-/// Without a name an address is its name.
+/// Without a name an address is its name. OpenPLC writes it behind the type.
 void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
     const std::size_t first = p.at;
     const Word behind = p.next().word;
@@ -145,12 +155,15 @@ void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
         do names.push_back(is_reserved ? p.take() : expect_name(p, "the name of a variable"));
         while (p.accept(Word::comma));
     }
-    const Token at = parse_location(p, names);
+    Token at = parse_location(p, names);
     expect(p, Word::colon, "after the name");
     TypeText* type = parse_type(p);
+    if (p.is(Word::at_) && p.next().word == Word::direct) at = parse_location(p, names);
     const bool is_edge = p.says("r_edge") || p.says("f_edge");
     const Token edge = is_edge ? p.take() : Token{};
-    Expression* initial = p.accept(Word::assign) ? parse_initials(p) : nullptr;
+    Expression* initial = p.accept(Word::assign)   ? parse_initials(p)
+                          : is_of_caller(p, first) ? value_of_caller(p, *type)
+                                                   : nullptr;
     if (!p.panic) end_statement(p);
     if (p.panic) return skip_declaration(p);
     const auto [unit, place] = unit_between(p, first, p.at);

@@ -9,11 +9,12 @@ namespace lineshaft::st {
 namespace {
 
 bool is_assignment(Word op) {
-    return (op >= Word::assign && op <= Word::divided_assign) || op == Word::reference_assign;
+    return (op >= Word::assign && op <= Word::divided_assign) || op == Word::reference_assign ||
+           op == Word::attempt_assign;
 }
 
 /// Assign_Stmt : Variable_Access ( Assign_Op Init ) + ';'
-/// Assign_Op : ':=' | '+=' | '-=' | '*=' | '/=' | 'REF='
+/// Assign_Op : ':=' | '+=' | '-=' | '*=' | '/=' | 'REF=' | '?='
 /// `a := b := 0;` is `b := 0; a := b;`, whose two `b` are read each.
 void parse_assignment(Parsing& p, Expression* target, Block& to) {
     const Level level(p);
@@ -88,7 +89,7 @@ void parse_simple(Parsing& p, Block& to) {
     if (is_assignment(op)) return parse_assignment(p, target, to);
     if (op == Word::set_assign || op == Word::reset_assign) return parse_latch(p, target, to);
     if (op == Word::equal) return refuse_comparison(p);
-    if (p.is(Word::name) && p.says("access") && p.is_name(1))
+    if (p.is(Word::name) && p.says("access") && (p.is_name(1) || p.next().word == Word::open))
         return parse_access_statement(p, target, to);
     if (target->kind != Expression::Kind::call) return parse_value_alone(p, target, to);
     Statement* statement = p.make(Statement::Kind::call, target->token);
@@ -242,6 +243,26 @@ void parse_jump(Parsing& p, Statement::Kind kind, Block& to) {
     end_statement(p);
 }
 
+bool at_goto_label(const Parsing& p) {
+    const Token& behind = p.next(2);
+    return p.is(Word::name) && p.here().first_in_line && p.next().word == Word::colon &&
+           (behind.first_in_line || behind.word == Word::semicolon || is_name(behind.word));
+}
+
+/// Goto_Stmt : ( 'GOTO' | 'JMP' ) Name ';'
+/// Label : Name ':'
+/// CODESYS says JMP.
+void parse_goto(Parsing& p, Statement::Kind kind, Block& to) {
+    if (kind == Statement::Kind::goto_) p.take();
+    Statement* statement = p.make(kind, p.here());
+    statement->value = p.make(Expression::Kind::name, expect_name(p, "a label"));
+    to.push_back(statement);
+    if (kind == Statement::Kind::goto_)
+        end_statement(p);
+    else
+        p.take();
+}
+
 /// Region : ( 'REGION' | 'END_REGION' | 'NETWORK' | 'END_NETWORK' ) ';' ?
 /// The lexer leaves a region's title out.
 void parse_region(Parsing& p) {
@@ -252,7 +273,7 @@ void parse_region(Parsing& p) {
 }
 
 /// Stmt : ';' | Region | ( IF_Stmt | Case_Stmt | For_Stmt | While_Stmt | Repeat_Stmt ) ';' ?
-///      | Jump_Stmt | Simple_Stmt | Test_Stmt
+///      | Jump_Stmt | Goto_Stmt | Label | Simple_Stmt | Test_Stmt
 void parse_statement(Parsing& p, Block& to) {
     const Level level(p);
     if (p.panic) return;
@@ -274,6 +295,8 @@ void parse_statement(Parsing& p, Block& to) {
             return parse_jump(p, Kind::continue_, to);
         case Word::return_:
             return parse_jump(p, Kind::return_, to);
+        case Word::goto_:
+            return parse_goto(p, Kind::goto_, to);
         case Word::if_:
             parse_if(p, to);
             break;
@@ -290,6 +313,9 @@ void parse_statement(Parsing& p, Block& to) {
             parse_repeat(p, to);
             break;
         default:
+            if (p.says("jmp") && p.is_name(1) && p.next(2).word == Word::semicolon)
+                return parse_goto(p, Kind::goto_, to);
+            if (at_goto_label(p)) return parse_goto(p, Kind::label, to);
             return parse_simple(p, to);
     }
     p.accept(Word::semicolon);

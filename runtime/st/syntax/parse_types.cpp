@@ -50,14 +50,20 @@ void parse_structure(Parsing& p, TypeText& type, TypeText::Kind kind) {
 /// Enum_Spec : Enum_Values Name ?
 /// Enum_Values : '(' Enum_Value ( ',' Enum_Value ) * ')'
 /// Enum_Value : Name ( ':=' Expression ) ?
-/// The name is that of the numbers' type, where none stands before.
+/// Init_Values : '(' ( Enum_Value | Expression ) ( ',' ( Enum_Value | Expression ) ) * ')'
+/// The name is that of the numbers' type, where none stands before. Behind a block's name these are
+/// arguments of its FB_init.
 void parse_enumeration(Parsing& p, TypeText& type) {
     type.kind = TypeText::Kind::enumeration;
     expect(p, Word::open);
     do {
         Argument& value = type.values.emplace_back();
-        value.name = expect_name(p, "the name of a value");
-        if (p.accept(Word::assign)) value.value = parse_expression(p);
+        const Word behind = p.next().word;
+        const bool is_alone =
+            behind == Word::assign || behind == Word::comma || behind == Word::close;
+        const bool is_named = type.name.word == Word::end_of_file || (p.is_name() && is_alone);
+        if (is_named) value.name = expect_name(p, "the name of a value");
+        if (!is_named || p.accept(Word::assign)) value.value = parse_expression(p);
     } while (p.accept(Word::comma));
     expect(p, Word::close, "after the values");
     if (p.is(Word::name) && type.name.word == Word::end_of_file) type.name = p.take();
@@ -71,9 +77,21 @@ Expression* parse_length(Parsing& p) {
     return length;
 }
 
+/// `..` stands in the brackets.
+bool has_range(const Parsing& p) {
+    int open = 0;
+    for (std::size_t i = 0; p.next(i).word != Word::end_of_file; ++i) {
+        const Word word = p.next(i).word;
+        if (word == Word::range) return true;
+        open += (word == Word::open) - (word == Word::close);
+        if (open == 0 || word == Word::semicolon) return false;
+    }
+    return false;
+}
+
 /// Type_Access : ( '_' '.' ) ? Qualified_Name
 ///             | 'STRING' Text_Length | 'WSTRING' Text_Length
-///             | Name Enum_Values | Name '(' Subrange ')'
+///             | Name Init_Values | Name '(' Subrange ')'
 void parse_named_type(Parsing& p, TypeText& type) {
     if (p.here().text == "_" && p.next().word == Word::dot) p.at += 2;
     type.name = parse_qualified_name(p, "a type");
@@ -86,8 +104,9 @@ void parse_named_type(Parsing& p, TypeText& type) {
         type.length = parse_length(p);
     } else if (p.is(Word::open)) {
         const Word behind = p.next(2).word;
-        if (p.is_name(1) &&
-            (behind == Word::comma || behind == Word::assign || behind == Word::close))
+        if ((p.is_name(1) &&
+             (behind == Word::comma || behind == Word::assign || behind == Word::close)) ||
+            !has_range(p))
             return parse_enumeration(p, type);
         p.take();
         type.kind = TypeText::Kind::subrange;

@@ -110,6 +110,12 @@ bool close(Parsing& p, Word end, const Token& opener) {
     }
     p.unclosed_at = p.at;
     if (p.is(Word::end_of_file) && is_swallowed(p)) return false;
+    if (p.is(Word::end_of_file) && find_pou(opener.word)) {
+        p.out.warn(code::something_else_expected, opener.place.mark(),
+                   fmt::format("this {} has no {}", shown(opener.word), shown(end)),
+                   "it ends with the file");
+        return true;
+    }
     if (!p.else_ifs.empty() && end == Word::end_if_) {
         tell(p, code::something_else_expected, p.else_ifs.back(),
              "'ELSE IF' begins a second IF without an END_IF", "write ELSIF");

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "runtime/st/syntax/conditions.hpp"
+
 namespace lineshaft::st {
 
 std::pair<std::string_view, Place> unit_between(const Tokens& tokens, std::size_t first,
@@ -27,6 +29,13 @@ bool has_attribute(const Tokens& tokens, std::size_t token, std::string_view nam
         if (text.substr(0, quote).find("attribute") == text.npos) return false;
         text.remove_prefix(std::min(quote + 1, text.size()));
         return same_name(text.substr(0, text.find('\'')), name);
+    });
+}
+
+bool is_of_caller(const Tokens& tokens, std::size_t token) {
+    return std::ranges::any_of(tokens.pragmas, [&](const Pragma& pragma) {
+        return pragma.before == token && (says_pragma(pragma.place.text(), "callerfilepath") ||
+                                          says_pragma(pragma.place.text(), "callerlinenumber"));
     });
 }
 

@@ -15,6 +15,9 @@ std::pair<std::string_view, Place> unit_between(const Tokens& tokens, std::size_
 /// `{attribute 'name'}` stands before a token, and behind the one before that.
 bool has_attribute(const Tokens& tokens, std::size_t token, std::string_view name);
 
+/// `{CallerFilePath}` or `{CallerLineNumber}` of SIMATIC AX stands before it.
+bool is_of_caller(const Tokens& tokens, std::size_t token);
+
 /// The comments before a token that begin their lines, or that do not: those behind the last empty
 /// line.
 std::string_view comment_before(const Tokens& tokens, std::size_t token, bool first_in_line);

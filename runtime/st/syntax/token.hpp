@@ -101,7 +101,7 @@ enum class Word : std::uint8_t {
     reset_assign,      ///< `R=`
     output,            ///< `=>`
     reference_assign,  ///< `REF=`
-    attempt_assign,    ///< `?=`: not of this language
+    attempt_assign,    ///< `?=`
     power,
     times,
     divided,

@@ -35,9 +35,10 @@ struct Argument {
 
 /// How a conversion differs from what its types say.
 struct Conversion {
-    bool truncates = false;  ///< a real number towards zero, else to the nearest
-    bool has_sign = false;   ///< into a text: `+5`, as SCL writes it
-    bool is_bcd = false;     ///< the bit string of both has a decimal digit in each four bits
+    bool truncates = false;   ///< a real number towards zero, else to the nearest
+    bool has_sign = false;    ///< into a text: `+5`, as SCL writes it
+    bool is_attempt = false;  ///< of `?=`: none, if what is there is not of the type
+    bool is_bcd = false;      ///< the bit string of both has a decimal digit in each four bits
 };
 
 /// Bits of a whole number or a bit string, from the lowest on.
@@ -129,6 +130,8 @@ struct Statement {
         exit,
         continue_,
         return_,
+        label,     ///< `name:`, its name in `value`
+        goto_,     ///< the label's name in `value`
         action,    ///< `a;`, which only an action can mean: its name in `value`
         sequence,  ///< several one behind the other, put in by the checker for one
     };

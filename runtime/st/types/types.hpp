@@ -157,6 +157,7 @@ struct Variable {
     Access access = Access::unsaid;
     bool used = false;
     const Variable* bound_of = nullptr;  ///< ARRAY[*] whose lower or upper bound this is
+    const std::vector<Argument>* constructed = nullptr;  ///< arguments of FB_init
     Variable* edge = nullptr;    ///< of `x : BOOL R_EDGE`: the R_TRIG whose Q its name means inside
     std::string_view text = {};  ///< its name
     std::string_view doc = {};   ///< comments, as they are written
@@ -191,8 +192,10 @@ struct Routine {
     bool is_dispatched = false;                     ///< a call may find it by the instance
     bool dispatches = false;                        ///< calls what is found by an instance
     Variable* result = nullptr;
-    Type* type = nullptr;  ///< of its instances, of a block
-    Block body = {};       ///< as checked: what its statements stand for
+    Type* type = nullptr;                 ///< of its instances, of a block
+    Block body = {};                      ///< as checked: what its statements stand for
+    Block begins = {}, call_begins = {};  ///< what comes before it, once and in each call
+    Variable* begun = nullptr;            ///< of a block: that the first was done
     std::vector<Routine*> calls = {};
     std::vector<Place> call_places = {};
     std::vector<int> objects = {};  ///< globals that are blocks of the program, and that it names
