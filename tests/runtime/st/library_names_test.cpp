@@ -99,8 +99,12 @@ TEST_CASE("a library whose namespace the sources declare is theirs", "[st][libra
 TEST_CASE("what the catalogue has is a library's once that is taken", "[st][libraries]") {
     const std::string declare = "PROGRAM p VAR axis : AXIS_REF; m : MC_MoveAbsolute; b : BOOL;\n";
     const std::string call = "END_VAR m(Axis := axis, Execute := b, Options := o); END_PROGRAM\n";
+    CHECK(compiled({file("a.st", declare +
+                                     "END_VAR m(Axis := axis, ContinuousUpdate := b, Other := b);\n"
+                                     "END_PROGRAM\n")})
+              .find("MC_MOVEABSOLUTE has no argument 'Other'") != std::string::npos);
     CHECK(compiled({file("a.st", declare + "o : BOOL; " + call)})
-              .find("MC_MOVEABSOLUTE has no argument 'Options'") != std::string::npos);
+              .find("expected Tc2_MC2.ST_MoveOptions, found BOOL") != std::string::npos);
     CHECK(compiled({file("a.st", declare + "o : ST_MoveOptions; " + call)}) == "p ");
     CHECK(compiled({file("a.TcPOU", declare + "o : BOOL; " + call)})
               .find("expected Tc2_MC2.ST_MoveOptions, found BOOL") != std::string::npos);
