@@ -105,8 +105,9 @@ const Type* check_typed(Checking& c, Expression*& e) {
     Expression*& value = e->operands[0];
     const Token& name = e->token;
     const Type* type = find_prefix(name.text);
-    if (const NamedType* named = c.look_up(&Names::types, name)) {
-        type = named->type;
+    if (NamedType* named = c.look_up(&Names::types, name)) {
+        type = resolve_declared(c, *named);
+        if (!type) return nullptr;
         c.note(name.place, *named);
     }
     if (!type) {
