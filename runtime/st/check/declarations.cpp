@@ -50,8 +50,9 @@ const Type* make_untyped_constant(Checking& c, Variable& variable) {
     return variable.type = type;
 }
 
-/// A constant scalar takes no memory.
+/// A constant scalar takes no memory, unless others see it at its address.
 void make_constant(Checking& c, Variable& variable) {
+    if (variable.space == Space::image) return;
     if (variable.type && variable.type->is_instance() && !variable.name.place.dialect().is_loose)
         c.fail(code::wrong_place, variable.name.place,
                "an instance changes when it is called, so it is no constant",

@@ -109,6 +109,13 @@ void warn_of_crossing(Checking& c, const Image& image) {
         }
 }
 
+/// What it takes and gives stands in the image then, and is wired there.
+bool is_of_program(const Checking& c, const Variable& variable) {
+    const Section section = variable.section;
+    return c.routine && c.routine->pou->kind == PouKind::program &&
+           (section == Section::input || section == Section::output || section == Section::global);
+}
+
 }  // namespace
 
 void locate_in_image(Checking& c, Variable& variable, const Declaration& declared) {
@@ -124,9 +131,10 @@ void locate_in_image(Checking& c, Variable& variable, const Declaration& declare
     const auto address = address_of(c, at);
     if (!address || !fits(c, variable, *address, at)) return void(variable.type = nullptr);
     const bool stays = !c.routine || c.routine->has_instances();
-    if (variable.section == Section::local && !variable.constant && stays)
-        return put(c, variable, *address);
-    c.fail(code::wrong_place, at.place, "AT is for VAR and VAR_GLOBAL of what stays",
+    if (is_of_program(c, variable)) variable.section = Section::local;
+    if (variable.section == Section::local && stays) return put(c, variable, *address);
+    c.fail(code::wrong_place, at.place,
+           "AT is for VAR and VAR_GLOBAL of what stays, and for a PROGRAM's inputs and outputs",
            "declare it there, or write the address in the body");
 }
 
