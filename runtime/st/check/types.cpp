@@ -39,7 +39,7 @@ const Type* resolve_open_array(Checking& c, const TypeText& text) {
 const Type* resolve_array(Checking& c, const TypeText& text) {
     if (is_open_array(text))
         return c.fail(code::wrong_place, text.place,
-                      "an array of any length is a VAR_IN_OUT, or an input",
+                      "an array of any length is a VAR_IN_OUT, an input, or a function's output",
                       "write its bounds: ARRAY[0..9] OF ...");
     const Type* element = resolve(c, *text.element);
     Wide total = 1;

@@ -9,7 +9,7 @@ constexpr Wide most_elements = 1 << 24;  ///< of an array
 /// The type that is written; null where it is wrong, which was told: L0904 for a name that is none,
 /// L0911 for a type that contains itself.
 const Type* resolve(Checking& c, const TypeText& text);
-/// The same of a VAR_IN_OUT or an input, which alone may be an ARRAY[*].
+/// The same of what is given to a call, which alone may be an ARRAY[*].
 const Type* resolve_parameter(Checking& c, const TypeText& text);
 const Type* resolve_name(Checking& c, const Token& name);
 const Type* resolve_declared(Checking& c, NamedType& named);
