@@ -16,7 +16,7 @@ import tempfile
 compiler, syntax = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2])
 count = int(sys.argv[3]) if len(sys.argv) > 3 else 300
 draw = random.Random(int(sys.argv[4]) if len(sys.argv) > 4 else 1)
-deepest = 40
+deepest = 60
 
 tokens = {"Name": ["a", "b1", "_c", '"d e"', "#f"], "Quoted_Name": ['"d e"'], "Unsigned_Int": ["1", "16#F", "2#1_0"],
           "Real": ["1.5", "2e3"], "Text": ["'x'", "'it$'s'"], "Direct": ["%X1"], "Duration": ["1h2m"],

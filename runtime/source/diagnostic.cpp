@@ -213,8 +213,12 @@ void Diagnostics::add(std::string code, Mark mark, std::string message, std::str
             {std::move(code), std::move(mark), kept(std::move(message)), kept(std::move(help))});
 }
 
+bool Diagnostics::keeps_warnings() const {
+    return warnings_.size() < most_kept;
+}
+
 void Diagnostics::warn(std::string code, Mark mark, std::string message, std::string help) {
-    if (warnings_.size() == most_kept) return;
+    if (!keeps_warnings()) return;
     Diagnostic warning{std::move(code), std::move(mark), kept(std::move(message)),
                        kept(std::move(help)), true};
     const auto is_same = [&](const Diagnostic& other) { return order(other) == order(warning); };

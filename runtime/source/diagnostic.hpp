@@ -75,6 +75,8 @@ class Diagnostics {
     /// Tells what is allowed and hardly meant: no error, so that the list may be empty. Equal
     /// warnings are kept once.
     void warn(std::string code, Mark mark, std::string message, std::string help = {});
+    /// False: so many were told that one more is not kept.
+    bool keeps_warnings() const;
     const std::vector<Diagnostic>& warnings() const { return warnings_; }
     /// Warnings become errors.
     void be_strict();

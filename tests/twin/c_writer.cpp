@@ -954,6 +954,7 @@ class CWriter {
             check_range(whole, to.lower, to.upper);
             return whole;
         }
+        if (&from == &to) return x;
         if (from.kind == Kind::enumeration && !from.counted) {
             std::string numbers;
             for (const std::int64_t number : from.numbers) numbers += fmt::format("{}, ", number);

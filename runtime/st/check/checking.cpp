@@ -9,7 +9,9 @@ std::nullptr_t Checking::fail(const char* code, Place place, std::string message
 }
 
 void Checking::warn(const char* code, Place place, std::string message, std::string help) {
-    if (place.source->is_users()) out.warn(code, place.mark(), std::move(message), std::move(help));
+    if (!place.source->is_users() || !out.keeps_warnings())
+        return;  // a place is counted out in long files
+    out.warn(code, place.mark(), std::move(message), std::move(help));
 }
 
 namespace {

@@ -143,6 +143,7 @@ Slot convert(Writing& w, Slot slot, const Type& given_from, const Type& given_to
     const Type &from = given_from.plain(), &to = given_to.plain();
     if (given_to.is_subrange)
         return within(w, given_to, convert(w, slot, from, to, truncates, none));
+    if (&from == &to) return slot;
     if (from.kind == Kind::enumeration && !from.counted) {
         slot = look_up(w, slot, from.numbers);
         return convert(w, slot, *from.base, to, truncates, wanted);

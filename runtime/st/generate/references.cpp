@@ -53,7 +53,8 @@ Slot refer_to_part(Writing& w, Slot base, const Expression& part, const Expressi
         const Location whole = locate_through(base, *root.type, iec);
         return reference_to_packed(w, packed_path(w, part, root, whole));
     }
-    if (is_growing(w, *root.type)) {
+    const Routine* own = w.routine->owner ? w.routine->owner : w.routine;
+    if (is_growing(w, *root.type) && root.type->routine != own) {
         w.out.add(code::contains_itself, part.place.mark(),
                   "this refers to a part of what holds the block that refers to it",
                   "refer to the block, or pass the part on as VAR_IN_OUT");

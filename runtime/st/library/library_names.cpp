@@ -113,6 +113,14 @@ NameSet declared_names(const Tree& tree) {
     return names;
 }
 
+/// Empty where it is none, or has a base, whose parts stand elsewhere.
+std::string_view block_in(const LibraryFile& file, std::string_view name) {
+    const std::size_t begin = file.text.find(fmt::format("FUNCTION_BLOCK {}\n", name));
+    if (begin == file.text.npos) return {};
+    const std::string_view unit = file.text.substr(begin);
+    return unit.substr(0, unit.find("END_FUNCTION_BLOCK"));
+}
+
 NameSet declared_namespaces(const Tree& tree) {
     NameSet paths;
     for (const auto& [source, scopes] : tree.scopes)
@@ -213,9 +221,7 @@ void LibraryNames::note_pins(const Tree& tree) {
     for (const Declaration& declared : tree.declarations) {
         const auto it =
             declared.type ? index_.by_name.find(declared.type->name.text) : index_.by_name.end();
-        if (it != index_.by_name.end() &&
-            (it->second.size() > 1 || index_.of_catalog.contains(it->first)))
-            instances.emplace(declared.name.text, it->first);
+        if (it != index_.by_name.end()) instances.emplace(declared.name.text, it->first);
     }
     if (instances.empty()) return;
     for (const Expression& e : tree.expressions) {
@@ -230,30 +236,45 @@ void LibraryNames::note_pins(const Tree& tree) {
     }
 }
 
-std::size_t LibraryNames::pins_of(const LibraryFile& file, std::string_view name) const {
+std::size_t LibraryNames::pins_among(std::string_view text, std::string_view name) const {
     const auto named = pins_.find(name);
-    const std::size_t begin = file.text.find(fmt::format("FUNCTION_BLOCK {}\n", name));
-    if (named == pins_.end() || begin == file.text.npos) return 0;
-    std::string_view unit = file.text.substr(begin);
-    unit = unit.substr(0, unit.find("END_FUNCTION_BLOCK"));
-    unit = unit.substr(0, unit.rfind("END_VAR"));
+    if (named == pins_.end()) return 0;
     NameSet words;
-    for (std::string_view word = first_word(unit); !word.empty(); word = first_word(unit))
+    for (std::string_view word = first_word(text); !word.empty(); word = first_word(text))
         words.insert(word);
     return static_cast<std::size_t>(std::ranges::count_if(
         named->second, [&](std::string_view pin) { return words.contains(pin); }));
+}
+
+std::size_t LibraryNames::pins_of(const LibraryFile& file, std::string_view name) const {
+    const std::string_view unit = block_in(file, name);
+    return pins_among(unit.substr(0, unit.rfind("END_VAR")), name);
+}
+
+/// Nothing that the sources name of theirs is in it.
+bool LibraryNames::is_other(const LibraryFile& file, std::string_view name) const {
+    const auto named = pins_.find(name);
+    const std::string_view unit = block_in(file, name);
+    return named != pins_.end() && !named->second.empty() && !unit.empty() &&
+           pins_among(unit, name) == 0;
 }
 
 std::size_t LibraryNames::pins_of_catalog(std::string_view name) const {
     const BlockType* type = catalog_.find(name);
     const auto named = pins_.find(name);
     if (!type || named == pins_.end()) return 0;
-    return static_cast<std::size_t>(std::ranges::count_if(
-        type->fields, [&](const Field& field) { return named->second.contains(field.name); }));
+    const auto is_its = [&](std::string_view pin) {
+        return std::ranges::any_of(type->fields, [&](const Field& field) {
+            return same_name(field.name, pin) || same_name(field.name, standard_part_name(pin));
+        });
+    };
+    return static_cast<std::size_t>(std::ranges::count_if(named->second, is_its));
 }
 
 const LibraryFile* LibraryNames::choose(std::string_view name) const {
     std::vector<const LibraryFile*> files = index_.by_name.at(name);
+    std::erase_if(files, [&](const LibraryFile* file) { return is_other(*file, name); });
+    if (files.empty()) return nullptr;
     const auto pins = [&](const LibraryFile* file) { return pins_of(*file, name); };
     const std::size_t most = pins(*std::ranges::max_element(files, {}, pins));
     std::erase_if(files, [&](const LibraryFile* file) { return pins(file) < most; });

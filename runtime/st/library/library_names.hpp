@@ -22,8 +22,8 @@ namespace lineshaft::st {
 ///   all;
 ///   - for a name that a taken file uses.
 /// Of several libraries that have a name, the one is meant whose block of that name has most of the
-/// pins that the sources name of it, then one that is taken anyway, then the first. Names
-/// of a library that is not open, and of helpers, which begin with a small letter, are not looked
+/// pins that the sources name of it, then one that is taken anyway, then the first. A block that has
+/// nothing of what they name of theirs is not meant. Names of a library that is not open, and of helpers, which begin with a small letter, are not looked
 /// for, nor names in SCL, nor what is the name of a variable everywhere. A library whose namespace
 /// the sources declare themselves is theirs.
 class LibraryNames {
@@ -48,7 +48,9 @@ class LibraryNames {
     void note_names(const Tree& tree, bool are_users);
     void note_qualified(const Tokens& tokens, std::size_t at);
     void note_pins(const Tree& tree);
+    std::size_t pins_among(std::string_view text, std::string_view name) const;
     std::size_t pins_of(const LibraryFile& file, std::string_view name) const;
+    bool is_other(const LibraryFile& file, std::string_view name) const;
     std::size_t pins_of_catalog(std::string_view name) const;
     const LibraryFile* choose(std::string_view name) const;
     void take(const LibraryFile& file);

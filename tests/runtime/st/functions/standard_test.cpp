@@ -47,12 +47,14 @@ std::string call_of(const StandardFunction& f, int count, bool by_name, int wron
     for (int k = 0; k < count; ++k) {
         const int i = by_name ? count - 1 - k : k;
         const Generic type = f.parameter(static_cast<std::size_t>(i)).type;
-        variables += fmt::format("a{} : {};\n", i, type_for(type, i == wrong));
         const std::string name = argument_name(f, i);
         const bool is_constant = name == "DIM" && i != wrong;
+        const bool is_element = f.name.ends_with("_BLK") && type == Generic::any && i != wrong;
+        variables += fmt::format("a{} : {}{};\n", i, is_element ? "ARRAY[0..3] OF " : "",
+                                 type_for(type, i == wrong));
         arguments +=
-            fmt::format("{}{}{}", k == 0 ? "" : ", ", by_name ? name + " := " : std::string(),
-                        is_constant ? "1" : "a" + std::to_string(i));
+            fmt::format("{}{}{}{}", k == 0 ? "" : ", ", by_name ? name + " := " : std::string(),
+                        is_constant ? "1" : "a" + std::to_string(i), is_element ? "[0]" : "");
     }
     const bool has_value = f.result != Generic::nothing;
     if (has_value) variables += fmt::format("made : {};\n", type_for(f.result, false));
