@@ -213,9 +213,49 @@ def check_dialogue(lineshaft):
         yield f"dialogue: {header!r}, {row!r}, exit code {process.returncode}"
 
 
+def check_paths(lineshaft):
+    """A line in many points takes the time of the line; corners within a deviation, splines, bulk, what is wrong."""
+    limits = ["--limits", "100,1000,10000"]
+    line = "position1,position2\n" + "".join(f"{0.06 * i!r},{0.08 * i!r}\n" for i in range(3001))
+    code, out, err = run(lineshaft, "--path", *limits, text=line)
+    *_, ok, _, points, pieces, way, duration = out.splitlines()[1].split(",")
+    if (code, err, ok, points, pieces) != (0, "", "1", "3001", "3000") or abs(float(way) - 300) > 1e-9:
+        yield f"--path, a line: exit code {code}, {out!r}, {err!r}"
+    elif abs(float(duration) - (300 / 100 + 0.1 + 0.1)) > 1e-6:
+        yield f"--path, a line takes {duration} s"
+    corner = "path,position1,position2,curve\n" + "".join(
+        f"{n},0,0,line\n{n},50,0,line\n{n},{last}\n" for n, last in ((1, "50,50,line"), (2, "100,20,spline")))
+    axes = [*limits, "100,1000,20000", "50,1000,20000"]
+    times = [run(lineshaft, "--path", *axes, *more, text=corner)[1].splitlines()[1:]
+             for more in ([], ["--deviation", "2"])]
+    seconds = [[float(row.split(",")[-1]) for row in rows] for rows in times]
+    if [len(rows) for rows in seconds] != [2, 2] or not seconds[1][0] < seconds[0][0] - 0.05:
+        yield f"--path, a corner: {times}"
+    rows = run(lineshaft, "--path", *axes, "--deviation", "2", "--every", "0.001", text=corner)[1].splitlines()[1:]
+    samples = [list(map(float, row.split(","))) for row in rows]
+    last = [sample for sample in samples if sample[0] == 1][-1]
+    if abs(last[1] - seconds[1][0]) > 2e-3 or last[6:8] != [50, 50] or last[3] != 0:
+        yield f"--path --every ends with {last}, and takes {seconds[1][0]} s"
+    off = max(min(abs(x[7]), abs(x[6] - 50)) for x in samples if x[0] == 1)
+    if not 1 < off <= 2:
+        yield f"--path --deviation 2 is {off} away"
+    if max(abs(x[4]) for x in samples) > 1000 * (1 + 1e-9) or max(abs(x[3]) for x in samples) > 100 * (1 + 1e-9):
+        yield "--path --every leaves the limits"
+    for text, message in (("a\n1\n", "1: error: the column 'a' is not known"),
+                          ("position1\n1\nx\n", "3: error: 'x' in column position1 is not a number"),
+                          ("position1,curve\n0,\n1,round\n", "3: error: the curve 'round' is not line, arc or spline")):
+        code, out, err = run(lineshaft, "--path", *limits, text=text)
+        if code != 2 or not err.startswith("stdin:" + message):
+            yield f"--path: exit code {code}, said {err!r} instead of {message!r}"
+    for arguments in (["--path"], limits, ["--path", "--limits", "1,2"], ["--path", "--limits", "1,0,1"]):
+        if run(lineshaft, *arguments, text=line)[0] != 2:
+            yield f"{arguments} is accepted"
+
+
 def main():
     lineshaft = str(pathlib.Path(sys.argv[1]).resolve())
-    failures = [*check_answers(lineshaft), *check_motions(lineshaft), *check_many(lineshaft), *check_dialogue(lineshaft)]
+    failures = [*check_answers(lineshaft), *check_motions(lineshaft), *check_many(lineshaft), *check_dialogue(lineshaft),
+                *check_paths(lineshaft)]
     with tempfile.TemporaryDirectory() as folder:
         failures += check_files(lineshaft, pathlib.Path(folder))
     for failure in failures:

@@ -130,13 +130,10 @@ struct AxesGroup {
                        const PathLimits& limits) const;
     MotionError append(const Context& context, const GroupRequest& request, const PathCurve& curve,
                        bool is_within);
-    bool has_room(std::size_t pieces = 1) const {
+    bool has_room(std::size_t pieces) const {
         return path.count - path.first + pieces + 1 <= ring.size();
     }
 };
-
-/// The curve of a move that is no path, from where it begins.
-PathFault curve_of(const GroupRequest& request, const PathVector& from, PathCurve& out);
 
 /// What a move is refused with.
 MotionError motion_error_of(PathFault fault);

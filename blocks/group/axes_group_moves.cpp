@@ -21,17 +21,12 @@ PathVector sum(const PathVector& a, const PathVector& b, double factor = 1) {
     return out;
 }
 
-PathVector in_linear_axes(PathVector x) {
-    std::fill(x.begin() + path_space, x.end(), 0.0);
-    return x;
-}
-
 PathFault arc_of(const GroupRequest& request, const PathVector& from, const PathVector& to,
                  PathCurve& out) {
     const bool relative = is_relative(request.command);
-    const PathVector a = in_linear_axes(from), b = in_linear_axes(to);
+    const PathVector a = in_space(from), b = in_space(to);
     const PathVector auxiliary =
-        in_linear_axes(relative ? sum(from, request.auxiliary) : request.auxiliary);
+        in_space(relative ? sum(from, request.auxiliary) : request.auxiliary);
     const double turn = request.choice == PathChoice::clockwise ? -1 : 1;
     PathFault fault = PathFault::none;
     if (request.circle == CircleMode::border)
@@ -42,6 +37,16 @@ PathFault arc_of(const GroupRequest& request, const PathVector& from, const Path
         fault = arc_of_radius(a, b, sum({}, sum(auxiliary, a, -1), turn), out);
     if (fault == PathFault::none) let_follow(out, from, to);
     return fault;
+}
+
+PathFault curve_of(const GroupRequest& request, const PathVector& from, PathCurve& out) {
+    using enum GroupCommand;
+    const GroupCommand command = request.command;
+    const PathVector to = is_relative(command) ? sum(from, request.target) : request.target;
+    if (command == move_circular_absolute || command == move_circular_relative)
+        return arc_of(request, from, to, out);
+    const bool direct = command == move_direct_absolute || command == move_direct_relative;
+    return line_to(from, to, out, direct ? most_path_axes : path_space);
 }
 
 /// Rotary axes alone, or axes each for itself: the path has no limits then, only its axes.
@@ -68,16 +73,6 @@ MotionError motion_error_of(PathFault fault) {
         default:
             return MotionError::not_finite;
     }
-}
-
-PathFault curve_of(const GroupRequest& request, const PathVector& from, PathCurve& out) {
-    using enum GroupCommand;
-    const GroupCommand command = request.command;
-    const PathVector to = is_relative(command) ? sum(from, request.target) : request.target;
-    if (command == move_circular_absolute || command == move_circular_relative)
-        return arc_of(request, from, to, out);
-    const bool direct = command == move_direct_absolute || command == move_direct_relative;
-    return line_to(from, to, out, direct ? most_path_axes : path_space);
 }
 
 /// Whatever the place where it will begin.
@@ -125,7 +120,7 @@ void AxesGroup::lay(const Context& context) {
 
 MotionError AxesGroup::lay(const Context& context, GroupJob& job) {
     if (job.request.command == GroupCommand::move_path) return lay_table(context, job);
-    if (!has_room()) return MotionError::none;
+    if (!has_room(most_spline_parts)) return MotionError::none;
     PathCurve curve;
     const PathFault fault = curve_of(job.request, end_point, curve);
     job.first_piece = job.end_piece = static_cast<std::int64_t>(path.count);
@@ -221,12 +216,10 @@ PathJoint AxesGroup::joint_of(const GroupRequest& request, bool is_within, const
     const PathCurve& before = ring[(path.count - 1) % ring.size()].curve;
     const bool lines = before.kind == PathCurveKind::line && curve.kind == PathCurveKind::line;
     if (!before.is_line_or_arc() || !curve.is_line_or_arc() || joint.velocity == 0) return joint;
-    const double bend = bend_between(before, curve), parameter = request.corner_parameter;
+    const double parameter = request.corner_parameter;
     if (request.corner == CornerMode::corner_distance) joint.distance = parameter;
-    if (request.corner == CornerMode::corner_deviation && !lines)
-        joint.distance = transition_distance(parameter, before, curve);
-    if (request.corner == CornerMode::corner_deviation && lines && bend > 0)
-        joint.distance = 16 * parameter / (3 * bend);
+    if (request.corner == CornerMode::corner_deviation)
+        joint.distance = distance_within(parameter, before, curve);
     if (request.corner == CornerMode::start_velocity && lines)
         joint.distance = corner_distance_at(parameter, before, curve, limits);
     return joint;

@@ -6,45 +6,9 @@ namespace lineshaft {
 
 namespace {
 
-/// A row of a table as a move of its own.
-GroupRequest row_of(const GroupRequest& request, const PathTablePoint& point) {
-    GroupRequest row = request;
-    row.command = point.kind == PathPointKind::arc ? GroupCommand::move_circular_absolute
-                                                   : GroupCommand::move_linear_absolute;
-    row.circle = CircleMode::border;
-    row.target = point.target();
-    row.auxiliary = point.auxiliary();
-    return row;
-}
-
-using Curves = std::array<PathCurve, most_spline_parts>;
-
-/// How a spline passes the point of a row: as the line or arc behind it begins, else along the
-/// parabola through the points before and behind.
-PathPoint passage(const GroupRequest& request, const PathTable::Points& points, std::size_t i,
-                  const PathVector& from) {
-    const PathVector at = points.rows[i].target();
-    if (i + 1 == static_cast<std::size_t>(points.size)) return waypoint(from, at, at);
-    const PathTablePoint& next = points.rows[i + 1];
-    PathCurve behind;
-    if (next.kind != PathPointKind::spline &&
-        curve_of(row_of(request, next), at, behind) == PathFault::none)
-        return behind.at(0);
-    return waypoint(from, at, next.target());
-}
-
-/// The curves from a point to that of row i; `before` is the curve that ends there, or none.
-PathFault curves_of(const GroupRequest& request, const PathTable::Points& points, std::size_t i,
-                    const PathVector& from, const PathCurve* before, Curves& out,
-                    std::size_t& count) {
-    count = 1;
-    const PathTablePoint& row = points.rows[i];
-    if (row.kind != PathPointKind::spline) return curve_of(row_of(request, row), from, out[0]);
-    if (row.target() == from) return PathFault::no_length;
-    const PathPoint begin =
-        before ? before->at(before->length) : waypoint(from, from, row.target());
-    count = spline_between(begin, passage(request, points, i, from), out);
-    return count > 0 ? PathFault::none : PathFault::not_finite;
+/// The row behind, if there is one.
+const PathTablePoint* behind(const PathTable::Points& points, std::size_t i) {
+    return i + 1 < static_cast<std::size_t>(points.size) ? &points.rows[i + 1] : nullptr;
 }
 
 }  // namespace
@@ -59,13 +23,14 @@ const PathCurve* AxesGroup::last_curve(const GroupJob& job) const {
 /// Before it begins.
 MotionError AxesGroup::look_through(const Context& context, const GroupJob& job) const {
     const PathTable::Points& points = context.instance<PathTable>(job.request.table).table;
-    Curves curves;
+    PathRowCurves curves;
     PathCurve last;
     const PathCurve* before = last_curve(job);
     PathVector from = end_point;
     for (std::size_t i = 0; i < static_cast<std::size_t>(points.size); ++i) {
         std::size_t count = 0;
-        const PathFault fault = curves_of(job.request, points, i, from, before, curves, count);
+        const PathFault fault =
+            curves_of(points.rows[i], behind(points, i), from, before, curves, count);
         if (const MotionError why = motion_error_of(fault); why != MotionError::none) return why;
         if (fault != PathFault::none) continue;
         for (std::size_t k = 0; k < count; ++k)
@@ -85,16 +50,16 @@ MotionError AxesGroup::lay_table(const Context& context, GroupJob& job) {
         if (const MotionError why = look_through(context, job); why != MotionError::none)
             return why;
     }
-    Curves curves;
+    PathRowCurves curves;
     for (; job.rows < points.size && has_room(most_spline_parts); ++job.rows) {
         const auto i = static_cast<std::size_t>(job.rows);
         std::size_t count = 0;
-        if (curves_of(job.request, points, i, end_point, last_curve(job), curves, count) !=
-            PathFault::none)
+        if (curves_of(points.rows[i], behind(points, i), end_point, last_curve(job), curves,
+                      count) != PathFault::none)
             continue;
-        const GroupRequest row = row_of(job.request, points.rows[i]);
         for (std::size_t k = 0; k < count; ++k)
-            if (const MotionError why = append(context, row, curves[k], job.rows > 0 || k > 0);
+            if (const MotionError why =
+                    append(context, job.request, curves[k], job.rows > 0 || k > 0);
                 why != MotionError::none)
                 return why;
     }

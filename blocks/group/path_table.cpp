@@ -4,6 +4,39 @@
 
 namespace lineshaft {
 
+namespace {
+
+/// Of a row that is no spline.
+PathFault curve_of(const PathTablePoint& row, const PathVector& from, PathCurve& out) {
+    const PathVector to = row.target();
+    if (row.kind == PathPointKind::line) return line_to(from, to, out, path_space);
+    const PathFault fault = arc_through(in_space(from), row.auxiliary(), in_space(to), out);
+    if (fault == PathFault::none) let_follow(out, from, to);
+    return fault;
+}
+
+PathPoint passage(const PathTablePoint& row, const PathTablePoint* next, const PathVector& from) {
+    const PathVector at = row.target();
+    if (next == nullptr) return waypoint(from, at, at);
+    PathCurve behind;
+    if (next->kind != PathPointKind::spline && curve_of(*next, at, behind) == PathFault::none)
+        return behind.at(0);
+    return waypoint(from, at, next->target());
+}
+
+}  // namespace
+
+PathFault curves_of(const PathTablePoint& row, const PathTablePoint* next, const PathVector& from,
+                    const PathCurve* before, PathRowCurves& out, std::size_t& count) {
+    count = 1;
+    if (row.kind != PathPointKind::spline) return curve_of(row, from, out[0]);
+    if (row.target() == from) return PathFault::no_length;
+    const PathPoint begin =
+        before ? before->at(before->length) : waypoint(from, from, row.target());
+    count = spline_between(begin, passage(row, next, from), out);
+    return count > 0 ? PathFault::none : PathFault::not_finite;
+}
+
 PathVector PathTablePoint::target() const {
     return {position[0], position[1], position[2], rotary[0], rotary[1], rotary[2]};
 }

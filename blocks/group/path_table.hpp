@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "blocks/axis/axis_unit.hpp"
-#include "blocks/path/path_curve.hpp"
+#include "blocks/path/path_spline.hpp"
 #include "runtime/model/catalog.hpp"
 #include "runtime/model/field.hpp"
 #include "runtime/model/scan.hpp"
@@ -32,6 +32,14 @@ struct PathTablePoint {
     PathVector target() const;
     PathVector auxiliary() const;
 };
+
+using PathRowCurves = std::array<PathCurve, most_spline_parts>;
+
+/// The curves of a row from the point before: one, or the parts of a spline. That begins as the
+/// curve `before` ends, if there is one, and passes its own point as the line or arc of the `next`
+/// row begins, else along the parabola through the points before and behind.
+PathFault curves_of(const PathTablePoint& row, const PathTablePoint* next, const PathVector& from,
+                    const PathCurve* before, PathRowCurves& out, std::size_t& count);
 
 /// The points of a path for MC_MovePath, in the program or in a CSV file.
 struct PathTable {

@@ -36,14 +36,14 @@ ConstPathStretches stretches_of(const Path& path, std::span<const PathPiece> rin
     return {ring, path.stretch, path.stretches};
 }
 
-void look_back_where_changed(Path& path, std::span<PathPiece> ring) {
-    if (path.fresh) look_back({ring, path.stretch, path.stretches}, path.changed);
-    path.fresh = false;
+void look_back_where_changed(Path& path, std::span<PathPiece> ring, bool keeps = true) {
+    if (path.changed == path.stretches) return;
+    look_back({ring, path.stretch, path.stretches}, path.changed, keeps);
     path.changed = path.stretches;
 }
 
 void note_change(Path& path, std::uint64_t stretch) {
-    path.changed = path.fresh ? std::min(path.changed, stretch) : stretch;
+    path.changed = std::min(path.changed, stretch);
     path.fresh = true;
 }
 
@@ -52,24 +52,34 @@ MotionState state_of(const Path& path) {
 }
 
 /// Along the path, from its start on [u].
+double place_of(const Path& path, const MotionState& now) {
+    return path.time >= path.leg.plan.duration ? path.leg.end : path.leg.base + now.position;
+}
+
 double place_of(const Path& path) {
-    return path.time >= path.leg.plan.duration ? path.leg.end
-                                               : path.leg.base + state_of(path).position;
+    return place_of(path, state_of(path));
 }
 
 double factor_of(const Path& path) {
     return path.halted ? 0 : std::min(path.override, 1.0);
 }
 
+/// The leg ends within a stretch that has grown, and nothing is halted there.
+bool stops_short(const Path& path, std::span<const PathPiece> ring) {
+    return path.leg.end != piece_at(ring, path.leg.goal).stretch.end && factor_of(path) > 0;
+}
+
 /// Plans anew from now; where that cannot be, what was planned goes on.
 bool plan_anew(Path& path, std::span<PathPiece> ring) {
     look_back_where_changed(path, ring);
+    path.fresh = false;
     MotionState from = state_of(path);
     from.position = 0;
     if (!plan_leg(stretches_of(path, ring), from, place_of(path), factor_of(path), path.gently,
                   path.leg))
         return false;
     path.time = 0;
+    path.stale = stops_short(path, ring);
     return true;
 }
 
@@ -93,14 +103,14 @@ void enter_next(Path& path, std::span<PathPiece> ring) {
         return;
     }
     look_back_where_changed(path, ring);
+    path.fresh = false;
     path.lost =
         !plan_leg(stretches_of(path, ring), from, base, factor_of(path), path.gently, path.leg);
-    path.stale = false;
+    path.stale = stops_short(path, ring);
 }
 
 /// The piece and the stretch under way.
-void move_up(Path& path, std::span<const PathPiece> ring) {
-    const double place = place_of(path);
+void move_up(Path& path, std::span<const PathPiece> ring, double place) {
     while (path.stretch < path.leg.goal && place >= piece_at(ring, path.stretch).stretch.end)
         ++path.stretch;
     const auto is_left = [&](const PathPiece& piece) {
@@ -148,8 +158,12 @@ void append_stretch(Path& path, std::span<PathPiece> ring, const PathLimit& box,
         last.joint = std::min({last.box.velocity, box.velocity, joint});
     }
     note_change(path, path.stretches);
-    piece_at(ring, path.stretches).stretch = {box, piece.begin,    piece.end(), 0,
-                                              0,   path.stretches, box,         piece.end()};
+    PathStretch& added = piece_at(ring, path.stretches).stretch;
+    added = {};
+    added.box = added.span = box;
+    added.begin = piece.begin;
+    added.end = added.settled = added.ramp_end = piece.end();
+    added.target = path.stretches;
     ++path.stretches;
 }
 
@@ -164,8 +178,8 @@ void append_piece(Path& path, std::span<PathPiece> ring, const PathCurve& curve,
 
 /// After the last piece has been cut: whether what is planned holds still, or can be mended.
 bool holds(Path& path, std::span<PathPiece> ring, std::uint64_t cut) {
+    look_back_where_changed(path, ring, false);
     if (path.standing()) return true;
-    look_back_where_changed(path, ring);
     if (path.leg.goal < cut &&
         path.leg.plan.end.velocity <= stretches_of(path, ring).exit(path.leg.goal))
         return true;
@@ -229,7 +243,26 @@ bool append_round(Path& path, std::span<PathPiece> ring, PathCurve next, const P
     cut.end = before.total;
     cut.joint = 0;
     note_change(path, path.stretches - 1);
+    look_back_where_changed(path, ring, false);
     return false;
+}
+
+/// Of a state whose position counts from the start of the path.
+PathMotion motion_of(const Path& path, std::span<const PathPiece> ring, const MotionState& m) {
+    PathMotion out;
+    if (path.count == 0) return out;
+    const bool over = path.finished();
+    const PathPiece& piece = piece_at(ring, over ? path.first - 1 : path.first);
+    const PathPoint x = piece.curve.at(over ? piece.curve.length : m.position - piece.begin);
+    const double v = m.velocity, a = m.acceleration, j = m.jerk;
+    out.path = m;
+    for (std::size_t i = 0; i < most_path_axes; ++i) {
+        out.position[i] = x.position[i];
+        out.velocity[i] = x.tangent[i] * v;
+        out.acceleration[i] = x.tangent[i] * a + x.bend[i] * v * v;
+        out.jerk[i] = x.tangent[i] * j + 3 * x.bend[i] * v * a + x.twist[i] * v * v * v;
+    }
+    return out;
 }
 
 }  // namespace
@@ -280,31 +313,20 @@ void Path::clear() {
 
 PathMotion Path::advance(std::span<PathPiece> ring, double dt) {
     if (finished() || lost) return now(ring);
-    if (stale || (fresh && time + dt >= leg.ripe)) stale = !plan_anew(*this, ring);
+    if ((stale || (fresh && time + dt >= leg.ripe)) && !plan_anew(*this, ring)) stale = true;
     time += dt;
     while (!finished() && !lost && at_end_of_stretch(*this, ring)) enter_next(*this, ring);
     if (standing()) time = leg.plan.duration;
-    if (!finished()) move_up(*this, ring);
-    return now(ring);
+    MotionState m = state_of(*this);
+    m.position = place_of(*this, m);
+    if (!finished()) move_up(*this, ring, m.position);
+    return motion_of(*this, ring, m);
 }
 
 PathMotion Path::now(std::span<const PathPiece> ring) const {
-    PathMotion out;
-    if (count == 0) return out;
-    const bool over = finished();
-    const PathPiece& piece = piece_at(ring, over ? first - 1 : first);
-    const MotionState m = state_of(*this);
-    out.path = m;
-    out.path.position = place_of(*this);
-    const PathPoint x = piece.curve.at(over ? piece.curve.length : out.path.position - piece.begin);
-    const double v = m.velocity, a = m.acceleration, j = m.jerk;
-    for (std::size_t i = 0; i < most_path_axes; ++i) {
-        out.position[i] = x.position[i];
-        out.velocity[i] = x.tangent[i] * v;
-        out.acceleration[i] = x.tangent[i] * a + x.bend[i] * v * v;
-        out.jerk[i] = x.tangent[i] * j + 3 * x.bend[i] * v * a + x.twist[i] * v * v * v;
-    }
-    return out;
+    MotionState m = state_of(*this);
+    m.position = place_of(*this, m);
+    return motion_of(*this, ring, m);
 }
 
 double Path::remaining() const {

@@ -43,7 +43,7 @@ struct Path {
     PathLimit gently = no_path_limit;  ///< of a halt
     bool halted = false;
     bool stale = false;  ///< what was planned is to be planned anew
-    bool fresh = false;  ///< stretches have changed since the last look back
+    bool fresh = false;  ///< stretches have changed since the leg under way was planned
     bool lost = false;   ///< numbers too many decades apart to be planned: it stands there
     PathLeg leg;         ///< under way
 

@@ -9,6 +9,11 @@
 
 namespace lineshaft {
 
+PathVector in_space(PathVector a) {
+    for (std::size_t i = path_space; i < most_path_axes; ++i) a[i] = 0;
+    return a;
+}
+
 namespace {
 
 PathVector combined(const PathVector& a, double fa, const PathVector& b, double fb) {
@@ -42,12 +47,6 @@ bool finite(const PathVector& a) {
 
 PathVector difference(const PathVector& a, const PathVector& b) {
     return combined(a, 1, b, -1);
-}
-
-/// The first three axes alone.
-PathVector in_space(PathVector a) {
-    for (std::size_t i = path_space; i < most_path_axes; ++i) a[i] = 0;
-    return a;
 }
 
 PathVector cross(const PathVector& a, const PathVector& b) {

@@ -113,6 +113,9 @@ void let_follow(PathCurve& arc, const PathVector& from, const PathVector& to);
 /// and behind it. It is 3/16 distance |w - u| away from the vertex, no nearer and no further.
 PathCurve corner_between(const PathCurve& before, const PathCurve& after, double distance);
 
+/// The first three axes alone; the others are 0.
+PathVector in_space(PathVector a);
+
 /// How large the direction's change is in the first three axes: |w - u|, 0 to 2.
 double bend_between(const PathCurve& before, const PathCurve& after);
 

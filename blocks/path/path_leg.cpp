@@ -108,15 +108,14 @@ bool plan_with(ConstPathStretches stretches, const Departure& departure, const S
            keeps_boxes(stretches, departure, span.goal, out);
 }
 
-/// To the end of the span.
-bool plan_to(ConstPathStretches stretches, const Departure& departure, const Span& span,
-             MotionPlan& out) {
+/// To a place in the last stretch of the span, and a velocity there that is `exit` at most.
+bool plan_to(ConstPathStretches stretches, const Departure& departure, const Span& span, double end,
+             double exit, MotionPlan& out) {
     const auto& [from, base, factor] = departure;
-    const PathStretch& goal = stretches[span.goal];
-    const double room = goal.end - base, exit = stretches.exit(span.goal);
+    const double room = end - base;
     if (!(room > 0)) return false;
-    const double velocity =
-        reached_velocity(from, room, std::min(exit, factor * goal.joint), span.least);
+    const double wanted = std::min(exit, factor * stretches[span.goal].joint);
+    const double velocity = reached_velocity(from, room, wanted, span.least);
     if (velocity < 0 || velocity > exit) return false;
     const double now =
         from.velocity + from.acceleration * std::abs(from.acceleration) / (2 * span.least.jerk);
@@ -129,6 +128,12 @@ bool plan_to(ConstPathStretches stretches, const Departure& departure, const Spa
         before = most;
     }
     return false;
+}
+
+bool plan_to(ConstPathStretches stretches, const Departure& departure, const Span& span,
+             MotionPlan& out) {
+    return plan_to(stretches, departure, span, stretches[span.goal].end, stretches.exit(span.goal),
+                   out);
 }
 
 bool plan_halt(ConstPathStretches stretches, const Departure& departure, Span span, PathLeg& out) {
@@ -222,10 +227,18 @@ bool plan_leg(ConstPathStretches stretches, const MotionState& from, double base
         out = leg;
         return true;
     }
-    if (!plan_to(stretches, departure, span, leg.plan)) {
-        if (first.target == stretches.first) return false;
+    bool found = plan_to(stretches, departure, span, leg.plan);
+    if (!found) {
         span.extend(stretches, first.target);
-        if (!plan_to(stretches, departure, span, leg.plan)) return false;
+        found = plan_to(stretches, departure, span, leg.plan);
+    }
+    if (!found) {
+        leg.end = first.ramp_end;
+        leg.goal = first.target;
+        if (!plan_to(stretches, departure, span, first.ramp_end, first.ramp_exit, leg.plan))
+            return false;
+        out = leg;
+        return true;
     }
     if (factor > 0) {
         extend(stretches, departure, span, leg.plan);

@@ -244,9 +244,13 @@ PathBound spline_bound(const PathCurve& c, std::size_t axis) {
     return out;
 }
 
-double transition_distance(double deviation, const PathCurve& before, const PathCurve& after) {
+double distance_within(double deviation, const PathCurve& before, const PathCurve& after) {
+    if (!before.is_line_or_arc() || !after.is_line_or_arc() || !(deviation > 0)) return 0;
+    if (before.kind == PathCurveKind::line && after.kind == PathCurveKind::line) {
+        const double bend = bend_between(before, after);
+        return bend > 0 ? 16 * deviation / (3 * bend) : 0;
+    }
     double least = 0, most = std::min(before.length, 0.5 * after.length);
-    if (!(deviation > 0)) return 0;
     if (deviation_of(before, after, most) <= deviation) return most;
     for (int step = 0; step < 24; ++step) {
         const double middle = 0.5 * (least + most);

@@ -7,12 +7,12 @@
 namespace lineshaft {
 
 /// Over how many curves a spline is divided at most, so that each is run along evenly.
-inline constexpr std::size_t most_spline_parts = 8;
+inline constexpr std::size_t most_spline_parts = 16;
 
 /// A curve of degree five from a point to another, with their tangents and curvatures: x(s), x' and
-/// x'' go on through both. Each of the parts, halves or quarters or eighths, has as its length
+/// x'' go on through both. Each of the parts, halves, quarters and so on, has as its length
 /// that of the way of the first three axes, and runs along it with |x'| = 1 up to 1e-4. Returns
-/// how many of `out` there are; 0 where the points are one, a tangent is 0, or eight are too few.
+/// how many of `out` there are; 0 where the points are one, a tangent is 0, or sixteen are too few.
 std::size_t spline_between(const PathPoint& from, const PathPoint& to,
                            std::span<PathCurve, most_spline_parts> out);
 
@@ -28,8 +28,8 @@ struct PathBound {
 
 PathBound spline_bound(const PathCurve& spline, std::size_t axis);
 
-/// How far from the joint of two curves the transition between them may begin that stays within
-/// `deviation` of them [u].
-double transition_distance(double deviation, const PathCurve& before, const PathCurve& after);
+/// How far from the joint of two lines or arcs a corner or a transition may begin that stays within
+/// `deviation` of them [u]; 0 where there is none.
+double distance_within(double deviation, const PathCurve& before, const PathCurve& after);
 
 }  // namespace lineshaft

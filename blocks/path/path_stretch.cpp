@@ -37,7 +37,7 @@ bool plan_back(double exit, double V, const PathLimit& box, double length, Backw
 /// It passes no joint faster than that allows, up to where it is as slow as the ramp before was.
 bool passes_joints(PathStretches stretches, std::uint64_t k, const BackwardRamp& ramp) {
     const std::uint64_t target = stretches[k + 1].target;
-    const double end = stretches[target].end;
+    const double end = stretches[k + 1].ramp_end;
     for (std::uint64_t i = k; i < target; ++i) {
         const PathStretch& s = stretches[i];
         if (!(ramp.velocity_before_end(end - s.end) <= s.joint)) return false;
@@ -47,7 +47,9 @@ bool passes_joints(PathStretches stretches, std::uint64_t k, const BackwardRamp&
 }
 
 void take(PathStretch& s, const BackwardRamp& ramp, std::uint64_t target, const PathLimit& span,
-          double end) {
+          double end, double exit) {
+    s.ramp_end = end;
+    s.ramp_exit = exit;
     s.entry = ramp.entry;
     s.target = target;
     s.span = span;
@@ -57,31 +59,31 @@ void take(PathStretch& s, const BackwardRamp& ramp, std::uint64_t target, const 
 /// The better one of a ramp to its own end and one to where the next stretch brakes.
 void find_entry(PathStretches stretches, std::uint64_t k) {
     PathStretch& s = stretches[k];
-    const double V = s.box.velocity;
+    const double V = s.box.velocity, exit = std::min(stretches.exit(k), V);
     BackwardRamp ramp;
     s.entry = 0;
     s.target = k;
     s.span = s.box;
-    s.settled = s.end;
-    if (plan_back(std::min(stretches.exit(k), V), V, s.box, s.end - s.begin, ramp))
-        take(s, ramp, k, s.box, s.end);
+    s.settled = s.ramp_end = s.end;
+    s.ramp_exit = 0;
+    if (plan_back(exit, V, s.box, s.end - s.begin, ramp)) take(s, ramp, k, s.box, s.end, exit);
     if (s.entry == V || stretches.is_last(k) || stretches.is_bound_by_joint(k)) return;
     const PathStretch& next = stretches[k + 1];
-    const PathStretch& target = stretches[next.target];
     const PathLimit span = least_of(s.box, next.span);
-    const double exit = std::min(stretches.exit(next.target), V);
-    if (plan_back(exit, V, span, target.end - s.begin, ramp) && ramp.entry > s.entry &&
-        passes_joints(stretches, k, ramp))
-        take(s, ramp, next.target, span, target.end);
+    if (next.ramp_exit <= V && plan_back(next.ramp_exit, V, span, next.ramp_end - s.begin, ramp) &&
+        ramp.entry > s.entry && passes_joints(stretches, k, ramp))
+        take(s, ramp, next.target, span, next.ramp_end, next.ramp_exit);
 }
 
 }  // namespace
 
-void look_back(PathStretches stretches, std::uint64_t changed) {
+void look_back(PathStretches stretches, std::uint64_t changed, bool keeps) {
     for (std::uint64_t k = stretches.count; k-- > stretches.first;) {
         const bool may_end = k > stretches.first && k <= changed;
         const bool was_bound = may_end && stretches.is_bound_by_joint(k - 1);
+        const PathStretch before = stretches[k];
         find_entry(stretches, k);
+        if (keeps && k < changed && before.entry > stretches[k].entry) stretches[k] = before;
         if (was_bound && stretches.is_bound_by_joint(k - 1)) return;
     }
 }

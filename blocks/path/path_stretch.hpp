@@ -19,6 +19,8 @@ struct PathStretch {
     double joint = 0;           ///< greatest velocity at its end by the joint itself; 0: a stop
     double entry = 0;           ///< [u/s]
     std::uint64_t target = 0;   ///< number of a stretch
+    double ramp_end = 0;        ///< where in it, and ...
+    double ramp_exit = 0;       ///< ... at which velocity that ramp ends; its exit is no less
     PathLimit span;             ///< the least of the boxes from here to `target`
     double settled = 0;  ///< from here on the ramp is that of any greater velocity before [u]
 };
@@ -59,8 +61,9 @@ using PathStretches = PathStretchesOf<PathPiece>;
 using ConstPathStretches = PathStretchesOf<const PathPiece>;
 
 /// Finds `entry` of all stretches anew whose end, box or joint has changed, which are those from
-/// `changed` on, and of those before as far as that goes.
-void look_back(PathStretches stretches, std::uint64_t changed);
+/// `changed` on, and of those before as far as that goes. `keeps`: what was there has only grown,
+/// so that the ramps found before hold, and none is given up for a lesser one.
+void look_back(PathStretches stretches, std::uint64_t changed, bool keeps);
 
 /// When a way [u] has been run from a state with this jerk, within `duration`, where the velocity
 /// is not negative [s].

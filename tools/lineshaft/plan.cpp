@@ -16,8 +16,12 @@
 #include "runtime/source/number_text.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
+#include "tools/lineshaft/plan_cells.hpp"
+#include "tools/lineshaft/plan_path.hpp"
 
 namespace lineshaft {
+
+using namespace bulk;
 
 namespace {
 
@@ -46,7 +50,6 @@ constexpr const char* plan_help =
     "others\n"
     "are planned, and the exit code is 2.";
 
-constexpr std::size_t longest_line = 65536;
 constexpr std::size_t most_columns = 11;
 
 /// The cells of a line in the order of the form's columns.
@@ -69,13 +72,9 @@ struct PlanCommand {
     std::string input = "-";
     std::string output;
     PlanOptions options;
+    PathOptions path;
+    bool is_path = false;
 };
-
-void append_number(std::string& text, double value) {
-    std::array<char, longest_number> digits;
-    text += ',';
-    text.append(digits.data(), write_real(digits.data(), value));
-}
 
 void append_move(std::string& text, std::size_t, const Cells* cells, const PlanOptions&) {
     SevenSegmentPlan made;
@@ -165,45 +164,6 @@ std::string all_names() {
     return column_names(move_form()) + " or " + column_names(motion_form());
 }
 
-std::string_view without_blanks(std::string_view text) {
-    constexpr const char* blanks = " \t\r";
-    const std::size_t first = text.find_first_not_of(blanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-/// A cell without blanks and quotes around it.
-std::string_view bare(std::string_view cell) {
-    cell = without_blanks(cell);
-    if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return cell;
-    return without_blanks(cell.substr(1, cell.size() - 2));
-}
-
-/// Takes the first cell off `rest`; nothing when there is none.
-std::optional<std::string_view> next_cell(std::optional<std::string_view>& rest) {
-    if (!rest) return {};
-    const std::size_t comma = rest->find(',');
-    const std::string_view cell = rest->substr(0, comma);
-    if (comma == std::string_view::npos)
-        rest.reset();
-    else
-        rest->remove_prefix(comma + 1);
-    return bare(cell);
-}
-
-/// What is wrong with `cell` as a number; empty when nothing is.
-std::string read_number(std::string_view cell, std::string_view column, double& value) {
-    if (cell.empty()) return fmt::format("column {} is empty", column);
-    const bool plus = cell.size() > 1 && cell[0] == '+' && cell[1] != '-';
-    const char* const end = cell.data() + cell.size();
-    const auto [stop, error] = std::from_chars(cell.data() + (plus ? 1 : 0), end, value);
-    if (error == std::errc::result_out_of_range && stop == end)
-        return fmt::format("'{}' in column {} is beyond the range of numbers", cell, column);
-    if (error != std::errc{} || stop != end)
-        return fmt::format("'{}' in column {} is not a number", cell, column);
-    return {};
-}
-
 /// The form that a file's header names, and the order of its columns there.
 struct Header {
     const RowForm* form = nullptr;
@@ -267,7 +227,7 @@ class Planner {
     /// One line, without its newline. False when no further line can be understood.
     bool line(std::string_view text, bool too_long, std::string& rows);
     /// Without a header there is nothing to plan.
-    void finish();
+    void finish(std::string& rows);
     bool has_header() const { return header_.form != nullptr; }
     bool any_mistake() const { return mistakes_; }
 
@@ -286,7 +246,7 @@ bool Planner::line(std::string_view text, bool too_long, std::string& rows) {
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
     if (++number_ == 1 && text.starts_with(byte_order_mark))
         text.remove_prefix(byte_order_mark.size());
-    if (!too_long && without_blanks(text).empty()) return true;
+    if (!too_long && trimmed(text).empty()) return true;
     if (!has_header()) return header(text, rows);
     Cells cells;
     const std::string wrong = too_long
@@ -308,7 +268,7 @@ bool Planner::header(std::string_view text, std::string& rows) {
     return true;
 }
 
-void Planner::finish() {
+void Planner::finish(std::string&) {
     if (has_header() || mistakes_) return;
     number_ = 1;
     mistake("the header is missing; the first line names " + all_names());
@@ -319,52 +279,7 @@ void Planner::mistake(const std::string& what) {
     mistakes_ = true;
 }
 
-/// Reads what is there of a file or a pipe, and cuts it into lines, in constant memory. A line that
-/// is too long is cut at its beginning.
-class Lines {
-  public:
-    explicit Lines(InputFile& file) : file_(file), buffer_(longest_line, '\0') {}
-
-    enum class Read { some, end, failed, interrupted };
-
-    Read read();
-    int error() const { return file_.error(); }  ///< an errno
-    /// The next whole line of what has been read; at the end the last one, whatever ends it.
-    bool next(std::string_view& line, bool& too_long, bool at_end);
-
-  private:
-    InputFile& file_;
-    std::string buffer_;
-    std::size_t begin_ = 0, end_ = 0;
-    bool too_long_ = false;  ///< the line under way has lost its beginning
-};
-
-Lines::Read Lines::read() {
-    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
-    end_ -= begin_;
-    begin_ = 0;
-    if (end_ == buffer_.size()) {
-        too_long_ = true;
-        end_ = 1;  // at the end of the file there is still a line
-    }
-    const std::size_t count = file_.read(buffer_.data() + end_, buffer_.size() - end_);
-    end_ += count;
-    if (interrupt_requested) return Read::interrupted;
-    if (file_.error() != 0) return Read::failed;
-    return count == 0 ? Read::end : Read::some;
-}
-
-bool Lines::next(std::string_view& line, bool& too_long, bool at_end) {
-    const std::string_view rest(buffer_.data() + begin_, end_ - begin_);
-    const std::size_t newline = rest.find('\n');
-    if (newline == std::string_view::npos && (!at_end || rest.empty())) return false;
-    line = rest.substr(0, newline);
-    begin_ = newline == std::string_view::npos ? end_ : begin_ + newline + 1;
-    too_long = too_long_;
-    too_long_ = false;
-    return true;
-}
-
+template <class Planner>
 Exit plan_lines(Lines& lines, Planner& planner, OutputFile& sink) {
     std::string rows;
     for (auto got = Lines::Read::some; got == Lines::Read::some;) {
@@ -383,8 +298,23 @@ Exit plan_lines(Lines& lines, Planner& planner, OutputFile& sink) {
         sink.flush();
         if (!sink.error().empty()) break;
     }
-    planner.finish();
+    rows.clear();
+    planner.finish(rows);
+    sink.write(rows);
     return planner.any_mistake() ? Exit::wrong : Exit::fine;
+}
+
+template <class Planner>
+Exit plan_file(InputFile& file, Planner& planner, const PlanCommand& command) {
+    Lines lines(file);
+    OutputFile sink(command.output.empty() ? "-" : command.output);
+    const Exit result = plan_lines(lines, planner, sink);
+    if (!planner.has_header()) sink.discard();
+    if (!planner.has_header() || (result != Exit::fine && result != Exit::wrong)) return result;
+    sink.commit();
+    if (sink.error().empty()) return result;
+    spdlog::error("{}", sink.error());
+    return Exit::fault;
 }
 
 Exit execute(const PlanCommand& command) {
@@ -401,16 +331,13 @@ Exit execute(const PlanCommand& command) {
         spdlog::error("cannot open '{}': {}", command.input, std::strerror(file.error()));
         return Exit::wrong;
     }
-    Lines lines(file);
-    Planner planner(standard_input ? "stdin" : command.input, command.options);
-    OutputFile sink(command.output.empty() ? "-" : command.output);
-    const Exit result = plan_lines(lines, planner, sink);
-    if (!planner.has_header()) sink.discard();
-    if (!planner.has_header() || (result != Exit::fine && result != Exit::wrong)) return result;
-    sink.commit();
-    if (sink.error().empty()) return result;
-    spdlog::error("{}", sink.error());
-    return Exit::fault;
+    const std::string name = standard_input ? "stdin" : command.input;
+    if (command.is_path) {
+        PathPlanner planner(name, command.path);
+        return plan_file(file, planner, command);
+    }
+    Planner planner(name, command.options);
+    return plan_file(file, planner, command);
 }
 
 }  // namespace
@@ -434,7 +361,8 @@ void add_plan(CLI::App& app, Exit& result) {
         ->type_name("ULP")
         ->check(CLI::Range(0.0, 1e6))
         ->capture_default_str();
-    sub->footer(plan_help);
+    add_path_options(*sub, command->path, command->is_path);
+    sub->footer(std::string(plan_help) + std::string(path_help));
     sub->callback([command, &result] { result = execute(*command); });
 }
 

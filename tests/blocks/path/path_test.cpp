@@ -162,7 +162,7 @@ std::string fault_of(std::uint64_t seed, std::size_t most) {
             ++given;
         }
         if (random.share() < commands && scan < 2000) command(path, random);
-        if (scan == 2000) path.resume(), path.set_override(1);
+        if (scan == 2000 && commands > 0) path.resume(), path.set_override(1);
         // An axis may be decades slower than the path: longer and longer scans come to its end.
         const double slow = std::pow(1.001, std::max(0L, scan - 20'000));
         const double step = dt * random.share() * slow;
@@ -305,6 +305,21 @@ TEST_CASE("path: a corner is passed in motion, also when it is put in under way"
     }
 }
 
+TEST_CASE("path: a corner that is put in before the path begins is run along") {
+    std::vector<PathPiece> ring(8);
+    Path path;
+    PathCurve a, b;
+    REQUIRE(line_to({0, 0}, {10, 0}, a) == PathFault::none);
+    REQUIRE(line_to({10, 0}, {10, 10}, b) == PathFault::none);
+    const PathLimits limits = wide_limits({10, 100, 1000});
+    REQUIRE(path.append(ring, a, limits) == PathFault::none);
+    REQUIRE(path.append(ring, b, limits, {0, 2}) == PathFault::none);
+    REQUIRE(path.count == 3);
+    path.advance(ring, 100);
+    CHECK(path.finished());
+    CHECK(path.now(ring).position == PathVector{10, 10});
+}
+
 TEST_CASE("path: a corner that cannot be braked for any more is a stop") {
     std::vector<PathPiece> ring(8);
     Path path;
@@ -371,6 +386,10 @@ TEST_CASE("path: a copy of its bytes goes on alike") {
 
 TEST_CASE("path: a halt that ends at a joint but for rounding goes on from there") {
     CHECK(fault_of(1144, 500).empty());
+}
+
+TEST_CASE("path: braking that was planned for holds when longer braking is found behind it") {
+    CHECK(fault_of(55989, 500).empty());
 }
 
 TEST_CASE("path: random paths keep all limits and end exactly") {

@@ -1,0 +1,281 @@
+#include "tools/lineshaft/plan_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "tools/lineshaft/plan_cells.hpp"
+
+namespace lineshaft {
+
+using namespace bulk;
+
+namespace {
+
+constexpr std::array<std::string_view, 11> columns = {
+    "path",      "curve",     "position1", "position2", "position3", "position4",
+    "position5", "position6", "border1",   "border2",   "border3"};
+constexpr std::size_t path_column = 0, curve_column = 1, first_position = 2, first_border = 8;
+constexpr double none = 1e300;
+
+std::string_view text_of(PathFault fault) {
+    switch (fault) {
+        case PathFault::none:
+            return "";
+        case PathFault::not_finite:
+            return "not_finite";
+        case PathFault::no_length:
+            return "no_length";
+        case PathFault::no_arc:
+            return "no_arc";
+        case PathFault::limit_not_positive:
+            return "limit_not_positive";
+        case PathFault::not_joined:
+            return "not_joined";
+        case PathFault::full:
+            return "full";
+    }
+    return "";
+}
+
+/// `V,A,J`; empty where it is not that.
+std::optional<PathLimit> limit_of(std::string_view text) {
+    std::array<double, 3> value{};
+    std::optional rest = text;
+    for (double& x : value) {
+        const auto cell = next_cell(rest);
+        if (!cell || !read_number(*cell, "", x).empty()) return {};
+    }
+    const PathLimit limit{value[0], value[1], value[2]};
+    if (rest || !is_good(limit)) return {};
+    return limit;
+}
+
+std::string check_limit(const std::string& text) {
+    return limit_of(text) ? "" : fmt::format("'{}' is not V,A,J, three numbers above 0", text);
+}
+
+PathLimits limits_of(const std::vector<std::string>& texts) {
+    PathLimits limits;
+    limits.path = limit_of(texts.front()).value_or(PathLimit{});
+    limits.axes.fill({none, none, none});
+    for (std::size_t i = 0; i < limits.axes.size() && texts.size() > 1; ++i)
+        limits.axes[i] = limit_of(texts[std::min(i + 1, texts.size() - 1)]).value_or(PathLimit{});
+    return limits;
+}
+
+}  // namespace
+
+const std::string_view path_help =
+    "\n\nposition1,position2[,...,position6][,curve][,border1..border3][,path], with --path: "
+    "points\n"
+    "of a path in the space of the axes, the first one its start. curve is line, arc (through the\n"
+    "border) or spline; rows of one number in the column path are one path. A row each:\n"
+    "  path,ok,error,points,pieces,length,duration\n"
+    "or with --every one each so many seconds, and where the path ends:\n"
+    "  path,time,distance,velocity,acceleration,jerk,position1..position6";
+
+void add_path_options(CLI::App& sub, PathOptions& options, bool& is_path) {
+    CLI::Option* path =
+        sub.add_flag("--path", is_path, "Plan along paths through points; see below");
+    CLI::Option* limits =
+        sub.add_option("--limits", options.limits,
+                       "Velocity, acceleration and jerk along the path, then of the first axis, of "
+                       "the second and so on; the last one counts for all further axes")
+            ->type_name("V,A,J")
+            ->expected(1, static_cast<int>(most_path_axes) + 1)
+            ->delimiter('\0')
+            ->check(CLI::Validator(check_limit, ""))
+            ->needs(path);
+    path->needs(limits);
+    sub.add_option("--deviation", options.deviation, "Round corners within so much of the curves")
+        ->type_name("U")
+        ->check(CLI::NonNegativeNumber)
+        ->needs(path);
+    sub.add_option("--every", options.every, "A row each so many seconds along the path")
+        ->type_name("S")
+        ->check(CLI::PositiveNumber)
+        ->needs(path);
+}
+
+PathPlanner::PathPlanner(std::string file, const PathOptions& options)
+    : file_(std::move(file)),
+      options_(options),
+      limits_(limits_of(options.limits)),
+      ring_(look_ahead) {}
+
+bool PathPlanner::line(std::string_view text, bool too_long, std::string& rows) {
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+    if (++number_ == 1 && text.starts_with(byte_order_mark))
+        text.remove_prefix(byte_order_mark.size());
+    if (!too_long && trimmed(text).empty()) return true;
+    if (!has_header_) {
+        const std::string wrong = too_long ? "the line is too long" : read_header(text);
+        if (!wrong.empty()) mistake(wrong);
+        has_header_ = wrong.empty();
+        if (has_header_)
+            rows += options_.every > 0
+                        ? "path,time,distance,velocity,acceleration,jerk,position1,position2,"
+                          "position3,position4,position5,position6\n"
+                        : "path,ok,error,points,pieces,length,duration\n";
+        return has_header_;
+    }
+    PathTablePoint point;
+    double name = 1;
+    const std::string wrong = too_long
+                                  ? fmt::format("the line has {} characters or more", longest_line)
+                                  : read_point(text, point, name);
+    if (!wrong.empty()) {
+        mistake(wrong);
+        return true;
+    }
+    if (name_ && *name_ != name) end(rows);
+    if (!name_) {
+        begin(rows);
+        name_ = name;
+        from_ = point.target();
+    } else {
+        if (waiting_) lay(*waiting_, &point, rows);
+        waiting_ = point;
+    }
+    ++points_;
+    return true;
+}
+
+std::string PathPlanner::read_header(std::string_view text) {
+    order_.clear();
+    std::optional rest = text;
+    while (const auto cell = next_cell(rest)) {
+        const auto found = std::ranges::find(columns, *cell);
+        if (found == columns.end())
+            return fmt::format("the column '{}' is not known; the header names {}", *cell,
+                               fmt::join(columns, ", "));
+        const auto column = static_cast<std::size_t>(found - columns.begin());
+        if (std::ranges::find(order_, column) != order_.end())
+            return fmt::format("two columns are called '{}'", *cell);
+        order_.push_back(column);
+    }
+    if (std::ranges::find(order_, first_position) == order_.end())
+        return "there is no column 'position1'";
+    return {};
+}
+
+std::string PathPlanner::read_point(std::string_view text, PathTablePoint& point, double& path) {
+    std::array<double, columns.size()> value{};
+    value[path_column] = path;
+    std::optional rest = text;
+    std::size_t count = 0;
+    while (const auto cell = next_cell(rest)) {
+        const std::size_t column = count < order_.size() ? order_[count] : columns.size();
+        ++count;
+        if (column == columns.size()) continue;
+        if (column == curve_column) {
+            const auto found = std::ranges::find(path_point_kind_names, *cell);
+            if (!cell->empty() && found == std::end(path_point_kind_names))
+                return fmt::format("the curve '{}' is not line, arc or spline", *cell);
+            if (!cell->empty())
+                point.kind = static_cast<PathPointKind>(found - std::begin(path_point_kind_names));
+        } else if (column < first_border || !cell->empty()) {
+            const std::string wrong = read_number(*cell, columns[column], value[column]);
+            if (!wrong.empty()) return wrong;
+        }
+    }
+    if (count != order_.size())
+        return fmt::format("the line has {} cells instead of {}", count, order_.size());
+    const double* const x = value.data() + first_position;
+    std::copy(x, x + path_space, point.position.begin());
+    std::copy(x + path_space, x + most_path_axes, point.rotary.begin());
+    std::copy(x + most_path_axes, x + most_path_axes + path_space, point.border.begin());
+    path = value[path_column];
+    return {};
+}
+
+void PathPlanner::begin(std::string&) {
+    path_ = {};
+    waiting_.reset();
+    fault_ = PathFault::none;
+    points_ = samples_ = 0;
+    duration_ = 0;
+}
+
+void PathPlanner::lay(const PathTablePoint& row, const PathTablePoint* next, std::string& rows) {
+    if (fault_ != PathFault::none) return;
+    PathRowCurves curves;
+    std::size_t count = 0;
+    const PathCurve* const before = path_.count > 0 ? &last_ : nullptr;
+    fault_ = curves_of(row, next, from_, before, curves, count);
+    if (fault_ == PathFault::no_length) fault_ = PathFault::none, count = 0;
+    for (std::size_t k = 0; k < count && fault_ == PathFault::none; ++k) append(curves[k], rows);
+    from_ = row.target();
+}
+
+void PathPlanner::append(const PathCurve& curve, std::string& rows) {
+    while (!path_.lost && path_.count - path_.first + most_spline_parts + 1 > ring_.size())
+        run(rows, false);
+    if (path_.lost) return;
+    PathJoint joint;
+    if (!path_.finished())
+        joint.distance = distance_within(options_.deviation,
+                                         ring_[(path_.count - 1) % ring_.size()].curve, curve);
+    fault_ = path_.append(ring_, curve, limits_, joint);
+    last_ = curve;
+}
+
+/// Until there is room for more pieces, or to the end: from sample to sample, or leg to leg.
+void PathPlanner::run(std::string& rows, bool to_end) {
+    const std::uint64_t first = path_.first;
+    while (!path_.finished() && !path_.lost && (to_end || path_.first == first)) {
+        if (options_.every == 0) {
+            path_.advance(ring_, 0);
+            const double left = std::max(path_.leg.plan.duration - path_.time, 0.0);
+            const double step = to_end ? left : std::min(left, path_.leg.plan.duration / 64);
+            path_.advance(ring_, step);
+            duration_ += step;
+            continue;
+        }
+        const PathMotion m = path_.advance(ring_, samples_ == 0 ? 0 : options_.every);
+        rows += fmt::format("{}", name_.value_or(1));
+        append_number(rows, static_cast<double>(samples_++) * options_.every);
+        for (const double x : {m.path.position, m.path.velocity, m.path.acceleration, m.path.jerk})
+            append_number(rows, x);
+        for (const double x : m.position) append_number(rows, x);
+        rows += '\n';
+    }
+}
+
+void PathPlanner::end(std::string& rows) {
+    if (!name_) return;
+    if (waiting_) lay(*waiting_, nullptr, rows);
+    run(rows, true);
+    if (path_.lost) fault_ = PathFault::not_finite;
+    const bool ok = fault_ == PathFault::none;
+    if (options_.every == 0) {
+        rows += fmt::format("{},{},{},{},{}", *name_, ok ? 1 : 0, text_of(fault_), points_,
+                            path_.count);
+        if (ok) {
+            append_number(rows, path_.total);
+            append_number(rows, duration_);
+        } else {
+            rows += ",,";
+        }
+        rows += '\n';
+    } else if (!ok) {
+        mistake(fmt::format("the path {} cannot be planned: {}", *name_, text_of(fault_)));
+    }
+    name_.reset();
+}
+
+void PathPlanner::finish(std::string& rows) {
+    if (has_header_) return end(rows);
+    if (mistakes_) return;
+    number_ = 1;
+    mistake("the header is missing; the first line names position1, position2, ...");
+}
+
+void PathPlanner::mistake(const std::string& what) {
+    fmt::print(stderr, "{}:{}: error: {}\n", file_, number_, what);
+    mistakes_ = true;
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "blocks/group/path_table.hpp"
+#include "blocks/path/path.hpp"
+
+namespace lineshaft {
+
+extern const std::string_view path_help;
+
+struct PathOptions {
+    std::vector<std::string> limits;  ///< `V,A,J` of the path, then of the axes
+    double deviation = 0;             ///< of rounded corners [u]
+    double every = 0;                 ///< between samples [s]; 0: a row a path
+};
+
+/// `--path`, `--limits`, `--deviation`, `--every`.
+void add_path_options(CLI::App& sub, PathOptions& options, bool& is_path);
+
+/// Turns the lines of a file of points into rows: one a path, or one a sample.
+class PathPlanner {
+  public:
+    PathPlanner(std::string file, const PathOptions& options);
+
+    bool line(std::string_view text, bool too_long, std::string& rows);
+    void finish(std::string& rows);
+    bool has_header() const { return has_header_; }
+    bool any_mistake() const { return mistakes_; }
+
+  private:
+    static constexpr std::size_t look_ahead = 1024;  ///< pieces
+
+    std::string read_header(std::string_view text);
+    std::string read_point(std::string_view text, PathTablePoint& point, double& path);
+    void begin(std::string& rows);
+    void lay(const PathTablePoint& row, const PathTablePoint* next, std::string& rows);
+    void append(const PathCurve& curve, std::string& rows);
+    void run(std::string& rows, bool to_end);
+    void end(std::string& rows);
+    void mistake(const std::string& what);
+
+    std::string file_;
+    PathOptions options_;
+    PathLimits limits_;
+    std::vector<std::size_t> order_;  ///< of the header's columns
+    bool has_header_ = false, mistakes_ = false;
+    std::size_t number_ = 0;
+
+    std::vector<PathPiece> ring_;
+    Path path_;
+    std::optional<double> name_;  ///< of the path under way
+    std::optional<PathTablePoint> waiting_;
+    PathVector from_{};
+    PathCurve last_;
+    PathFault fault_ = PathFault::none;
+    std::size_t points_ = 0, samples_ = 0;
+    double duration_ = 0;
+};
+
+}  // namespace lineshaft
