@@ -5,6 +5,7 @@
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
+#include "runtime/st/check/any_inputs.hpp"
 #include "runtime/st/check/assertions.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/conversions.hpp"
@@ -129,6 +130,7 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
         return;
     }
     if (parameter.section == Section::input || is_set) {
+        if (type && is_any_input(*type)) return become_any(c, value, *type);
         if (check(c, value, type) && type) coerce(c, value, *type);
         return;
     }

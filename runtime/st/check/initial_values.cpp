@@ -140,7 +140,9 @@ void check_initial_values(Checking& c) {
     for (const Global& global : c.checked.globals) check_data_block(c, global);
     for (Routine& routine : c.checked.routines) {
         c.routine = &routine;
-        for (Variable& variable : routine.variables) {
+        // By index: ADR of a constant adds a variable.
+        for (std::size_t i = 0; i < routine.variables.size(); ++i) {
+            Variable& variable = routine.variables[i];
             if (variable.initial && variable.section == Section::in_out)
                 c.fail(code::wrong_place, variable.name.place, "a VAR_IN_OUT has no initial value",
                        "leave ':= ...' out; the caller gives the variable");

@@ -41,8 +41,9 @@ Expression*& without_alias(Expression*& e) {
     return is_alias ? e->operands[0] : e;
 }
 
-/// What cannot be referred to; empty if it can.
-std::string_view why_no_place(const Expression& e) {
+/// What cannot be referred to; empty if it can. A POINTER TO may point at an array or a structure
+/// of VAR CONSTANT.
+std::string_view why_no_place(const Expression& e, bool is_pointer) {
     if (e.kind == E::constant)
         return e.variable ? "a constant has no place" : "a value has no place";
     if (e.kind == E::bit || e.is_character()) return "a part of a value has no place of its own";
@@ -54,12 +55,30 @@ std::string_view why_no_place(const Expression& e) {
         return "what stands at an address is not referred to";
     if (root.kind == E::deref) return {};
     if (root.kind != E::name && root.kind != E::member) return "a value has no place";
-    if (root.variable && root.variable->constant) return "a constant has no place";
+    if (root.variable && root.variable->constant && !is_pointer) return "a constant has no place";
     const bool is_standard =
         root.kind == E::member && root.operands[0]->type->kind == Kind::standard;
     if (is_standard || e.type->is_object())
         return "a part of a standard block cannot be referred to";
     return {};
+}
+
+/// A constant scalar that a POINTER TO is to point at stands in its block once more, as a variable.
+void keep_constant(Checking& c, Expression*& e) {
+    if (e->kind != E::constant || !e->variable) return;
+    Routine* routine = c.routine;
+    while (routine && routine->pou != e->variable->of) routine = routine->owner;
+    if (!routine) return;
+    Variable& kept = routine->variables.emplace_back();
+    kept.name = e->token;
+    kept.text = e->variable->text;
+    kept.type = e->variable->type;
+    kept.initial = e->variable->initial;
+    kept.of = routine->pou;
+    kept.used = true;
+    e = make(c, E::name, *e);
+    e->variable = &kept;
+    e->type = kept.type;
 }
 
 /// `e`, a variable, becomes where it is; false for what is no variable, which was told.
@@ -69,7 +88,8 @@ bool refer(Checking& c, Expression*& e, const Type& to) {
         e = make_converted(c, e->operands[0], to);
         return true;
     }
-    if (const std::string_view why = why_no_place(*e); !why.empty()) {
+    if (to.is_pointer()) keep_constant(c, e);
+    if (const std::string_view why = why_no_place(*e, to.is_pointer()); !why.empty()) {
         c.fail(code::type_does_not_fit, e->place, std::string(why),
                "declare a variable, and refer to that");
         return false;

@@ -30,7 +30,7 @@ void parse_pou_modifiers(Parsing& p, Pou& pou);
 /// EXTENDS and IMPLEMENTS.
 void parse_bases(Parsing& p, Pou& pou);
 /// Its GET and SET become methods.
-void parse_property(Parsing& p, std::vector<Pou*>& to);
+void parse_property(Parsing& p, std::vector<Pou*>& to, PouKind of);
 /// A METHOD or PROPERTY behind the END of its block.
 void parse_late_method(Parsing& p);
 

@@ -14,24 +14,29 @@ void parse_name_list(Parsing& p, std::vector<Token>& to) {
     while (p.accept(Word::comma));
 }
 
-/// Accessor : ( 'GET' | 'SET' ) Access_Spec * ';' ? Var_Sections Stmt_List
-///            ( 'END_GET' | 'END_SET' ) ';' ?
-/// Both are names elsewhere; a GET ends with END_GET. What is set is an input of the property's
-/// name.
-Pou* parse_accessor(Parsing& p, const Pou& property) {
+/// What is set is an input of the property's name.
+Pou& add_accessor(Parsing& p, const Pou& property, Accessor accessor) {
     Pou& pou = p.tree.pous.emplace_back(property);
-    const Token opener = p.take();
-    const bool gets = same_name(opener.text, "get");
-    const Word end = gets ? Word::end_get_ : Word::end_set_;
-    pou.accessor = gets ? Accessor::get : Accessor::set;
-    while (accept_access(p, &pou.access)) continue;
-    p.accept(Word::semicolon);
-    if (!gets && pou.result) {
+    pou.accessor = accessor;
+    if (accessor == Accessor::set && pou.result) {
         Declaration& value = p.tree.declarations.emplace_back();
         value.name = pou.name;
         value.type = std::exchange(pou.result, nullptr);
         pou.blocks.push_back({.section = Section::input, .declarations = {&value}});
     }
+    return pou;
+}
+
+/// Accessor : ( 'GET' | 'SET' ) Access_Spec * ';' ? Var_Sections Stmt_List
+///            ( 'END_GET' | 'END_SET' ) ';' ?
+/// Both are names elsewhere; a GET ends with END_GET.
+Pou* parse_accessor(Parsing& p, const Pou& property) {
+    const Token opener = p.take();
+    const bool gets = same_name(opener.text, "get");
+    const Word end = gets ? Word::end_get_ : Word::end_set_;
+    Pou& pou = add_accessor(p, property, gets ? Accessor::get : Accessor::set);
+    while (accept_access(p, &pou.access)) continue;
+    p.accept(Word::semicolon);
     parse_sections(p, pou, end);
     const bool is_empty = p.is(Word::end_property_) || p.says("get") || p.says("set");
     p.is_in_body = true;
@@ -82,7 +87,8 @@ void parse_bases(Parsing& p, Pou& pou) {
 }
 
 /// Prop_Decl : 'PROPERTY' Pou_Modifier * Name ':' Data_Type ';' ? Accessor * 'END_PROPERTY' ';' ?
-void parse_property(Parsing& p, std::vector<Pou*>& to) {
+/// In an INTERFACE one without accessors has both.
+void parse_property(Parsing& p, std::vector<Pou*>& to, PouKind of) {
     Pou property;
     property.kind = PouKind::method;
     property.doc = comment_before(p, p.at, true);
@@ -93,6 +99,9 @@ void parse_property(Parsing& p, std::vector<Pou*>& to) {
     if (expect(p, Word::colon, "before the property's type")) property.result = parse_type(p);
     if (p.panic) skip_line(p);
     p.accept(Word::semicolon);
+    if (of == PouKind::interface && p.is(Word::end_property_))
+        for (const Accessor accessor : {Accessor::get, Accessor::set})
+            to.push_back(&add_accessor(p, property, accessor));
     while (!p.panic && p.is(Word::name) && (p.says("get") || p.says("set")))
         to.push_back(parse_accessor(p, property));
     close(p, Word::end_property_, opener);
@@ -111,7 +120,7 @@ void parse_late_method(Parsing& p) {
              "write it before END_FUNCTION_BLOCK");
     std::vector<Pou*>& to = has_methods ? block->methods : alone;
     if (p.is(Word::property_))
-        parse_property(p, to);
+        parse_property(p, to, has_methods ? block->kind : PouKind::function);
     else
         to.push_back(parse_pou(p));
 }

@@ -131,7 +131,7 @@ void parse_body(Parsing& p, Pou& pou, Word end) {
         parse_statements(p, pou.body, end);
         if (!may_have_parts(pou)) return p.at_chart() ? refuse_chart(p) : void();
         if (p.at_method() && p.is(Word::property_))
-            parse_property(p, pou.methods);
+            parse_property(p, pou.methods, pou.kind);
         else if (p.at_method())
             pou.methods.push_back(parse_pou(p));
         else if (p.at_chart())
