@@ -234,9 +234,8 @@ const std::vector<Argument>* constructor_arguments(Checking& c, const TypeText& 
 
 void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
     for (const Declaration* declared : block.declarations) {
-        const bool is_given =
-            block.section == Section::in_out || block.section == Section::input ||
-            (block.section == Section::output && !routine.has_instances());
+        const bool is_given = block.section == Section::in_out || block.section == Section::input ||
+                              (block.section == Section::output && !routine.has_instances());
         const auto* constructed =
             declared->type ? constructor_arguments(c, *declared->type) : nullptr;
         const Type* type = !declared->type ? nullptr

@@ -73,9 +73,9 @@ void collect_namespaces(Checking& c) {
         const auto scopes = c.tree.scopes.find(source.get());
         const bool is_project = source->dialect.is_loose && scopes != c.tree.scopes.end();
         if (!is_project || scopes->second.front().path.empty()) continue;
-        const std::string_view space = scopes->second.front().path;
-        if (std::ranges::find(c.open_libraries, space) == c.open_libraries.end())
-            c.open_libraries.push_back(space);
+        const std::string_view library = scopes->second.front().path;
+        if (std::ranges::find(c.open_libraries, library) == c.open_libraries.end())
+            c.open_libraries.push_back(library);
     }
     for (const LibraryFile& file : c.catalog.libraries()) {
         const bool is_taken = std::ranges::any_of(c.tree.sources, [&](const auto& source) {
