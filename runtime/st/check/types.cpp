@@ -11,6 +11,7 @@
 #include "runtime/st/check/initial_values.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
+#include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/overlays.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/types/packed.hpp"
@@ -114,6 +115,16 @@ const Type* resolve_structure(Checking& c, const TypeText& text) {
     return is_union && !has_packed_form(c, text, type) ? nullptr : &type;
 }
 
+/// `LONG := SHORT + 1`: the values before it become their numbers.
+void use_values_before(Checking& c, Expression*& e, const Type& type) {
+    if (!e) return;
+    for (Expression*& operand : e->operands) use_values_before(c, operand, type);
+    if (e->kind != E::name) return;
+    for (std::size_t i = 0; i < type.values.size(); ++i)
+        if (same_name(type.values[i], e->token.text))
+            return void(e = make_constant(c, *e, any_integer_type, {.integer = type.numbers[i]}));
+}
+
 const Type* resolve_enumeration(Checking& c, const TypeText& text) {
     Type& type = c.make_type(Kind::enumeration, "enumeration");
     type.slots = 1;
@@ -130,7 +141,9 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
         if (!value.is_named())
             return c.fail(code::wrong_arguments, value.value->place,
                           "a value of an enumeration has a name", "write values as name := 1");
-        if (Expression* given = value.value)
+        Expression* given = value.value;
+        use_values_before(c, given, type);
+        if (given)
             if (const auto whole = check_whole(c, given,
                                                !has_base   ? lint_type
                                                : type.base ? *type.base
