@@ -10,6 +10,7 @@
 #include "blocks/group/axes_group.hpp"
 #include "runtime/model/random.hpp"
 #include "tests/blocks/motion/sequences.hpp"
+#include "tests/count_of.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::test;
@@ -255,10 +256,8 @@ blocks:
 
 /// LINESHAFT_GROUPS makes it longer: tools/long.
 TEST_CASE("random groups never lead their axes out of their limits") {
-    const char* wanted = std::getenv("LINESHAFT_GROUPS");
-    const char* first = std::getenv("LINESHAFT_SEED");
-    const std::uint64_t begin = first ? std::stoull(first) : 1;
-    const std::uint64_t count = wanted ? std::stoull(wanted) : 100;
+    const auto begin = static_cast<std::uint64_t>(count_of("LINESHAFT_SEED", 1));
+    const auto count = static_cast<std::uint64_t>(count_of("LINESHAFT_GROUPS", 40));
     RandomGroup group;
     for (std::uint64_t seed = begin; seed < begin + count; ++seed) {
         const Events events = group.draw(seed);

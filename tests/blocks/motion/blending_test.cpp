@@ -10,6 +10,7 @@
 
 #include "runtime/model/random.hpp"
 #include "tests/blocks/motion/bench.hpp"
+#include "tests/count_of.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::test;
@@ -269,9 +270,8 @@ std::vector<double> searched(const std::vector<Stretch>& all) {
 }  // namespace
 
 TEST_CASE("a queue of blending moves is driven as a search by trial finds it") {
-    const char* wanted = std::getenv("LINESHAFT_QUEUES");
-    const int count = wanted ? std::atoi(wanted) : 60;
-    for (int seed = 1; seed <= count; ++seed) {
+    const std::int64_t count = count_of("LINESHAFT_QUEUES", 60);
+    for (std::int64_t seed = 1; seed <= count; ++seed) {
         Random random(static_cast<std::uint64_t>(seed), "queues");
         const auto moves = any_queue(random);
         const auto all = stretches(moves);

@@ -11,6 +11,7 @@
 #include "blocks/motion/synchronous.hpp"
 #include "tests/blocks/motion/bench.hpp"
 #include "tests/blocks/profile/oracle.hpp"
+#include "tests/count_of.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::test;
@@ -207,10 +208,9 @@ Approach shrunk(Approach a) {
 }  // namespace
 
 TEST_CASE("random approaches: limits are kept until a slave is in sync, whatever its master does") {
-    const char* seeds = std::getenv("LINESHAFT_APPROACHES");
     const char* only = std::getenv("LINESHAFT_SEED");
-    const std::uint64_t count = seeds ? std::stoull(seeds) : only ? 1 : 300;
-    const std::uint64_t first = only ? std::stoull(only) : 1;
+    const auto first = static_cast<std::uint64_t>(count_of("LINESHAFT_SEED", 1));
+    const auto count = static_cast<std::uint64_t>(count_of("LINESHAFT_APPROACHES", only ? 1 : 100));
     std::array<std::uint64_t, 4> ends{};
     for (std::uint64_t seed = first; seed < first + count; ++seed) {
         const Approach approach = draw(seed);

@@ -9,6 +9,7 @@
 #include "blocks/motion/synchronous.hpp"
 #include "tests/blocks/motion/bench.hpp"
 #include "tests/blocks/profile/oracle.hpp"
+#include "tests/count_of.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::test;
@@ -108,15 +109,13 @@ void run(std::uint64_t seed) {
 }  // namespace
 
 TEST_CASE("random masters and ratios: limits at any instant, no jump, in gear in the end") {
-    const char* seeds = std::getenv("LINESHAFT_COUPLINGS");
-    const std::uint64_t count = seeds ? std::stoull(seeds) : 40;
+    const auto count = static_cast<std::uint64_t>(count_of("LINESHAFT_COUPLINGS", 40));
     for (std::uint64_t seed = 1; seed <= count; ++seed) run(seed);
 }
 
 TEST_CASE(
     "a stop out of gear at any moment stands within v / a + a / j, and the slave gears in again") {
-    const char* seeds = std::getenv("LINESHAFT_COUPLINGS");
-    const std::uint64_t count = seeds ? std::stoull(seeds) : 40;
+    const auto count = static_cast<std::uint64_t>(count_of("LINESHAFT_COUPLINGS", 40));
     for (std::uint64_t seed = 1; seed <= count; ++seed) {
         oracle::Random random{seed};
         Limits limits{};

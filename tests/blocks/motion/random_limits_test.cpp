@@ -11,6 +11,7 @@
 #include "runtime/model/random.hpp"
 #include "tests/blocks/motion/sequences.hpp"
 #include "tests/blocks/scanning.hpp"
+#include "tests/count_of.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::test;
@@ -346,10 +347,8 @@ TEST_CASE("a cam that begins as a gear is reached looks for its end in a table o
 
 /// LINESHAFT_LIMITS makes it longer: tools/long.
 TEST_CASE("random programs never lead an axis out of its software limits") {
-    const char* wanted = std::getenv("LINESHAFT_LIMITS");
-    const char* first = std::getenv("LINESHAFT_SEED");
-    const std::uint64_t begin = first ? std::stoull(first) : 1;
-    const std::uint64_t count = wanted ? std::stoull(wanted) : 300;
+    const auto begin = static_cast<std::uint64_t>(count_of("LINESHAFT_SEED", 1));
+    const auto count = static_cast<std::uint64_t>(count_of("LINESHAFT_LIMITS", 300));
     LimitedAxes axes;
     for (std::uint64_t seed = begin; seed < begin + count; ++seed) {
         const Events events = axes.draw(seed);

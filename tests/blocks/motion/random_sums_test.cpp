@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "tests/blocks/motion/sequences.hpp"
+#include "tests/count_of.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::test;

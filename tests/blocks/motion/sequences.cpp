@@ -1,6 +1,5 @@
 #include "tests/blocks/motion/sequences.hpp"
 
-#include <cstdlib>
 #include <sstream>
 
 #include <catch2/catch.hpp>
@@ -163,11 +162,6 @@ void check_sequences(Sequences& sequences, std::int64_t count, std::string_view 
         FAIL(fmt::format("{}, seed {}: {}\n{}", what, seed, sequences.run(less),
                          sequences.text(less)));
     }
-}
-
-std::int64_t count_of(const char* variable, std::int64_t otherwise) {
-    const char* wanted = std::getenv(variable);
-    return wanted ? std::atoll(wanted) : otherwise;
 }
 
 }  // namespace lineshaft::test

@@ -91,7 +91,4 @@ class Sequences {
 /// Draws `count` sequences and fails with the first that goes wrong, shrunk.
 void check_sequences(Sequences& sequences, std::int64_t count, std::string_view what);
 
-/// The count that an environment variable says, for longer runs.
-std::int64_t count_of(const char* variable, std::int64_t otherwise);
-
 }  // namespace lineshaft::test

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/blocks/profile/any_state_problems.hpp"
+#include "tests/count_of.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::reference;
@@ -19,11 +20,6 @@ std::string line(const Problem& p) {
                   "Problem{%.17g, %.17g, %.17g, %.17g, %.17g, %.17g, %.17g, %.17g, %.17g, %.17g}",
                   p.p0, p.v0, p.a0, p.pf, p.vf, p.V, p.Vmin, p.A, p.D, p.J);
     return text;
-}
-
-long wanted(const char* variable, long otherwise) {
-    const char* const text = std::getenv(variable);
-    return text == nullptr ? otherwise : std::atol(text);
 }
 
 /// The length of the path within a time in which the acceleration keeps its sign.
@@ -156,8 +152,8 @@ void check(const Problem& p, const Family& family, Figures& figures) {
 }  // namespace
 
 TEST_CASE("from any state to any goal in the least time", "[any_state]") {
-    const long count = wanted("LINESHAFT_PROBLEMS", 4500);
-    const auto seed = static_cast<std::uint64_t>(wanted("LINESHAFT_SEED", 21));
+    const long count = test::count_of("LINESHAFT_PROBLEMS", 1500);
+    const auto seed = static_cast<std::uint64_t>(test::count_of("LINESHAFT_SEED", 21));
     const char* const chosen = std::getenv("LINESHAFT_FAMILY");
     for (const Family& family : families()) {
         if (chosen != nullptr && family.name != chosen) continue;
@@ -213,8 +209,8 @@ struct Stream {
 }  // namespace
 
 TEST_CASE("planned anew every scan, a motion neither turns off nor sticks", "[any_state]") {
-    const long scans = wanted("LINESHAFT_SCANS", 200000);
-    Random random{static_cast<std::uint64_t>(wanted("LINESHAFT_SEED", 7))};
+    const long scans = test::count_of("LINESHAFT_SCANS", 200000);
+    Random random{static_cast<std::uint64_t>(test::count_of("LINESHAFT_SEED", 7))};
     long failures = 0, detours = 0, goals = 0, over = 0;
     double worst = 0;
     Stream s;
@@ -254,8 +250,8 @@ TEST_CASE("planned anew every scan, a motion neither turns off nor sticks", "[an
 }
 
 TEST_CASE("a given duration is kept, or the next feasible one is", "[any_state]") {
-    const long count = wanted("LINESHAFT_PROBLEMS", 4500) / 10;
-    const auto seed = static_cast<std::uint64_t>(wanted("LINESHAFT_SEED", 23));
+    const long count = test::count_of("LINESHAFT_PROBLEMS", 1500) / 10;
+    const auto seed = static_cast<std::uint64_t>(test::count_of("LINESHAFT_SEED", 23));
     long blocked = 0;
     std::size_t most = 0;
     for (const Family& family : families()) {
@@ -299,7 +295,7 @@ TEST_CASE("a given duration is kept, or the next feasible one is", "[any_state]"
 TEST_CASE("axes that are synchronised arrive together, at the least common duration",
           "[any_state]") {
     Random random{24};
-    for (long i = 0; i < wanted("LINESHAFT_PROBLEMS", 4500) / 5; ++i) {
+    for (long i = 0; i < test::count_of("LINESHAFT_PROBLEMS", 1500) / 5; ++i) {
         std::array<Problem, 3> problems;
         std::array<MotionLimits, 3> limits;
         std::array<AxisMove, 3> axes;
@@ -329,7 +325,7 @@ TEST_CASE("axes that are synchronised arrive together, at the least common durat
         INFO(line(problems[0]) << line(problems[1]) << line(problems[2]));
         for (std::size_t k = 0; k < 3; ++k) {
             REQUIRE(out[k].duration == out[0].duration);
-            REQUIRE(run(problems[k], out[k], families().front(), true).position < 4500);
+            REQUIRE(run(problems[k], out[k], families().front(), true).position < 1500);
         }
         REQUIRE(std::abs(out[0].duration - least) <= 1e-9 * least);
     }

@@ -10,6 +10,7 @@
 
 #include "tests/blocks/profile/closed_form.hpp"
 #include "tests/blocks/profile/oracle.hpp"
+#include "tests/count_of.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::oracle;
@@ -205,11 +206,6 @@ SevenSegment random_problem(Random& random) {
             break;
     }
     return in_metres(p, random.one_in(2));
-}
-
-long problems() {
-    const char* const wanted = std::getenv("LINESHAFT_PROBLEMS");
-    return wanted == nullptr ? 100000 : std::atol(wanted);
 }
 
 constexpr double up(double x) {
@@ -455,7 +451,8 @@ const std::vector<Family>& families() {
 TEST_CASE("random moves are exact, optimal and inside their limits") {
     Random random{1};
     Figures figures;
-    for (long i = problems(); i > 0; --i) check(random_problem(random), figures);
+    for (auto i = test::count_of("LINESHAFT_PROBLEMS", 50000); i > 0; --i)
+        check(random_problem(random), figures);
     report("random moves", figures);
     for (std::size_t kind = 0; kind < move_kinds; ++kind) {
         INFO(name(static_cast<MoveKind>(kind)));
@@ -464,11 +461,12 @@ TEST_CASE("random moves are exact, optimal and inside their limits") {
 }
 
 TEST_CASE("moves on the borders between the kinds are exact, optimal and inside their limits") {
+    const std::int64_t count = test::count_of("LINESHAFT_PROBLEMS", 60000) / 20;
     std::uint64_t seed = 100;
     for (const Family& family : families()) {
         Random random{++seed};
         Figures figures;
-        for (int i = 0; i < 10000; ++i)
+        for (std::int64_t i = 0; i < count; ++i)
             check(in_metres(family.make(random), random.one_in(2)), figures);
         INFO(family.name);
         report(family.name, figures);

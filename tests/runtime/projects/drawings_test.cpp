@@ -374,13 +374,13 @@ TEST_CASE("a drawn body that is cut, or lacks an element, is read or told at a p
         CHECK(read(whole.substr(0, size)).messages.find("this file is not XML") !=
               std::string::npos);
     std::size_t refused = 0;
-    for (std::size_t begin = whole.find("<LD>"); begin < whole.find("</LD>"); ++begin) {
+    for (std::size_t begin = whole.find("<LD>"); begin < whole.find("</LD>"); begin += 7) {
         const std::size_t end = whole.find('"', begin + 1);
         std::string text = whole;
         text.erase(begin, end - begin);
         refused += read(text).messages.empty() ? 0U : 1U;
     }
-    CHECK(refused > 100);
+    CHECK(refused > 14);
 }
 
 }  // namespace lineshaft::projects

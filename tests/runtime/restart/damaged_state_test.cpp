@@ -1,6 +1,5 @@
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <new>
 #include <random>
 
@@ -10,6 +9,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/machine/kept_memory.hpp"
 #include "runtime/run/link.hpp"
+#include "tests/count_of.hpp"
 #include "tests/folder.hpp"
 #include "tests/fuzz/kept_runs.hpp"
 
@@ -19,9 +19,8 @@ using namespace lineshaft::test;
 namespace {
 
 /// More for tools/long.
-int rounds() {
-    const char* wanted = std::getenv("LINESHAFT_DAMAGED_STATES");
-    return wanted ? std::atoi(wanted) : 10;
+std::int64_t rounds() {
+    return count_of("LINESHAFT_DAMAGED_STATES", 10);
 }
 
 /// One to eight damages.

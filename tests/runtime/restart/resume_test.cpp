@@ -6,6 +6,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/restart/checkpoint.hpp"
 #include "runtime/run/single_run.hpp"
+#include "tests/count_of.hpp"
 #include "tests/folder.hpp"
 #include "tests/source_folder.hpp"
 
@@ -38,7 +39,7 @@ std::string result_of(const RunReport& report, const Folder& folder) {
     return text;
 }
 
-void check_resumed(const std::string& program, bool pulses, int rounds = 100) {
+void check_resumed(const std::string& program, bool pulses) {
     const Folder whole, parted;
     RunOptions options = options_in(whole);
     if (pulses) options.pulses_path = whole / "pulses.csv";
@@ -48,7 +49,7 @@ void check_resumed(const std::string& program, bool pulses, int rounds = 100) {
     REQUIRE(report.result.outcome == Outcome::completed);
     const std::int64_t end = report.result.time;
     std::mt19937_64 random(1);
-    for (int i = 0; i < rounds; ++i) {
+    for (std::int64_t i = count_of("LINESHAFT_RESUMES", 15); i > 0; --i) {
         options = options_in(parted);
         if (pulses) options.pulses_path = parted / "pulses.csv";
         // From here to the end there is one checkpoint.
@@ -73,7 +74,7 @@ TEST_CASE("a resumed run leaves the same bytes: the circle", "[resume]") {
 }
 
 TEST_CASE("a resumed run leaves the same bytes: mechanics", "[resume]") {
-    check_resumed("paper/wei2025_platform.yaml", false, 10);
+    check_resumed("paper/wei2025_platform.yaml", false);
 }
 
 TEST_CASE("a resumed run leaves the same bytes: pulses", "[resume]") {
@@ -122,6 +123,6 @@ TEST_CASE("a foreign or cut checkpoint is refused", "[resume]") {
 }
 
 TEST_CASE("a resumed run leaves the same bytes: Structured Text", "[resume]") {
-    check_resumed("08_state_machine.yaml", false, 10);
+    check_resumed("08_state_machine.yaml", false);
     check_resumed("../tests/cases/structured_text_in_a_program/program.yaml", false);
 }

@@ -9,6 +9,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/serve/http.hpp"
 #include "runtime/serve/modbus_session.hpp"
+#include "tests/count_of.hpp"
 #include "tests/folder.hpp"
 #include "tests/runtime/serve/simulated_world.hpp"
 
@@ -315,17 +316,12 @@ Faults faults_of(std::uint64_t seed) {
     return {.no_thread = part(0.2), .full_disk = part(0.1), .failed_flush = part(0.01)};
 }
 
-std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
-    const char* const text = std::getenv(variable);
-    return text ? std::strtoull(text, nullptr, 10) : otherwise;
-}
-
 }  // namespace
 
 TEST_CASE(
     "a served machine in a simulated world keeps what it acknowledges, answers all, replays") {
-    const std::uint64_t first = number_of("LINESHAFT_SEED", 1),
-                        count = number_of("LINESHAFT_WORLDS", 300);
+    const auto first = static_cast<std::uint64_t>(count_of("LINESHAFT_SEED", 1)),
+               count = static_cast<std::uint64_t>(count_of("LINESHAFT_WORLDS", 300));
     int acknowledged = 0, answered = 0, refused = 0;
     for (std::uint64_t seed = first; seed < first + count; ++seed) {
         Simulation simulation(seed, faults_of(seed));

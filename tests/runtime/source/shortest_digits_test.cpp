@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 
 #include "runtime/source/number_text.hpp"
+#include "tests/count_of.hpp"
 
 using namespace lineshaft;
 
@@ -52,13 +53,12 @@ TEST_CASE("powers of two and of ten have the digits of to_chars", "[number]") {
 }
 
 TEST_CASE("numbers of all kinds have the digits of to_chars", "[number]") {
-    const char* const wanted = std::getenv("LINESHAFT_NUMBERS");
-    const long count = wanted == nullptr ? 20000 : std::atol(wanted);
+    const std::int64_t count = test::count_of("LINESHAFT_NUMBERS", 20000);
     const std::uint64_t seed = std::random_device()();
     INFO("seed " << seed);
     std::mt19937_64 random(seed);
     const auto below = [&](std::uint64_t end) { return static_cast<double>(random() % end); };
-    for (long i = 0; i < count; ++i) {
+    for (std::int64_t i = 0; i < count; ++i) {
         const std::uint64_t bits = random();
         REQUIRE(agrees(std::bit_cast<double>(bits >> 1)));
         REQUIRE(agrees(std::bit_cast<double>(bits >> 12 >> bits % 52)));
