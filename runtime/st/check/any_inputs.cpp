@@ -1,9 +1,6 @@
 #include "runtime/st/check/any_inputs.hpp"
 
-#include <algorithm>
 #include <bit>
-
-#include <fmt/format.h>
 
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"

@@ -1,8 +1,5 @@
 #include "runtime/st/check/beginnings.hpp"
 
-#include <fmt/format.h>
-
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/places.hpp"
 
@@ -97,19 +94,18 @@ Statement* call_constructor(Checking& c, const Expression& like, Expression* ins
 /// That of the base, with the inputs of its own that the method has, too.
 void add_constructor_of_base(Checking& c, const Routine& method, Block& to) {
     const Routine* base = method.owner->base;
-    const auto it = base ? base->methods.find(constructor) : NameMap<Routine*>::const_iterator{};
-    if (!base || it == base->methods.end()) return;
+    const Routine* of_base = base ? find_in(base->methods, constructor) : nullptr;
+    if (!of_base) return;
     Expression like;
     like.token = method.pou->name;
     like.place = method.pou->place;
     std::vector<Argument> given;
-    for (const Variable& input : it->second->variables)
+    for (const Variable& input : of_base->variables)
         if (input.section == Section::input)
             given.push_back({.name = input.name, .value = make_name(c, like, input.text)});
     Expression* super = make_name(c, like, "super");
     to.push_back(make_call_statement(
-        c,
-        make_call(c, like, make_member(c, super, it->second->pou->name.text), std::move(given))));
+        c, make_call(c, like, make_member(c, super, of_base->pou->name.text), std::move(given))));
 }
 
 }  // namespace
@@ -129,11 +125,7 @@ void begin_instance(Checking& c, Variable& variable) {
     const bool has_values = variable.constructed && !variable.constructed->empty();
     const Type* type = variable.type;
     const bool is_block = type && type->kind == Kind::block && variable.space == Space::frame;
-    Routine* method = nullptr;
-    if (is_block)
-        if (const auto it = type->routine->methods.find(constructor);
-            it != type->routine->methods.end())
-            method = it->second;
+    const Routine* method = is_block ? find_in(type->routine->methods, constructor) : nullptr;
     if (!method) {
         if (has_values && type)
             c.fail(code::wrong_arguments, variable.name.place,

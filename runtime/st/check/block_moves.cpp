@@ -1,8 +1,5 @@
 #include "runtime/st/check/block_moves.hpp"
 
-#include <fmt/format.h>
-
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -21,7 +18,7 @@ bool is_element(const Expression& e) {
 Variable& counter(Checking& c) {
     constexpr std::string_view name = "%moved";
     Routine& routine = *c.routine;
-    if (const auto it = routine.names.find(name); it != routine.names.end()) return *it->second;
+    if (Variable* known = find_in(routine.names, name)) return *known;
     Variable& variable = routine.variables.emplace_back();
     variable.name = routine.pou->name;
     variable.text = name;

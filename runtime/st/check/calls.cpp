@@ -1,10 +1,5 @@
 #include "runtime/st/check/calls.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
-#include "runtime/source/letters.hpp"
-#include "runtime/source/units.hpp"
 #include "runtime/st/check/any_inputs.hpp"
 #include "runtime/st/check/assertions.hpp"
 #include "runtime/st/check/classes.hpp"
@@ -82,23 +77,19 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
                  const Type& given) {
     Expression* const value = argument.value;
     const Type* type = parameter.type;
-    if (argument.is_negated && (type->kind != Kind::boolean || given.kind != Kind::boolean)) {
-        c.fail(code::type_does_not_fit, argument.name.place,
-               fmt::format("NOT takes a BOOL to a BOOL, not {} to {}", describe(*type),
-                           describe(given)),
-               "take the output as it is");
-        return;
-    }
-    if (parameter.section == Section::in_out && is_packed(*value)) {
-        c.fail(
+    if (argument.is_negated && (type->kind != Kind::boolean || given.kind != Kind::boolean))
+        return void(c.fail(code::type_does_not_fit, argument.name.place,
+                           fmt::format("NOT takes a BOOL to a BOOL, not {} to {}", describe(*type),
+                                       describe(given)),
+                           "take the output as it is"));
+    if (parameter.section == Section::in_out && is_packed(*value))
+        return void(c.fail(
             code::wrong_arguments, value->place,
             fmt::format("'{}' takes a variable, not bytes of {}", parameter.text,
                         root_of(*value).variable && root_of(*value).variable->space == Space::image
                             ? "the process image"
                             : "a UNION"),
-            "copy it to a variable, give that, and copy it back");
-        return;
-    }
+            "copy it to a variable, give that, and copy it back"));
     const bool texts = given.kind == Kind::text && type->kind == Kind::text;
     const bool derives = parameter.section == Section::in_out && given.kind == Kind::block &&
                          type->kind == Kind::block && is_a(*given.routine, *type->routine);
@@ -389,9 +380,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
             return check_part(c, e, *part);
         }
         if (of->kind == Kind::block || of->kind == Kind::interface) {
-            const auto it = of->routine->methods.find(callee.token.text);
-            if (it != of->routine->methods.end()) {
-                Routine& method = overload_of(c, *e, of->routine->overloads, *it->second);
+            if (Routine* first = find_in(of->routine->methods, callee.token.text)) {
+                Routine& method = overload_of(c, *e, of->routine->overloads, *first);
                 if (!is_accessible(c, method.pou->access, *method.owner, callee.token))
                     return nullptr;
                 return check_method_call(c, e, method, *callee.operands[0], as_statement);
@@ -402,8 +392,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
     if (callee.kind == E::name && !is_instance(c, callee.token) && !is_own_instance(c, callee)) {
         const std::string_view name = callee.token.text;
         for (const Routine* r = c.routine; r; r = r->owner)
-            if (const auto it = r->methods.find(name); it != r->methods.end()) {
-                Routine& method = overload_of(c, *e, r->overloads, *it->second);
+            if (Routine* first = find_in(r->methods, name)) {
+                Routine& method = overload_of(c, *e, r->overloads, *first);
                 e->is_dispatched = method.is_replaced;
                 return check_routine_call(c, e, method, as_statement);
             }

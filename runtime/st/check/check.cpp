@@ -1,8 +1,5 @@
 #include "runtime/st/check/check.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/image.hpp"

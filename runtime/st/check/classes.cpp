@@ -1,8 +1,5 @@
 #include "runtime/st/check/classes.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
@@ -59,12 +56,11 @@ void add_base(Checking& c, Routine& routine, const Token& name, bool wants_inter
         routine.has_unknown_base = true;
         return;
     }
-    if (const std::string way = hops(*base, routine); !way.empty()) {
-        c.fail(code::contains_itself, name.place,
-               fmt::format("'{}' extends itself: {} -> {}", routine.name, routine.name, way),
-               "let one of them be without a base");
-        return;
-    }
+    if (const std::string way = hops(*base, routine); !way.empty())
+        return void(
+            c.fail(code::contains_itself, name.place,
+                   fmt::format("'{}' extends itself: {} -> {}", routine.name, routine.name, way),
+                   "let one of them be without a base"));
     if (base->pou->is_final)
         c.fail(code::wrong_place, name.place, fmt::format("{} is FINAL", base->name),
                "declare an instance of it instead, or take FINAL away");
@@ -286,9 +282,9 @@ bool is_accessible(Checking& c, Access access, const Routine& owner, const Token
     const Routine* own = own_block(c);
     if (c.is_in_test() || own == &owner) return true;
     const auto refuse = [&](std::string_view word, std::string_view who) {
-        c.fail(code::wrong_arguments, name.place,
-               fmt::format("'{}' is {} to {}", name.text, word, owner.name), std::string(who));
-        return false;
+        return c.fail(code::wrong_arguments, name.place,
+                      fmt::format("'{}' is {} to {}", name.text, word, owner.name),
+                      std::string(who));
     };
     if (access == Access::private_) return refuse("PRIVATE", "only its own block calls it");
     if (access == Access::protected_ && !(own && is_a(*own, owner)))
@@ -320,9 +316,7 @@ const Type* check_method_call(Checking& c, Expression*& call, Routine& method,
 
 Routine* find_accessor(Checking& c, const Expression& e, Accessor accessor) {
     const auto in = [&](const Routine& block) -> Routine* {
-        const auto& known = accessor == Accessor::get ? block.getters : block.setters;
-        const auto it = known.find(e.token.text);
-        return it == known.end() ? nullptr : it->second;
+        return find_in(accessor == Accessor::get ? block.getters : block.setters, e.token.text);
     };
     if (e.kind == E::member) {
         const Type* of = e.operands[0]->type;

@@ -1,9 +1,7 @@
 #include "runtime/st/check/constants.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"

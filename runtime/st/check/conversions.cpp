@@ -1,9 +1,7 @@
 #include "runtime/st/check/conversions.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/syntax/literals.hpp"
@@ -51,12 +49,11 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to) {
     const Wide number = e->constant.integer;
     const bool exists = number >= 0 && number < static_cast<Wide>(to.of_number.size());
     const std::int64_t value = exists ? to.of_number[static_cast<std::size_t>(number)] : -1;
-    if (value < 0) {
-        c.fail(code::value_out_of_range, e->place,
-               fmt::format("{} has nothing for the number {}", to.name, to_string(number)),
-               fmt::format("write one of its values, such as {}#{}", to.name, to.values.front()));
-        return false;
-    }
+    if (value < 0)
+        return c.fail(
+            code::value_out_of_range, e->place,
+            fmt::format("{} has nothing for the number {}", to.name, to_string(number)),
+            fmt::format("write one of its values, such as {}#{}", to.name, to.values.front()));
     e = make_constant(c, *e, to, {.integer = value});
     return true;
 }
@@ -89,22 +86,20 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
 bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
     const Type& from = *e.type;
     const bool of_literal = from.kind == Kind::any_real;
-    if (of_literal && !to.is_real() && to.is_number()) {
-        c.fail(code::conversion_may_lose, e.place,
-               fmt::format("expected {}, found a real number", describe(to)),
-               "write a whole number, or convert it: ROUND(...)");
-        return false;
-    }
+    if (of_literal && !to.is_real() && to.is_number())
+        return c.fail(code::conversion_may_lose, e.place,
+                      fmt::format("expected {}, found a real number", describe(to)),
+                      "write a whole number, or convert it: ROUND(...)");
     if ((from.is_number() || from.is_bits()) && (to.is_number() || to.is_bits())) {
         const bool counts =
             from.kind == Kind::bits && to.is_real();  // DWORD_TO_REAL keeps the bits
         const std::string source = from.is_any() ? "LINT"
                                    : counts      ? integer_type(from.bits, false).name
                                                  : from.plain().name;
-        c.fail(code::conversion_may_lose, e.place,
-               fmt::format("{} does not hold every {}", describe(to), from.name),
-               fmt::format("write {}_TO_{}(...) where it is meant", source, to.plain().name));
-        return false;
+        return c.fail(
+            code::conversion_may_lose, e.place,
+            fmt::format("{} does not hold every {}", describe(to), from.name),
+            fmt::format("write {}_TO_{}(...) where it is meant", source, to.plain().name));
     }
     std::string help;
     if (to.kind == Kind::time && from.is_number())
@@ -120,9 +115,8 @@ bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
         help = fmt::format("write TIME_TO_{}(...)", to.is_any() ? "LREAL" : to.plain().name);
     if (from.kind == Kind::enumeration && to.kind == Kind::integer)
         help = fmt::format("write TO_{}(...)", to.plain().name);
-    c.fail(code::type_does_not_fit, e.place,
-           fmt::format("expected {}, found {}", describe(to), describe(from)), help);
-    return false;
+    return c.fail(code::type_does_not_fit, e.place,
+                  fmt::format("expected {}, found {}", describe(to), describe(from)), help);
 }
 
 bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
@@ -132,11 +126,9 @@ bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
     if (to.is_real() && (whole || from.kind == Kind::any_real)) {
         double real = as_real(*e);
         if (to.kind == Kind::real && to.bits == 32) real = static_cast<float>(real);
-        if (!std::isfinite(real)) {
-            c.fail(code::value_out_of_range, e->place,
-                   fmt::format("'{}' is out of range for {}", e->place.text(), to.name));
-            return false;
-        }
+        if (!std::isfinite(real))
+            return c.fail(code::value_out_of_range, e->place,
+                          fmt::format("'{}' is out of range for {}", e->place.text(), to.name));
         take_type(c, e, to, {.real = real});
         return true;
     }
@@ -149,13 +141,11 @@ bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
     if (to.kind != Kind::integer && to.kind != Kind::bits) return refuse_conversion(c, *e, to);
     const Wide pattern = Wide{1} << to.bits;
     const bool is_pattern = from.kind == Kind::any_bits && value < pattern && !to.is_subrange;
-    if (!is_pattern && (value < smallest(to) || value > largest(to))) {
-        c.fail(
+    if (!is_pattern && (value < smallest(to) || value > largest(to)))
+        return c.fail(
             code::value_out_of_range, e->place,
             fmt::format("{} is out of range for {}", to_string(value), describe(to)),
             fmt::format("it goes from {} to {}", to_string(smallest(to)), to_string(largest(to))));
-        return false;
-    }
     take_type(c, e, to, {.integer = is_pattern ? wrapped(to, value) : value});
     return true;
 }
@@ -218,11 +208,10 @@ bool coerce_instance(Checking& c, Expression*& e, const Type& to) {
         return true;
     }
     if (has_methods && from.routine->has_unknown_base) return false;
-    c.fail(code::type_does_not_fit, e->place,
-           fmt::format("expected {}, found {}", describe(to), describe(from)),
-           has_methods ? fmt::format("{} does not implement it", describe(from))
-                       : "assign an instance of a block that implements it");
-    return false;
+    return c.fail(code::type_does_not_fit, e->place,
+                  fmt::format("expected {}, found {}", describe(to), describe(from)),
+                  has_methods ? fmt::format("{} does not implement it", describe(from))
+                              : "assign an instance of a block that implements it");
 }
 
 }  // namespace
@@ -262,12 +251,10 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
         return true;
     }
     if (to.is_subrange && same_type(from.plain(), to.plain())) {
-        if (is_constant(*e) && (e->constant.integer < to.lower || e->constant.integer > to.upper)) {
-            c.fail(code::value_out_of_range, e->place,
-                   fmt::format("{} is out of range for {}", to_string(e->constant.integer),
-                               describe(to)));
-            return false;
-        }
+        if (is_constant(*e) && (e->constant.integer < to.lower || e->constant.integer > to.upper))
+            return c.fail(code::value_out_of_range, e->place,
+                          fmt::format("{} is out of range for {}", to_string(e->constant.integer),
+                                      describe(to)));
         convert(c, e, to);
         return true;
     }

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/charts.hpp"
@@ -134,9 +133,8 @@ bool is_overload(const Pou& routine, const Routine* first,
                         first->pou->kind == routine.kind && !first->pou->is_action;
     if (!may_be) return false;
     const std::string own = signature_of(routine);
-    const auto it = overloads.find(name);
-    const std::vector<Routine*> all =
-        it == overloads.end() ? std::vector{const_cast<Routine*>(first)} : it->second;
+    const std::vector<Routine*>* several = find_in(overloads, name);
+    const auto all = several ? *several : std::vector{const_cast<Routine*>(first)};
     return std::ranges::none_of(all,
                                 [&](const Routine* r) { return signature_of(*r->pou) == own; });
 }
@@ -152,11 +150,9 @@ void add_overload(NameMap<std::vector<Routine*>>& to, std::string_view name, Rou
 void declare_result(Checking& c, Routine& routine) {
     const TypeText* text = routine.pou->result;
     if (!text || same_name(text->name.text, "void")) return;
-    if (routine.has_instances()) {
-        c.fail(code::wrong_place, text->place, "only functions and methods have a result",
-               "declare a VAR_OUTPUT");
-        return;
-    }
+    if (routine.has_instances())
+        return void(c.fail(code::wrong_place, text->place,
+                           "only functions and methods have a result", "declare a VAR_OUTPUT"));
     Variable& result = routine.variables.emplace_back();
     result.name = routine.pou->name;
     result.text = result.name.text;
@@ -172,13 +168,12 @@ void declare_result(Checking& c, Routine& routine) {
 void declare_edge(Checking& c, Routine& routine, Variable& variable, const Token& edge) {
     const bool fits = variable.type && variable.type->kind == Kind::boolean &&
                       variable.section == Section::input && routine.has_instances();
-    if (!fits) {
-        c.fail(code::wrong_place, edge.place,
-               fmt::format("{} is for a BOOL of VAR_INPUT of a function block or a program",
-                           edge.text),
-               "declare an instance of R_TRIG or F_TRIG, and call it");
-        return;
-    }
+    if (!fits)
+        return void(
+            c.fail(code::wrong_place, edge.place,
+                   fmt::format("{} is for a BOOL of VAR_INPUT of a function block or a program",
+                               edge.text),
+                   "declare an instance of R_TRIG or F_TRIG, and call it"));
     Variable& instance = routine.variables.emplace_back();
     instance.name = edge;
     instance.text = c.checked.names.emplace_back(fmt::format("{}.{}", variable.text, edge.text));
@@ -309,10 +304,8 @@ void collect_methods(Checking& c, Routine& block) {
             has_tests && method->name.word != Word::setup_ && method->name.word != Word::teardown_;
         const bool is_second =
             method->accessor == Accessor::set && block.getters.contains(method->name.text);
-        const auto known = block.methods.find(method->name.text);
-        const bool is_other =
-            known != block.methods.end() &&
-            is_overload(*method, known->second, block.overloads, method->name.text);
+        const Routine* known = find_in(block.methods, method->name.text);
+        const bool is_other = is_overload(*method, known, block.overloads, method->name.text);
         const bool is_new = is_second || is_other || is_new_name(c, method->name, names, is_test);
         if (is_new && !is_test) add_method(block, made);
     }
@@ -348,14 +341,14 @@ void collect_names(Checking& c) {
         c.has_tests |= pou->is_tests;
         const Token full_name = name_with_namespace(c, pou->name);
         Names& all = c.names_beside(full_name);
-        const auto first = all.routines.find(full_name.text);
-        const bool is_other = first != all.routines.end() && pou->kind == PouKind::function &&
-                              is_overload(*pou, first->second, all.overloads, full_name.text);
+        Routine* first = find_in(all.routines, full_name.text);
+        const bool is_other = pou->kind == PouKind::function &&
+                              is_overload(*pou, first, all.overloads, full_name.text);
         const bool added = !is_other && is_new_name(c, full_name, all.places);
         if (pou->kind == PouKind::data_block) continue;
         Routine& routine = c.make_routine(*pou, std::string(full_name.text));
         if (added) all.routines.emplace(full_name.text, &routine);
-        if (is_other) add_overload(all.overloads, full_name.text, *first->second, routine);
+        if (is_other) add_overload(all.overloads, full_name.text, *first, routine);
         if (routine.is_function()) continue;
         routine.type = &c.make_type(Kind::block, routine.name);
         routine.type->routine = &routine;

@@ -1,6 +1,5 @@
 #include "runtime/st/check/expressions.hpp"
 
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/literals.hpp"
 #include "runtime/st/check/names.hpp"

@@ -1,11 +1,7 @@
 #include "runtime/st/check/initial_values.hpp"
 
-#include <algorithm>
 #include <utility>
 
-#include "runtime/source/codes.hpp"
-#include "runtime/source/letters.hpp"
-#include "runtime/source/units.hpp"
 #include "runtime/st/check/beginnings.hpp"
 #include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"

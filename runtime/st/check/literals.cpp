@@ -2,7 +2,6 @@
 
 #include <chrono>
 
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
@@ -110,13 +109,11 @@ const Type* check_typed(Checking& c, Expression*& e) {
         if (!type) return nullptr;
         c.note(name.place, *named);
     }
-    if (!type) {
-        if (resolve_name(c, name))
-            c.fail(code::not_declared, name.place,
-                   fmt::format("'{}' is not a type of values", name.text),
-                   "write a type, as in INT#5");
-        return nullptr;
-    }
+    if (!type && resolve_name(c, name))
+        return c.fail(code::not_declared, name.place,
+                      fmt::format("'{}' is not a type of values", name.text),
+                      "write a type, as in INT#5");
+    if (!type) return nullptr;
     if (type->kind == Kind::enumeration && value->kind == E::name)
         return check_value(c, e, *type, value->token);
     if (!check(c, value, type) || !coerce(c, value, *type)) return nullptr;

@@ -59,11 +59,8 @@ const Type* use_object(Checking& c, Expression*& e, const Type& type) {
 Routine* find_part(Checking& c, const Type& type, std::string_view name) {
     if (type.kind != Kind::handle && !type.is_object()) return nullptr;
     const std::string part = fmt::format("{}.{}", type.standard->handle, name);
-    if (Routine** own = c.find_in(c.prelude.routines, part)) return *own;
-    for (const std::string_view library : c.open_libraries)
-        if (auto** found = c.find_in(c.users.routines, fmt::format("{}.{}", library, part)))
-            return *found;
-    return nullptr;
+    Routine* own = find_in(c.prelude.routines, part);
+    return own ? own : c.find_in_libraries(c.users.routines, part);
 }
 
 bool is_object_of(Checking& c, const Expression& member) {

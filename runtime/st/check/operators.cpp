@@ -1,8 +1,5 @@
 #include "runtime/st/check/operators.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"

@@ -1,9 +1,5 @@
 #include "runtime/st/check/order.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
-
 namespace lineshaft::st {
 
 namespace {

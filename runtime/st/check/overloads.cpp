@@ -1,7 +1,5 @@
 #include "runtime/st/check/overloads.hpp"
 
-#include <algorithm>
-
 #include "runtime/st/check/expressions.hpp"
 
 namespace lineshaft::st {
@@ -50,10 +48,8 @@ std::optional<int> closeness(const Expression& call, const Routine& routine) {
         const Argument& argument = call.arguments[i];
         const Variable* input = i < inputs.size() ? inputs[i] : nullptr;
         if (argument.is_named()) {
-            const auto it = std::ranges::find_if(inputs, [&](const Variable* variable) {
-                return same_name(variable->text, argument.name.text);
-            });
-            input = it == inputs.end() ? nullptr : *it;
+            const auto* named = find_called(inputs, argument.name.text, &Variable::text);
+            input = named ? *named : nullptr;
         }
         if (!input || !input->type) return {};
         if (!argument.value->type) continue;

@@ -1,10 +1,5 @@
 #include "runtime/st/check/places.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
-#include "runtime/source/letters.hpp"
-#include "runtime/source/units.hpp"
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/classes.hpp"
@@ -22,13 +17,9 @@
 namespace lineshaft::st {
 
 Variable* find_member(const Type& type, std::string_view name) {
-    if (type.kind == Kind::block) {
-        const auto it = type.routine->names.find(name);
-        return it == type.routine->names.end() ? nullptr : it->second;
-    }
-    const auto it = std::ranges::find_if(
-        type.members, [&](const Variable* member) { return same_name(member->text, name); });
-    return it == type.members.end() ? nullptr : *it;
+    if (type.kind == Kind::block) return find_in(type.routine->names, name);
+    Variable* const* member = find_called(type.members, name, &Variable::text);
+    return member ? *member : nullptr;
 }
 
 namespace {
@@ -198,9 +189,8 @@ const Type* check_bit(Checking& c, Expression*& e) {
 
 bool check_target(Checking& c, Expression& target, std::string_view how) {
     const auto refuse = [&](std::string what, std::string help) {
-        c.fail(code::cannot_be_assigned, target.place, fmt::format("{} cannot be {}", what, how),
-               std::move(help));
-        return false;
+        return c.fail(code::cannot_be_assigned, target.place,
+                      fmt::format("{} cannot be {}", what, how), std::move(help));
     };
     if (target.kind == E::constant && target.variable)
         return refuse(fmt::format("the constant '{}'", target.variable->text),

@@ -1,10 +1,5 @@
 #include "runtime/st/check/references.hpp"
 
-#include <algorithm>
-
-#include <fmt/format.h>
-
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
@@ -89,11 +84,9 @@ bool refer(Checking& c, Expression*& e, const Type& to) {
         return true;
     }
     if (to.is_pointer()) keep_constant(c, e);
-    if (const std::string_view why = why_no_place(*e, to.is_pointer()); !why.empty()) {
-        c.fail(code::type_does_not_fit, e->place, std::string(why),
-               "declare a variable, and refer to that");
-        return false;
-    }
+    if (const std::string_view why = why_no_place(*e, to.is_pointer()); !why.empty())
+        return c.fail(code::type_does_not_fit, e->place, std::string(why),
+                      "declare a variable, and refer to that");
     note_lending(c, *e);
     const Expression& root = root_of(*e);
     if (root.variable) {
@@ -147,9 +140,9 @@ bool refuse_target(Checking& c, const Expression& e, const Type& to, const Type&
     if (to.is_reference() && !from.is_reference())
         help = to.is_alias() ? "a REFERENCE TO is given a variable of its type"
                              : "write ADR(...) or REF(...) of a variable";
-    c.fail(code::type_does_not_fit, e.place,
-           fmt::format("expected {}, found {}", describe(to), describe(from)), std::move(help));
-    return false;
+    return c.fail(code::type_does_not_fit, e.place,
+                  fmt::format("expected {}, found {}", describe(to), describe(from)),
+                  std::move(help));
 }
 
 /// A REFERENCE TO is given a variable, or another reference.
@@ -310,11 +303,10 @@ bool give_open_array(Checking& c, const Argument& argument, Variable& array, Ope
         given = make_element(c, given, type.lower);
         if (!check(c, given) || !refer(c, given, *array.type)) return false;
     } else {
-        c.fail(code::type_does_not_fit, given->place,
-               fmt::format("'{}' is {}, and {} is given", array.text, describe(*array.type),
-                           describe(type)),
-               "give a variable that is an array of one dimension");
-        return false;
+        return c.fail(code::type_does_not_fit, given->place,
+                      fmt::format("'{}' is {}, and {} is given", array.text, describe(*array.type),
+                                  describe(type)),
+                      "give a variable that is an array of one dimension");
     }
     to.push_back({argument.name, false, given, &array});
     to.push_back({argument.name, false, lower, &bounds.first});
@@ -386,12 +378,10 @@ void check_reference_assignment(Checking& c, Statement& s) {
     const Type* given = check(c, s.value);
     if (!type) return;
     Expression*& target = without_alias(s.target);
-    if (!target->type->is_reference()) {
-        c.fail(code::type_does_not_fit, s.target->place,
-               fmt::format("REF= does not go with {}", describe(*type)),
-               "it gives a REFERENCE TO the variable that it refers to");
-        return;
-    }
+    if (!target->type->is_reference())
+        return void(c.fail(code::type_does_not_fit, s.target->place,
+                           fmt::format("REF= does not go with {}", describe(*type)),
+                           "it gives a REFERENCE TO the variable that it refers to"));
     if (!given || !check_target(c, *target)) return;
     s.target = target;
     bind(c, s.value, *target->type);

@@ -1,8 +1,5 @@
 #include "runtime/st/check/statements.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/beginnings.hpp"
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/charts.hpp"
@@ -67,8 +64,8 @@ void check_call(Checking& c, Statement& s) {
 const Routine* find_action(Checking& c, Expression& name) {
     const auto is_action = [](const Routine* r) { return r && r->pou->is_action; };
     const auto of_block = [&](const Routine& block) -> const Routine* {
-        const auto it = block.methods.find(name.token.text);
-        return it != block.methods.end() && is_action(it->second) ? it->second : nullptr;
+        const Routine* found = find_in(block.methods, name.token.text);
+        return is_action(found) ? found : nullptr;
     };
     if (name.kind == E::member) {
         const Type* of = check(c, name.operands[0]);
@@ -230,11 +227,10 @@ void check_assignment(Checking& c, Statement*& s) {
     if (type->kind == Kind::block && s->op == Word::assign && is_place(*s->value) &&
         same_type(*type, *s->value->type))
         return;
-    if (type->is_instance()) {
-        c.fail(code::cannot_be_assigned, s->place, "an instance is not assigned as a whole",
-               "assign its inputs one by one");
-        return;
-    }
+    if (type->is_instance())
+        return void(c.fail(code::cannot_be_assigned, s->place,
+                           "an instance is not assigned as a whole",
+                           "assign its inputs one by one"));
     coerce(c, s->value, *type);
 }
 

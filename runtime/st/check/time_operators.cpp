@@ -1,6 +1,5 @@
 #include "runtime/st/check/time_operators.hpp"
 
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"

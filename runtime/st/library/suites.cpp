@@ -49,9 +49,8 @@ std::uint64_t read_word(const std::byte* place) {
 }
 
 const Variable* find(std::span<Variable* const> variables, std::string_view name) {
-    const auto it = std::ranges::find_if(
-        variables, [&](const Variable* variable) { return same_name(variable->text, name); });
-    return it == variables.end() ? nullptr : *it;
+    const auto* found = find_called(variables, name, &Variable::text);
+    return found ? *found : nullptr;
 }
 
 /// A run of all suites.

@@ -314,14 +314,13 @@ class Lexer {
     void read_prefix(std::string_view text) {
         add(Word::prefix);
         start_ = ++at_;
-        const auto is_prefix = [&](std::string_view p) { return same_name(p, text); };
-        if (std::ranges::any_of(date_prefixes, is_prefix) && is_digit(peek())) {
+        if (find_called(date_prefixes, text) && is_digit(peek())) {
             skip_while(
                 [](char c) { return is_digit(c) || c == '_' || c == '-' || c == ':' || c == '.'; });
             add(Word::duration);
             return;
         }
-        if (std::ranges::none_of(time_prefixes, is_prefix)) return;
+        if (!find_called(time_prefixes, text)) return;
         if (peek() == '-' || peek() == '+') ++at_;
         skip_while([](char c) { return is_letter(c) || is_digit(c) || c == '.'; });
         add(Word::duration);

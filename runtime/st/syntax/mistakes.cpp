@@ -55,16 +55,11 @@ std::string habit_of_signs(const Cursor& p) {
     return {};
 }
 
-bool is_elementary(std::string_view name) {
-    return std::ranges::any_of(elementary_names,
-                               [&](std::string_view known) { return same_name(known, name); });
-}
-
 }  // namespace
 
 std::string habit(const Parsing& p) {
     if (std::string of_signs = habit_of_signs(p); !of_signs.empty()) return of_signs;
-    if (p.is_in_body && p.is_name() && is_elementary(p.last().text))
+    if (p.is_in_body && p.is_name() && find_called(elementary_names, p.last().text))
         return "variables are declared in VAR ... END_VAR";
     if (p.is(Word::assign) && !p.is_in_body)
         return "statements stand in a PROGRAM, FUNCTION_BLOCK or FUNCTION";

@@ -81,8 +81,8 @@ std::size_t NameHash::operator()(std::string_view name) const {
 }
 
 std::optional<Word> word_of(std::string_view text) {
-    const auto it = words().find(text);
-    return it == words().end() ? std::nullopt : std::optional(it->second);
+    const Word* word = find_in(words(), text);
+    return word ? std::optional(*word) : std::nullopt;
 }
 
 std::span<const Sign> signs() {

@@ -1,6 +1,5 @@
 #include "runtime/st/vendors/instead.hpp"
 
-#include <algorithm>
 #include <span>
 
 #include "runtime/st/syntax/token.hpp"
@@ -71,9 +70,8 @@ constexpr Instead inputs_of_vendors[] = {
     {"cam", "select the cam with MC_CamTableSelect, and give its CamTableID"}};
 
 std::string_view instead_in(std::span<const Instead> rows, std::string_view name) {
-    const auto it =
-        std::ranges::find_if(rows, [&](const Instead& row) { return same_name(row.name, name); });
-    return it == rows.end() ? std::string_view() : it->instead;
+    const Instead* row = find_called(rows, name, &Instead::name);
+    return row ? row->instead : std::string_view();
 }
 
 }  // namespace

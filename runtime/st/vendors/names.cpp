@@ -1,7 +1,5 @@
 #include "runtime/st/vendors/names.hpp"
 
-#include <algorithm>
-
 #include "runtime/st/syntax/token.hpp"
 
 namespace lineshaft::st {
@@ -105,26 +103,22 @@ constexpr std::int64_t directions[] = {0, 1, 2, 0}, homing_modes[] = {0, -1, -1,
 }  // namespace
 
 std::string_view standard_type_name(std::string_view name) {
-    const auto* it = std::ranges::find_if(
-        types, [&](const Renamed& renamed) { return same_name(renamed.theirs, name); });
-    return it == std::end(types) ? name : it->standard;
+    const Renamed* row = find_called(types, name, &Renamed::theirs);
+    return row ? row->standard : name;
 }
 
 std::string_view standard_part_name(std::string_view name) {
-    const auto* it = std::ranges::find_if(
-        parts, [&](const Renamed& renamed) { return same_name(renamed.theirs, name); });
-    return it == std::end(parts) ? std::string_view() : it->standard;
+    const Renamed* row = find_called(parts, name, &Renamed::theirs);
+    return row ? row->standard : std::string_view();
 }
 
 std::string_view standard_argument_name(std::string_view name) {
-    const auto* it = std::ranges::find_if(
-        arguments, [&](const Renamed& renamed) { return same_name(renamed.theirs, name); });
-    return it == std::end(arguments) ? name : it->standard;
+    const Renamed* row = find_called(arguments, name, &Renamed::theirs);
+    return row ? row->standard : name;
 }
 
 bool is_vendor_library(std::string_view name) {
-    return std::ranges::any_of(libraries,
-                               [&](std::string_view known) { return same_name(known, name); });
+    return find_called(libraries, name) != nullptr;
 }
 
 bool is_open(const LibraryFile& file) {
@@ -138,9 +132,7 @@ std::string_view without_library(std::string_view name) {
 }
 
 const AddedInput* find_added_input(std::string_view name) {
-    const auto* it = std::ranges::find_if(
-        added_inputs, [&](const AddedInput& input) { return same_name(input.name, name); });
-    return it == std::end(added_inputs) ? nullptr : it;
+    return find_called(added_inputs, name, &AddedInput::name);
 }
 
 std::span<const std::int64_t> meanings_of_numbers(std::string_view input) {
