@@ -44,29 +44,16 @@ Expression* nothing(Checking& c, const Expression& like, const Type& type) {
 void add_once(Checking& c, Routine& block, Place place, Block& to) {
     if (block.begins.empty()) return;
     if (!block.begun) {
-        Variable& begun = block.variables.emplace_back();
-        begun.name = block.pou->name;
-        begun.text = c.checked.names.emplace_back(fmt::format("{}.begun", block.pou->name.text));
-        begun.type = &bool_type;
-        begun.of = block.pou;
-        begun.used = true;
-        block.begun = &begun;
+        const Token& name = block.pou->name;
+        block.begun = &c.make_variable(
+            block, name, c.checked.names.emplace_back(fmt::format("{}.begun", name.text)),
+            &bool_type);
     }
-    const auto flag = [&] {
-        Expression like;
-        like.token = block.pou->name;
-        like.place = place;
-        Expression* name = make(c, E::name, like);
-        name->variable = block.begun;
-        name->type = &bool_type;
-        return name;
-    };
-    Block first = {make_assignment(c, place, flag(), make_boolean(c, *flag(), true))};
+    const Expression like{.token = block.pou->name, .place = place};
+    const auto flag = [&] { return make_use(c, like, *block.begun); };
+    Block first = {make_assignment(c, place, flag(), make_boolean(c, like, true))};
     first.insert(first.end(), block.begins.begin(), block.begins.end());
-    Expression* condition = make(c, E::unary, *flag());
-    condition->op = Word::not_;
-    condition->operands[0] = flag();
-    to.push_back(make_if(c, place, condition, std::move(first), {}));
+    to.push_back(make_if(c, place, make_not(c, flag()), std::move(first), {}));
 }
 
 void add_bases_first(Checking& c, Routine& block, Place place, Block& to) {
@@ -96,9 +83,7 @@ void add_constructor_of_base(Checking& c, const Routine& method, Block& to) {
     const Routine* base = method.owner->base;
     const Routine* of_base = base ? find_in(base->methods, constructor) : nullptr;
     if (!of_base) return;
-    Expression like;
-    like.token = method.pou->name;
-    like.place = method.pou->place;
+    const Expression like{.token = method.pou->name, .place = method.pou->place};
     std::vector<Argument> given;
     for (const Variable& input : of_base->variables)
         if (input.section == Section::input)
@@ -134,9 +119,7 @@ void begin_instance(Checking& c, Variable& variable) {
         return;
     }
     if (!c.routine || !c.routine->has_instances()) return;
-    Expression like;
-    like.token = variable.name;
-    like.place = variable.name.place;
+    const Expression like{.token = variable.name, .place = variable.name.place};
     c.routine->begins.push_back(
         call_constructor(c, like, make_name(c, like, variable.text),
                          has_values ? *variable.constructed : std::vector<Argument>{}, *method));

@@ -144,15 +144,11 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
 
 /// A VAR_IN_OUT that a test does not give stays what it was; at first it is a variable of its own.
 Argument leave_out(Checking& c, const Expression& call, Variable& parameter) {
-    Variable& own = c.routine->variables.emplace_back();
-    own.type = parameter.type->is_open ? &string_type : parameter.type;
-    own.of = c.routine->pou;
+    const Type* type = parameter.type->is_open ? &string_type : parameter.type;
+    Variable& own = c.make_variable(*c.routine, {}, {}, type);
     depend(c, own.type, call.place);
     c.routine->lends = true;
-    Expression* value = make(c, E::name, call);
-    value->variable = &own;
-    value->type = own.type;
-    return {parameter.name, false, value, &parameter, true};
+    return {parameter.name, false, make_use(c, call, own), &parameter, true};
 }
 
 bool is_open_array(const Variable& variable) {

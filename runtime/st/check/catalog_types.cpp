@@ -96,13 +96,11 @@ const Type* standard_type(Checking& c, std::string_view name) {
     type.standard = &kind;
     type.slots = static_cast<std::uint32_t>((kind.size + 7) / 8) + (c.has_tests ? 1 : 0);
     for (const Field& field : kind.fields) {
-        Variable& member = c.checked.variables.emplace_back();
-        member.text = field.name;
+        Variable& member = c.make_variable({}, field.name, type_of(c, named, field));
         member.section = section_of(field.direction);
         member.slot = static_cast<std::uint32_t>(field.offset / 8);
         member.byte = static_cast<std::uint32_t>(field.offset);
         member.is_byte = field.type == lineshaft::Type::boolean;
-        member.type = type_of(c, named, field);
         type.members.push_back(&member);
     }
     if (named.data_type)

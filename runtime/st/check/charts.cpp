@@ -26,12 +26,7 @@ struct ChartWriter {
     const Pou& pou;    ///< whose chart it is: the routine's, or one of its actions'
     Block out = {};
 
-    Expression like(const Token& token) const {
-        Expression made;
-        made.token = token;
-        made.place = token.place;
-        return made;
-    }
+    Expression like(const Token& token) const { return {.token = token, .place = token.place}; }
     /// `of.part`, as it is called in names: what a chart keeps beside what its user declares.
     std::string_view part_name(std::string_view of, std::string_view part) {
         return c.checked.names.emplace_back(fmt::format("{}{}.{}", within(), of, part));
@@ -49,12 +44,7 @@ struct ChartWriter {
     Expression* joined(Word op, Expression* a, Expression* b) {
         return a ? make_binary(c, b->place, b->place, op, a, b) : b;
     }
-    Expression* negated(Expression* value) {
-        Expression* made = make(c, E::unary, *value);
-        made->op = Word::not_;
-        made->operands[0] = value;
-        return made;
-    }
+    Expression* negated(Expression* value) { return make_not(c, value); }
     Expression* truth(const Token& at, bool value) { return make_boolean(c, like(at), value); }
     Statement* set(Expression* target, Expression* value) {
         return make_assignment(c, target->place, target, value);
@@ -73,12 +63,7 @@ struct ChartWriter {
     }
 
     Variable& declare(const Token& at, std::string_view text, const Type* type) {
-        Variable& made = routine.variables.emplace_back();
-        made.name = at;
-        made.text = text;
-        made.type = type;
-        made.of = routine.pou;
-        made.used = true;
+        Variable& made = c.make_variable(routine, at, text, type);
         routine.names.emplace(text, &made);
         depend(c, type, at.place);
         return made;
@@ -320,12 +305,7 @@ void declare_chart(Checking& c, Routine& routine, Routine& seen) {
     const Chart& chart = *seen.pou->chart;
     ChartWriter w{c, routine, *seen.pou};
     Type& type = c.make_type(Kind::structure, "STEP");
-    for (const auto& [name, part] : {std::pair("X", &bool_type), std::pair("T", &time_type)}) {
-        Variable& member = c.checked.variables.emplace_back();
-        member.text = name;
-        member.type = part;
-        type.members.push_back(&member);
-    }
+    type.members = {&c.make_variable({}, "X", &bool_type), &c.make_variable({}, "T", &time_type)};
     for (const ChartStep& step : chart.steps) {
         const Token& at = step.name;
         if (const Variable* known = find_in(seen.names, at.text)) {

@@ -86,6 +86,25 @@ Type& Checking::make_type(Type::Kind kind, std::string name) {
     return type;
 }
 
+Variable& Checking::make_variable(Routine& of, const Token& at, std::string_view text,
+                                  const Type* type) {
+    Variable& made = of.variables.emplace_back();
+    made.name = at;
+    made.text = text;
+    made.type = type;
+    made.of = of.pou;
+    made.used = true;
+    return made;
+}
+
+Variable& Checking::make_variable(const Token& at, std::string_view text, const Type* type) {
+    Variable& made = checked.variables.emplace_back();
+    made.name = at;
+    made.text = text;
+    made.type = type;
+    return made;
+}
+
 Routine& Checking::make_routine(Pou& pou, std::string name) {
     Routine& made = checked.routines.emplace_back();
     made.pou = &pou;

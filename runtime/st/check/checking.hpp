@@ -174,6 +174,11 @@ struct Checking {
     bool is_in_test() const { return routine && routine->is_test(); }
 
     Type& make_type(Kind kind, std::string name);
+    /// A variable that no source declares, of a routine, or of what is beside them; `at` is where
+    /// messages say it is.
+    Variable& make_variable(Routine& routine, const Token& at, std::string_view text,
+                            const Type* type);
+    Variable& make_variable(const Token& at, std::string_view text, const Type* type);
     Routine& make_routine(Pou& pou, std::string name);
 };
 

@@ -153,13 +153,9 @@ void declare_result(Checking& c, Routine& routine) {
     if (routine.has_instances())
         return void(c.fail(code::wrong_place, text->place,
                            "only functions and methods have a result", "declare a VAR_OUTPUT"));
-    Variable& result = routine.variables.emplace_back();
-    result.name = routine.pou->name;
-    result.text = result.name.text;
-    result.type = resolve(c, *text);
+    const Token& name = routine.pou->name;
+    Variable& result = c.make_variable(routine, name, name.text, resolve(c, *text));
     result.section = Section::result;
-    result.of = routine.pou;
-    result.used = true;
     routine.result = &result;
     routine.names.emplace(result.text, &result);
 }
@@ -174,12 +170,9 @@ void declare_edge(Checking& c, Routine& routine, Variable& variable, const Token
                    fmt::format("{} is for a BOOL of VAR_INPUT of a function block or a program",
                                edge.text),
                    "declare an instance of R_TRIG or F_TRIG, and call it"));
-    Variable& instance = routine.variables.emplace_back();
-    instance.name = edge;
-    instance.text = c.checked.names.emplace_back(fmt::format("{}.{}", variable.text, edge.text));
-    instance.type = standard_type(c, same_name(edge.text, "r_edge") ? "r_trig" : "f_trig");
-    instance.of = routine.pou;
-    instance.used = true;
+    Variable& instance = c.make_variable(
+        routine, edge, c.checked.names.emplace_back(fmt::format("{}.{}", variable.text, edge.text)),
+        standard_type(c, same_name(edge.text, "r_edge") ? "r_trig" : "f_trig"));
     routine.names.emplace(instance.text, &instance);
     variable.edge = &instance;
 }
@@ -193,13 +186,10 @@ void declare_bounds(Checking& c, Routine& routine, Variable& array) {
     array.section = Section::input;
     array.space = Space::frame;
     for (const std::string_view bound : {"lower", "upper"}) {
-        Variable& made = routine.variables.emplace_back();
-        made.name = array.name;
-        made.text = c.checked.names.emplace_back(fmt::format("{}.{}", array.text, bound));
-        made.type = &lint_type;
+        Variable& made = c.make_variable(
+            routine, array.name,
+            c.checked.names.emplace_back(fmt::format("{}.{}", array.text, bound)), &lint_type);
         made.section = Section::input;
-        made.of = routine.pou;
-        made.used = true;
         made.bound_of = &array;
         routine.names.emplace(made.text, &made);
     }
@@ -418,10 +408,7 @@ void declare_globals(Checking& c) {
                 }
             type = &made;
         }
-        Variable& variable = c.checked.variables.emplace_back();
-        variable.name = pou->name;
-        variable.text = pou->name.text;
-        variable.type = type;
+        Variable& variable = c.make_variable(pou->name, pou->name.text, type);
         variable.section = Section::global;
         variable.space = Space::global;
         variable.global = number;

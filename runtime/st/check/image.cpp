@@ -144,10 +144,8 @@ const Type* check_direct(Checking& c, Expression& e) {
         e.variable = *it;
         return e.variable->type;
     }
-    Variable& variable = c.checked.variables.emplace_back();
-    variable.name = e.token;
-    variable.text = c.checked.names.emplace_back(text_of(*address));
-    variable.type = &type_at(*address);
+    Variable& variable = c.make_variable(e.token, c.checked.names.emplace_back(text_of(*address)),
+                                         &type_at(*address));
     variable.is_direct = variable.used = true;
     put(c, variable, *address);
     e.variable = &variable;

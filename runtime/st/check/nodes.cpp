@@ -51,6 +51,13 @@ Expression* make_text(Checking& c, const Expression& quoted) {
     return keep(c, {.token = token, .place = quoted.place});
 }
 
+Expression* make_use(Checking& c, const Expression& like, Variable& variable) {
+    Expression* made = make(c, E::name, like);
+    made->type = variable.type;
+    made->variable = &variable;
+    return made;
+}
+
 Expression* make_name(Checking& c, const Expression& like, std::string_view text) {
     return keep(c, {.kind = E::name, .token = with_text(like.token, text), .place = like.place});
 }
@@ -89,10 +96,32 @@ Expression* make_binary(Checking& c, Place place, Place sign, Word op, Expressio
                     .operands = {left, right}});
 }
 
+Expression* make_not(Checking& c, Expression* e) {
+    Expression* made = make(c, E::unary, *e);
+    made->op = Word::not_;
+    made->operands[0] = e;
+    return made;
+}
+
+Expression* make_target(Checking& c, const Expression& like, Expression* e, const Type* type) {
+    Expression* made = make(c, E::deref, like);
+    made->operands[0] = e;
+    made->type = type;
+    return made;
+}
+
+Expression* make_reference_to(Checking& c, Expression* e, const Type& type) {
+    Expression* made = make(c, E::refer, *e);
+    made->operands[0] = e;
+    made->type = &type;
+    return made;
+}
+
 Expression* make_converted(Checking& c, Expression* e, const Type& to) {
-    return keep(
-        c,
-        {.kind = E::converted, .token = e->token, .place = e->place, .operands = {e}, .type = &to});
+    Expression* made = make(c, E::converted, *e);
+    made->operands[0] = e;
+    made->type = &to;
+    return made;
 }
 
 Expression* make_call(Checking& c, const Expression& like, Expression* callee,

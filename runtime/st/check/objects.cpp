@@ -38,20 +38,14 @@ Variable* declare_program(Checking& c, const Token& name) {
     const Routine* program =
         is_plain && name.place.dialect().is_loose ? c.find_routine(name) : nullptr;
     if (!program || program->pou->kind != PouKind::program) return nullptr;
-    Variable& variable = c.checked.variables.emplace_back();
-    variable.name = program->pou->name;
-    variable.text = program->name;
-    variable.type = program->type;
+    Variable& variable = c.make_variable(program->pou->name, program->name, program->type);
     declare_object(c, variable);
     c.checked.globals.back().object = nullptr;
     return &variable;
 }
 
 const Type* use_object(Checking& c, Expression*& e, const Type& type) {
-    Variable& variable = c.checked.variables.emplace_back();
-    variable.name = e->token;
-    variable.text = e->token.text;
-    variable.type = &type;
+    Variable& variable = c.make_variable(e->token, e->token.text, &type);
     declare_object(c, variable);
     return use(c, e, variable);
 }

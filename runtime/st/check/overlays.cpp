@@ -90,13 +90,9 @@ const Type* use_overlay(Checking& c, Expression*& e, const Variable& overlay) {
     Expression* seen = make_copy(c, *e);
     seen->variable = overlay.seen;
     seen->type = overlay.seen->type;
-    Expression* refer = make(c, E::refer, *e);
-    refer->operands[0] = seen;
-    refer->type = &pointer_to(c, *overlay.type);
-    Expression* made = make(c, E::deref, *e);
-    made->operands[0] = refer;
-    e = made;
-    return e->type = overlay.type;
+    Expression* view = make_reference_to(c, seen, pointer_to(c, *overlay.type));
+    e = make_target(c, *seen, view, overlay.type);
+    return e->type;
 }
 
 }  // namespace lineshaft::st

@@ -64,16 +64,9 @@ void keep_constant(Checking& c, Expression*& e) {
     Routine* routine = c.routine;
     while (routine && routine->pou != e->variable->of) routine = routine->owner;
     if (!routine) return;
-    Variable& kept = routine->variables.emplace_back();
-    kept.name = e->token;
-    kept.text = e->variable->text;
-    kept.type = e->variable->type;
+    Variable& kept = c.make_variable(*routine, e->token, e->variable->text, e->variable->type);
     kept.initial = e->variable->initial;
-    kept.of = routine->pou;
-    kept.used = true;
-    e = make(c, E::name, *e);
-    e->variable = &kept;
-    e->type = kept.type;
+    e = make_use(c, *e, kept);
 }
 
 /// `e`, a variable, becomes where it is; false for what is no variable, which was told.
@@ -93,10 +86,7 @@ bool refer(Checking& c, Expression*& e, const Type& to) {
         root.variable->used = true;
         c.checked.refers_to_in_outs |= root.variable->space == Space::reference;
     }
-    Expression* made = make(c, E::refer, *e);
-    made->operands[0] = e;
-    made->type = &to;
-    e = made;
+    e = make_reference_to(c, e, to);
     return true;
 }
 
@@ -256,11 +246,8 @@ const Type* check_target_of(Checking& c, Expression& e) {
 
 const Type* take_target(Checking& c, Expression*& e) {
     const Type* target = e->type->element;
-    Expression* made = make(c, E::deref, *e);
-    made->operands[0] = e;
-    made->type = target;
     depend_on_target(c, target, e->place);
-    e = made;
+    e = make_target(c, *e, e, target);
     return target && target->is_alias() ? take_target(c, e) : target;
 }
 
@@ -280,11 +267,9 @@ const Type* check_open_index(Checking& c, Expression*& e, Expression* index) {
     for (const std::string_view which : {"lower", "upper"})
         moved->arguments.push_back({.value = bound_of(c, *array, which)});
     moved->constant.integer = Wide{bytes_of(*target)};
-    Expression* made = make(c, E::deref, *e);
-    made->operands[0] = moved;
     depend_on_target(c, target, e->place);
-    e = made;
-    return e->type = target;
+    e = make_target(c, *e, moved, target);
+    return target;
 }
 
 bool give_open_array(Checking& c, const Argument& argument, Variable& array, OpenBounds bounds,
@@ -333,11 +318,9 @@ const Type* check_pointer_index(Checking& c, Expression*& e) {
     bytes->type = &lint_type;
     Expression* moved = make_binary(c, e->place, e->place, Word::plus, pointer, bytes);
     moved->type = pointer->type;
-    Expression* made = make(c, E::deref, *e);
-    made->operands[0] = moved;
     depend_on_target(c, target, e->place);
-    e = made;
-    return e->type = target;
+    e = make_target(c, *e, moved, target);
+    return target;
 }
 
 void note_lending(Checking& c, const Expression& place) {

@@ -140,13 +140,8 @@ bool rewrite(Checking& c, Statement*& s) {
 
 Variable& eno_of(Checking& c, Routine& routine) {
     if (Variable* known = find_in(routine.names, "eno")) return *known;
-    Variable& variable = routine.variables.emplace_back();
-    variable.text = "ENO";
-    variable.name = routine.pou->name;
-    variable.type = &bool_type;
+    Variable& variable = c.make_variable(routine, routine.pou->name, "ENO", &bool_type);
     variable.section = Section::temp;
-    variable.of = routine.pou;
-    variable.used = true;
     variable.initial = make_boolean(c, {}, true);
     routine.names.emplace(variable.text, &variable);
     return variable;
@@ -156,9 +151,7 @@ Block edge_calls(Checking& c, Routine& routine) {
     Block calls;
     for (Variable& variable : routine.variables) {
         if (!variable.edge) continue;
-        Expression like;
-        like.token = variable.name;
-        like.place = variable.name.place;
+        const Expression like{.token = variable.name, .place = variable.name.place};
         Expression* input = make(c, E::name, like);
         input->type = use(c, input, variable);
         const Token clk{.word = Word::name, .place = input->place, .text = "clk"};

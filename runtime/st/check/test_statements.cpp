@@ -179,8 +179,7 @@ void add_mock(Checking& c, Routine& function) {
     }
     const auto number = std::ranges::find(c.checked.globals, c.mocks, &Global::type);
     for (const Type* type : {&bool_type, function.result->type}) {
-        Variable& variable = c.checked.variables.emplace_back();
-        variable.type = type;
+        Variable& variable = c.make_variable({}, {}, type);
         variable.section = Section::global;
         variable.space = Space::global;
         variable.global = static_cast<int>(number - c.checked.globals.begin());
