@@ -68,10 +68,7 @@ void rewrite_block_move(Checking& c, Statement*& s) {
                                   : "IN and OUT are elements of arrays of one type: a[0]");
     if (!count->type->is_integer() && !count->type->is_bits())
         return (void)c.fail(code::type_does_not_fit, count->place, "COUNT is a whole number");
-    if (count->type->is_any())
-        coerce(c, count, lint_type);
-    else
-        convert(c, count, lint_type);
+    become_lint(c, count);
     s = fills ? fill(c, *s, value, count, to) : move(c, call, value, count, to);
     check(c, s);
 }

@@ -44,17 +44,12 @@ bool is_instance(Checking& c, const Token& name) {
 }
 
 Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std::size_t position) {
-    const auto is_parameter = [](const Variable& variable) {
-        if (variable.bound_of) return false;
-        return variable.section == Section::input || variable.section == Section::in_out ||
-               variable.section == Section::output;
-    };
     const bool named = argument.is_named();
     const bool inner = c.is_in_test() && named && routine.has_instances();
     std::size_t i = 0;
     const std::vector<Variable*> variables = all_variables(routine);
     for (Variable* variable : variables) {
-        if (!is_parameter(*variable) && !inner) continue;
+        if (!variable->is_parameter() && !inner) continue;
         if (named ? same_name(variable->text, argument.name.text) : i == position) return variable;
         ++i;
     }
@@ -64,7 +59,7 @@ Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std:
                       fmt::format("'{}' takes {} argument{}", routine.name, i, i == 1 ? "" : "s"));
     std::vector<std::string> names;
     for (const Variable* variable : variables)
-        if (is_parameter(*variable) || inner) names.emplace_back(variable->text);
+        if (variable->is_parameter() || inner) names.emplace_back(variable->text);
     return c.fail(code::wrong_arguments, argument.name.place,
                   fmt::format("'{}' has no argument '{}'", routine.name, argument.name.text),
                   same_name(argument.name.text, "en")
@@ -152,7 +147,7 @@ Argument leave_out(Checking& c, const Expression& call, Variable& parameter) {
 }
 
 bool is_open_array(const Variable& variable) {
-    return variable.type && variable.type->is_reference() && variable.type->is_open;
+    return variable.type && variable.type->is_open_array();
 }
 
 /// Its bounds stand behind it.

@@ -7,6 +7,7 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/order.hpp"
 #include "runtime/st/check/statements.hpp"
+#include "runtime/st/syntax/words.hpp"
 
 namespace lineshaft::st {
 
@@ -328,11 +329,17 @@ Routine* find_accessor(Checking& c, const Expression& e, Accessor accessor) {
     return find_variable(c, e.token) ? nullptr : in(*block);
 }
 
+/// Of a call of a PROPERTY's method: what stands before the point, or THIS.
+static const Expression& receiver_of(Checking& c, const Expression& property) {
+    if (property.kind == E::member) return *property.operands[0];
+    Expression* own = make_name(c, property, "this");
+    own->kind = E::self;
+    return *own;
+}
+
 const Type* check_getter(Checking& c, Expression*& e, Routine& getter) {
     if (!is_accessible(c, getter.pou->access, *getter.owner, e->token)) return nullptr;
-    Expression* own = make_name(c, *e, "this");
-    const Expression& receiver = e->kind == E::member ? *e->operands[0] : *own;
-    if (e->kind == E::name) own->kind = E::self;
+    const Expression& receiver = receiver_of(c, *e);
     e = make_call(c, *e, e, {});
     return e->type = check_method_call(c, e, getter, receiver, false);
 }
@@ -356,17 +363,11 @@ bool rewrite_property(Checking& c, Statement*& s) {
         return true;
     }
     if (!is_accessible(c, setter->pou->access, *setter->owner, target->token)) return true;
-    Expression* own = make_name(c, *target, "this");
-    own->kind = E::self;
-    const Expression& receiver = target->kind == E::member ? *target->operands[0] : *own;
+    const Expression& receiver = receiver_of(c, *target);
     Expression* value = s->value;
     if (s->op != Word::assign)
-        value = make_binary(c, s->place, s->place,
-                            s->op == Word::plus_assign    ? Word::plus
-                            : s->op == Word::minus_assign ? Word::minus
-                            : s->op == Word::times_assign ? Word::times
-                                                          : Word::divided,
-                            make_copy(c, *target), value);
+        value =
+            make_binary(c, s->place, s->place, operator_of(s->op), make_copy(c, *target), value);
     Expression* call = make_call(c, *target, target, {{.value = value}});
     check_method_call(c, call, *setter, receiver, true);
     s = make_call_statement(c, call);

@@ -291,6 +291,13 @@ void become_number(Checking& c, Expression*& e) {
     if (type.kind == Kind::bits) convert(c, e, integer_type(type.bits, false));
 }
 
+void become_lint(Checking& c, Expression*& e) {
+    if (e->type->is_any())
+        coerce(c, e, lint_type);
+    else
+        convert(c, e, lint_type);
+}
+
 void reinterpret(Checking& c, Expression& e, Kind from, const Type* expected) {
     for (Expression*& operand : e.operands) {
         if (!operand) continue;

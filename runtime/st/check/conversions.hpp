@@ -19,6 +19,9 @@ void take_width(Checking& c, Expression*& e, const Type* expected);
 /// A bit string where a number is due.
 void become_number(Checking& c, Expression*& e);
 
+/// A whole number or a bit string becomes a LINT.
+void become_lint(Checking& c, Expression*& e);
+
 /// A value of an enumeration that a source declares where a number is due.
 void enumeration_becomes_number(Checking& c, Expression*& e);
 

@@ -177,10 +177,6 @@ void declare_edge(Checking& c, Routine& routine, Variable& variable, const Token
     variable.edge = &instance;
 }
 
-bool is_open_array(const Type* type) {
-    return type && type->is_reference() && type->is_open;
-}
-
 /// `a : ARRAY[*] OF INT` is given as where its first element is, and its bounds beside it.
 void declare_bounds(Checking& c, Routine& routine, Variable& array) {
     array.section = Section::input;
@@ -263,7 +259,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
             is_own || (routine.is_prototype() && type && type->kind == Kind::block);
         if (!is_only_named) depend(c, type, declared->name.place);
         locate_in_image(c, *variable, *declared);
-        if (is_open_array(type)) declare_bounds(c, routine, *variable);
+        if (type && type->is_open_array()) declare_bounds(c, routine, *variable);
         if (routine.pou->is_tests || routine.is_test()) make_object(c, *variable);
         if (!declared->type)
             make_untyped_constant(c, *variable);

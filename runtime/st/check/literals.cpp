@@ -120,8 +120,7 @@ const Type* check_typed(Checking& c, Expression*& e) {
     if (!is_constant(*value))
         return c.fail(code::not_a_constant, value->place,
                       fmt::format("a number is due after '{}#'", name.text));
-    e = make_constant(c, *e, *type, value->constant);
-    return type;
+    return become(c, e, *type, value->constant);
 }
 
 Expression* list_of_dtl(Checking& c, const Expression& literal, const Type& type) {

@@ -126,8 +126,7 @@ const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, co
                       fmt::format("{} has no value '{}'", enumeration.name, name.text),
                       suggest(name.text, enumeration.values));
     c.note(name.place, enumeration);
-    e = make_constant(c, *e, enumeration, {.integer = found - enumeration.values.data()});
-    return &enumeration;
+    return become(c, e, enumeration, {.integer = found - enumeration.values.data()});
 }
 
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
@@ -135,31 +134,24 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     if (token.word == Word::direct) return check_direct(c, *e);
     if (expected && expected->kind == Kind::enumeration && !token.local) {
         const std::string* value = find_called(expected->values, token.text);
-        if (value && !find_variable(c, token)) {
-            e = make_constant(c, *e, *expected, {.integer = value - expected->values.data()});
-            return expected;
-        }
+        if (value && !find_variable(c, token))
+            return become(c, e, *expected, {.integer = value - expected->values.data()});
     }
     Variable* variable = find_variable(c, token);
     if (!variable) variable = declare_program(c, token);
     if (variable) return variable->edge ? use_edge(c, e, *variable) : use(c, e, *variable);
     if (is_own_instance(c, *e)) return check_own_instance(c, e);
     if (Routine* getter = find_accessor(c, *e, Accessor::get)) return check_getter(c, e, *getter);
-    if (expected && expected->kind == Kind::interface && same_name(token.text, "null")) {
-        e = make_constant(c, *e, *expected, {});
-        return expected;
-    }
-    if (same_name(token.text, "true") || same_name(token.text, "false")) {
-        e = make_boolean(c, *e, same_name(token.text, "true"));
-        return &bool_type;
-    }
+    if (expected && expected->kind == Kind::interface && same_name(token.text, "null"))
+        return become(c, e, *expected, {});
+    if (same_name(token.text, "true") || same_name(token.text, "false"))
+        return become(c, e, bool_type, {.integer = same_name(token.text, "true")});
     if (const NamedValue* value = token.local ? nullptr : c.look_up(&Names::values, token)) {
         if (value->ambiguous)
             return c.fail(code::not_declared, e->place,
                           fmt::format("'{}' is a value of several enumerations", token.text),
                           fmt::format("write {}#{}", value->type->name, token.text));
-        e = make_constant(c, *e, *value->type, {.integer = static_cast<Wide>(value->index)});
-        return value->type;
+        return become(c, e, *value->type, {.integer = static_cast<Wide>(value->index)});
     }
     if (same_name(token.text, "eno") && c.routine && c.routine->pou->kind != PouKind::data_block)
         return use(c, e, eno_of(c, *c.routine));
@@ -172,10 +164,8 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     if (expected && expected->kind == Kind::handle && !token.local &&
         (token.quoted || !c.is_in_test()))
         return use_object(c, e, *object_type(c, *expected));
-    if (same_name(token.text, "null") && !token.quoted && !token.local) {
-        e = make_constant(c, *e, null_type, {});
-        return &null_type;
-    }
+    if (same_name(token.text, "null") && !token.quoted && !token.local)
+        return become(c, e, null_type, {});
     return unknown_name(c, *e);
 }
 

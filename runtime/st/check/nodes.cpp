@@ -41,6 +41,11 @@ Expression* make_constant(Checking& c, const Expression& like, const Type& type,
         c, {.token = like.token, .place = like.place, .type = &type, .constant = std::move(value)});
 }
 
+const Type* become(Checking& c, Expression*& e, const Type& type, Constant value) {
+    e = make_constant(c, *e, type, std::move(value));
+    return &type;
+}
+
 Expression* make_boolean(Checking& c, const Expression& like, bool value) {
     return make_constant(c, like, bool_type, {.integer = value});
 }

@@ -20,6 +20,8 @@ Expression* make(Checking& c, E kind, const Expression& like);
 Expression* make_copy(Checking& c, const Expression& e);
 /// A value, where `like` stands.
 Expression* make_constant(Checking& c, const Expression& like, const Type& type, Constant value);
+/// `e` becomes that value, whose type is given.
+const Type* become(Checking& c, Expression*& e, const Type& type, Constant value);
 Expression* make_boolean(Checking& c, const Expression& like, bool value);
 /// `"..."`, which is no name, as the text that it encloses.
 Expression* make_text(Checking& c, const Expression& quoted);

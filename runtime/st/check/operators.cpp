@@ -150,8 +150,7 @@ const Type* check_power(Checking& c, Expression*& e, const Type* expected) {
         if (right->constant.integer <= 64 || left->constant.integer <= 1) {
             if (value >= most || value <= -most)
                 return c.fail(code::value_out_of_range, e->place, "the result is out of range");
-            e = make_constant(c, *e, any_integer_type, {.integer = value});
-            return e->type;
+            return become(c, e, any_integer_type, {.integer = value});
         }
     }
     const auto is_narrow = [](const Type& t) { return t.is_any() || t.bits <= 32; };

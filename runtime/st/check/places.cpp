@@ -79,16 +79,9 @@ const Type* check_member(Checking& c, Expression*& e) {
     if (Variable* found = find_member(*type, name)) {
         c.note(e->token.place, *found);
         const bool is_value = found->space == Space::constant;
-        if (is_value && c.is_in_test()) {
-            e = make_constant(c, *e, *found->type, found->value);
-            return found->type;
-        }
-        if (type->kind == Kind::block && e->operands[0]->kind == E::self) {
-            if (is_value) {
-                e = make_constant(c, *e, *found->type, found->value);
-                return found->type;
-            }
-        } else if (type->kind == Kind::block && (found->section == Section::temp || is_value))
+        const bool is_own = type->kind == Kind::block && e->operands[0]->kind == E::self;
+        if (is_value && (is_own || c.is_in_test())) return become(c, e, *found->type, found->value);
+        if (type->kind == Kind::block && !is_own && (found->section == Section::temp || is_value))
             return c.fail(code::not_declared, e->token.place,
                           fmt::format("'{}' of {} is not seen from outside", name, type->name),
                           "make it a VAR_OUTPUT");
@@ -104,10 +97,8 @@ const Type* check_member(Checking& c, Expression*& e) {
         e = e->operands[0];
         return type;
     }
-    if (type->is_instance() && same_name(name, "eno")) {  // what has no such output was executed
-        e = make_boolean(c, *e, true);
-        return &bool_type;
-    }
+    if (type->is_instance() && same_name(name, "eno"))  // what has no such output was executed
+        return become(c, e, bool_type, {.integer = 1});
     return fail_member(c, *e, *type, name);
 }
 

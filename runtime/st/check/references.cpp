@@ -167,8 +167,7 @@ const Type* check_size(Checking& c, Expression*& e) {
     const bool is_type = (qualified || of->kind == E::name) && !find_variable(c, name);
     const Type* type = is_type ? resolve_name(c, name) : check(c, of);
     if (!type) return nullptr;
-    e = make_constant(c, *e, any_integer_type, {.integer = Wide{bytes_of(*type)}});
-    return &any_integer_type;
+    return become(c, e, any_integer_type, {.integer = Wide{bytes_of(*type)}});
 }
 
 const Type* check_refer(Checking& c, Expression*& e, Referring referring) {
@@ -201,10 +200,7 @@ const Type* check_moved(Checking& c, Expression*& e) {
                       fmt::format("'{}' does not go with {} and {}", shown(e->op),
                                   describe(*pointer->type), describe(*by->type)),
                       "to a POINTER a whole number of bytes is added: p + SIZEOF(p^)");
-    if (by->type->is_any())
-        coerce(c, by, lint_type);
-    else
-        convert(c, by, lint_type);
+    become_lint(c, by);
     return e->type = pointer->type;
 }
 
@@ -278,7 +274,7 @@ bool give_open_array(Checking& c, const Argument& argument, Variable& array, Ope
     if (!check(c, given) || !array.type->element) return false;
     Expression *lower = nullptr, *upper = nullptr;
     const Type& type = *given->type;
-    if (type.is_reference() && type.is_open && same_type(*type.element, *array.type->element)) {
+    if (type.is_open_array() && same_type(*type.element, *array.type->element)) {
         lower = bound_of(c, *given, "lower");
         upper = bound_of(c, *given, "upper");
         given = make_converted(c, given, *array.type);
@@ -308,10 +304,7 @@ const Type* check_pointer_index(Checking& c, Expression*& e) {
     if (e->arguments.size() > 1 || !(index->type->is_integer() || index->type->is_bits()))
         return c.fail(code::type_does_not_fit, index->place,
                       "a POINTER has one index, a whole number");
-    if (index->type->is_any())
-        coerce(c, index, lint_type);
-    else
-        convert(c, index, lint_type);
+    become_lint(c, index);
     if (pointer->type->is_open) return check_open_index(c, e, index);
     Expression* size = make_constant(c, *index, lint_type, {.integer = Wide{bytes_of(*target)}});
     Expression* bytes = make_binary(c, index->place, index->place, Word::times, index, size);

@@ -11,6 +11,7 @@
 #include "runtime/st/check/places.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/rewrites.hpp"
+#include "runtime/st/syntax/words.hpp"
 
 namespace lineshaft::st {
 
@@ -213,14 +214,10 @@ void check_assignment(Checking& c, Statement*& s) {
     if (s->op == Word::attempt_assign) return check_attempt(c, *s);
     if (rewrite_property(c, s)) return;
     const Type* type = check(c, s->target);
-    if (s->op != Word::assign && type) {
-        const Word op = s->op == Word::plus_assign    ? Word::plus
-                        : s->op == Word::minus_assign ? Word::minus
-                        : s->op == Word::times_assign ? Word::times
-                                                      : Word::divided;
-        s = make_assignment(c, s->place, s->target,
-                            make_binary(c, s->place, s->place, op, s->target, s->value));
-    }
+    if (s->op != Word::assign && type)
+        s = make_assignment(
+            c, s->place, s->target,
+            make_binary(c, s->place, s->place, operator_of(s->op), s->target, s->value));
     check(c, s->value, type);
     if (s->value->kind == E::list || !type || !check_target(c, *s->target) || !s->value->type)
         return;

@@ -100,6 +100,14 @@ constexpr bool ends_pou(Word word) {
     return std::ranges::find(pou_words, word, &PouWords::end) != std::end(pou_words);
 }
 
+/// `+` of `+=`, of an assignment that reckons.
+constexpr Word operator_of(Word assignment) {
+    return assignment == Word::plus_assign    ? Word::plus
+           : assignment == Word::minus_assign ? Word::minus
+           : assignment == Word::times_assign ? Word::times
+                                              : Word::divided;
+}
+
 /// Null for a word that begins no section of variables.
 constexpr const SectionWord* find_section(Word word) {
     const auto* it = std::ranges::find(section_words, word, &SectionWord::word);

@@ -108,7 +108,7 @@ const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &open_string_type = open_string, &char_type = table[28];
 
 std::string describe(const Type& type) {
-    if (type.is_reference() && type.is_open)
+    if (type.is_open_array())
         return fmt::format("ARRAY[*] OF {}", type.element ? describe(*type.element) : "?");
     if (type.is_reference() && type.name.empty()) {
         static constexpr std::string_view words[] = {"REFERENCE TO", "REF_TO", "POINTER TO"};
