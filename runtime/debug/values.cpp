@@ -92,7 +92,7 @@ List referred(const Seat& seat) {
     const auto offset = static_cast<std::int32_t>(read<std::uint64_t>(seat.at + 8) & 0xFFFF'FFFF);
     if (address == 0 || offset != 0 || !seat.type->element) return {};
     return {show("^", {seat.type->element,
-                       place_of(address, seat.frame->root, *seat.frame->context), seat.frame})};
+                       st::place_of(address, seat.frame->root, *seat.frame->context), seat.frame})};
 }
 
 std::string field_text(const Field& field, const std::byte* block) {
@@ -198,7 +198,7 @@ Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame) 
         case st::Space::reference: {
             const auto address = read<std::uint64_t>(base + offset);
             if (address == 0) return {};
-            return {variable.type, place_of(address, frame.root, *frame.context), &frame};
+            return {variable.type, st::place_of(address, frame.root, *frame.context), &frame};
         }
         case st::Space::global: {
             const auto number = read<std::uint64_t>(
