@@ -20,6 +20,9 @@ constexpr bool is_exchanged(Word relation) {
 /// Whether a relation of two values holds.
 Slot compare(Writing& w, Word relation, const Type& type, Slot a, Slot b, Slot wanted = none);
 
+/// The same of two texts, by their addresses.
+Slot compare_texts(Writing& w, Word relation, Slot a, Slot b, Slot wanted = none);
+
 /// The slot again; a number that is not of its type is a fault.
 Slot within(Writing& w, const Type& type, Slot slot);
 

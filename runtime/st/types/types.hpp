@@ -263,8 +263,10 @@ struct Image {
     std::uint32_t begins[areas] = {};  ///< [bytes]
     std::uint32_t bytes = 0;
 
-    std::uint32_t begin(ImageAddress::Area area) const {
-        return begins[static_cast<std::size_t>(area)];
+    /// Of its bytes, from the first on.
+    std::uint64_t bit_of(const ImageAddress& at) const {
+        const std::uint64_t byte = begins[static_cast<std::size_t>(at.area)] + at.byte;
+        return 8 * byte + at.bit;
     }
 };
 
