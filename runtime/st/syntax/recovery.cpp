@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/mistakes.hpp"
 
