@@ -36,8 +36,9 @@ bool flag_in(const Json& from, const char* key, bool otherwise = false) {
     return it != from.end() && it->is_boolean() ? it->get<bool>() : otherwise;
 }
 
-Json read_json(const std::string& text) {
-    return Json::parse(text, nullptr, false);
+Json list_in(const Json& from, const char* key) {
+    const auto it = from.find(key);
+    return it != from.end() && it->is_array() ? *it : Json::array();
 }
 
 Json source_of(const std::string& path) {
@@ -53,13 +54,16 @@ Adapter::Adapter(Messages& messages, Launcher launcher)
     : messages_(messages), launcher_(std::move(launcher)) {}
 
 int Adapter::serve() {
-    while (!is_gone_) {
-        const auto message = messages_.next();
-        if (!message) break;
-        handle(read_json(*message));
+    while (!is_gone_ && handle_next())
         if (is_configured_ && !has_run_) run();
-    }
     return exit_code_;
+}
+
+/// False: the client has gone.
+bool Adapter::handle_next() {
+    const auto message = messages_.next();
+    if (message) handle(Json::parse(*message, nullptr, false));
+    return message.has_value();
 }
 
 void Adapter::run() {
@@ -135,28 +139,21 @@ void Adapter::handle(const Json& message) {
         answer(message, (this->*handler->second)(arguments));
         if (command == "launch") send_event("initialized", Json::object());
     } catch (const Refused& why) {
-        refuse(message, why.what());
+        const std::string text = why.what();
+        answer(message, {{"error", {{"id", 1}, {"format", text}, {"showUser", true}}}}, text);
     }
 }
 
-void Adapter::answer(const Json& request, const Json& body) {
+/// `why` it is refused; empty: it is not.
+void Adapter::answer(const Json& request, const Json& body, const std::string& why) {
     Json response{{"seq", ++sequence_},
                   {"type", "response"},
                   {"request_seq", number_in(request, "seq")},
-                  {"success", true},
+                  {"success", why.empty()},
                   {"command", text_in(request, "command")}};
+    if (!why.empty()) response["message"] = why;
     if (!body.empty()) response["body"] = body;
     messages_.send(response);
-}
-
-void Adapter::refuse(const Json& request, const std::string& why) {
-    messages_.send({{"seq", ++sequence_},
-                    {"type", "response"},
-                    {"request_seq", number_in(request, "seq")},
-                    {"success", false},
-                    {"command", text_in(request, "command")},
-                    {"message", why},
-                    {"body", {{"error", {{"id", 1}, {"format", why}, {"showUser", true}}}}}});
 }
 
 void Adapter::send_event(const char* name, Json body) {
@@ -183,21 +180,15 @@ void Adapter::stopped(const Stop& stop) {
     if (!stop.text.empty()) body["description"] = body["text"] = stop.text;
     if (!stop.breakpoints.empty()) body["hitBreakpointIds"] = stop.breakpoints;
     send_event("stopped", std::move(body));
-    while (!goes_on_) {
-        const auto message = messages_.next();
-        if (!message) return leave();
-        handle(read_json(*message));
-    }
+    while (!goes_on_)
+        if (!handle_next()) return leave();
     stands_ = false;
     forget();
 }
 
 void Adapter::look() {
-    while (messages_.waits() && !is_gone_) {
-        const auto message = messages_.next();
-        if (!message) return leave();
-        handle(read_json(*message));
-    }
+    while (messages_.waits() && !is_gone_)
+        if (!handle_next()) return leave();
 }
 
 void Adapter::leave() {
@@ -234,9 +225,8 @@ Json Adapter::initialize(const Json& arguments) {
 Json Adapter::launch(const Json& arguments) {
     if (session_) throw Refused("a program is launched already");
     std::vector<std::string> args;
-    if (const auto it = arguments.find("args"); it != arguments.end() && it->is_array())
-        for (const Json& arg : *it)
-            if (arg.is_string()) args.push_back(arg.get<std::string>());
+    for (const Json& arg : list_in(arguments, "args"))
+        if (arg.is_string()) args.push_back(arg.get<std::string>());
     if (const std::string test = text_in(arguments, "test"); !test.empty())
         args.insert(args.end(), {"--test", test});
     if (const std::string folder = text_in(arguments, "cwd"); !folder.empty()) {
@@ -257,12 +247,11 @@ Json Adapter::launch(const Json& arguments) {
 Json Adapter::set_breakpoints(const Json& arguments) {
     const int first = first_line_is_0_ ? 1 : 0;
     std::vector<Wanted> wanted;
-    if (const auto it = arguments.find("breakpoints"); it != arguments.end() && it->is_array())
-        for (const Json& each : *it)
-            wanted.push_back({.line = static_cast<int>(number_in(each, "line")) + first,
-                              .condition = text_in(each, "condition"),
-                              .hits = text_in(each, "hitCondition"),
-                              .log = text_in(each, "logMessage")});
+    for (const Json& each : list_in(arguments, "breakpoints"))
+        wanted.push_back({.line = static_cast<int>(number_in(each, "line")) + first,
+                          .condition = text_in(each, "condition"),
+                          .hits = text_in(each, "hitCondition"),
+                          .log = text_in(each, "logMessage")});
     const std::string path = text_in(arguments.value("source", Json::object()), "path");
     Json all = Json::array();
     for (const Breakpoint& breakpoint : session().set_breakpoints(path, wanted)) {
@@ -447,9 +436,7 @@ Json Adapter::scopes(const Json& arguments) {
     std::vector<Shown> shown;
     if (id >= first_task_frame) {
         const int task = static_cast<int>(id - first_task_frame);
-        shown.push_back({.name = "Blocks", .value = "", .inside = [&linked, task](auto, auto) {
-                             return blocks_of(linked, task);
-                         }});
+        shown.push_back(show_blocks(linked, task));
         shown.push_back(show_inputs(linked));
         shown.push_back(show_forces(linked, session.time()));
     } else if (id > 0 && id <= std::ssize(frames_)) {

@@ -33,9 +33,9 @@ class Adapter final : Front {
   private:
     using Handler = Json (Adapter::*)(const Json& arguments);
 
+    bool handle_next();
     void handle(const Json& message);
-    void answer(const Json& request, const Json& body);
-    void refuse(const Json& request, const std::string& why);
+    void answer(const Json& request, const Json& body, const std::string& why = {});
     void send_event(const char* name, Json body);
     void tell(const char* category, const std::string& text);
     void run();

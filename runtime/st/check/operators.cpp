@@ -12,11 +12,6 @@ namespace lineshaft::st {
 
 namespace {
 
-bool is_logic(Word op) {
-    return op == Word::and_ || op == Word::or_ || op == Word::xor_ || op == Word::and_then_ ||
-           op == Word::or_else_;
-}
-
 /// `w AND NOT 16#FF`: the mask is as wide as what it is for.
 void check_masks(Checking& c, Expression& e, const Type* expected) {
     const auto is_mask = [](const Expression& o) {
