@@ -183,6 +183,13 @@ void leave_out_enable(Checking& c, Expression*& e, const Routine& routine) {
     if (std::erase_if(left, is_enable) > 0) e = make_with(c, *e, std::move(left));
 }
 
+void refuse_without(Checking& c, const Expression& call, std::string_view called,
+                    const Variable& parameter) {
+    c.fail(code::wrong_arguments, call.operands[0]->place,
+           fmt::format("'{}' is called without '{}'", called, parameter.text),
+           fmt::format("write {} := ...", parameter.text));
+}
+
 void check_arguments(Checking& c, Expression*& e, Routine& routine) {
     leave_out_enable(c, e, routine);
     Expression& call = *e;
@@ -215,10 +222,7 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
             continue;
         const bool may_miss = c.is_in_test() && routine.has_instances();
         if (may_miss && variable.type) left_out.push_back(leave_out(c, call, variable));
-        if (!may_miss)
-            c.fail(code::wrong_arguments, call.operands[0]->place,
-                   fmt::format("'{}' is called without '{}'", routine.name, variable.text),
-                   fmt::format("write {} := ...", variable.text));
+        if (!may_miss) refuse_without(c, call, routine.name, variable);
     }
     if (!left_out.empty()) {
         left_out.insert(left_out.begin(), call.arguments.begin(), call.arguments.end());
@@ -247,8 +251,7 @@ void ignore(Checking& c, const Type& type, Argument& argument, std::optional<dou
 
 void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
     Expression& call = *e;
-    std::vector<std::string> names;
-    for (const Variable* member : type.members) names.emplace_back(member->text);
+    const std::vector<std::string> names = names_of(type.members);
     std::size_t position = 0;
     for (Argument& argument : call.arguments) {
         Variable* found = nullptr;
@@ -283,14 +286,10 @@ void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
     std::vector<Argument> taken;
     std::ranges::copy_if(call.arguments, std::back_inserter(taken), &Argument::variable);
     if (taken.size() < call.arguments.size()) e = make_with(c, call, std::move(taken));
-    for (const Variable* member : type.members) {
-        if (member->section != Section::in_out ||
-            std::ranges::find(e->arguments, member, &Argument::variable) != e->arguments.end())
-            continue;
-        c.fail(code::wrong_arguments, call.operands[0]->place,
-               fmt::format("'{}' is called without '{}'", type.name, member->text),
-               fmt::format("write {} := ...", member->text));
-    }
+    for (const Variable* member : type.members)
+        if (member->section == Section::in_out &&
+            std::ranges::find(e->arguments, member, &Argument::variable) == e->arguments.end())
+            refuse_without(c, call, type.name, *member);
 }
 
 /// That the routine at hand runs `called`, if it is known.

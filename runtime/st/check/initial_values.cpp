@@ -104,14 +104,12 @@ void check_members(Checking& c, Expression& list, const Type& type) {
                    fmt::format("name the member of {}: (name := value)", describe(type)));
             continue;
         }
-        std::vector<std::string> names;
-        for (const Variable* member : type.members) names.emplace_back(member->text);
         Variable* found = find_member(type, argument.name.text);
         argument.variable = found;
         if (!found) {
             c.fail(code::not_declared, argument.name.place,
                    fmt::format("{} has no '{}'", describe(type), argument.name.text),
-                   suggest(argument.name.text, names));
+                   suggest(argument.name.text, names_of(type.members)));
         } else if (found->type) {
             check_part(c, argument.value, *found->type, found->text);
         }

@@ -22,6 +22,12 @@ Variable* find_member(const Type& type, std::string_view name) {
     return member ? *member : nullptr;
 }
 
+std::vector<std::string> names_of(const std::vector<Variable*>& variables) {
+    std::vector<std::string> names;
+    for (const Variable* variable : variables) names.emplace_back(variable->text);
+    return names;
+}
+
 namespace {
 
 /// The block, or that of its bases, which the variable stands in.
@@ -33,15 +39,12 @@ const Routine* declaring_block(const Routine& block, const Variable& variable) {
 
 /// `type` has no member `name`: nothing, and what is there instead is said.
 const Type* fail_member(Checking& c, const Expression& e, const Type& type, std::string_view name) {
-    std::vector<std::string> names;
-    if (type.kind == Kind::block)
-        for (const Variable* variable : all_variables(*type.routine))
-            names.emplace_back(variable->text);
+    std::vector<std::string> names =
+        names_of(type.kind == Kind::block ? all_variables(*type.routine) : type.members);
     if (type.routine && type.routine->has_unknown_base) return nullptr;
     if (type.kind == Kind::interface)
         for (const auto known : {&Routine::methods, &Routine::getters})
             for (const auto& [method, routine] : type.routine->*known) names.emplace_back(method);
-    for (const Variable* member : type.members) names.emplace_back(member->text);
     if (names.empty())
         return c.fail(code::type_does_not_fit, e.token.place,
                       fmt::format("{} has no parts", describe(type)),

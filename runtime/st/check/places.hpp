@@ -8,6 +8,9 @@ namespace lineshaft::st {
 /// if there is nothing.
 Variable* find_member(const Type& type, std::string_view name);
 
+/// What a suggestion is chosen from.
+std::vector<std::string> names_of(const std::vector<Variable*>& variables);
+
 /// `motor.speed`, whose variable is noted; also `Colour.red`, and a part of a block that is a
 /// function. L0904 where there is none.
 const Type* check_member(Checking& c, Expression*& e);

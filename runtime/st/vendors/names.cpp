@@ -71,13 +71,16 @@ constexpr std::int64_t directions[] = {0, 1, 2, 0}, homing_modes[] = {0, -1, -1,
 
 /// Empty: it is none of theirs.
 std::string_view standard_of(std::span<const Renamed> rows, std::string_view name) {
-    const std::string wanted = fmt::format(" {} ", lower(name));
-    const auto it = std::ranges::find_if(
-        rows, [&](const Renamed& row) { return row.theirs.find(wanted) != row.theirs.npos; });
+    const auto it =
+        std::ranges::find_if(rows, [&](const Renamed& row) { return has_word(row.theirs, name); });
     return it == rows.end() ? std::string_view() : it->standard;
 }
 
 }  // namespace
+
+bool has_word(std::string_view words, std::string_view name) {
+    return words.find(fmt::format(" {} ", lower(name))) != words.npos;
+}
 
 std::string_view standard_type_name(std::string_view name) {
     const std::string_view standard = standard_of(types, name);
