@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "runtime/st/check/constants.hpp"
-#include "runtime/st/check/operators.hpp"
-#include "runtime/st/check/places.hpp"
+#include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/names.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/syntax/parser.hpp"
 #include "runtime/st/types/value_text.hpp"

@@ -1,5 +1,4 @@
-#include "runtime/st/check/any_inputs.hpp"
-
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
 

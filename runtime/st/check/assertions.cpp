@@ -1,9 +1,8 @@
-#include "runtime/st/check/assertions.hpp"
-
 #include <fmt/ranges.h>
 
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/statements.hpp"
 
 namespace lineshaft::st {
 

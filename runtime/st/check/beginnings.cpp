@@ -1,7 +1,6 @@
-#include "runtime/st/check/beginnings.hpp"
-
+#include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/places.hpp"
 
 namespace lineshaft::st {
 

@@ -1,5 +1,3 @@
-#include "runtime/st/check/block_moves.hpp"
-
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"

@@ -1,6 +1,5 @@
-#include "runtime/st/check/catalog_types.hpp"
-
 #include "runtime/source/letters.hpp"
+#include "runtime/st/check/types.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {

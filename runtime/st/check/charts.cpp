@@ -1,9 +1,8 @@
-#include "runtime/st/check/charts.hpp"
-
-#include "runtime/st/check/catalog_types.hpp"
+#include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/order.hpp"
+#include "runtime/st/check/statements.hpp"
+#include "runtime/st/check/types.hpp"
 #include "runtime/st/syntax/literals.hpp"
 
 namespace lineshaft::st {

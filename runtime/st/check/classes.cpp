@@ -1,11 +1,11 @@
 #include "runtime/st/check/classes.hpp"
 
 #include "runtime/st/check/calls.hpp"
+#include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/order.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/syntax/words.hpp"
 

@@ -1,5 +1,3 @@
-#include "runtime/st/check/constants.hpp"
-
 #include <cmath>
 
 #include "runtime/st/check/conversions.hpp"

@@ -3,19 +3,14 @@
 #include <utility>
 
 #include "runtime/source/units.hpp"
-#include "runtime/st/check/catalog_types.hpp"
-#include "runtime/st/check/charts.hpp"
 #include "runtime/st/check/classes.hpp"
-#include "runtime/st/check/constants.hpp"
+#include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/image.hpp"
-#include "runtime/st/check/initial_values.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
-#include "runtime/st/check/objects.hpp"
-#include "runtime/st/check/order.hpp"
-#include "runtime/st/check/overlays.hpp"
 #include "runtime/st/check/references.hpp"
+#include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"
 
 namespace lineshaft::st {

@@ -1,10 +1,7 @@
 #include "runtime/st/check/expressions.hpp"
 
 #include "runtime/st/check/calls.hpp"
-#include "runtime/st/check/literals.hpp"
 #include "runtime/st/check/names.hpp"
-#include "runtime/st/check/operators.hpp"
-#include "runtime/st/check/places.hpp"
 #include "runtime/st/check/references.hpp"
 
 namespace lineshaft::st {

@@ -1,14 +1,10 @@
-#include "runtime/st/check/initial_values.hpp"
-
 #include <utility>
 
-#include "runtime/st/check/beginnings.hpp"
-#include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
-#include "runtime/st/check/literals.hpp"
+#include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/places.hpp"
 #include "runtime/st/check/types.hpp"
 
 namespace lineshaft::st {

@@ -1,4 +1,4 @@
-#include "runtime/st/check/literals.hpp"
+#include "runtime/st/syntax/literals.hpp"
 
 #include <chrono>
 
@@ -7,7 +7,6 @@
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/types.hpp"
-#include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft::st {

@@ -8,10 +8,7 @@
 #include "runtime/st/check/image.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/objects.hpp"
-#include "runtime/st/check/order.hpp"
-#include "runtime/st/check/overlays.hpp"
-#include "runtime/st/check/rewrites.hpp"
+#include "runtime/st/check/statements.hpp"
 
 namespace lineshaft::st {
 

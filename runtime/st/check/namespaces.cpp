@@ -1,7 +1,7 @@
 #include "runtime/st/check/namespaces.hpp"
 
-#include "runtime/st/check/assertions.hpp"
 #include "runtime/st/check/names.hpp"
+#include "runtime/st/check/statements.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {

@@ -1,10 +1,7 @@
-#include "runtime/st/check/objects.hpp"
-
 #include "runtime/st/check/calls.hpp"
-#include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/places.hpp"
+#include "runtime/st/check/types.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {

@@ -1,12 +1,8 @@
-#include "runtime/st/check/operators.hpp"
-
-#include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
-#include "runtime/st/check/time_operators.hpp"
 
 namespace lineshaft::st {
 

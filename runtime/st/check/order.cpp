@@ -1,4 +1,4 @@
-#include "runtime/st/check/order.hpp"
+#include "runtime/st/check/declarations.hpp"
 
 namespace lineshaft::st {
 

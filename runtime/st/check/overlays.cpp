@@ -1,5 +1,4 @@
-#include "runtime/st/check/overlays.hpp"
-
+#include "runtime/st/check/image.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/types/packed.hpp"

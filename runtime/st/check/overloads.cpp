@@ -1,5 +1,4 @@
-#include "runtime/st/check/overloads.hpp"
-
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/expressions.hpp"
 
 namespace lineshaft::st {

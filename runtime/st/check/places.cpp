@@ -1,16 +1,13 @@
-#include "runtime/st/check/places.hpp"
-
 #include "runtime/st/check/calls.hpp"
-#include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/image.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/objects.hpp"
-#include "runtime/st/check/overlays.hpp"
 #include "runtime/st/check/references.hpp"
+#include "runtime/st/check/types.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/vendors/names.hpp"
 

@@ -1,13 +1,11 @@
 #include "runtime/st/check/references.hpp"
 
 #include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/operators.hpp"
-#include "runtime/st/check/order.hpp"
-#include "runtime/st/check/places.hpp"
 #include "runtime/st/check/types.hpp"
 #include "runtime/st/types/packed.hpp"
 

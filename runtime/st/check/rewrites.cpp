@@ -1,13 +1,8 @@
-#include "runtime/st/check/rewrites.hpp"
-
-#include "runtime/st/check/block_moves.hpp"
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/places.hpp"
-#include "runtime/st/check/standard_calls.hpp"
 #include "runtime/st/check/statements.hpp"
-#include "runtime/st/check/test_statements.hpp"
 #include "runtime/st/functions/standard.hpp"
 #include "runtime/st/syntax/literals.hpp"
 

@@ -1,6 +1,4 @@
-#include "runtime/st/check/standard_types.hpp"
-
-#include "runtime/st/check/constants.hpp"
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"

@@ -1,16 +1,13 @@
 #include "runtime/st/check/statements.hpp"
 
-#include "runtime/st/check/beginnings.hpp"
 #include "runtime/st/check/calls.hpp"
-#include "runtime/st/check/charts.hpp"
 #include "runtime/st/check/classes.hpp"
-#include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/places.hpp"
 #include "runtime/st/check/references.hpp"
-#include "runtime/st/check/rewrites.hpp"
 #include "runtime/st/syntax/words.hpp"
 
 namespace lineshaft::st {

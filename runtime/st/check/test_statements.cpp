@@ -1,10 +1,9 @@
-#include "runtime/st/check/test_statements.hpp"
-
-#include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/statements.hpp"
+#include "runtime/st/check/types.hpp"
 #include "runtime/st/functions/standard.hpp"
 
 namespace lineshaft::st {

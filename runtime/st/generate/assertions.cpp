@@ -1,11 +1,8 @@
-#include "runtime/st/generate/assertions.hpp"
-
 #include <fmt/format.h>
 
 #include "runtime/st/generate/layout.hpp"
-#include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/places.hpp"
-#include "runtime/st/generate/texts.hpp"
+#include "runtime/st/generate/statements.hpp"
 #include "runtime/st/generate/values.hpp"
 
 namespace lineshaft::st {

@@ -1,15 +1,8 @@
-#include "runtime/st/generate/calls.hpp"
-
 #include <algorithm>
 
-#include "runtime/st/generate/assertions.hpp"
-#include "runtime/st/generate/conversions.hpp"
-#include "runtime/st/generate/dispatch.hpp"
 #include "runtime/st/generate/layout.hpp"
-#include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/places.hpp"
-#include "runtime/st/generate/references.hpp"
-#include "runtime/st/generate/standard_functions.hpp"
+#include "runtime/st/generate/statements.hpp"
 #include "runtime/st/generate/values.hpp"
 
 namespace lineshaft::st {

@@ -1,11 +1,7 @@
-#include "runtime/st/generate/conversions.hpp"
-
 #include <algorithm>
 
-#include "runtime/st/generate/dispatch.hpp"
+#include "runtime/st/generate/layout.hpp"
 #include "runtime/st/generate/places.hpp"
-#include "runtime/st/generate/references.hpp"
-#include "runtime/st/generate/texts.hpp"
 #include "runtime/st/generate/values.hpp"
 
 namespace lineshaft::st {

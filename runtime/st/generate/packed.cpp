@@ -1,12 +1,10 @@
-#include "runtime/st/generate/packed.hpp"
+#include "runtime/st/types/packed.hpp"
 
 #include <cstring>
 
-#include "runtime/st/generate/images.hpp"
 #include "runtime/st/generate/layout.hpp"
-#include "runtime/st/generate/references.hpp"
+#include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/values.hpp"
-#include "runtime/st/types/packed.hpp"
 
 namespace lineshaft::st {
 

@@ -1,14 +1,10 @@
-#include "runtime/st/generate/references.hpp"
-
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "runtime/source/codes.hpp"
-#include "runtime/st/generate/calls.hpp"
-#include "runtime/st/generate/conversions.hpp"
 #include "runtime/st/generate/layout.hpp"
-#include "runtime/st/generate/packed.hpp"
+#include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/values.hpp"
 #include "runtime/st/types/packed.hpp"
 

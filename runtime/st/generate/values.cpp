@@ -1,10 +1,6 @@
 #include "runtime/st/generate/values.hpp"
 
-#include "runtime/st/generate/calls.hpp"
-#include "runtime/st/generate/conversions.hpp"
 #include "runtime/st/generate/places.hpp"
-#include "runtime/st/generate/references.hpp"
-#include "runtime/st/generate/texts.hpp"
 
 namespace lineshaft::st {
 
