@@ -21,25 +21,6 @@ struct Refused : std::runtime_error {
 /// Of tasks, whose frames stand behind those of routines.
 constexpr std::int64_t first_task_frame = 1'000'000;
 
-std::string text_in(const Json& from, const char* key, const std::string& otherwise = {}) {
-    const auto it = from.find(key);
-    return it != from.end() && it->is_string() ? it->get<std::string>() : otherwise;
-}
-
-std::int64_t number_in(const Json& from, const char* key, std::int64_t otherwise = 0) {
-    const auto it = from.find(key);
-    return it != from.end() && it->is_number_integer() ? it->get<std::int64_t>() : otherwise;
-}
-
-bool flag_in(const Json& from, const char* key, bool otherwise = false) {
-    const auto it = from.find(key);
-    return it != from.end() && it->is_boolean() ? it->get<bool>() : otherwise;
-}
-
-Json read_json(const std::string& text) {
-    return Json::parse(text, nullptr, false);
-}
-
 Json source_of(const std::string& path) {
     std::error_code unknown;
     const auto whole = std::filesystem::absolute(path, unknown);
@@ -47,177 +28,174 @@ Json source_of(const std::string& path) {
             {"path", unknown ? path : whole.lexically_normal().string()}};
 }
 
-}  // namespace
+class Adapter final : Front {
+  public:
+    Adapter(Messages& messages, Launcher launcher)
+        : messages_(messages), launcher_(std::move(launcher)) {}
 
-Adapter::Adapter(Messages& messages, Launcher launcher)
-    : messages_(messages), launcher_(std::move(launcher)) {}
+    /// Returns when the client has gone. The exit code of what it ran.
+    int serve() {
+        while (!is_gone_ && handle_next())
+            if (is_configured_ && !has_run_) run();
+        return exit_code_;
+    }
 
-int Adapter::serve() {
-    while (!is_gone_) {
+  private:
+    using Handler = Json (Adapter::*)(const Json& arguments);
+
+    /// False: the client has gone.
+    bool handle_next() {
         const auto message = messages_.next();
-        if (!message) break;
-        handle(read_json(*message));
-        if (is_configured_ && !has_run_) run();
+        if (message) handle(Json::parse(*message, nullptr, false));
+        return message.has_value();
     }
-    return exit_code_;
-}
 
-void Adapter::run() {
-    has_run_ = true;
-    const RunReport report = session_->run(launched_->how);
-    exit_code_ = launched_->tell(report);
-    for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
-        const Verdict& verdict = report.verdicts[i];
-        tell("console", fmt::format("{}  {}{}\n",
-                                    verdict.ok          ? "ok    "
-                                    : verdict.undecided ? "UNDECIDED"
-                                                        : "FAILED",
-                                    launched_->loaded.linked.expectations[i].text,
-                                    verdict.ok ? "" : ": " + verdict.deviation));
+    void run() {
+        has_run_ = true;
+        const RunReport report = session_->run(launched_->how);
+        exit_code_ = launched_->tell(report);
+        for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
+            const Verdict& verdict = report.verdicts[i];
+            tell("console", fmt::format("{}  {}{}\n",
+                                        verdict.ok          ? "ok    "
+                                        : verdict.undecided ? "UNDECIDED"
+                                                            : "FAILED",
+                                        launched_->loaded.linked.expectations[i].text,
+                                        verdict.ok ? "" : ": " + verdict.deviation));
+        }
+        if (const std::string text = session_->recording();
+            !text.empty() && !launched_->record.empty()) {
+            OutputFile file(launched_->record);
+            file.write(text);
+            if (!file.commit()) tell("stderr", file.error() + "\n");
+        }
+        if (!report.refused.empty()) tell("stderr", report.refused.render());
+        if (!report.result.message.empty()) tell("stderr", report.result.message + "\n");
+        send_event("exited", {{"exitCode", exit_code_}});
+        send_event("terminated", Json::object());
     }
-    if (const std::string text = session_->recording();
-        !text.empty() && !launched_->record.empty()) {
-        OutputFile file(launched_->record);
-        file.write(text);
-        if (!file.commit()) tell("stderr", file.error() + "\n");
+
+    static const std::map<std::string, Handler>& handlers() {
+        static const std::map<std::string, Handler> all{
+            {"initialize", &Adapter::initialize},
+            {"launch", &Adapter::launch},
+            {"setBreakpoints", &Adapter::set_breakpoints},
+            {"setExceptionBreakpoints", &Adapter::set_exceptions},
+            {"configurationDone", &Adapter::configuration_done},
+            {"threads", &Adapter::threads},
+            {"stackTrace", &Adapter::stack_trace},
+            {"scopes", &Adapter::scopes},
+            {"variables", &Adapter::variables},
+            {"evaluate", &Adapter::evaluate},
+            {"setVariable", &Adapter::set_variable},
+            {"setFunctionBreakpoints", &Adapter::set_function_breakpoints},
+            {"lineshaft/state", &Adapter::state},
+            {"lineshaft/lastWriter", &Adapter::last_writer},
+            {"lineshaft/goTo", &Adapter::go_to},
+            {"pause", &Adapter::pause},
+            {"disconnect", &Adapter::disconnect},
+            {"terminate", &Adapter::terminate}};
+        return all;
     }
-    if (!report.refused.empty()) tell("stderr", report.refused.render());
-    if (!report.result.message.empty()) tell("stderr", report.result.message + "\n");
-    send_event("exited", {{"exitCode", exit_code_}});
-    send_event("terminated", Json::object());
-}
 
-const std::map<std::string, Adapter::Handler>& Adapter::handlers() {
-    static const std::map<std::string, Handler> all{
-        {"initialize", &Adapter::initialize},
-        {"launch", &Adapter::launch},
-        {"setBreakpoints", &Adapter::set_breakpoints},
-        {"setExceptionBreakpoints", &Adapter::set_exceptions},
-        {"configurationDone", &Adapter::configuration_done},
-        {"threads", &Adapter::threads},
-        {"stackTrace", &Adapter::stack_trace},
-        {"scopes", &Adapter::scopes},
-        {"variables", &Adapter::variables},
-        {"evaluate", &Adapter::evaluate},
-        {"setVariable", &Adapter::set_variable},
-        {"setFunctionBreakpoints", &Adapter::set_function_breakpoints},
-        {"lineshaft/state", &Adapter::state},
-        {"lineshaft/lastWriter", &Adapter::last_writer},
-        {"lineshaft/goTo", &Adapter::go_to},
-        {"pause", &Adapter::pause},
-        {"disconnect", &Adapter::disconnect},
-        {"terminate", &Adapter::terminate}};
-    return all;
-}
-
-const std::map<std::string, Way>& Adapter::ways() {
-    static const std::map<std::string, Way> all{{"continue", Way::go},
-                                                {"next", Way::next},
-                                                {"stepIn", Way::into},
-                                                {"stepOut", Way::out},
-                                                {"stepBack", Way::back},
-                                                {"reverseContinue", Way::back_go},
-                                                {"lineshaft/nextScan", Way::next_scan}};
-    return all;
-}
-
-void Adapter::handle(const Json& message) {
-    const std::string command = text_in(message, "command");
-    if (text_in(message, "type") != "request") return;
-    const auto it = message.find("arguments");
-    const Json arguments = it != message.end() && it->is_object() ? *it : Json::object();
-    try {
-        if (const auto way = ways().find(command); way != ways().end())
-            return answer(message, go_on(arguments, way->second));
-        const auto handler = handlers().find(command);
-        if (handler == handlers().end())
-            throw Refused(fmt::format("there is no request '{}' here", command));
-        answer(message, (this->*handler->second)(arguments));
-        if (command == "launch") send_event("initialized", Json::object());
-    } catch (const Refused& why) {
-        refuse(message, why.what());
+    static const std::map<std::string, Way>& ways() {
+        static const std::map<std::string, Way> all{{"continue", Way::go},
+                                                    {"next", Way::next},
+                                                    {"stepIn", Way::into},
+                                                    {"stepOut", Way::out},
+                                                    {"stepBack", Way::back},
+                                                    {"reverseContinue", Way::back_go},
+                                                    {"lineshaft/nextScan", Way::next_scan}};
+        return all;
     }
-}
 
-void Adapter::answer(const Json& request, const Json& body) {
-    Json response{{"seq", ++sequence_},
-                  {"type", "response"},
-                  {"request_seq", number_in(request, "seq")},
-                  {"success", true},
-                  {"command", text_in(request, "command")}};
-    if (!body.empty()) response["body"] = body;
-    messages_.send(response);
-}
-
-void Adapter::refuse(const Json& request, const std::string& why) {
-    messages_.send({{"seq", ++sequence_},
-                    {"type", "response"},
-                    {"request_seq", number_in(request, "seq")},
-                    {"success", false},
-                    {"command", text_in(request, "command")},
-                    {"message", why},
-                    {"body", {{"error", {{"id", 1}, {"format", why}, {"showUser", true}}}}}});
-}
-
-void Adapter::send_event(const char* name, Json body) {
-    messages_.send(
-        {{"seq", ++sequence_}, {"type", "event"}, {"event", name}, {"body", std::move(body)}});
-}
-
-void Adapter::tell(const char* category, const std::string& text) {
-    send_event("output", {{"category", category}, {"output", text}});
-}
-
-void Adapter::happened(const RunEvent& event) {
-    const auto& tasks = launched_->loaded.linked.machine.tasks;
-    const std::string task =
-        event.task < 0 ? "" : " " + tasks[static_cast<std::size_t>(event.task)].name + ":";
-    tell("console", fmt::format("{} {}:{} {}\n", format_time(event.time), name_of(event.kind), task,
-                                event.text));
-}
-
-void Adapter::stopped(const Stop& stop) {
-    stands_ = true;
-    goes_on_ = false;
-    Json body{{"reason", stop.reason}, {"threadId", stop.task + 1}, {"allThreadsStopped", true}};
-    if (!stop.text.empty()) body["description"] = body["text"] = stop.text;
-    if (!stop.breakpoints.empty()) body["hitBreakpointIds"] = stop.breakpoints;
-    send_event("stopped", std::move(body));
-    while (!goes_on_) {
-        const auto message = messages_.next();
-        if (!message) return leave();
-        handle(read_json(*message));
+    void handle(const Json& message) {
+        const std::string command = text_in(message, "command");
+        if (text_in(message, "type") != "request") return;
+        const auto it = message.find("arguments");
+        const Json arguments = it != message.end() && it->is_object() ? *it : Json::object();
+        try {
+            if (const auto way = ways().find(command); way != ways().end())
+                return answer(message, go_on(arguments, way->second));
+            const auto handler = handlers().find(command);
+            if (handler == handlers().end())
+                throw Refused(fmt::format("there is no request '{}' here", command));
+            answer(message, (this->*handler->second)(arguments));
+            if (command == "launch") send_event("initialized", Json::object());
+        } catch (const Refused& why) {
+            const std::string text = why.what();
+            answer(message, {{"error", {{"id", 1}, {"format", text}, {"showUser", true}}}}, text);
+        }
     }
-    stands_ = false;
-    forget();
-}
 
-void Adapter::look() {
-    while (messages_.waits() && !is_gone_) {
-        const auto message = messages_.next();
-        if (!message) return leave();
-        handle(read_json(*message));
+    /// `why` it is refused; empty: it is not.
+    void answer(const Json& request, const Json& body, const std::string& why = {}) {
+        Json response{{"seq", ++sequence_},
+                      {"type", "response"},
+                      {"request_seq", number_in(request, "seq")},
+                      {"success", why.empty()},
+                      {"command", text_in(request, "command")}};
+        if (!why.empty()) response["message"] = why;
+        if (!body.empty()) response["body"] = body;
+        messages_.send(response);
     }
-}
 
-void Adapter::leave() {
-    is_gone_ = goes_on_ = true;
-    session_->end();
-}
+    void send_event(const char* name, Json body) {
+        messages_.send(
+            {{"seq", ++sequence_}, {"type", "event"}, {"event", name}, {"body", std::move(body)}});
+    }
 
-Session& Adapter::session() {
-    if (!session_) throw Refused("nothing is launched");
-    return *session_;
-}
+    void tell(const char* category, const std::string& text) {
+        send_event("output", {{"category", category}, {"output", text}});
+    }
 
-Session& Adapter::standing() {
-    if (!stands_) throw Refused("the machine runs; pause it first");
-    return session();
-}
+    void happened(const RunEvent& event) override {
+        const auto& tasks = launched_->loaded.linked.machine.tasks;
+        const std::string task =
+            event.task < 0 ? "" : " " + tasks[static_cast<std::size_t>(event.task)].name + ":";
+        tell("console", fmt::format("{} {}:{} {}\n", format_time(event.time), name_of(event.kind),
+                                    task, event.text));
+    }
 
-Json Adapter::initialize(const Json& arguments) {
-    first_line_is_0_ = !flag_in(arguments, "linesStartAt1", true);
-    return {{"supportsConfigurationDoneRequest", true},
+    void stopped(const Stop& stop) override {
+        stands_ = true;
+        goes_on_ = false;
+        Json body{
+            {"reason", stop.reason}, {"threadId", stop.task + 1}, {"allThreadsStopped", true}};
+        if (!stop.text.empty()) body["description"] = body["text"] = stop.text;
+        if (!stop.breakpoints.empty()) body["hitBreakpointIds"] = stop.breakpoints;
+        send_event("stopped", std::move(body));
+        while (!goes_on_)
+            if (!handle_next()) return leave();
+        stands_ = false;
+        frames_.clear();
+        kept_.clear();
+    }
+
+    void look() override {
+        while (messages_.waits() && !is_gone_)
+            if (!handle_next()) return leave();
+    }
+
+    void leave() {
+        is_gone_ = goes_on_ = true;
+        session_->end();
+    }
+
+    Session& session() {
+        if (!session_) throw Refused("nothing is launched");
+        return *session_;
+    }
+
+    Session& standing() {
+        if (!stands_) throw Refused("the machine runs; pause it first");
+        return session();
+    }
+
+    Json initialize(const Json& arguments) {
+        first_line_is_0_ = !flag_in(arguments, "linesStartAt1", true);
+        return {
+            {"supportsConfigurationDoneRequest", true},
             {"supportsStepBack", true},
             {"supportsTerminateRequest", true},
             {"supportsConditionalBreakpoints", true},
@@ -229,284 +207,293 @@ Json Adapter::initialize(const Json& arguments) {
             {"exceptionBreakpointFilters",
              {{{"filter", "block_error"}, {"label", "An error of a block"}, {"default", true}}}},
             {"supportTerminateDebuggee", true}};
-}
-
-Json Adapter::launch(const Json& arguments) {
-    if (session_) throw Refused("a program is launched already");
-    std::vector<std::string> args;
-    if (const auto it = arguments.find("args"); it != arguments.end() && it->is_array())
-        for (const Json& arg : *it)
-            if (arg.is_string()) args.push_back(arg.get<std::string>());
-    if (const std::string test = text_in(arguments, "test"); !test.empty())
-        args.insert(args.end(), {"--test", test});
-    if (const std::string folder = text_in(arguments, "cwd"); !folder.empty()) {
-        std::error_code error;
-        std::filesystem::current_path(folder, error);
-        if (error) throw Refused(fmt::format("there is no folder '{}'", folder));
     }
-    std::string error;
-    launched_ = launcher_(text_in(arguments, "program"), args, error);
-    if (!launched_) throw Refused(error);
-    Front& front = *this;
-    session_ = std::make_unique<Session>(launched_->loaded, front);
-    session_->stop_on_entry = flag_in(arguments, "stopOnEntry");
-    session_->stop_at_end = flag_in(arguments, "stopAtEnd");
-    return Json::object();
-}
 
-Json Adapter::set_breakpoints(const Json& arguments) {
-    const int first = first_line_is_0_ ? 1 : 0;
-    std::vector<Wanted> wanted;
-    if (const auto it = arguments.find("breakpoints"); it != arguments.end() && it->is_array())
-        for (const Json& each : *it)
+    Json launch(const Json& arguments) {
+        if (session_) throw Refused("a program is launched already");
+        std::vector<std::string> args;
+        for (const Json& arg : list_in(arguments, "args"))
+            if (arg.is_string()) args.push_back(arg.get<std::string>());
+        if (const std::string test = text_in(arguments, "test"); !test.empty())
+            args.insert(args.end(), {"--test", test});
+        if (const std::string folder = text_in(arguments, "cwd"); !folder.empty()) {
+            std::error_code error;
+            std::filesystem::current_path(folder, error);
+            if (error) throw Refused(fmt::format("there is no folder '{}'", folder));
+        }
+        std::string error;
+        launched_ = launcher_(text_in(arguments, "program"), args, error);
+        if (!launched_) throw Refused(error);
+        Front& front = *this;
+        session_ = std::make_unique<Session>(launched_->loaded, front);
+        session_->stop_on_entry = flag_in(arguments, "stopOnEntry");
+        session_->stop_at_end = flag_in(arguments, "stopAtEnd");
+        return Json::object();
+    }
+
+    Json set_breakpoints(const Json& arguments) {
+        const int first = first_line_is_0_ ? 1 : 0;
+        std::vector<Wanted> wanted;
+        for (const Json& each : list_in(arguments, "breakpoints"))
             wanted.push_back({.line = static_cast<int>(number_in(each, "line")) + first,
                               .condition = text_in(each, "condition"),
                               .hits = text_in(each, "hitCondition"),
                               .log = text_in(each, "logMessage")});
-    const std::string path = text_in(arguments.value("source", Json::object()), "path");
-    Json all = Json::array();
-    for (const Breakpoint& breakpoint : session().set_breakpoints(path, wanted)) {
-        Json one{{"id", breakpoint.id},
-                 {"verified", breakpoint.is_verified},
-                 {"line", breakpoint.line - first},
-                 {"source", source_of(path)}};
-        if (!breakpoint.is_verified) one["message"] = breakpoint.error;
-        all.push_back(std::move(one));
+        const std::string path = text_in(arguments.value("source", Json::object()), "path");
+        Json all = Json::array();
+        for (const Breakpoint& breakpoint : session().set_breakpoints(path, wanted)) {
+            Json one{{"id", breakpoint.id},
+                     {"verified", breakpoint.is_verified},
+                     {"line", breakpoint.line - first},
+                     {"source", source_of(path)}};
+            if (!breakpoint.is_verified) one["message"] = breakpoint.error;
+            all.push_back(std::move(one));
+        }
+        return {{"breakpoints", all}};
     }
-    return {{"breakpoints", all}};
-}
 
-Json Adapter::set_exceptions(const Json& arguments) {
-    const Json filters = arguments.value("filters", Json::array());
-    session().stop_on_error = std::ranges::count(filters, "block_error") > 0;
-    return Json::object();
-}
-
-Json Adapter::set_function_breakpoints(const Json& arguments) {
-    std::vector<std::string> texts;
-    for (const Json& each : arguments.value("breakpoints", Json::array()))
-        texts.push_back(text_in(each, "name"));
-    Json all = Json::array();
-    for (const std::string& error : session().signals().set(texts)) {
-        all.push_back({{"verified", error.empty()}});
-        if (!error.empty()) all.back()["message"] = error;
+    Json set_exceptions(const Json& arguments) {
+        const Json filters = arguments.value("filters", Json::array());
+        session().stop_on_error = std::ranges::count(filters, "block_error") > 0;
+        return Json::object();
     }
-    return {{"breakpoints", all}};
-}
 
-/// A signal by its name, or an expression of Structured Text as the frame sees it.
-Json Adapter::evaluate(const Json& arguments) {
-    const Linked& linked = standing().loaded().linked;
-    const std::string text = text_in(arguments, "expression");
-    if (const Signal* signal = linked.machine.find(text))
-        return {{"result", signal->describe(signal->value())},
-                {"type", name_of(signal->type)},
-                {"variablesReference", 0}};
-    const auto number = static_cast<std::size_t>(number_in(arguments, "frameId", 1));
-    if (frames().empty() || number == 0 || number > frames_.size())
-        throw Refused(fmt::format("there is no signal '{}', and no routine runs here", text));
-    const Evaluated value = Expression(text).value(frames_[number - 1], session_->made()->checked);
-    if (!value.error.empty()) throw Refused(value.error);
-    Json body = to_json(value.shown);
-    body["result"] = body["value"];
-    return body;
-}
-
-Shown Adapter::variable_in(const Json& arguments) {
-    const std::int64_t reference = number_in(arguments, "variablesReference");
-    const std::string name = text_in(arguments, "name");
-    if (reference > 0 && reference <= std::ssize(kept_))
-        for (const Shown& shown : kept_[static_cast<std::size_t>(reference - 1)].inside(0, 0))
-            if (shown.name == name) return shown;
-    throw Refused(fmt::format("there is no variable '{}' any more", name));
-}
-
-/// As what comes from outside it counts from the next instant on.
-Json Adapter::set_variable(const Json& arguments) {
-    Session& session = standing();
-    const Shown shown = variable_in(arguments);
-    const std::string value = text_in(arguments, "value");
-    if (shown.signal.empty())
-        throw Refused(
-            fmt::format("'{}' is no signal of the program, which alone can be set from "
-                        "outside",
-                        shown.name));
-    Diagnostics out;
-    session.change(shown.signal, value, out);
-    if (!out.empty()) throw Refused(out.list().front().message);
-    return {{"value", value}};
-}
-
-int Adapter::task_in(const Json& arguments) {
-    const std::int64_t number = number_in(arguments, "threadId", 1);
-    if (number < 1 || number > std::ssize(session().loaded().linked.machine.tasks))
-        throw Refused("there is no such task");
-    return static_cast<int>(number) - 1;
-}
-
-Json Adapter::state(const Json&) {
-    const Session& session = standing();
-    const Position& here = session.here();
-    return {{"time", here.time},
-            {"scan", here.scan == Position::behind ? -1 : static_cast<std::int64_t>(here.scan)},
-            {"statement", here.statement},
-            {"fingerprint", session.fingerprint()},
-            {"checkpoints", session.history().size()},
-            {"bytes", session.history().bytes()}};
-}
-
-Json Adapter::go_to(const Json& arguments) {
-    const std::int64_t scan = number_in(arguments, "scan", -1);
-    const Position to{number_in(arguments, "time"),
-                      scan < 0 ? Position::behind : static_cast<std::uint64_t>(scan),
-                      static_cast<std::uint64_t>(number_in(arguments, "statement"))};
-    standing().command({.way = Way::to, .to = to});
-    goes_on_ = true;
-    return Json::object();
-}
-
-Json Adapter::last_writer(const Json& arguments) {
-    const Shown shown = variable_in(arguments);
-    if (!shown.at) throw Refused(fmt::format("'{}' is not in the memory", shown.name));
-    standing().command({.way = Way::writer, .at = shown.at, .bytes = shown.bytes});
-    goes_on_ = true;
-    return Json::object();
-}
-
-Json Adapter::configuration_done(const Json&) {
-    session();
-    is_configured_ = true;
-    return Json::object();
-}
-
-Json Adapter::threads(const Json&) {
-    Json threads = Json::array();
-    if (launched_)
-        for (const Task& task : launched_->loaded.linked.machine.tasks)
-            threads.push_back({{"id", threads.size() + 1}, {"name", task.name}});
-    return {{"threads", threads}};
-}
-
-void Adapter::add_task_frame(Json& frames, int task) {
-    const Loaded& loaded = session_->loaded();
-    frames.push_back(
-        {{"id", first_task_frame + task},
-         {"name", fmt::format("task {} at {}",
-                              loaded.linked.machine.tasks[static_cast<std::size_t>(task)].name,
-                              format_time(std::max<std::int64_t>(session_->here().time, 0)))},
-         {"source", source_of(loaded.program.file->path)},
-         {"line", first_line_is_0_ ? 0 : 1},
-         {"column", 1},
-         {"presentationHint", "subtle"}});
-}
-
-const std::vector<Frame>& Adapter::frames() {
-    if (const st::Halt* halt = session_->halt(); halt && frames_.empty())
-        frames_ = frames_of(*halt, *session_->made(), session_->loaded().linked.machine);
-    return frames_;
-}
-
-Json Adapter::stack_trace(const Json& arguments) {
-    Session& session = standing();
-    const int task = task_in(arguments);
-    const st::Halt* halt = session.halt();
-    Json frames = Json::array();
-    if (halt && halt->context.task == task) {
-        for (const Frame& frame : this->frames())
-            frames.push_back({{"id", frames.size() + 1},
-                              {"name", frame.name},
-                              {"source", source_of(frame.mark.file->path)},
-                              {"line", frame.mark.line - (first_line_is_0_ ? 1 : 0)},
-                              {"column", frame.mark.column}});
+    Json set_function_breakpoints(const Json& arguments) {
+        std::vector<std::string> texts;
+        for (const Json& each : arguments.value("breakpoints", Json::array()))
+            texts.push_back(text_in(each, "name"));
+        Json all = Json::array();
+        for (const std::string& error : session().signals().set(texts)) {
+            all.push_back({{"verified", error.empty()}});
+            if (!error.empty()) all.back()["message"] = error;
+        }
+        return {{"breakpoints", all}};
     }
-    add_task_frame(frames, task);
-    const auto total = frames.size();
-    const auto first = static_cast<std::size_t>(number_in(arguments, "startFrame"));
-    const auto levels = static_cast<std::size_t>(number_in(arguments, "levels"));
-    Json wanted = Json::array();
-    for (std::size_t i = first; i < total && (levels == 0 || i < first + levels); ++i)
-        wanted.push_back(frames[i]);
-    return {{"stackFrames", wanted}, {"totalFrames", total}};
-}
 
-std::int64_t Adapter::keep(const Shown& shown) {
-    if (!shown.inside) return 0;
-    kept_.push_back(shown);
-    return std::ssize(kept_);
-}
-
-void Adapter::forget() {
-    frames_.clear();
-    kept_.clear();
-}
-
-Json Adapter::scopes(const Json& arguments) {
-    Session& session = standing();
-    const Linked& linked = session.loaded().linked;
-    const std::int64_t id = number_in(arguments, "frameId");
-    std::vector<Shown> shown;
-    if (id >= first_task_frame) {
-        const int task = static_cast<int>(id - first_task_frame);
-        shown.push_back({.name = "Blocks", .value = "", .inside = [&linked, task](auto, auto) {
-                             return blocks_of(linked, task);
-                         }});
-        shown.push_back(show_inputs(linked));
-        shown.push_back(show_forces(linked, session.time()));
-    } else if (id > 0 && id <= std::ssize(frames_)) {
-        shown = scopes_of(frames_[static_cast<std::size_t>(id - 1)]);
-    } else {
-        throw Refused("there is no such frame any more");
+    /// A signal by its name, or an expression of Structured Text as the frame sees it.
+    Json evaluate(const Json& arguments) {
+        const Linked& linked = standing().loaded().linked;
+        const std::string text = text_in(arguments, "expression");
+        if (const Signal* signal = linked.machine.find(text))
+            return {{"result", signal->describe(signal->value())},
+                    {"type", name_of(signal->type)},
+                    {"variablesReference", 0}};
+        const auto number = static_cast<std::size_t>(number_in(arguments, "frameId", 1));
+        if (frames().empty() || number == 0 || number > frames_.size())
+            throw Refused(fmt::format("there is no signal '{}', and no routine runs here", text));
+        const Evaluated value =
+            Expression(text).value(frames_[number - 1], session_->made()->checked);
+        if (!value.error.empty()) throw Refused(value.error);
+        Json body = to_json(value.shown);
+        body["result"] = body["value"];
+        return body;
     }
-    Json scopes = Json::array();
-    for (const Shown& scope : shown)
-        scopes.push_back(
-            {{"name", scope.name}, {"variablesReference", keep(scope)}, {"expensive", false}});
-    return {{"scopes", scopes}};
-}
 
-Json Adapter::to_json(const Shown& shown) {
-    Json variable{{"name", shown.name}, {"value", shown.value}};
-    if (!shown.type.empty()) variable["type"] = shown.type;
-    if (!shown.signal.empty()) variable["evaluateName"] = shown.signal;
-    variable["variablesReference"] = keep(shown);
-    if (shown.elements > 0) variable["indexedVariables"] = shown.elements;
-    return variable;
-}
+    Shown variable_in(const Json& arguments) {
+        const std::int64_t reference = number_in(arguments, "variablesReference");
+        const std::string name = text_in(arguments, "name");
+        if (reference > 0 && reference <= std::ssize(kept_))
+            for (const Shown& shown : kept_[static_cast<std::size_t>(reference - 1)].inside(0, 0))
+                if (shown.name == name) return shown;
+        throw Refused(fmt::format("there is no variable '{}' any more", name));
+    }
 
-Json Adapter::variables(const Json& arguments) {
-    standing();
-    const std::int64_t reference = number_in(arguments, "variablesReference");
-    if (reference <= 0 || reference > std::ssize(kept_))
-        throw Refused("there is no such variable any more");
-    const auto inside = kept_[static_cast<std::size_t>(reference - 1)].inside;
-    Json variables = Json::array();
-    for (const Shown& shown : inside(static_cast<std::size_t>(number_in(arguments, "start")),
-                                     static_cast<std::size_t>(number_in(arguments, "count"))))
-        variables.push_back(to_json(shown));
-    return {{"variables", variables}};
-}
+    /// As what comes from outside it counts from the next instant on.
+    Json set_variable(const Json& arguments) {
+        Session& session = standing();
+        const Shown shown = variable_in(arguments);
+        const std::string value = text_in(arguments, "value");
+        if (shown.signal.empty())
+            throw Refused(
+                fmt::format("'{}' is no signal of the program, which alone can be set from "
+                            "outside",
+                            shown.name));
+        Diagnostics out;
+        session.change(shown.signal, value, out);
+        if (!out.empty()) throw Refused(out.list().front().message);
+        return {{"value", value}};
+    }
 
-Json Adapter::pause(const Json&) {
-    if (!stands_) session().pause();
-    return Json::object();
-}
+    int task_in(const Json& arguments) {
+        const std::int64_t number = number_in(arguments, "threadId", 1);
+        if (number < 1 || number > std::ssize(session().loaded().linked.machine.tasks))
+            throw Refused("there is no such task");
+        return static_cast<int>(number) - 1;
+    }
 
-Json Adapter::go_on(const Json& arguments, Way way) {
-    const int task = task_in(arguments);
-    standing().command({.way = way, .task = task});
-    goes_on_ = true;
-    return way == Way::go ? Json{{"allThreadsContinued", true}} : Json::object();
-}
+    Json state(const Json&) {
+        const Session& session = standing();
+        const Position& here = session.here();
+        return {{"time", here.time},
+                {"scan", here.scan == Position::behind ? -1 : static_cast<std::int64_t>(here.scan)},
+                {"statement", here.statement},
+                {"fingerprint", session.fingerprint()},
+                {"checkpoints", session.history().size()},
+                {"bytes", session.history().bytes()}};
+    }
 
-Json Adapter::terminate(const Json&) {
-    if (session_) session_->end();
-    goes_on_ = true;
-    return Json::object();
-}
+    Json leave_here(const Command& command) {
+        standing().command(command);
+        goes_on_ = true;
+        return Json::object();
+    }
 
-Json Adapter::disconnect(const Json& arguments) {
-    is_gone_ = true;
-    return terminate(arguments);
+    Json go_to(const Json& arguments) {
+        const std::int64_t scan = number_in(arguments, "scan", -1);
+        const Position to{number_in(arguments, "time"),
+                          scan < 0 ? Position::behind : static_cast<std::uint64_t>(scan),
+                          static_cast<std::uint64_t>(number_in(arguments, "statement"))};
+        return leave_here({.way = Way::to, .to = to});
+    }
+
+    Json last_writer(const Json& arguments) {
+        const Shown shown = variable_in(arguments);
+        if (!shown.at) throw Refused(fmt::format("'{}' is not in the memory", shown.name));
+        return leave_here({.way = Way::writer, .at = shown.at, .bytes = shown.bytes});
+    }
+
+    Json configuration_done(const Json&) {
+        session();
+        is_configured_ = true;
+        return Json::object();
+    }
+
+    Json threads(const Json&) {
+        Json threads = Json::array();
+        if (launched_)
+            for (const Task& task : launched_->loaded.linked.machine.tasks)
+                threads.push_back({{"id", threads.size() + 1}, {"name", task.name}});
+        return {{"threads", threads}};
+    }
+
+    void add_task_frame(Json& frames, int task) {
+        const Loaded& loaded = session_->loaded();
+        frames.push_back(
+            {{"id", first_task_frame + task},
+             {"name", fmt::format("task {} at {}",
+                                  loaded.linked.machine.tasks[static_cast<std::size_t>(task)].name,
+                                  format_time(std::max<std::int64_t>(session_->here().time, 0)))},
+             {"source", source_of(loaded.program.file->path)},
+             {"line", first_line_is_0_ ? 0 : 1},
+             {"column", 1},
+             {"presentationHint", "subtle"}});
+    }
+
+    const std::vector<Frame>& frames() {
+        if (const st::Halt* halt = session_->halt(); halt && frames_.empty())
+            frames_ = frames_of(*halt, *session_->made(), session_->loaded().linked.machine);
+        return frames_;
+    }
+
+    Json stack_trace(const Json& arguments) {
+        const st::Halt* halt = standing().halt();
+        const int task = task_in(arguments);
+        Json frames = Json::array();
+        if (halt && halt->context.task == task)
+            for (const Frame& frame : this->frames())
+                frames.push_back({{"id", frames.size() + 1},
+                                  {"name", frame.name},
+                                  {"source", source_of(frame.mark.file->path)},
+                                  {"line", frame.mark.line - (first_line_is_0_ ? 1 : 0)},
+                                  {"column", frame.mark.column}});
+        add_task_frame(frames, task);
+        const auto total = frames.size();
+        const auto first = static_cast<std::size_t>(number_in(arguments, "startFrame"));
+        const auto levels = static_cast<std::size_t>(number_in(arguments, "levels"));
+        Json wanted = Json::array();
+        for (std::size_t i = first; i < total && (levels == 0 || i < first + levels); ++i)
+            wanted.push_back(frames[i]);
+        return {{"stackFrames", wanted}, {"totalFrames", total}};
+    }
+
+    std::int64_t keep(const Shown& shown) {
+        if (!shown.inside) return 0;
+        kept_.push_back(shown);
+        return std::ssize(kept_);
+    }
+
+    Json scopes(const Json& arguments) {
+        Session& session = standing();
+        const Linked& linked = session.loaded().linked;
+        const std::int64_t id = number_in(arguments, "frameId");
+        std::vector<Shown> shown;
+        if (id >= first_task_frame) {
+            shown = {show_blocks(linked, static_cast<int>(id - first_task_frame)),
+                     show_inputs(linked), show_forces(linked, session.time())};
+        } else if (id > 0 && id <= std::ssize(frames_)) {
+            shown = scopes_of(frames_[static_cast<std::size_t>(id - 1)]);
+        } else {
+            throw Refused("there is no such frame any more");
+        }
+        Json scopes = Json::array();
+        for (const Shown& scope : shown)
+            scopes.push_back(
+                {{"name", scope.name}, {"variablesReference", keep(scope)}, {"expensive", false}});
+        return {{"scopes", scopes}};
+    }
+
+    Json to_json(const Shown& shown) {
+        Json variable{{"name", shown.name}, {"value", shown.value}};
+        if (!shown.type.empty()) variable["type"] = shown.type;
+        if (!shown.signal.empty()) variable["evaluateName"] = shown.signal;
+        variable["variablesReference"] = keep(shown);
+        if (shown.elements > 0) variable["indexedVariables"] = shown.elements;
+        return variable;
+    }
+
+    Json variables(const Json& arguments) {
+        standing();
+        const std::int64_t reference = number_in(arguments, "variablesReference");
+        if (reference <= 0 || reference > std::ssize(kept_))
+            throw Refused("there is no such variable any more");
+        const auto inside = kept_[static_cast<std::size_t>(reference - 1)].inside;
+        Json variables = Json::array();
+        for (const Shown& shown : inside(static_cast<std::size_t>(number_in(arguments, "start")),
+                                         static_cast<std::size_t>(number_in(arguments, "count"))))
+            variables.push_back(to_json(shown));
+        return {{"variables", variables}};
+    }
+
+    Json pause(const Json&) {
+        if (!stands_) session().pause();
+        return Json::object();
+    }
+
+    Json go_on(const Json& arguments, Way way) {
+        const int task = task_in(arguments);
+        leave_here({.way = way, .task = task});
+        return way == Way::go ? Json{{"allThreadsContinued", true}} : Json::object();
+    }
+
+    Json terminate(const Json&) {
+        if (session_) session_->end();
+        goes_on_ = true;
+        return Json::object();
+    }
+
+    Json disconnect(const Json& arguments) {
+        is_gone_ = true;
+        return terminate(arguments);
+    }
+
+    void log(const std::string& text) override { tell("console", text); }
+
+    Messages& messages_;
+    Launcher launcher_;
+    std::unique_ptr<Launched> launched_;
+    std::unique_ptr<Session> session_;
+    std::int64_t sequence_ = 0;
+    bool is_configured_ = false, is_gone_ = false, goes_on_ = false, stands_ = false,
+         first_line_is_0_ = false, has_run_ = false;
+    int exit_code_ = 0;
+    std::vector<Frame> frames_;  ///< that run; their numbers are those of the protocol, less 1
+    std::vector<Shown> kept_;    ///< by reference, less 1
+};
+
+}  // namespace
+
+int serve_debugger(Messages& messages, Launcher launcher) {
+    return Adapter(messages, std::move(launcher)).serve();
 }
 
 }  // namespace lineshaft::debug

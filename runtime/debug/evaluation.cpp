@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/names.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/syntax/parser.hpp"
 #include "runtime/st/types/value_text.hpp"
@@ -113,9 +116,9 @@ class Reckoning {
     Operand named(const st::Expression& e) const {
         const std::string_view name = e.token.text;
         for (const st::Routine* routine = frame_.routine; routine; routine = routine->owner) {
-            const auto it = routine->names.find(name);
-            if (it == routine->names.end()) continue;
-            const st::Variable& variable = *it->second;
+            const st::Variable* found = st::find_in(routine->names, name);
+            if (!found) continue;
+            const st::Variable& variable = *found;
             if (variable.space == st::Space::constant && variable.type->is_real())
                 return {.of = Operand::Of::real, .real = variable.value.real};
             if (variable.space == st::Space::constant) return {.whole = variable.value.integer};
@@ -130,21 +133,18 @@ class Reckoning {
 
     Operand member(const st::Expression& e) const {
         const Operand whole = value(*e.operands[0]);
-        const std::string_view name = e.token.text;
         if (whole.of != Operand::Of::place) throw Failed(unknown(e));
         const st::Type& type = *whole.seat.type;
-        if (type.kind == st::Type::Kind::structure) {
-            for (const st::Variable* part : type.members)
-                if (st::same_name(part->text, name))
-                    return load({part->type, whole.seat.at + 8 * std::size_t{part->slot}, &frame_},
-                                part->unit);
-        } else if (type.kind == st::Type::Kind::block) {
-            for (const st::Variable* part : st::all_variables(*type.routine))
-                if (st::same_name(part->text, name))
-                    if (const Seat seat = seat_of(*part, whole.seat.at, frame_); seat.at)
-                        return load(seat, part->unit);
-        }
-        throw Failed(unknown(e));
+        const bool has_parts =
+            type.kind == st::Type::Kind::structure || type.kind == st::Type::Kind::block;
+        const st::Variable* part = has_parts ? st::find_member(type, e.token.text) : nullptr;
+        if (!part) throw Failed(unknown(e));
+        const Seat seat =
+            type.kind == st::Type::Kind::block
+                ? seat_of(*part, whole.seat.at, frame_)
+                : Seat{part->type, whole.seat.at + 8 * std::size_t{part->slot}, &frame_};
+        if (!seat.at) throw Failed(unknown(e));
+        return load(seat, part->unit);
     }
 
     Operand element(const st::Expression& e) const {
@@ -177,9 +177,9 @@ class Reckoning {
     }
 
     static Wide number_of(const st::Type& type, const std::string& name) {
-        for (std::size_t i = 0; i < type.values.size(); ++i)
-            if (st::same_name(type.values[i], name)) return static_cast<Wide>(i);
-        throw Failed(fmt::format("{} has no value '{}'", type.name, name));
+        const std::string* value = st::find_called(type.values, name);
+        if (!value) throw Failed(fmt::format("{} has no value '{}'", type.name, name));
+        return value - type.values.data();
     }
 
     Operand unary(const st::Expression& e) const {
@@ -217,85 +217,30 @@ class Reckoning {
             return compared(e, a.text.compare(b.text), 0);
         if (!a.is_number()) throw Failed(unknown(*e.operands[0]));
         if (!b.is_number()) throw Failed(unknown(*e.operands[1]));
-        if (e.op >= Word::less && e.op <= Word::unequal)
-            return a.of == Operand::Of::real || b.of == Operand::Of::real
-                       ? compared(e, a.as_real(), b.as_real())
-                       : compared(e, a.whole, b.whole);
-        return a.of == Operand::Of::real || b.of == Operand::Of::real
-                   ? reals(e, a.as_real(), b.as_real())
-                   : wholes(e, a, b);
+        const bool is_real = a.of == Operand::Of::real || b.of == Operand::Of::real;
+        if (!st::is_comparison(e.op)) return reckoned(e, a, b, is_real);
+        return is_real ? compared(e, a.as_real(), b.as_real()) : compared(e, a.whole, b.whole);
     }
 
     template <class T>
-    static Operand compared(const st::Expression& e, T a, T b) {
-        switch (e.op) {
-            case Word::less:
-                return of_truth(a < b);
-            case Word::less_or_equal:
-                return of_truth(a <= b);
-            case Word::greater:
-                return of_truth(a > b);
-            case Word::greater_or_equal:
-                return of_truth(a >= b);
-            case Word::equal:
-                return of_truth(a == b);
-            case Word::unequal:
-                return of_truth(a != b);
-            default:
-                throw Failed(fmt::format("'{}' compares nothing", e.place.text()));
-        }
+    static Operand compared(const st::Expression& e, const T& a, const T& b) {
+        const auto truth = st::compare(e.op, a, b);
+        if (!truth) throw Failed(fmt::format("'{}' compares nothing", e.place.text()));
+        return of_truth(*truth);
     }
 
-    static Operand reals(const st::Expression& e, double a, double b) {
-        const auto real = [](double value) {
-            return Operand{.of = Operand::Of::real, .real = value};
-        };
-        switch (e.op) {
-            case Word::plus:
-                return real(a + b);
-            case Word::minus:
-                return real(a - b);
-            case Word::times:
-                return real(a * b);
-            case Word::divided:
-                return real(a / b);
-            case Word::power:
-                return real(std::pow(a, b));
-            default:
-                throw Failed(fmt::format("'{}' is not for real numbers", e.place.text()));
-        }
-    }
-
-    static Operand wholes(const st::Expression& e, const Operand& a, const Operand& b) {
-        Operand value{.of = a.of == b.of ? a.of : Operand::Of::whole};
-        if ((e.op == Word::divided || e.op == Word::mod_) && b.whole == 0)
+    static Operand reckoned(const st::Expression& e, const Operand& a, const Operand& b,
+                            bool is_real) {
+        const bool joins = st::is_logic(e.op), is_rest = e.op == Word::mod_;
+        if (e.op == Word::power)
+            return {.of = Operand::Of::real, .real = std::pow(a.as_real(), b.as_real())};
+        if (is_real && (joins || is_rest))
+            throw Failed(fmt::format("'{}' is not for real numbers", e.place.text()));
+        if (!is_real && (is_rest || e.op == Word::divided) && b.whole == 0)
             throw Failed("a division by zero");
-        switch (e.op) {
-            case Word::and_:
-            case Word::and_then_:
-            case Word::ampersand:
-                value.whole = a.whole & b.whole;
-                return value;
-            case Word::or_:
-            case Word::or_else_:
-                value.whole = a.whole | b.whole;
-                return value;
-            case Word::xor_:
-                value.whole = a.whole ^ b.whole;
-                return value;
-            case Word::plus:
-                return {.whole = a.whole + b.whole};
-            case Word::minus:
-                return {.whole = a.whole - b.whole};
-            case Word::times:
-                return {.whole = st::product(a.whole, b.whole)};
-            case Word::divided:
-                return {.whole = a.whole / b.whole};
-            case Word::mod_:
-                return {.whole = a.whole % b.whole};
-            default:
-                return reals(e, a.as_real(), b.as_real());
-        }
+        const auto made = st::operate(e.op, {a.whole, a.as_real()}, {b.whole, b.as_real()});
+        if (is_real) return {.of = Operand::Of::real, .real = made.real};
+        return {.of = joins && a.of == b.of ? a.of : Operand::Of::whole, .whole = made.integer};
     }
 
     static std::string unknown(const st::Expression& e) {

@@ -33,7 +33,7 @@ Frame innermost(const st::Halt& halt, const st::Library::Made& made) {
                         made.generated.code.routines.begin();
     Frame frame;
     frame.routine = made.checked.order[static_cast<std::size_t>(number)];
-    frame.base = place_of(halt.base, halt.root, halt.context);
+    frame.base = st::place_of(halt.base, halt.root, halt.context);
     frame.root = halt.root;
     frame.context = &halt.context;
     return frame;
@@ -44,7 +44,7 @@ std::vector<Frame> frames_of(const st::Halt& halt, const st::Library::Made& made
     std::vector<Frame> frames;
     const auto add = [&](std::uint64_t instruction, std::uint64_t base) {
         Frame& frame = frames.emplace_back(frame_at(made, instruction));
-        frame.base = place_of(base, halt.root, halt.context);
+        frame.base = st::place_of(base, halt.root, halt.context);
         frame.root = halt.root;
         frame.context = &halt.context;
     };

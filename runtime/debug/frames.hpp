@@ -26,10 +26,4 @@ std::vector<Frame> frames_of(const st::Halt& halt, const st::Library::Made& made
 /// The innermost alone, without its name and place: for conditions, which are asked often.
 Frame innermost(const st::Halt& halt, const st::Library::Made& made);
 
-/// Where an address leads, in a scan of the instance at `root`.
-inline std::byte* place_of(std::uint64_t address, std::byte* root, const Context& context) {
-    const std::uint64_t space = address >> 32;
-    return (space == 0 ? root : context.instances[space - 1]) + 8 * (address & 0xFFFF'FFFF);
-}
-
 }  // namespace lineshaft::debug

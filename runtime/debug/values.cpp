@@ -18,13 +18,11 @@ std::string with_unit(std::string value, const std::string& unit) {
     return unit.empty() ? value : value + " " + unit;
 }
 
-std::vector<const st::Variable*> variables_of(const st::Routine& routine) {
-    std::vector<const st::Variable*> all;
-    if (routine.owner || routine.is_function())
-        for (const st::Variable& variable : routine.variables) all.push_back(&variable);
-    else
-        for (const st::Variable* variable : st::all_variables(routine)) all.push_back(variable);
-    return all;
+/// What is known already, under a name.
+Shown group(std::string name, List inside) {
+    return {.name = std::move(name),
+            .value = "",
+            .inside = [inside = std::move(inside)](auto, auto) { return inside; }};
 }
 
 Shown show_variable(const st::Variable& variable, std::byte* base, const Frame& frame) {
@@ -47,28 +45,19 @@ Shown show_variable(const st::Variable& variable, std::byte* base, const Frame& 
 }
 
 /// The groups of a block's or a routine's variables that have any.
-List groups_of(const std::vector<const st::Variable*>& variables, std::byte* base,
-               const Frame& frame) {
-    struct Group {
-        const char* name;
-        std::vector<Section> sections;
-        bool constant = false;
-    };
-    static const Group groups[] = {
+List groups_of(const st::Routine& routine, std::byte* base, const Frame& frame) {
+    static const std::pair<const char*, std::vector<Section>> groups[] = {
         {"Inputs", {Section::input}},      {"Outputs", {Section::output, Section::result}},
         {"In and out", {Section::in_out}}, {"Locals", {Section::local, Section::kept}},
         {"Temporaries", {Section::temp}},  {"Globals", {Section::external, Section::global}}};
     List shown;
-    for (const Group& group : groups) {
+    for (const auto& [name, sections] : groups) {
         List of_group;
-        for (const st::Variable* variable : variables)
+        for (const st::Variable* variable : st::all_variables(routine))
             if (variable->type && !variable->text.empty() &&
-                std::ranges::find(group.sections, variable->section) != group.sections.end())
+                std::ranges::find(sections, variable->section) != sections.end())
                 of_group.push_back(show_variable(*variable, base, frame));
-        if (!of_group.empty())
-            shown.push_back({.name = group.name, .value = "", .inside = [of_group](auto, auto) {
-                                 return of_group;
-                             }});
+        if (!of_group.empty()) shown.push_back(group(name, std::move(of_group)));
     }
     return shown;
 }
@@ -92,7 +81,7 @@ List referred(const Seat& seat) {
     const auto offset = static_cast<std::int32_t>(read<std::uint64_t>(seat.at + 8) & 0xFFFF'FFFF);
     if (address == 0 || offset != 0 || !seat.type->element) return {};
     return {show("^", {seat.type->element,
-                       place_of(address, seat.frame->root, *seat.frame->context), seat.frame})};
+                       st::place_of(address, seat.frame->root, *seat.frame->context), seat.frame})};
 }
 
 std::string field_text(const Field& field, const std::byte* block) {
@@ -135,7 +124,7 @@ void show_parts(Shown& shown, const Seat& seat) {
             break;
         case Kind::block:
             shown.inside = [seat](auto, auto) {
-                return groups_of(variables_of(*seat.type->routine), seat.at, *seat.frame);
+                return groups_of(*seat.type->routine, seat.at, *seat.frame);
             };
             break;
         case Kind::standard:
@@ -198,7 +187,7 @@ Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame) 
         case st::Space::reference: {
             const auto address = read<std::uint64_t>(base + offset);
             if (address == 0) return {};
-            return {variable.type, place_of(address, frame.root, *frame.context), &frame};
+            return {variable.type, st::place_of(address, frame.root, *frame.context), &frame};
         }
         case st::Space::global: {
             const auto number = read<std::uint64_t>(
@@ -211,11 +200,11 @@ Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame) 
 }
 
 List scopes_of(const Frame& frame) {
-    List scopes = groups_of(variables_of(*frame.routine), frame.base, frame);
+    List scopes = groups_of(*frame.routine, frame.base, frame);
     if (const st::Routine* owner = frame.routine->owner)
         scopes.push_back(
             {.name = "THIS", .value = owner->name, .inside = [owner, &frame](auto, auto) {
-                 return groups_of(variables_of(*owner), frame.base, frame);
+                 return groups_of(*owner, frame.base, frame);
              }});
     return scopes;
 }
@@ -251,8 +240,7 @@ Shown show_field(const Linked& linked, Port port, const std::byte* block) {
             .bytes = size_of(field.type)};
 }
 
-}  // namespace
-
+/// Its fields by direction, with where its inputs come from.
 Shown show_block(const Linked& linked, int number) {
     const BlockPlace& block = linked.machine.blocks[static_cast<std::size_t>(number)];
     const auto inside = [&linked, number, &block](auto, auto) {
@@ -267,21 +255,21 @@ Shown show_block(const Linked& linked, int number) {
             for (std::size_t i = 0; i < block.type->fields.size(); ++i)
                 if (block.type->fields[i].direction == direction)
                     fields.push_back(show_field(linked, {number, static_cast<int>(i)}, block.live));
-            if (!fields.empty())
-                shown.push_back(
-                    {.name = name, .value = "", .inside = [fields](auto, auto) { return fields; }});
+            if (!fields.empty()) shown.push_back(group(name, std::move(fields)));
         }
         return shown;
     };
     return {.name = block.name, .value = std::string(block.type->name), .inside = inside};
 }
 
-List blocks_of(const Linked& linked, int task) {
+}  // namespace
+
+Shown show_blocks(const Linked& linked, int task) {
     List blocks;
     for (std::size_t i = 0; i < linked.machine.blocks.size(); ++i)
         if (linked.net.instances[i].task == task)
             blocks.push_back(show_block(linked, static_cast<int>(i)));
-    return blocks;
+    return group("Blocks", std::move(blocks));
 }
 
 Shown show_inputs(const Linked& linked) {
@@ -294,9 +282,7 @@ Shown show_inputs(const Linked& linked) {
                               .signal = signal.name,
                               .at = signal.slot,
                               .bytes = size_of(signal.type)});
-    return {.name = "Inputs of the program", .value = "", .inside = [inputs](auto, auto) {
-                return inputs;
-            }};
+    return group("Inputs of the program", std::move(inputs));
 }
 
 Shown show_forces(const Linked& linked, std::int64_t now) {
@@ -304,7 +290,7 @@ Shown show_forces(const Linked& linked, std::int64_t now) {
     for (const Force& force : linked.machine.forces)
         if (force.from <= now && now < force.until)
             forces.push_back({.name = force.name, .value = force.value_text});
-    return {.name = "Forced", .value = "", .inside = [forces](auto, auto) { return forces; }};
+    return group("Forced", std::move(forces));
 }
 
 }  // namespace lineshaft::debug

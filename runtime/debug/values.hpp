@@ -35,10 +35,9 @@ Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame);
 /// What a routine that runs sees: its variables by direction. The frame outlives what is shown.
 std::vector<Shown> scopes_of(const Frame& frame);
 
-/// What a program's file has: a block's fields by direction with where its inputs come from; the
-/// blocks of a task; inputs of the program, and what is forced.
-Shown show_block(const Linked& linked, int instance);
-std::vector<Shown> blocks_of(const Linked& linked, int task);
+/// What a program's file has: the blocks of a task, each with its fields by direction and where its
+/// inputs come from; inputs of the program, and what is forced.
+Shown show_blocks(const Linked& linked, int task);
 Shown show_inputs(const Linked& linked);
 Shown show_forces(const Linked& linked, std::int64_t now);
 

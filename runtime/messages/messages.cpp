@@ -54,6 +54,26 @@ std::optional<std::string> Frames::take() {
     return body;
 }
 
+std::string text_in(const Json& from, const char* key, const std::string& otherwise) {
+    const auto it = from.find(key);
+    return it != from.end() && it->is_string() ? it->get<std::string>() : otherwise;
+}
+
+std::int64_t number_in(const Json& from, const char* key, std::int64_t otherwise) {
+    const auto it = from.find(key);
+    return it != from.end() && it->is_number_integer() ? it->get<std::int64_t>() : otherwise;
+}
+
+bool flag_in(const Json& from, const char* key, bool otherwise) {
+    const auto it = from.find(key);
+    return it != from.end() && it->is_boolean() ? it->get<bool>() : otherwise;
+}
+
+Json list_in(const Json& from, const char* key) {
+    const auto it = from.find(key);
+    return it != from.end() && it->is_array() ? *it : Json::array();
+}
+
 std::string framed(const Json& message) {
     const std::string body = message.dump(-1, ' ', false, Json::error_handler_t::replace);
     return fmt::format("Content-Length: {}\r\n\r\n{}", body.size(), body);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,6 +34,12 @@ class Frames {
     std::string bytes_;
     std::size_t head_ = 0, body_ = 0;  ///< of the next one [bytes]; no head: not known yet
 };
+
+/// What is there under a key; `otherwise`, or an empty list, where nothing of that type is.
+std::string text_in(const Json& from, const char* key, const std::string& otherwise = {});
+std::int64_t number_in(const Json& from, const char* key, std::int64_t otherwise = 0);
+bool flag_in(const Json& from, const char* key, bool otherwise = false);
+Json list_in(const Json& from, const char* key);
 
 /// A message with its head. Bytes of texts that are no UTF-8 are replaced.
 std::string framed(const Json& message);

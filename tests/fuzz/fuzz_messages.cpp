@@ -209,10 +209,9 @@ void talk_to_debugger(const std::string& sent) {
     const int in = file_with(sent), out = file_with({});
     {
         Messages messages(in, out);
-        debug::Adapter adapter(messages, [](const std::string&, const auto&, std::string& error) {
+        debug::serve_debugger(messages, [](const std::string&, const auto&, std::string& error) {
             return launch(error);
         });
-        adapter.serve();
     }
     std::string answered(static_cast<std::size_t>(::lseek(out, 0, SEEK_END)), ' ');
     hold(::pread(out, answered.data(), answered.size(), 0) == static_cast<ssize_t>(answered.size()),

@@ -178,11 +178,10 @@ Exit execute(const DebugCommand& command) {
     // What the run prints is not for the protocol's stream.
     ::dup2(STDERR_FILENO, STDOUT_FILENO);
     Messages messages(in, out);
-    debug::Adapter adapter(messages,
-                           [&](const std::string& program, const auto& args, std::string& error) {
-                               return launch(command.options, program, args, error);
-                           });
-    const auto exit = static_cast<Exit>(adapter.serve());
+    const auto exit = static_cast<Exit>(debug::serve_debugger(
+        messages, [&](const std::string& program, const auto& args, std::string& error) {
+            return launch(command.options, program, args, error);
+        }));
     return exit == Exit::fine && interrupt_requested ? Exit::interrupted : exit;
 }
 

@@ -1,10 +1,4 @@
-#include "runtime/st/check/any_inputs.hpp"
-
-#include <algorithm>
-#include <bit>
-
-#include <fmt/format.h>
-
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
 
@@ -12,55 +6,24 @@ namespace lineshaft::st {
 
 namespace {
 
-std::string_view class_of_number(const Type& type) {
-    constexpr std::string_view bits[] = {"BYTE", "WORD", "DWORD", "LWORD"};
-    constexpr std::string_view integers[] = {"SINT", "INT", "DINT", "LINT"};
-    constexpr std::string_view unsigned_[] = {"USINT", "UINT", "UDINT", "ULINT"};
-    const int place = std::countr_zero(static_cast<unsigned>(type.bits)) - 3;
-    if (type.kind == Kind::bits) return bits[place];
-    return type.is_signed ? integers[place] : unsigned_[place];
-}
+/// Of TYPE_CLASS, without `TYPE_`: that of a kind of type; a number's and a time's say their size.
+struct TypeClass {
+    Kind kind;
+    std::string_view name;
+};
+constexpr TypeClass classes_of_kinds[] = {
+    {Kind::boolean, "BOOL"},       {Kind::date, "DATE"},         {Kind::clock, "TIMEOFDAY"},
+    {Kind::moment, "DATEANDTIME"}, {Kind::text, "STRING"},       {Kind::enumeration, "ENUM"},
+    {Kind::array, "ARRAY"},        {Kind::reference, "POINTER"}, {Kind::interface, "INTERFACE"}};
 
-/// Of TYPE_CLASS, without `TYPE_`.
 std::string_view class_of(const Type& type) {
-    switch (type.kind) {
-        case Kind::boolean:
-            return "BOOL";
-        case Kind::integer:
-        case Kind::bits:
-            return class_of_number(type);
-        case Kind::real:
-            return type.bits == 32 ? "REAL" : "LREAL";
-        case Kind::time:
-            return type.counts_ns ? "LTIME" : "TIME";
-        case Kind::date:
-            return "DATE";
-        case Kind::clock:
-            return "TIMEOFDAY";
-        case Kind::moment:
-            return "DATEANDTIME";
-        case Kind::text:
-            return "STRING";
-        case Kind::enumeration:
-            return "ENUM";
-        case Kind::array:
-            return "ARRAY";
-        case Kind::reference:
-            return "POINTER";
-        case Kind::interface:
-            return "INTERFACE";
-        case Kind::handle:
-        case Kind::structure:
-        case Kind::union_:
-        case Kind::block:
-        case Kind::standard:
-            return "USERDEF";
-        case Kind::any_integer:
-        case Kind::any_real:
-        case Kind::any_bits:
-            return "NONE";
-    }
-    return "NONE";
+    if (type.kind == Kind::time) return type.counts_ns ? "LTIME" : "TIME";
+    if (type.kind == Kind::real) return type.bits == 32 ? "REAL" : "LREAL";
+    if (type.kind == Kind::integer) return integer_type(type.bits, type.is_signed).name;
+    if (type.kind == Kind::bits) return bits_type(type.bits).name;
+    const auto* row = std::ranges::find(classes_of_kinds, type.kind, &TypeClass::kind);
+    if (row != std::end(classes_of_kinds)) return row->name;
+    return type.is_any() ? "NONE" : "USERDEF";
 }
 
 }  // namespace

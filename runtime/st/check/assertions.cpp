@@ -1,12 +1,8 @@
-#include "runtime/st/check/assertions.hpp"
-
-#include <algorithm>
-
 #include <fmt/ranges.h>
 
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/statements.hpp"
 
 namespace lineshaft::st {
 
@@ -45,9 +41,7 @@ bool is_meant(Checking& c, const Expression& call, const OtherAssertion& known) 
         return false;
     if (known.name.find('.') != known.name.npos) return true;
     const auto is_declared = [&](const Argument& argument) {
-        return std::ranges::any_of(known.declared, [&](std::string_view declared) {
-            return same_name(declared, argument.name.text);
-        });
+        return find_called(known.declared, argument.name.text) != nullptr;
     };
     const bool is_own = known.name == known.same;  // where it is not by the arguments' names
     return is_own ? !call.arguments.empty() && std::ranges::all_of(call.arguments, is_declared)
@@ -80,8 +74,7 @@ Expression* assertion_call(Checking& c, const Expression& call) {
     };
     std::size_t position = 0;
     for (const Argument& given : call.arguments) {
-        const auto name = std::ranges::find_if(
-            declared, [&](std::string_view text) { return same_name(text, given.name.text); });
+        const auto name = std::ranges::find_if(declared, is_called(given.name.text));
         std::size_t at = position++;
         if (given.is_named()) at = static_cast<std::size_t>(name - declared.begin());
         if (at >= declared.size() || arguments[at].value) return wrong(given.value->place);

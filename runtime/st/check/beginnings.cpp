@@ -1,10 +1,6 @@
-#include "runtime/st/check/beginnings.hpp"
-
-#include <fmt/format.h>
-
-#include "runtime/source/codes.hpp"
+#include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/places.hpp"
 
 namespace lineshaft::st {
 
@@ -47,29 +43,16 @@ Expression* nothing(Checking& c, const Expression& like, const Type& type) {
 void add_once(Checking& c, Routine& block, Place place, Block& to) {
     if (block.begins.empty()) return;
     if (!block.begun) {
-        Variable& begun = block.variables.emplace_back();
-        begun.name = block.pou->name;
-        begun.text = c.checked.names.emplace_back(fmt::format("{}.begun", block.pou->name.text));
-        begun.type = &bool_type;
-        begun.of = block.pou;
-        begun.used = true;
-        block.begun = &begun;
+        const Token& name = block.pou->name;
+        block.begun = &c.make_variable(
+            block, name, c.checked.names.emplace_back(fmt::format("{}.begun", name.text)),
+            &bool_type);
     }
-    const auto flag = [&] {
-        Expression like;
-        like.token = block.pou->name;
-        like.place = place;
-        Expression* name = make(c, E::name, like);
-        name->variable = block.begun;
-        name->type = &bool_type;
-        return name;
-    };
-    Block first = {make_assignment(c, place, flag(), make_boolean(c, *flag(), true))};
+    const Expression like{.token = block.pou->name, .place = place};
+    const auto flag = [&] { return make_use(c, like, *block.begun); };
+    Block first = {make_assignment(c, place, flag(), make_boolean(c, like, true))};
     first.insert(first.end(), block.begins.begin(), block.begins.end());
-    Expression* condition = make(c, E::unary, *flag());
-    condition->op = Word::not_;
-    condition->operands[0] = flag();
-    to.push_back(make_if(c, place, condition, std::move(first), {}));
+    to.push_back(make_if(c, place, make_not(c, flag()), std::move(first), {}));
 }
 
 void add_bases_first(Checking& c, Routine& block, Place place, Block& to) {
@@ -97,19 +80,16 @@ Statement* call_constructor(Checking& c, const Expression& like, Expression* ins
 /// That of the base, with the inputs of its own that the method has, too.
 void add_constructor_of_base(Checking& c, const Routine& method, Block& to) {
     const Routine* base = method.owner->base;
-    const auto it = base ? base->methods.find(constructor) : NameMap<Routine*>::const_iterator{};
-    if (!base || it == base->methods.end()) return;
-    Expression like;
-    like.token = method.pou->name;
-    like.place = method.pou->place;
+    const Routine* of_base = base ? find_in(base->methods, constructor) : nullptr;
+    if (!of_base) return;
+    const Expression like{.token = method.pou->name, .place = method.pou->place};
     std::vector<Argument> given;
-    for (const Variable& input : it->second->variables)
+    for (const Variable& input : of_base->variables)
         if (input.section == Section::input)
             given.push_back({.name = input.name, .value = make_name(c, like, input.text)});
     Expression* super = make_name(c, like, "super");
     to.push_back(make_call_statement(
-        c,
-        make_call(c, like, make_member(c, super, it->second->pou->name.text), std::move(given))));
+        c, make_call(c, like, make_member(c, super, of_base->pou->name.text), std::move(given))));
 }
 
 }  // namespace
@@ -129,11 +109,7 @@ void begin_instance(Checking& c, Variable& variable) {
     const bool has_values = variable.constructed && !variable.constructed->empty();
     const Type* type = variable.type;
     const bool is_block = type && type->kind == Kind::block && variable.space == Space::frame;
-    Routine* method = nullptr;
-    if (is_block)
-        if (const auto it = type->routine->methods.find(constructor);
-            it != type->routine->methods.end())
-            method = it->second;
+    const Routine* method = is_block ? find_in(type->routine->methods, constructor) : nullptr;
     if (!method) {
         if (has_values && type)
             c.fail(code::wrong_arguments, variable.name.place,
@@ -142,9 +118,7 @@ void begin_instance(Checking& c, Variable& variable) {
         return;
     }
     if (!c.routine || !c.routine->has_instances()) return;
-    Expression like;
-    like.token = variable.name;
-    like.place = variable.name.place;
+    const Expression like{.token = variable.name, .place = variable.name.place};
     c.routine->begins.push_back(
         call_constructor(c, like, make_name(c, like, variable.text),
                          has_values ? *variable.constructed : std::vector<Argument>{}, *method));

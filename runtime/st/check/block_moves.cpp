@@ -1,8 +1,3 @@
-#include "runtime/st/check/block_moves.hpp"
-
-#include <fmt/format.h>
-
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -21,23 +16,11 @@ bool is_element(const Expression& e) {
 Variable& counter(Checking& c) {
     constexpr std::string_view name = "%moved";
     Routine& routine = *c.routine;
-    if (const auto it = routine.names.find(name); it != routine.names.end()) return *it->second;
-    Variable& variable = routine.variables.emplace_back();
-    variable.name = routine.pou->name;
-    variable.text = name;
-    variable.type = &lint_type;
+    if (Variable* known = find_in(routine.names, name)) return *known;
+    Variable& variable = c.make_variable(routine, routine.pou->name, name, &lint_type);
     variable.section = Section::temp;
-    variable.of = routine.pou;
-    variable.used = true;
     routine.names.emplace(name, &variable);
     return variable;
-}
-
-Expression* use_of(Checking& c, const Expression& like, Variable& variable) {
-    Expression* name = make(c, E::name, like);
-    name->variable = &variable;
-    name->type = variable.type;
-    return name;
 }
 
 /// `FOR i := 0 TO count - 1 DO ADR(to)[i] := value; END_FOR`
@@ -46,10 +29,10 @@ Statement* fill(Checking& c, const Statement& s, Expression* value, Expression* 
     Variable& i = counter(c);
     Expression* element = make(c, E::index, *to);
     element->operands[0] = make_call(c, "ADR", to);
-    element->arguments.push_back({.value = use_of(c, *to, i)});
+    element->arguments.push_back({.value = make_use(c, *to, i)});
     Statement* loop = make_with(c, s, make_constant(c, *to, lint_type, {}));
     loop->kind = S::for_;
-    loop->target = use_of(c, *to, i);
+    loop->target = make_use(c, *to, i);
     loop->limit = make_binary(c, s.place, s.place, Word::minus, count,
                               make_constant(c, *count, lint_type, {.integer = 1}));
     loop->body = {make_assignment(c, s.place, element, value)};
@@ -83,10 +66,7 @@ void rewrite_block_move(Checking& c, Statement*& s) {
                                   : "IN and OUT are elements of arrays of one type: a[0]");
     if (!count->type->is_integer() && !count->type->is_bits())
         return (void)c.fail(code::type_does_not_fit, count->place, "COUNT is a whole number");
-    if (count->type->is_any())
-        coerce(c, count, lint_type);
-    else
-        convert(c, count, lint_type);
+    become_lint(c, count);
     s = fills ? fill(c, *s, value, count, to) : move(c, call, value, count, to);
     check(c, s);
 }

@@ -1,26 +1,14 @@
 #include "runtime/st/check/calls.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
-#include "runtime/source/letters.hpp"
-#include "runtime/source/units.hpp"
-#include "runtime/st/check/any_inputs.hpp"
-#include "runtime/st/check/assertions.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/objects.hpp"
-#include "runtime/st/check/order.hpp"
-#include "runtime/st/check/overloads.hpp"
-#include "runtime/st/check/places.hpp"
 #include "runtime/st/check/references.hpp"
-#include "runtime/st/check/rewrites.hpp"
-#include "runtime/st/check/standard_calls.hpp"
-#include "runtime/st/check/test_statements.hpp"
+#include "runtime/st/check/statements.hpp"
 #include "runtime/st/functions/standard.hpp"
 #include "runtime/st/vendors/instead.hpp"
 #include "runtime/st/vendors/names.hpp"
@@ -49,17 +37,12 @@ bool is_instance(Checking& c, const Token& name) {
 }
 
 Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std::size_t position) {
-    const auto is_parameter = [](const Variable& variable) {
-        if (variable.bound_of) return false;
-        return variable.section == Section::input || variable.section == Section::in_out ||
-               variable.section == Section::output;
-    };
     const bool named = argument.is_named();
     const bool inner = c.is_in_test() && named && routine.has_instances();
     std::size_t i = 0;
     const std::vector<Variable*> variables = all_variables(routine);
     for (Variable* variable : variables) {
-        if (!is_parameter(*variable) && !inner) continue;
+        if (!variable->is_parameter() && !inner) continue;
         if (named ? same_name(variable->text, argument.name.text) : i == position) return variable;
         ++i;
     }
@@ -69,7 +52,7 @@ Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std:
                       fmt::format("'{}' takes {} argument{}", routine.name, i, i == 1 ? "" : "s"));
     std::vector<std::string> names;
     for (const Variable* variable : variables)
-        if (is_parameter(*variable) || inner) names.emplace_back(variable->text);
+        if (variable->is_parameter() || inner) names.emplace_back(variable->text);
     return c.fail(code::wrong_arguments, argument.name.place,
                   fmt::format("'{}' has no argument '{}'", routine.name, argument.name.text),
                   same_name(argument.name.text, "en")
@@ -82,23 +65,19 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
                  const Type& given) {
     Expression* const value = argument.value;
     const Type* type = parameter.type;
-    if (argument.is_negated && (type->kind != Kind::boolean || given.kind != Kind::boolean)) {
-        c.fail(code::type_does_not_fit, argument.name.place,
-               fmt::format("NOT takes a BOOL to a BOOL, not {} to {}", describe(*type),
-                           describe(given)),
-               "take the output as it is");
-        return;
-    }
-    if (parameter.section == Section::in_out && is_packed(*value)) {
-        c.fail(
+    if (argument.is_negated && (type->kind != Kind::boolean || given.kind != Kind::boolean))
+        return void(c.fail(code::type_does_not_fit, argument.name.place,
+                           fmt::format("NOT takes a BOOL to a BOOL, not {} to {}", describe(*type),
+                                       describe(given)),
+                           "take the output as it is"));
+    if (parameter.section == Section::in_out && is_packed(*value))
+        return void(c.fail(
             code::wrong_arguments, value->place,
             fmt::format("'{}' takes a variable, not bytes of {}", parameter.text,
                         root_of(*value).variable && root_of(*value).variable->space == Space::image
                             ? "the process image"
                             : "a UNION"),
-            "copy it to a variable, give that, and copy it back");
-        return;
-    }
+            "copy it to a variable, give that, and copy it back"));
     const bool texts = given.kind == Kind::text && type->kind == Kind::text;
     const bool derives = parameter.section == Section::in_out && given.kind == Kind::block &&
                          type->kind == Kind::block && is_a(*given.routine, *type->routine);
@@ -153,19 +132,15 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
 
 /// A VAR_IN_OUT that a test does not give stays what it was; at first it is a variable of its own.
 Argument leave_out(Checking& c, const Expression& call, Variable& parameter) {
-    Variable& own = c.routine->variables.emplace_back();
-    own.type = parameter.type->is_open ? &string_type : parameter.type;
-    own.of = c.routine->pou;
+    const Type* type = parameter.type->is_open ? &string_type : parameter.type;
+    Variable& own = c.make_variable(*c.routine, {}, {}, type);
     depend(c, own.type, call.place);
     c.routine->lends = true;
-    Expression* value = make(c, E::name, call);
-    value->variable = &own;
-    value->type = own.type;
-    return {parameter.name, false, value, &parameter, true};
+    return {parameter.name, false, make_use(c, call, own), &parameter, true};
 }
 
 bool is_open_array(const Variable& variable) {
-    return variable.type && variable.type->is_reference() && variable.type->is_open;
+    return variable.type && variable.type->is_open_array();
 }
 
 /// Its bounds stand behind it.
@@ -201,6 +176,13 @@ void leave_out_enable(Checking& c, Expression*& e, const Routine& routine) {
     if (std::erase_if(left, is_enable) > 0) e = make_with(c, *e, std::move(left));
 }
 
+void refuse_without(Checking& c, const Expression& call, std::string_view called,
+                    const Variable& parameter) {
+    c.fail(code::wrong_arguments, call.operands[0]->place,
+           fmt::format("'{}' is called without '{}'", called, parameter.text),
+           fmt::format("write {} := ...", parameter.text));
+}
+
 void check_arguments(Checking& c, Expression*& e, Routine& routine) {
     leave_out_enable(c, e, routine);
     Expression& call = *e;
@@ -233,10 +215,7 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
             continue;
         const bool may_miss = c.is_in_test() && routine.has_instances();
         if (may_miss && variable.type) left_out.push_back(leave_out(c, call, variable));
-        if (!may_miss)
-            c.fail(code::wrong_arguments, call.operands[0]->place,
-                   fmt::format("'{}' is called without '{}'", routine.name, variable.text),
-                   fmt::format("write {} := ...", variable.text));
+        if (!may_miss) refuse_without(c, call, routine.name, variable);
     }
     if (!left_out.empty()) {
         left_out.insert(left_out.begin(), call.arguments.begin(), call.arguments.end());
@@ -265,8 +244,7 @@ void ignore(Checking& c, const Type& type, Argument& argument, std::optional<dou
 
 void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
     Expression& call = *e;
-    std::vector<std::string> names;
-    for (const Variable* member : type.members) names.emplace_back(member->text);
+    const std::vector<std::string> names = names_of(type.members);
     std::size_t position = 0;
     for (Argument& argument : call.arguments) {
         Variable* found = nullptr;
@@ -301,14 +279,10 @@ void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
     std::vector<Argument> taken;
     std::ranges::copy_if(call.arguments, std::back_inserter(taken), &Argument::variable);
     if (taken.size() < call.arguments.size()) e = make_with(c, call, std::move(taken));
-    for (const Variable* member : type.members) {
-        if (member->section != Section::in_out ||
-            std::ranges::find(e->arguments, member, &Argument::variable) != e->arguments.end())
-            continue;
-        c.fail(code::wrong_arguments, call.operands[0]->place,
-               fmt::format("'{}' is called without '{}'", type.name, member->text),
-               fmt::format("write {} := ...", member->text));
-    }
+    for (const Variable* member : type.members)
+        if (member->section == Section::in_out &&
+            std::ranges::find(e->arguments, member, &Argument::variable) == e->arguments.end())
+            refuse_without(c, call, type.name, *member);
 }
 
 /// That the routine at hand runs `called`, if it is known.
@@ -389,9 +363,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
             return check_part(c, e, *part);
         }
         if (of->kind == Kind::block || of->kind == Kind::interface) {
-            const auto it = of->routine->methods.find(callee.token.text);
-            if (it != of->routine->methods.end()) {
-                Routine& method = overload_of(c, *e, of->routine->overloads, *it->second);
+            if (Routine* first = find_in(of->routine->methods, callee.token.text)) {
+                Routine& method = overload_of(c, *e, of->routine->overloads, *first);
                 if (!is_accessible(c, method.pou->access, *method.owner, callee.token))
                     return nullptr;
                 return check_method_call(c, e, method, *callee.operands[0], as_statement);
@@ -402,8 +375,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
     if (callee.kind == E::name && !is_instance(c, callee.token) && !is_own_instance(c, callee)) {
         const std::string_view name = callee.token.text;
         for (const Routine* r = c.routine; r; r = r->owner)
-            if (const auto it = r->methods.find(name); it != r->methods.end()) {
-                Routine& method = overload_of(c, *e, r->overloads, *it->second);
+            if (Routine* first = find_in(r->methods, name)) {
+                Routine& method = overload_of(c, *e, r->overloads, *first);
                 e->is_dispatched = method.is_replaced;
                 return check_routine_call(c, e, method, as_statement);
             }

@@ -14,4 +14,44 @@ std::string_view standard_name(const Type& type, std::string_view name);
 /// `as_statement`: its value is not taken. `expected` as in check().
 const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Type* expected);
 
+// overloads.cpp
+
+/// Which of the functions or methods that share the name of `first` a call means: the one whose
+/// arguments are of the types that are given, or need the least conversion. Where none fits it is
+/// the first, whose call is refused then.
+Routine& overload_of(Checking& c, Expression& call, const NameMap<std::vector<Routine*>>& overloads,
+                     Routine& first);
+
+// standard_calls.cpp
+
+/// Tells when there are too few arguments, or too many.
+bool check_count(Checking& c, const Expression& call, const StandardFunction& f);
+/// Arguments by name may stand in any order: those of the call that stands for it are in that of
+/// the function. False for a name that is none, which was told.
+bool order_arguments(Checking& c, Expression*& e, const StandardFunction& f);
+
+/// A function of the standard, or a conversion by its name: `expected` as in check().
+const Type* check_standard_function(Checking& c, Expression*& e, const Type* expected);
+
+// standard_types.cpp
+
+/// What the call of a standard function gives; null, and told, if its arguments do not suit. They
+/// have their own types already, and become what the function takes.
+const Type* standard_type_of(Checking& c, Expression*& e, const Type* expected);
+
+// conversion_calls.cpp
+
+/// `INT_TO_REAL(x)`, `TO_REAL(x)`, `REAL_TRUNC_INT(x)`: a conversion stands for the call then.
+/// Empty if the name is none of one.
+std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::string_view name);
+
+// any_inputs.cpp
+
+/// Of an input that is ANY, as CODESYS and TwinCAT have it.
+bool is_any_input(const Type& type);
+
+/// `value`, a variable of any type, becomes what such an input has inside: its class, where it is,
+/// how many bytes it has. What came by such an input is passed on.
+void become_any(Checking& c, Expression*& value, const Type& type);
+
 }  // namespace lineshaft::st

@@ -1,8 +1,5 @@
-#include "runtime/st/check/catalog_types.hpp"
-
-#include <algorithm>
-
 #include "runtime/source/letters.hpp"
+#include "runtime/st/check/types.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
@@ -18,9 +15,8 @@ struct NamedKind {
 
 NamedKind find_kind(const Catalog& catalog, std::string_view name) {
     const auto find = [&](std::string_view wanted) {
-        const auto it = std::ranges::find_if(
-            catalog.types(), [&](const BlockType& type) { return same_name(type.name, wanted); });
-        return it == catalog.types().end() || it->is_device() ? nullptr : &*it;
+        const BlockType* kind = find_called(catalog.types(), wanted, &BlockType::name);
+        return kind && !kind->is_device() ? kind : nullptr;
     };
     const auto data_type_of = [](const BlockType& kind) {
         const auto it = std::ranges::find(kind.fields, "data_type", &Field::name);
@@ -33,12 +29,9 @@ NamedKind find_kind(const Catalog& catalog, std::string_view name) {
     const BlockType* kind = end == name.npos ? nullptr : find(name.substr(0, end));
     const Field* types = kind ? data_type_of(*kind) : nullptr;
     if (!types) return {};
-    const auto is_type = [&](std::string_view type) {
-        return same_name(type, name.substr(end + 1));
-    };
-    const auto it = std::ranges::find_if(types->names, is_type);
-    if (it == types->names.end()) return {};
-    return {kind, types, static_cast<std::size_t>(it - types->names.begin())};
+    const std::string_view* type = find_called(types->names, name.substr(end + 1));
+    if (!type) return {};
+    return {kind, types, static_cast<std::size_t>(type - types->names.data())};
 }
 
 /// Enumerations that the standards make a WORD.
@@ -55,8 +48,7 @@ const Type* handle_type(Checking& c, std::string_view name) {
         return !type.handle.empty() && same_name(type.handle, name);
     });
     if (kind == c.catalog.types().end()) return nullptr;
-    if (const auto it = c.catalog_types.find(kind->handle); it != c.catalog_types.end())
-        return it->second;
+    if (const Type* known = find_in(c.catalog_types, kind->handle)) return known;
     Type& type = c.make_type(Kind::handle, std::string(kind->handle));
     type.standard = &*kind;
     type.slots = 1;
@@ -70,8 +62,7 @@ const Type& make_enumeration(Checking& c, const BlockType& kind, const Field& fi
     values.base = &lint_type;
     const auto meanings = meanings_of_numbers(field.name);
     values.of_number.assign(meanings.begin(), meanings.end());
-    values.is_code = std::ranges::any_of(
-        code_names, [&](std::string_view code) { return same_name(field.name, code); });
+    values.is_code = find_called(code_names, field.name) != nullptr;
     for (const std::string_view value : field.names) {
         values.numbers.push_back(static_cast<std::int64_t>(values.values.size()));
         values.values.emplace_back(value);
@@ -93,7 +84,7 @@ const Type* type_of(Checking& c, const NamedKind& named, const Field& field) {
 }  // namespace
 
 const Type* standard_type(Checking& c, std::string_view name) {
-    if (const auto it = c.catalog_types.find(name); it != c.catalog_types.end()) return it->second;
+    if (const Type* known = find_in(c.catalog_types, name)) return known;
     const std::string_view wanted = standard_type_name(name);
     if (const Type* handle = handle_type(c, wanted)) return handle;
     if (const Type* number = wanted == name ? nullptr : find_elementary(wanted)) return number;
@@ -104,13 +95,11 @@ const Type* standard_type(Checking& c, std::string_view name) {
     type.standard = &kind;
     type.slots = static_cast<std::uint32_t>((kind.size + 7) / 8) + (c.has_tests ? 1 : 0);
     for (const Field& field : kind.fields) {
-        Variable& member = c.checked.variables.emplace_back();
-        member.text = field.name;
+        Variable& member = c.make_variable({}, field.name, type_of(c, named, field));
         member.section = section_of(field.direction);
         member.slot = static_cast<std::uint32_t>(field.offset / 8);
         member.byte = static_cast<std::uint32_t>(field.offset);
         member.is_byte = field.type == lineshaft::Type::boolean;
-        member.type = type_of(c, named, field);
         type.members.push_back(&member);
     }
     if (named.data_type)

@@ -1,12 +1,8 @@
-#include "runtime/st/check/charts.hpp"
-
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
-#include "runtime/st/check/catalog_types.hpp"
+#include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/order.hpp"
+#include "runtime/st/check/statements.hpp"
+#include "runtime/st/check/types.hpp"
 #include "runtime/st/syntax/literals.hpp"
 
 namespace lineshaft::st {
@@ -29,12 +25,7 @@ struct ChartWriter {
     const Pou& pou;    ///< whose chart it is: the routine's, or one of its actions'
     Block out = {};
 
-    Expression like(const Token& token) const {
-        Expression made;
-        made.token = token;
-        made.place = token.place;
-        return made;
-    }
+    Expression like(const Token& token) const { return {.token = token, .place = token.place}; }
     /// `of.part`, as it is called in names: what a chart keeps beside what its user declares.
     std::string_view part_name(std::string_view of, std::string_view part) {
         return c.checked.names.emplace_back(fmt::format("{}{}.{}", within(), of, part));
@@ -52,12 +43,7 @@ struct ChartWriter {
     Expression* joined(Word op, Expression* a, Expression* b) {
         return a ? make_binary(c, b->place, b->place, op, a, b) : b;
     }
-    Expression* negated(Expression* value) {
-        Expression* made = make(c, E::unary, *value);
-        made->op = Word::not_;
-        made->operands[0] = value;
-        return made;
-    }
+    Expression* negated(Expression* value) { return make_not(c, value); }
     Expression* truth(const Token& at, bool value) { return make_boolean(c, like(at), value); }
     Statement* set(Expression* target, Expression* value) {
         return make_assignment(c, target->place, target, value);
@@ -76,12 +62,7 @@ struct ChartWriter {
     }
 
     Variable& declare(const Token& at, std::string_view text, const Type* type) {
-        Variable& made = routine.variables.emplace_back();
-        made.name = at;
-        made.text = text;
-        made.type = type;
-        made.of = routine.pou;
-        made.used = true;
+        Variable& made = c.make_variable(routine, at, text, type);
         routine.names.emplace(text, &made);
         depend(c, type, at.place);
         return made;
@@ -95,12 +76,6 @@ struct ChartWriter {
     }
 };
 
-const ChartStep* find_step(const Chart& chart, std::string_view name) {
-    const auto it = std::ranges::find_if(
-        chart.steps, [&](const ChartStep& step) { return same_name(step.name.text, name); });
-    return it == chart.steps.end() ? nullptr : &*it;
-}
-
 void check_transitions(Checking& c, const Chart& chart) {
     std::vector<std::string> names;
     for (const ChartStep& step : chart.steps) names.emplace_back(step.name.text);
@@ -108,7 +83,7 @@ void check_transitions(Checking& c, const Chart& chart) {
     for (const ChartTransition& transition : chart.transitions) {
         for (const auto* steps : {&transition.from, &transition.to})
             for (const Token& step : *steps)
-                if (!find_step(chart, step.text))
+                if (!find_called(chart.steps, step.text, &ChartStep::name))
                     c.fail(code::not_declared, step.place,
                            fmt::format("there is no step '{}'", step.text),
                            suggest(step.text, names));
@@ -144,26 +119,21 @@ void check_steps(Checking& c, const Pou& pou, const Chart& chart) {
 bool check_association(Checking& c, const Routine& routine, const ChartAssociation& a) {
     const Token& q = a.qualifier;
     const std::string_view wanted = q.word == Word::end_of_file ? "N" : q.text;
-    const auto* known = std::ranges::find_if(
-        qualifiers, [&](const Qualifier& one) { return same_name(one.name, wanted); });
-    if (known == std::end(qualifiers))
+    const Qualifier* known = find_called(qualifiers, wanted, &Qualifier::name);
+    if (!known)
         return c.fail(code::not_declared, q.place, fmt::format("'{}' is no qualifier", q.text),
-                      "there are N, S, R, P, P0, P1, L, D, SD, DS and SL"),
-               false;
+                      "there are N, S, R, P, P0, P1, L, D, SD, DS and SL");
     if (known->has_time != (a.time != nullptr))
         return c.fail(code::wrong_arguments, q.place,
                       fmt::format("{} takes {} time", known->name, known->has_time ? "a" : "no"),
                       known->has_time ? fmt::format("write ({}, T#1s)", known->name)
-                                      : fmt::format("write ({})", known->name)),
-               false;
-    const auto method = routine.methods.find(a.action.text);
-    if (method != routine.methods.end()) return true;
+                                      : fmt::format("write ({})", known->name));
+    if (routine.methods.contains(a.action.text)) return true;
     const Variable* variable = find_variable(c, a.action);
     if (variable && variable->type == &bool_type) return true;
     return c.fail(code::not_declared, a.action.place,
                   fmt::format("'{}' is neither an ACTION nor a BOOL", a.action.text),
-                  fmt::format("write ACTION {}: ... END_ACTION", a.action.text)),
-           false;
+                  fmt::format("write ACTION {}: ... END_ACTION", a.action.text));
 }
 
 bool is(const ChartAssociation& a, std::string_view qualifier) {
@@ -187,12 +157,10 @@ std::vector<std::pair<Token, std::vector<Use>>> actions_of(ChartWriter& w, const
     std::vector<std::pair<Token, std::vector<Use>>> actions;
     for (const ChartStep& step : chart.steps)
         for (const ChartAssociation& a : step.associations) {
-            auto it = std::ranges::find_if(actions, [&](const auto& known) {
-                return same_name(known.first.text, a.action.text);
-            });
-            if (it == actions.end()) it = actions.insert(it, {a.action, {}});
-            const std::string number = std::to_string(it->second.size() + 1);
-            it->second.push_back({&step, &a, w.part_name(it->first.text, number)});
+            auto* known = find_called(actions, a.action.text, [](auto& one) { return one.first; });
+            if (!known) known = &actions.emplace_back(a.action, std::vector<Use>());
+            const std::string number = std::to_string(known->second.size() + 1);
+            known->second.push_back({&step, &a, w.part_name(known->first.text, number)});
         }
     return actions;
 }
@@ -223,10 +191,8 @@ std::vector<const ChartTransition*> in_order(const Chart& chart) {
 }
 
 bool shares_step(const ChartTransition& a, const ChartTransition& b) {
-    return std::ranges::any_of(a.from, [&](const Token& x) {
-        return std::ranges::any_of(b.from,
-                                   [&](const Token& y) { return same_name(x.text, y.text); });
-    });
+    return std::ranges::any_of(
+        a.from, [&](const Token& step) { return find_called(b.from, step.text) != nullptr; });
 }
 
 std::string_view fired_name(ChartWriter& w, std::size_t number) {
@@ -324,8 +290,8 @@ void write_action(ChartWriter& w, const Token& action, const std::vector<Use>& u
     asked = w.joined(Word::or_, asked, kept("stored"));
     w.out.push_back(w.set(kept("runs"), w.joined(Word::and_, asked, w.negated(kept("reset")))));
     Expression* now = w.joined(Word::or_, kept("runs"), pulse);
-    const bool is_variable = w.routine.methods.find(action.text) == w.routine.methods.end();
-    if (is_variable) return w.out.push_back(w.set(w.name(action, action.text), now));
+    if (!w.routine.methods.contains(action.text))
+        return w.out.push_back(w.set(w.name(action, action.text), now));
     now = w.joined(Word::or_, now, kept("ran"));
     Expression* call = make_call(w.c, w.like(action), w.name(action, action.text), {});
     w.out.push_back(w.when(now, {make_call_statement(w.c, call)}));
@@ -338,17 +304,12 @@ void declare_chart(Checking& c, Routine& routine, Routine& seen) {
     const Chart& chart = *seen.pou->chart;
     ChartWriter w{c, routine, *seen.pou};
     Type& type = c.make_type(Kind::structure, "STEP");
-    for (const auto& [name, part] : {std::pair("X", &bool_type), std::pair("T", &time_type)}) {
-        Variable& member = c.checked.variables.emplace_back();
-        member.text = name;
-        member.type = part;
-        type.members.push_back(&member);
-    }
+    type.members = {&c.make_variable({}, "X", &bool_type), &c.make_variable({}, "T", &time_type)};
     for (const ChartStep& step : chart.steps) {
         const Token& at = step.name;
-        if (const auto known = seen.names.find(at.text); known != seen.names.end()) {
+        if (const Variable* known = find_in(seen.names, at.text)) {
             c.fail(code::declared_twice, at.place, fmt::format("'{}' is declared twice", at.text),
-                   fmt::format("first in line {}", known->second->name.place.mark().line));
+                   fmt::format("first in line {}", known->name.place.mark().line));
             continue;
         }
         Variable& variable = w.declare_step(seen, at, &type);

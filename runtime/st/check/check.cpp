@@ -1,13 +1,8 @@
 #include "runtime/st/check/check.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/image.hpp"
-#include "runtime/st/check/initial_values.hpp"
-#include "runtime/st/check/order.hpp"
 #include "runtime/st/check/statements.hpp"
 
 namespace lineshaft::st {

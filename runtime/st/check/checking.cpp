@@ -2,10 +2,9 @@
 
 namespace lineshaft::st {
 
-std::nullptr_t Checking::fail(const char* code, Place place, std::string message,
-                              std::string help) {
+Nothing Checking::fail(const char* code, Place place, std::string message, std::string help) {
     out.add(code, place.mark(), std::move(message), std::move(help));
-    return nullptr;
+    return {};
 }
 
 void Checking::warn(const char* code, Place place, std::string message, std::string help) {
@@ -64,13 +63,12 @@ const Prefixes* Checking::prefixes_at(Place place) const {
 }
 
 Routine* Checking::find_routine(const Token& name) {
-    Routine** const found = look_up(&Names::routines, name);
-    return found ? *found : nullptr;
+    return look_up(&Names::routines, name);
 }
 
 bool Checking::is_lost(const Token& name) const {
-    const auto it = tree.lost.find(name.text.substr(name.text.rfind('.') + 1));
-    return it != tree.lost.end() && it->second && !is_prelude(name);
+    const bool* is_name = find_in(tree.lost, name.text.substr(name.text.rfind('.') + 1));
+    return is_name && *is_name && !is_prelude(name);
 }
 
 bool Checking::may_be_foreign(const Token& name) {
@@ -86,6 +84,25 @@ Type& Checking::make_type(Type::Kind kind, std::string name) {
     type.name = std::move(name);
     type.slots = 0;
     return type;
+}
+
+Variable& Checking::make_variable(Routine& of, const Token& at, std::string_view text,
+                                  const Type* type) {
+    Variable& made = of.variables.emplace_back();
+    made.name = at;
+    made.text = text;
+    made.type = type;
+    made.of = of.pou;
+    made.used = true;
+    return made;
+}
+
+Variable& Checking::make_variable(const Token& at, std::string_view text, const Type* type) {
+    Variable& made = checked.variables.emplace_back();
+    made.name = at;
+    made.text = text;
+    made.type = type;
+    return made;
 }
 
 Routine& Checking::make_routine(Pou& pou, std::string name) {

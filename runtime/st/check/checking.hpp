@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
+#include <concepts>
 #include <optional>
 #include <string>
 #include <unordered_set>
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/check/check.hpp"
 #include "runtime/st/check/uses.hpp"
 #include "runtime/st/types/elementary.hpp"
@@ -59,6 +62,18 @@ struct Prefixes {
     bool is_whole = true;                      ///< false: a USING is unknown
 };
 
+/// What is told to be wrong gives: no type, variable or node, and false.
+struct Nothing {
+    template <class T>
+    operator T*() const {
+        return nullptr;
+    }
+    template <std::same_as<bool> T>
+    operator T() const {
+        return false;
+    }
+};
+
 /// What check() knows while it works. The work is done by functions that take it first, in a file
 /// for each subject (README.md); what is here they all share. Put logic there, not here.
 ///
@@ -110,8 +125,8 @@ struct Checking {
     std::span<const LibraryReference> missing_libraries = {};     ///< that a project refers to
     NameMap<Place> foreign = {};  ///< names that may be of a library that is not here
 
-    /// An error. Null, for who returns a type, a variable or a node.
-    std::nullptr_t fail(const char* code, Place place, std::string message, std::string help = {});
+    /// An error.
+    Nothing fail(const char* code, Place place, std::string message, std::string help = {});
     void warn(const char* code, Place place, std::string message, std::string help);
 
     /// What a name means, for who asks.
@@ -123,29 +138,28 @@ struct Checking {
     /// What a name is. The prelude and libraries see nothing of the user's; what they declare he
     /// sees where he has no such name.
     template <class T>
-    T* look_up(NameMap<T> Names::*map, const Token& name) {
+    auto look_up(NameMap<T> Names::*map, const Token& name) {
         if (!is_prelude(name))
-            if (T* found = find_inside_out(users.*map, name)) return found;
-        const auto it = (prelude.*map).find(name.text);
-        return it == (prelude.*map).end() ? nullptr : &it->second;
+            if (auto* found = find_inside_out(users.*map, name)) return found;
+        return find_in(prelude.*map, name.text);
     }
     /// In the namespaces around the name, in those that are used there, beside all, then in
     /// libraries.
     template <class T>
-    static T* find_in(NameMap<T>& map, std::string_view name) {
-        const auto it = map.find(name);
-        return it == map.end() ? nullptr : &it->second;
-    }
-    template <class T>
-    T* find_inside_out(NameMap<T>& map, const Token& name) {
+    auto find_inside_out(NameMap<T>& map, const Token& name) {
         if (const Prefixes* here = prefixes_at(name.place))
             for (const std::string_view path : here->paths)
-                if (T* found = find_in(map, fmt::format("{}.{}", path, name.text))) return found;
+                if (auto* found = find_in(map, fmt::format("{}.{}", path, name.text))) return found;
         if (!is_library(name) || name.text.find('.') != name.text.npos)
-            if (T* found = find_in(map, name.text)) return found;
+            if (auto* found = find_in(map, name.text)) return found;
+        return find_in_libraries(map, name.text);
+    }
+    template <class T>
+    auto find_in_libraries(NameMap<T>& map, std::string_view name) {
+        decltype(find_in(map, name)) found = nullptr;
         for (const std::string_view library : open_libraries)
-            if (T* found = find_in(map, fmt::format("{}.{}", library, name.text))) return found;
-        return nullptr;
+            if (!found) found = find_in(map, fmt::format("{}.{}", library, name));
+        return found;
     }
     /// Null: there is no namespace, and none is used.
     const Prefixes* prefixes_at(Place place) const;
@@ -160,6 +174,11 @@ struct Checking {
     bool is_in_test() const { return routine && routine->is_test(); }
 
     Type& make_type(Kind kind, std::string name);
+    /// A variable that no source declares, of a routine, or of what is beside them; `at` is where
+    /// messages say it is.
+    Variable& make_variable(Routine& routine, const Token& at, std::string_view text,
+                            const Type* type);
+    Variable& make_variable(const Token& at, std::string_view text, const Type* type);
     Routine& make_routine(Pou& pou, std::string name);
 };
 

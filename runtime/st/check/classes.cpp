@@ -1,15 +1,13 @@
 #include "runtime/st/check/classes.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/calls.hpp"
+#include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/order.hpp"
 #include "runtime/st/check/statements.hpp"
+#include "runtime/st/syntax/words.hpp"
 
 namespace lineshaft::st {
 
@@ -59,12 +57,11 @@ void add_base(Checking& c, Routine& routine, const Token& name, bool wants_inter
         routine.has_unknown_base = true;
         return;
     }
-    if (const std::string way = hops(*base, routine); !way.empty()) {
-        c.fail(code::contains_itself, name.place,
-               fmt::format("'{}' extends itself: {} -> {}", routine.name, routine.name, way),
-               "let one of them be without a base");
-        return;
-    }
+    if (const std::string way = hops(*base, routine); !way.empty())
+        return void(
+            c.fail(code::contains_itself, name.place,
+                   fmt::format("'{}' extends itself: {} -> {}", routine.name, routine.name, way),
+                   "let one of them be without a base"));
     if (base->pou->is_final)
         c.fail(code::wrong_place, name.place, fmt::format("{} is FINAL", base->name),
                "declare an instance of it instead, or take FINAL away");
@@ -286,9 +283,9 @@ bool is_accessible(Checking& c, Access access, const Routine& owner, const Token
     const Routine* own = own_block(c);
     if (c.is_in_test() || own == &owner) return true;
     const auto refuse = [&](std::string_view word, std::string_view who) {
-        c.fail(code::wrong_arguments, name.place,
-               fmt::format("'{}' is {} to {}", name.text, word, owner.name), std::string(who));
-        return false;
+        return c.fail(code::wrong_arguments, name.place,
+                      fmt::format("'{}' is {} to {}", name.text, word, owner.name),
+                      std::string(who));
     };
     if (access == Access::private_) return refuse("PRIVATE", "only its own block calls it");
     if (access == Access::protected_ && !(own && is_a(*own, owner)))
@@ -320,9 +317,7 @@ const Type* check_method_call(Checking& c, Expression*& call, Routine& method,
 
 Routine* find_accessor(Checking& c, const Expression& e, Accessor accessor) {
     const auto in = [&](const Routine& block) -> Routine* {
-        const auto& known = accessor == Accessor::get ? block.getters : block.setters;
-        const auto it = known.find(e.token.text);
-        return it == known.end() ? nullptr : it->second;
+        return find_in(accessor == Accessor::get ? block.getters : block.setters, e.token.text);
     };
     if (e.kind == E::member) {
         const Type* of = e.operands[0]->type;
@@ -334,11 +329,17 @@ Routine* find_accessor(Checking& c, const Expression& e, Accessor accessor) {
     return find_variable(c, e.token) ? nullptr : in(*block);
 }
 
+/// Of a call of a PROPERTY's method: what stands before the point, or THIS.
+static const Expression& receiver_of(Checking& c, const Expression& property) {
+    if (property.kind == E::member) return *property.operands[0];
+    Expression* own = make_name(c, property, "this");
+    own->kind = E::self;
+    return *own;
+}
+
 const Type* check_getter(Checking& c, Expression*& e, Routine& getter) {
     if (!is_accessible(c, getter.pou->access, *getter.owner, e->token)) return nullptr;
-    Expression* own = make_name(c, *e, "this");
-    const Expression& receiver = e->kind == E::member ? *e->operands[0] : *own;
-    if (e->kind == E::name) own->kind = E::self;
+    const Expression& receiver = receiver_of(c, *e);
     e = make_call(c, *e, e, {});
     return e->type = check_method_call(c, e, getter, receiver, false);
 }
@@ -362,17 +363,11 @@ bool rewrite_property(Checking& c, Statement*& s) {
         return true;
     }
     if (!is_accessible(c, setter->pou->access, *setter->owner, target->token)) return true;
-    Expression* own = make_name(c, *target, "this");
-    own->kind = E::self;
-    const Expression& receiver = target->kind == E::member ? *target->operands[0] : *own;
+    const Expression& receiver = receiver_of(c, *target);
     Expression* value = s->value;
     if (s->op != Word::assign)
-        value = make_binary(c, s->place, s->place,
-                            s->op == Word::plus_assign    ? Word::plus
-                            : s->op == Word::minus_assign ? Word::minus
-                            : s->op == Word::times_assign ? Word::times
-                                                          : Word::divided,
-                            make_copy(c, *target), value);
+        value =
+            make_binary(c, s->place, s->place, operator_of(s->op), make_copy(c, *target), value);
     Expression* call = make_call(c, *target, target, {{.value = value}});
     check_method_call(c, call, *setter, receiver, true);
     s = make_call_statement(c, call);

@@ -1,9 +1,5 @@
-#include "runtime/st/check/constants.hpp"
-
-#include <algorithm>
 #include <cmath>
 
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -13,26 +9,20 @@ namespace lineshaft::st {
 
 namespace {
 
-/// Of two values that are ordered or not; empty if `op` compares nothing.
-template <class T>
-std::optional<bool> compare(Word op, const T& a, const T& b) {
-    switch (op) {
-        case Word::less:
-            return a < b;
-        case Word::less_or_equal:
-            return a <= b;
-        case Word::greater:
-            return a > b;
-        case Word::greater_or_equal:
-            return a >= b;
-        case Word::equal:
-            return a == b;
-        case Word::unequal:
-            return a != b;
-        default:
-            return {};
+/// Made of constants, operators, conversions and standard functions alone.
+bool is_fixed(const Expression& e) {
+    if (e.kind == E::call) {
+        const bool is_standard = e.standard && e.type && e.standard->is_pure;
+        return is_standard && std::ranges::all_of(e.arguments, [](const Argument& a) {
+                   return is_fixed(*a.value);
+               });
     }
+    const bool is_made = e.kind == E::unary || e.kind == E::binary || e.kind == E::converted;
+    return is_made ? is_fixed(*e.operands[0]) && (!e.operands[1] || is_fixed(*e.operands[1]))
+                   : is_constant(e);
 }
+
+}  // namespace
 
 Constant operate(Word op, const Constant& a, const Constant& b) {
     switch (op) {
@@ -58,21 +48,6 @@ Constant operate(Word op, const Constant& a, const Constant& b) {
             return {};
     }
 }
-
-/// Made of constants, operators, conversions and standard functions alone.
-bool is_fixed(const Expression& e) {
-    if (e.kind == E::call) {
-        const bool is_standard = e.standard && e.type && e.standard->is_pure;
-        return is_standard && std::ranges::all_of(e.arguments, [](const Argument& a) {
-                   return is_fixed(*a.value);
-               });
-    }
-    const bool is_made = e.kind == E::unary || e.kind == E::binary || e.kind == E::converted;
-    return is_made ? is_fixed(*e.operands[0]) && (!e.operands[1] || is_fixed(*e.operands[1]))
-                   : is_constant(e);
-}
-
-}  // namespace
 
 void fold_unary(Checking& c, Expression*& e) {
     const Type& type = *e->type;

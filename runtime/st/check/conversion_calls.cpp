@@ -1,7 +1,5 @@
-#include "runtime/st/check/conversion_calls.hpp"
-
-#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"

@@ -1,9 +1,7 @@
 #include "runtime/st/check/conversions.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/syntax/literals.hpp"
@@ -44,21 +42,16 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
 
 /// Siemens gives a number where PLCopen has a name: `Direction := 1`.
 bool coerce_number(Checking& c, Expression*& e, const Type& to) {
-    if (!is_constant(*e)) {
-        convert(c, e, to);
-        return true;
-    }
+    if (!is_constant(*e)) return convert(c, e, to), true;
     const Wide number = e->constant.integer;
     const bool exists = number >= 0 && number < static_cast<Wide>(to.of_number.size());
     const std::int64_t value = exists ? to.of_number[static_cast<std::size_t>(number)] : -1;
-    if (value < 0) {
-        c.fail(code::value_out_of_range, e->place,
-               fmt::format("{} has nothing for the number {}", to.name, to_string(number)),
-               fmt::format("write one of its values, such as {}#{}", to.name, to.values.front()));
-        return false;
-    }
-    e = make_constant(c, *e, to, {.integer = value});
-    return true;
+    if (value < 0)
+        return c.fail(
+            code::value_out_of_range, e->place,
+            fmt::format("{} has nothing for the number {}", to.name, to_string(number)),
+            fmt::format("write one of its values, such as {}#{}", to.name, to.values.front()));
+    return become(c, e, to, {.integer = value}), true;
 }
 
 /// An enumeration's value and its number stand for each other where the one is known to be one of
@@ -82,29 +75,26 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
     }
     const auto it = std::ranges::find(to.numbers, e->constant.integer);
     if (it == to.numbers.end()) return false;
-    e = make_constant(c, *e, to, {.integer = it - to.numbers.begin()});
-    return true;
+    return become(c, e, to, {.integer = it - to.numbers.begin()}), true;
 }
 
 bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
     const Type& from = *e.type;
     const bool of_literal = from.kind == Kind::any_real;
-    if (of_literal && !to.is_real() && to.is_number()) {
-        c.fail(code::conversion_may_lose, e.place,
-               fmt::format("expected {}, found a real number", describe(to)),
-               "write a whole number, or convert it: ROUND(...)");
-        return false;
-    }
+    if (of_literal && !to.is_real() && to.is_number())
+        return c.fail(code::conversion_may_lose, e.place,
+                      fmt::format("expected {}, found a real number", describe(to)),
+                      "write a whole number, or convert it: ROUND(...)");
     if ((from.is_number() || from.is_bits()) && (to.is_number() || to.is_bits())) {
         const bool counts =
             from.kind == Kind::bits && to.is_real();  // DWORD_TO_REAL keeps the bits
         const std::string source = from.is_any() ? "LINT"
                                    : counts      ? integer_type(from.bits, false).name
                                                  : from.plain().name;
-        c.fail(code::conversion_may_lose, e.place,
-               fmt::format("{} does not hold every {}", describe(to), from.name),
-               fmt::format("write {}_TO_{}(...) where it is meant", source, to.plain().name));
-        return false;
+        return c.fail(
+            code::conversion_may_lose, e.place,
+            fmt::format("{} does not hold every {}", describe(to), from.name),
+            fmt::format("write {}_TO_{}(...) where it is meant", source, to.plain().name));
     }
     std::string help;
     if (to.kind == Kind::time && from.is_number())
@@ -120,9 +110,8 @@ bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
         help = fmt::format("write TIME_TO_{}(...)", to.is_any() ? "LREAL" : to.plain().name);
     if (from.kind == Kind::enumeration && to.kind == Kind::integer)
         help = fmt::format("write TO_{}(...)", to.plain().name);
-    c.fail(code::type_does_not_fit, e.place,
-           fmt::format("expected {}, found {}", describe(to), describe(from)), help);
-    return false;
+    return c.fail(code::type_does_not_fit, e.place,
+                  fmt::format("expected {}, found {}", describe(to), describe(from)), help);
 }
 
 bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
@@ -132,32 +121,23 @@ bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
     if (to.is_real() && (whole || from.kind == Kind::any_real)) {
         double real = as_real(*e);
         if (to.kind == Kind::real && to.bits == 32) real = static_cast<float>(real);
-        if (!std::isfinite(real)) {
-            c.fail(code::value_out_of_range, e->place,
-                   fmt::format("'{}' is out of range for {}", e->place.text(), to.name));
-            return false;
-        }
-        take_type(c, e, to, {.real = real});
-        return true;
+        if (!std::isfinite(real))
+            return c.fail(code::value_out_of_range, e->place,
+                          fmt::format("'{}' is out of range for {}", e->place.text(), to.name));
+        return take_type(c, e, to, {.real = real}), true;
     }
     if (!whole) return refuse_conversion(c, *e, to);
     const bool bit = to.kind == Kind::boolean && (value == 0 || value == 1);
-    if (to.is_any() || bit) {
-        take_type(c, e, to, e->constant);
-        return true;
-    }
+    if (to.is_any() || bit) return take_type(c, e, to, e->constant), true;
     if (to.kind != Kind::integer && to.kind != Kind::bits) return refuse_conversion(c, *e, to);
     const Wide pattern = Wide{1} << to.bits;
     const bool is_pattern = from.kind == Kind::any_bits && value < pattern && !to.is_subrange;
-    if (!is_pattern && (value < smallest(to) || value > largest(to))) {
-        c.fail(
+    if (!is_pattern && (value < smallest(to) || value > largest(to)))
+        return c.fail(
             code::value_out_of_range, e->place,
             fmt::format("{} is out of range for {}", to_string(value), describe(to)),
             fmt::format("it goes from {} to {}", to_string(smallest(to)), to_string(largest(to))));
-        return false;
-    }
-    take_type(c, e, to, {.integer = is_pattern ? wrapped(to, value) : value});
-    return true;
+    return take_type(c, e, to, {.integer = is_pattern ? wrapped(to, value) : value}), true;
 }
 
 bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
@@ -166,29 +146,23 @@ bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
     if (from.kind == Kind::enumeration) {
         if (!to.is_integer() || to.is_subrange) return false;
         const auto value = static_cast<std::size_t>(e->constant.integer);
-        e = make_constant(
-            c, *e, to,
-            {.integer = wrapped(to, from.counted ? e->constant.integer : from.numbers[value])});
-        return true;
+        const Wide number = from.counted ? e->constant.integer : from.numbers[value];
+        return become(c, e, to, {.integer = wrapped(to, number)}), true;
     }
-    if (to.is_real() && from.is_bits()) return false;
-    if (from.is_date() || to.is_date()) return false;
+    const bool keeps_bits = to.is_real() && from.is_bits();
+    if (keeps_bits || from.is_date() || to.is_date()) return false;
     if ((from.kind == Kind::time) != (to.kind == Kind::time)) return false;
     if (to.is_real()) {
         double value = as_real(*e);
         if (to.bits == 32)
             value = from.is_real() ? static_cast<float>(value)
                                    : static_cast<float>(e->constant.integer);
-        e = make_constant(c, *e, to, {.real = value});
-        return true;
+        return become(c, e, to, {.real = value}), true;
     }
-    if (from.is_real()) return false;
-    if (to.kind == Kind::enumeration) return false;
-    e = make_constant(
-        c, *e, to,
-        {.integer = to.kind == Kind::boolean ? Wide{e->constant.integer != 0}
-                                             : wrapped(to.plain(), e->constant.integer)});
-    return true;
+    if (from.is_real() || to.kind == Kind::enumeration) return false;
+    const Wide given = e->constant.integer;
+    const Wide value = to.kind == Kind::boolean ? Wide{given != 0} : wrapped(to.plain(), given);
+    return become(c, e, to, {.integer = value}), true;
 }
 
 /// The signed type that holds a constant which `typed` does not, and all of that; null if there is
@@ -208,21 +182,15 @@ const Type* wider_for(const Expression& constant, const Type& typed) {
 /// `0` is none.
 bool coerce_instance(Checking& c, Expression*& e, const Type& to) {
     const Type& from = *e->type;
-    if (is_constant(*e) && from.is_any() && e->constant.integer == 0) {
-        e = make_constant(c, *e, to, {});
-        return true;
-    }
+    if (is_constant(*e) && from.is_any() && e->constant.integer == 0)
+        return become(c, e, to, {}), true;
     const bool has_methods = from.kind == Kind::block || from.kind == Kind::interface;
-    if (has_methods && is_a(*from.routine, *to.routine)) {
-        e = make_converted(c, e, to);
-        return true;
-    }
+    if (has_methods && is_a(*from.routine, *to.routine)) return e = make_converted(c, e, to), true;
     if (has_methods && from.routine->has_unknown_base) return false;
-    c.fail(code::type_does_not_fit, e->place,
-           fmt::format("expected {}, found {}", describe(to), describe(from)),
-           has_methods ? fmt::format("{} does not implement it", describe(from))
-                       : "assign an instance of a block that implements it");
-    return false;
+    return c.fail(code::type_does_not_fit, e->place,
+                  fmt::format("expected {}, found {}", describe(to), describe(from)),
+                  has_methods ? fmt::format("{} does not implement it", describe(from))
+                              : "assign an instance of a block that implements it");
 }
 
 }  // namespace
@@ -249,40 +217,26 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (!to.of_number.empty() && from.is_integer() && e->place.dialect().numbers_stand_for_names)
         return coerce_number(c, e, to);
     if (from.is_any()) return coerce_constant(c, e, to);
-    if (from.is_object() && to.kind == Kind::handle && from.standard == to.standard) {
-        convert(c, e, to);
-        return true;
-    }
-    if (to.is_character && is_constant(*e) && e->constant.text.size() == 1) {
-        e = make_constant(c, *e, to, {.integer = static_cast<unsigned char>(e->constant.text[0])});
-        return true;
-    }
-    if (from.is_character && to.kind == Kind::text) {
-        convert(c, e, to);
-        return true;
-    }
+    if (from.is_object() && to.kind == Kind::handle && from.standard == to.standard)
+        return convert(c, e, to), true;
+    if (to.is_character && is_constant(*e) && e->constant.text.size() == 1)
+        return become(c, e, to, {.integer = static_cast<unsigned char>(e->constant.text[0])}), true;
+    if (from.is_character && to.kind == Kind::text) return convert(c, e, to), true;
     if (to.is_subrange && same_type(from.plain(), to.plain())) {
-        if (is_constant(*e) && (e->constant.integer < to.lower || e->constant.integer > to.upper)) {
-            c.fail(code::value_out_of_range, e->place,
-                   fmt::format("{} is out of range for {}", to_string(e->constant.integer),
-                               describe(to)));
-            return false;
-        }
-        convert(c, e, to);
-        return true;
+        if (is_constant(*e) && (e->constant.integer < to.lower || e->constant.integer > to.upper))
+            return c.fail(code::value_out_of_range, e->place,
+                          fmt::format("{} is out of range for {}", to_string(e->constant.integer),
+                                      describe(to)));
+        return convert(c, e, to), true;
     }
     if (from.kind == Kind::enumeration && to.kind == Kind::enumeration && from.name == to.name &&
         from.values == to.values)
         return true;
-    if (fits_as_constant(*e, to)) {
-        e = make_constant(c, *e, to, {.integer = e->constant.integer});
-        return true;
-    }
+    if (fits_as_constant(*e, to)) return become(c, e, to, {.integer = e->constant.integer}), true;
     const bool fits =
         from.is_scalar() && (widens(from, to) || is_same_pattern(from, to) || rounds(c, *e, to));
     if (!fits) return refuse_conversion(c, *e, to);
-    convert(c, e, to);
-    return true;
+    return convert(c, e, to), true;
 }
 
 void convert(Checking& c, Expression*& e, const Type& to) {
@@ -302,6 +256,13 @@ void take_width(Checking& c, Expression*& e, const Type* expected) {
 void become_number(Checking& c, Expression*& e) {
     const Type& type = e->type->plain();
     if (type.kind == Kind::bits) convert(c, e, integer_type(type.bits, false));
+}
+
+void become_lint(Checking& c, Expression*& e) {
+    if (e->type->is_any())
+        coerce(c, e, lint_type);
+    else
+        convert(c, e, lint_type);
 }
 
 void reinterpret(Checking& c, Expression& e, Kind from, const Type* expected) {

@@ -2,21 +2,15 @@
 
 #include <utility>
 
-#include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
-#include "runtime/st/check/catalog_types.hpp"
-#include "runtime/st/check/charts.hpp"
 #include "runtime/st/check/classes.hpp"
-#include "runtime/st/check/constants.hpp"
+#include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/image.hpp"
-#include "runtime/st/check/initial_values.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
-#include "runtime/st/check/objects.hpp"
-#include "runtime/st/check/order.hpp"
-#include "runtime/st/check/overlays.hpp"
 #include "runtime/st/check/references.hpp"
+#include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"
 
 namespace lineshaft::st {
@@ -134,9 +128,8 @@ bool is_overload(const Pou& routine, const Routine* first,
                         first->pou->kind == routine.kind && !first->pou->is_action;
     if (!may_be) return false;
     const std::string own = signature_of(routine);
-    const auto it = overloads.find(name);
-    const std::vector<Routine*> all =
-        it == overloads.end() ? std::vector{const_cast<Routine*>(first)} : it->second;
+    const std::vector<Routine*>* several = find_in(overloads, name);
+    const auto all = several ? *several : std::vector{const_cast<Routine*>(first)};
     return std::ranges::none_of(all,
                                 [&](const Routine* r) { return signature_of(*r->pou) == own; });
 }
@@ -152,18 +145,12 @@ void add_overload(NameMap<std::vector<Routine*>>& to, std::string_view name, Rou
 void declare_result(Checking& c, Routine& routine) {
     const TypeText* text = routine.pou->result;
     if (!text || same_name(text->name.text, "void")) return;
-    if (routine.has_instances()) {
-        c.fail(code::wrong_place, text->place, "only functions and methods have a result",
-               "declare a VAR_OUTPUT");
-        return;
-    }
-    Variable& result = routine.variables.emplace_back();
-    result.name = routine.pou->name;
-    result.text = result.name.text;
-    result.type = resolve(c, *text);
+    if (routine.has_instances())
+        return void(c.fail(code::wrong_place, text->place,
+                           "only functions and methods have a result", "declare a VAR_OUTPUT"));
+    const Token& name = routine.pou->name;
+    Variable& result = c.make_variable(routine, name, name.text, resolve(c, *text));
     result.section = Section::result;
-    result.of = routine.pou;
-    result.used = true;
     routine.result = &result;
     routine.names.emplace(result.text, &result);
 }
@@ -172,25 +159,17 @@ void declare_result(Checking& c, Routine& routine) {
 void declare_edge(Checking& c, Routine& routine, Variable& variable, const Token& edge) {
     const bool fits = variable.type && variable.type->kind == Kind::boolean &&
                       variable.section == Section::input && routine.has_instances();
-    if (!fits) {
-        c.fail(code::wrong_place, edge.place,
-               fmt::format("{} is for a BOOL of VAR_INPUT of a function block or a program",
-                           edge.text),
-               "declare an instance of R_TRIG or F_TRIG, and call it");
-        return;
-    }
-    Variable& instance = routine.variables.emplace_back();
-    instance.name = edge;
-    instance.text = c.checked.names.emplace_back(fmt::format("{}.{}", variable.text, edge.text));
-    instance.type = standard_type(c, same_name(edge.text, "r_edge") ? "r_trig" : "f_trig");
-    instance.of = routine.pou;
-    instance.used = true;
+    if (!fits)
+        return void(
+            c.fail(code::wrong_place, edge.place,
+                   fmt::format("{} is for a BOOL of VAR_INPUT of a function block or a program",
+                               edge.text),
+                   "declare an instance of R_TRIG or F_TRIG, and call it"));
+    Variable& instance = c.make_variable(
+        routine, edge, c.checked.names.emplace_back(fmt::format("{}.{}", variable.text, edge.text)),
+        standard_type(c, same_name(edge.text, "r_edge") ? "r_trig" : "f_trig"));
     routine.names.emplace(instance.text, &instance);
     variable.edge = &instance;
-}
-
-bool is_open_array(const Type* type) {
-    return type && type->is_reference() && type->is_open;
 }
 
 /// `a : ARRAY[*] OF INT` is given as where its first element is, and its bounds beside it.
@@ -198,13 +177,10 @@ void declare_bounds(Checking& c, Routine& routine, Variable& array) {
     array.section = Section::input;
     array.space = Space::frame;
     for (const std::string_view bound : {"lower", "upper"}) {
-        Variable& made = routine.variables.emplace_back();
-        made.name = array.name;
-        made.text = c.checked.names.emplace_back(fmt::format("{}.{}", array.text, bound));
-        made.type = &lint_type;
+        Variable& made = c.make_variable(
+            routine, array.name,
+            c.checked.names.emplace_back(fmt::format("{}.{}", array.text, bound)), &lint_type);
         made.section = Section::input;
-        made.of = routine.pou;
-        made.used = true;
         made.bound_of = &array;
         routine.names.emplace(made.text, &made);
     }
@@ -278,7 +254,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
             is_own || (routine.is_prototype() && type && type->kind == Kind::block);
         if (!is_only_named) depend(c, type, declared->name.place);
         locate_in_image(c, *variable, *declared);
-        if (is_open_array(type)) declare_bounds(c, routine, *variable);
+        if (type && type->is_open_array()) declare_bounds(c, routine, *variable);
         if (routine.pou->is_tests || routine.is_test()) make_object(c, *variable);
         if (!declared->type)
             make_untyped_constant(c, *variable);
@@ -309,10 +285,8 @@ void collect_methods(Checking& c, Routine& block) {
             has_tests && method->name.word != Word::setup_ && method->name.word != Word::teardown_;
         const bool is_second =
             method->accessor == Accessor::set && block.getters.contains(method->name.text);
-        const auto known = block.methods.find(method->name.text);
-        const bool is_other =
-            known != block.methods.end() &&
-            is_overload(*method, known->second, block.overloads, method->name.text);
+        const Routine* known = find_in(block.methods, method->name.text);
+        const bool is_other = is_overload(*method, known, block.overloads, method->name.text);
         const bool is_new = is_second || is_other || is_new_name(c, method->name, names, is_test);
         if (is_new && !is_test) add_method(block, made);
     }
@@ -348,14 +322,14 @@ void collect_names(Checking& c) {
         c.has_tests |= pou->is_tests;
         const Token full_name = name_with_namespace(c, pou->name);
         Names& all = c.names_beside(full_name);
-        const auto first = all.routines.find(full_name.text);
-        const bool is_other = first != all.routines.end() && pou->kind == PouKind::function &&
-                              is_overload(*pou, first->second, all.overloads, full_name.text);
+        Routine* first = find_in(all.routines, full_name.text);
+        const bool is_other = pou->kind == PouKind::function &&
+                              is_overload(*pou, first, all.overloads, full_name.text);
         const bool added = !is_other && is_new_name(c, full_name, all.places);
         if (pou->kind == PouKind::data_block) continue;
         Routine& routine = c.make_routine(*pou, std::string(full_name.text));
         if (added) all.routines.emplace(full_name.text, &routine);
-        if (is_other) add_overload(all.overloads, full_name.text, *first->second, routine);
+        if (is_other) add_overload(all.overloads, full_name.text, *first, routine);
         if (routine.is_function()) continue;
         routine.type = &c.make_type(Kind::block, routine.name);
         routine.type->routine = &routine;
@@ -425,10 +399,7 @@ void declare_globals(Checking& c) {
                 }
             type = &made;
         }
-        Variable& variable = c.checked.variables.emplace_back();
-        variable.name = pou->name;
-        variable.text = pou->name.text;
-        variable.type = type;
+        Variable& variable = c.make_variable(pou->name, pou->name.text, type);
         variable.section = Section::global;
         variable.space = Space::global;
         variable.global = number;

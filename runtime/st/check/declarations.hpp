@@ -18,4 +18,37 @@ void declare_globals(Checking& c);
 /// Variables, results and constants of all routines, and which they are made of.
 void declare_routines(Checking& c);
 
+// initial_values.cpp
+
+/// Of all variables, and what stands behind BEGIN of data blocks.
+void check_initial_values(Checking& c);
+/// What the variable begins with; of `a, b : INT := 2 + 3` it is checked once for all.
+void check_initial(Checking& c, Variable& variable);
+/// A literal, a list or another constant for a variable of `type`. The pointer goes to what it is
+/// then.
+void check_initial(Checking& c, Expression*& value, const Type& type);
+
+// beginnings.cpp
+
+/// What a variable of a block or a call begins with, where that is no constant: `p : POINTER TO INT
+/// := ADR(x);`. It is assigned when the block or one of its methods runs first, of a call in each.
+/// False: the variable begins with constants only.
+bool begin_with(Checking& c, Expression*& value, const Type& type);
+
+/// Calls FB_init of the instance that the variable is, with what stands behind its type, at the
+/// same time.
+void begin_instance(Checking& c, Variable& variable);
+
+/// These assignments and calls: of a base first, and of its FB_init in one that stands for it.
+Block beginnings(Checking& c, Routine& routine);
+
+// order.cpp
+
+/// The routine runs, or is made of, what is in `type`.
+void depend(Checking& c, const Type* type, Place place);
+
+/// Each behind all that it runs, in `Checked::order`; tells recursions.
+void order_routines(Checking& c);
+void warn_of_unused(Checking& c);
+
 }  // namespace lineshaft::st

@@ -1,59 +1,50 @@
 #include "runtime/st/check/expressions.hpp"
 
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/calls.hpp"
-#include "runtime/st/check/literals.hpp"
 #include "runtime/st/check/names.hpp"
-#include "runtime/st/check/operators.hpp"
-#include "runtime/st/check/places.hpp"
 #include "runtime/st/check/references.hpp"
 
 namespace lineshaft::st {
 
-const Type* check(Checking& c, Expression*& e, const Type* expected) {
-    if (e->type) return e->type;
-    const Type* type = nullptr;
+namespace {
+
+const Type* check_kind(Checking& c, Expression*& e, const Type* expected) {
     switch (e->kind) {
         case E::constant:
-            type = check_literal(c, e);
-            break;
+            return check_literal(c, e);
         case E::name:
-            type = check_name(c, e, expected);
-            break;
+            return check_name(c, e, expected);
         case E::member:
-            type = check_member(c, e);
-            break;
+            return check_member(c, e);
         case E::index:
-            type = check_index(c, e);
-            break;
+            return check_index(c, e);
         case E::bit:
-            type = check_bit(c, e);
-            break;
+            return check_bit(c, e);
         case E::call:
-            type = check_call(c, e, false, expected);
-            break;
+            return check_call(c, e, false, expected);
         case E::unary:
-            type = check_unary(c, e, expected);
-            break;
+            return check_unary(c, e, expected);
         case E::binary:
-            type = check_binary(c, e, expected);
-            break;
+            return check_binary(c, e, expected);
         case E::typed:
-            type = check_typed(c, e);
-            break;
+            return check_typed(c, e);
+        case E::deref:
+            return check_target_of(c, *e);
         case E::list:
         case E::repeated:
             return c.fail(
                 code::type_does_not_fit, e->place, "a list of values stands in a declaration only",
                 "declare a variable that begins with it, or assign the elements one by one");
-        case E::deref:
-            type = check_target_of(c, *e);
-            break;
-        case E::refer:
-        case E::self:
-        case E::converted:
-            type = e->type;
+        default:  // what the checker has put in has its type
+            return nullptr;
     }
+}
+
+}  // namespace
+
+const Type* check(Checking& c, Expression*& e, const Type* expected) {
+    if (e->type) return e->type;
+    const Type* type = check_kind(c, e, expected);
     e->type = type;
     return type && type->is_alias() ? take_target(c, e) : type;
 }

@@ -1,8 +1,5 @@
 #include "runtime/st/check/image.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
 #include "runtime/st/types/packed.hpp"
 
 namespace lineshaft::st {
@@ -49,26 +46,22 @@ void put(Checking& c, Variable& variable, const ImageAddress& address) {
 bool fits(Checking& c, const Variable& variable, const ImageAddress& address, const Token& at) {
     const Type& type = *variable.type;
     const std::uint64_t bits = packed_bits(type, at.place.dialect());
-    if (bits == 0) {
-        c.fail(code::type_does_not_fit, at.place,
-               fmt::format("{} stands at no address", describe(type)),
-               "numbers, times, texts, and structures and arrays of such do");
-        return false;
-    }
+    if (bits == 0)
+        return c.fail(code::type_does_not_fit, at.place,
+                      fmt::format("{} stands at no address", describe(type)),
+                      "numbers, times, texts, and structures and arrays of such do");
     const bool is_bit = type.kind == Kind::boolean;
-    if (type.is_scalar() ? (is_bit ? 1 : bits) != address.bits : address.bits == 1) {
-        c.fail(code::type_does_not_fit, at.place,
-               fmt::format("'{}' is of {}, and {} has {} bit{}", variable.text, describe(type),
-                           at.text, static_cast<int>(address.bits), address.bits == 1 ? "" : "s"),
-               "X is of BOOL, B of 8 bits, W of 16, D of 32, L of 64; arrays and structures begin "
-               "at a byte");
-        return false;
-    }
+    if (type.is_scalar() ? (is_bit ? 1 : bits) != address.bits : address.bits == 1)
+        return c.fail(
+            code::type_does_not_fit, at.place,
+            fmt::format("'{}' is of {}, and {} has {} bit{}", variable.text, describe(type),
+                        at.text, static_cast<int>(address.bits), address.bits == 1 ? "" : "s"),
+            "X is of BOOL, B of 8 bits, W of 16, D of 32, L of 64; arrays and structures begin "
+            "at a byte");
     if (address.byte + (bits + 7) / 8 <= longest_area) return true;
-    c.fail(code::value_out_of_range, at.place,
-           fmt::format("'{}' ends beyond its area", variable.text),
-           fmt::format("its bytes are 0 to {}", longest_area - 1));
-    return false;
+    return c.fail(code::value_out_of_range, at.place,
+                  fmt::format("'{}' ends beyond its area", variable.text),
+                  fmt::format("its bytes are 0 to {}", longest_area - 1));
 }
 
 /// In bits of its area, from the first on.
@@ -151,10 +144,8 @@ const Type* check_direct(Checking& c, Expression& e) {
         e.variable = *it;
         return e.variable->type;
     }
-    Variable& variable = c.checked.variables.emplace_back();
-    variable.name = e.token;
-    variable.text = c.checked.names.emplace_back(text_of(*address));
-    variable.type = &type_at(*address);
+    Variable& variable = c.make_variable(e.token, c.checked.names.emplace_back(text_of(*address)),
+                                         &type_at(*address));
     variable.is_direct = variable.used = true;
     put(c, variable, *address);
     e.variable = &variable;

@@ -1,18 +1,10 @@
-#include "runtime/st/check/initial_values.hpp"
-
-#include <algorithm>
 #include <utility>
 
-#include "runtime/source/codes.hpp"
-#include "runtime/source/letters.hpp"
-#include "runtime/source/units.hpp"
-#include "runtime/st/check/beginnings.hpp"
-#include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
-#include "runtime/st/check/literals.hpp"
+#include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/places.hpp"
 #include "runtime/st/check/types.hpp"
 
 namespace lineshaft::st {
@@ -108,14 +100,12 @@ void check_members(Checking& c, Expression& list, const Type& type) {
                    fmt::format("name the member of {}: (name := value)", describe(type)));
             continue;
         }
-        std::vector<std::string> names;
-        for (const Variable* member : type.members) names.emplace_back(member->text);
         Variable* found = find_member(type, argument.name.text);
         argument.variable = found;
         if (!found) {
             c.fail(code::not_declared, argument.name.place,
                    fmt::format("{} has no '{}'", describe(type), argument.name.text),
-                   suggest(argument.name.text, names));
+                   suggest(argument.name.text, names_of(type.members)));
         } else if (found->type) {
             check_part(c, argument.value, *found->type, found->text);
         }

@@ -1,14 +1,12 @@
-#include "runtime/st/check/literals.hpp"
+#include "runtime/st/syntax/literals.hpp"
 
 #include <chrono>
 
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/types.hpp"
-#include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft::st {
@@ -110,21 +108,18 @@ const Type* check_typed(Checking& c, Expression*& e) {
         if (!type) return nullptr;
         c.note(name.place, *named);
     }
-    if (!type) {
-        if (resolve_name(c, name))
-            c.fail(code::not_declared, name.place,
-                   fmt::format("'{}' is not a type of values", name.text),
-                   "write a type, as in INT#5");
-        return nullptr;
-    }
+    if (!type && resolve_name(c, name))
+        return c.fail(code::not_declared, name.place,
+                      fmt::format("'{}' is not a type of values", name.text),
+                      "write a type, as in INT#5");
+    if (!type) return nullptr;
     if (type->kind == Kind::enumeration && value->kind == E::name)
         return check_value(c, e, *type, value->token);
     if (!check(c, value, type) || !coerce(c, value, *type)) return nullptr;
     if (!is_constant(*value))
         return c.fail(code::not_a_constant, value->place,
                       fmt::format("a number is due after '{}#'", name.text));
-    e = make_constant(c, *e, *type, value->constant);
-    return type;
+    return become(c, e, *type, value->constant);
 }
 
 Expression* list_of_dtl(Checking& c, const Expression& literal, const Type& type) {

@@ -1,10 +1,6 @@
 #include "runtime/st/check/names.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
-#include "runtime/source/units.hpp"
 #include "runtime/source/utf8.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/declarations.hpp"
@@ -12,10 +8,7 @@
 #include "runtime/st/check/image.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/objects.hpp"
-#include "runtime/st/check/order.hpp"
-#include "runtime/st/check/overlays.hpp"
-#include "runtime/st/check/rewrites.hpp"
+#include "runtime/st/check/statements.hpp"
 
 namespace lineshaft::st {
 
@@ -42,16 +35,14 @@ const Type* unknown_name(Checking& c, const Expression& e) {
 
 Variable* find_variable(Checking& c, const Token& token) {
     for (const Routine* r = c.routine; r && !token.quoted; r = r->owner)
-        if (const auto it = r->names.find(token.text); it != r->names.end()) return it->second;
+        if (Variable* variable = find_in(r->names, token.text)) return variable;
     if (token.local) return nullptr;
     if (!is_prelude(token)) {
-        if (Variable** global = c.find_inside_out(c.globals, token)) return *global;
+        if (Variable* global = c.find_inside_out(c.globals, token)) return global;
         if (auto* constant = c.find_inside_out(c.constants, token))
             if (Variable* variable = declare_early(c, *constant)) return variable;
     }
-    return token.quoted && c.routine && c.routine->names.contains(token.text)
-               ? c.routine->names.at(token.text)
-               : nullptr;
+    return token.quoted && c.routine ? find_in(c.routine->names, token.text) : nullptr;
 }
 
 bool is_new_name(Checking& c, Token name, NameMap<Place>& names, bool is_test) {
@@ -61,11 +52,10 @@ bool is_new_name(Checking& c, Token name, NameMap<Place>& names, bool is_test) {
     const bool beside = first.file == name.place.source->file;
     const std::string help =
         fmt::format("first in {}{}", beside ? "line " : first.file->path + ":", first.line);
-    if (is_test)
-        c.warn(code::declared_twice, name.place, "two TESTs have one name", help);
-    else
-        c.fail(code::declared_twice, name.place, fmt::format("'{}' is declared twice", name.text),
-               help);
+    if (!is_test)
+        return c.fail(code::declared_twice, name.place,
+                      fmt::format("'{}' is declared twice", name.text), help);
+    c.warn(code::declared_twice, name.place, "two TESTs have one name", help);
     return false;
 }
 
@@ -127,49 +117,38 @@ const Type* enumeration_of(Checking& c, const Expression& member) {
 }
 
 const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, const Token& name) {
-    const auto found = std::ranges::find_if(
-        enumeration.values, [&](const std::string& known) { return same_name(known, name.text); });
-    if (found == enumeration.values.end())
+    const std::string* found = find_called(enumeration.values, name.text);
+    if (!found)
         return c.fail(code::not_declared, name.place,
                       fmt::format("{} has no value '{}'", enumeration.name, name.text),
                       suggest(name.text, enumeration.values));
     c.note(name.place, enumeration);
-    e = make_constant(c, *e, enumeration, {.integer = found - enumeration.values.begin()});
-    return &enumeration;
+    return become(c, e, enumeration, {.integer = found - enumeration.values.data()});
 }
 
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     const Token& token = e->token;
     if (token.word == Word::direct) return check_direct(c, *e);
     if (expected && expected->kind == Kind::enumeration && !token.local) {
-        const auto it = std::ranges::find_if(expected->values, [&](const std::string& known) {
-            return same_name(known, token.text);
-        });
-        if (it != expected->values.end() && !find_variable(c, token)) {
-            e = make_constant(c, *e, *expected, {.integer = it - expected->values.begin()});
-            return expected;
-        }
+        const std::string* value = find_called(expected->values, token.text);
+        if (value && !find_variable(c, token))
+            return become(c, e, *expected, {.integer = value - expected->values.data()});
     }
     Variable* variable = find_variable(c, token);
     if (!variable) variable = declare_program(c, token);
     if (variable) return variable->edge ? use_edge(c, e, *variable) : use(c, e, *variable);
     if (is_own_instance(c, *e)) return check_own_instance(c, e);
     if (Routine* getter = find_accessor(c, *e, Accessor::get)) return check_getter(c, e, *getter);
-    if (expected && expected->kind == Kind::interface && same_name(token.text, "null")) {
-        e = make_constant(c, *e, *expected, {});
-        return expected;
-    }
-    if (same_name(token.text, "true") || same_name(token.text, "false")) {
-        e = make_boolean(c, *e, same_name(token.text, "true"));
-        return &bool_type;
-    }
+    if (expected && expected->kind == Kind::interface && same_name(token.text, "null"))
+        return become(c, e, *expected, {});
+    if (same_name(token.text, "true") || same_name(token.text, "false"))
+        return become(c, e, bool_type, {.integer = same_name(token.text, "true")});
     if (const NamedValue* value = token.local ? nullptr : c.look_up(&Names::values, token)) {
         if (value->ambiguous)
             return c.fail(code::not_declared, e->place,
                           fmt::format("'{}' is a value of several enumerations", token.text),
                           fmt::format("write {}#{}", value->type->name, token.text));
-        e = make_constant(c, *e, *value->type, {.integer = static_cast<Wide>(value->index)});
-        return value->type;
+        return become(c, e, *value->type, {.integer = static_cast<Wide>(value->index)});
     }
     if (same_name(token.text, "eno") && c.routine && c.routine->pou->kind != PouKind::data_block)
         return use(c, e, eno_of(c, *c.routine));
@@ -182,10 +161,8 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     if (expected && expected->kind == Kind::handle && !token.local &&
         (token.quoted || !c.is_in_test()))
         return use_object(c, e, *object_type(c, *expected));
-    if (same_name(token.text, "null") && !token.quoted && !token.local) {
-        e = make_constant(c, *e, null_type, {});
-        return &null_type;
-    }
+    if (same_name(token.text, "null") && !token.quoted && !token.local)
+        return become(c, e, null_type, {});
     return unknown_name(c, *e);
 }
 

@@ -27,4 +27,48 @@ const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, co
 /// `expected`. L0904 for what is not declared.
 const Type* check_name(Checking& c, Expression*& e, const Type* expected);
 
+// places.cpp
+
+/// What a structure, an instance of the catalogue or a block of the sources has by that name; null
+/// if there is nothing.
+Variable* find_member(const Type& type, std::string_view name);
+
+/// What a suggestion is chosen from.
+std::vector<std::string> names_of(const std::vector<Variable*>& variables);
+
+/// `motor.speed`, whose variable is noted; also `Colour.red`, and a part of a block that is a
+/// function. L0904 where there is none.
+const Type* check_member(Checking& c, Expression*& e);
+/// `table[i, 2]`, `text[3]`.
+const Type* check_index(Checking& c, Expression*& e);
+/// `word.%X3`, `word.%B1`, `word.3`.
+const Type* check_bit(Checking& c, Expression*& e);
+/// False for what may not be written, which was told, L0910; `how` it would be.
+bool check_target(Checking& c, Expression& target, std::string_view how = "assigned");
+
+// objects.cpp
+
+/// A PROGRAM that CODESYS names as its one instance, no variable being called so: a global from
+/// then on. Null: it is none.
+Variable* declare_program(Checking& c, const Token& name);
+
+/// The kind of block that an AXIS_REF refers to.
+const Type* object_type(Checking& c, const Type& handle);
+/// `VAR_GLOBAL Axis_1 : AXIS_REF`: the program has the block.
+Variable* declare_object(Checking& c, Variable& variable);
+
+/// What a test has of a kind that others refer to, such as an axis, is a block of its own.
+void make_object(Checking& c, Variable& variable);
+
+/// `e` means the block of the program that has its name.
+const Type* use_object(Checking& c, Expression*& e, const Type& type);
+/// What its kind or a library says of it in Structured Text.
+Routine* find_part(Checking& c, const Type& type, std::string_view name);
+
+/// `"Axis_1".Position`, where nothing else is called so.
+bool is_object_of(Checking& c, const Expression& member);
+
+/// The function is called with what stands before the point.
+const Type* check_part(Checking& c, Expression*& member, Routine& part);
+
 }  // namespace lineshaft::st

@@ -1,10 +1,7 @@
 #include "runtime/st/check/namespaces.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
-#include "runtime/st/check/assertions.hpp"
 #include "runtime/st/check/names.hpp"
+#include "runtime/st/check/statements.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
@@ -17,8 +14,8 @@ std::string_view before_last_point(std::string_view name) {
 }
 
 bool is_namespace(const Checking& c, std::string_view path) {
-    const auto it = c.namespaces.find(path);
-    return it != c.namespaces.end() && it->second;
+    const bool* is_known = find_in(c.namespaces, path);
+    return is_known && *is_known;
 }
 
 /// The path of the namespace that `name` means there; empty: none.
@@ -161,10 +158,8 @@ bool is_full_name(Checking& c, const Expression& e, std::string_view full) {
     if (text.size() == full.size()) return same_name(text, full);
     const std::string_view path = full.substr(0, full.size() - text.size() - 1);
     const Prefixes* here = c.prefixes_at(e.place);
-    const bool is_seen = here && std::ranges::any_of(here->paths, [&](std::string_view known) {
-                             return same_name(known, path);
-                         });
-    return is_seen && full[path.size()] == '.' && same_name(full.substr(path.size() + 1), text);
+    return here && find_called(here->paths, path) && full[path.size()] == '.' &&
+           same_name(full.substr(path.size() + 1), text);
 }
 
 void refuse_qualified(Checking& c, const Token& name) {

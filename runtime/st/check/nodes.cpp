@@ -41,6 +41,11 @@ Expression* make_constant(Checking& c, const Expression& like, const Type& type,
         c, {.token = like.token, .place = like.place, .type = &type, .constant = std::move(value)});
 }
 
+const Type* become(Checking& c, Expression*& e, const Type& type, Constant value) {
+    e = make_constant(c, *e, type, std::move(value));
+    return &type;
+}
+
 Expression* make_boolean(Checking& c, const Expression& like, bool value) {
     return make_constant(c, like, bool_type, {.integer = value});
 }
@@ -49,6 +54,13 @@ Expression* make_text(Checking& c, const Expression& quoted) {
     Token token = quoted.token;
     token.word = Word::text;
     return keep(c, {.token = token, .place = quoted.place});
+}
+
+Expression* make_use(Checking& c, const Expression& like, Variable& variable) {
+    Expression* made = make(c, E::name, like);
+    made->type = variable.type;
+    made->variable = &variable;
+    return made;
 }
 
 Expression* make_name(Checking& c, const Expression& like, std::string_view text) {
@@ -89,10 +101,32 @@ Expression* make_binary(Checking& c, Place place, Place sign, Word op, Expressio
                     .operands = {left, right}});
 }
 
+Expression* make_not(Checking& c, Expression* e) {
+    Expression* made = make(c, E::unary, *e);
+    made->op = Word::not_;
+    made->operands[0] = e;
+    return made;
+}
+
+Expression* make_target(Checking& c, const Expression& like, Expression* e, const Type* type) {
+    Expression* made = make(c, E::deref, like);
+    made->operands[0] = e;
+    made->type = type;
+    return made;
+}
+
+Expression* make_reference_to(Checking& c, Expression* e, const Type& type) {
+    Expression* made = make(c, E::refer, *e);
+    made->operands[0] = e;
+    made->type = &type;
+    return made;
+}
+
 Expression* make_converted(Checking& c, Expression* e, const Type& to) {
-    return keep(
-        c,
-        {.kind = E::converted, .token = e->token, .place = e->place, .operands = {e}, .type = &to});
+    Expression* made = make(c, E::converted, *e);
+    made->operands[0] = e;
+    made->type = &to;
+    return made;
 }
 
 Expression* make_call(Checking& c, const Expression& like, Expression* callee,

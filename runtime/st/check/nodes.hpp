@@ -20,9 +20,13 @@ Expression* make(Checking& c, E kind, const Expression& like);
 Expression* make_copy(Checking& c, const Expression& e);
 /// A value, where `like` stands.
 Expression* make_constant(Checking& c, const Expression& like, const Type& type, Constant value);
+/// `e` becomes that value, whose type is given.
+const Type* become(Checking& c, Expression*& e, const Type& type, Constant value);
 Expression* make_boolean(Checking& c, const Expression& like, bool value);
 /// `"..."`, which is no name, as the text that it encloses.
 Expression* make_text(Checking& c, const Expression& quoted);
+/// The variable, where `like` stands.
+Expression* make_use(Checking& c, const Expression& like, Variable& variable);
 /// `text`, where `like` stands.
 Expression* make_name(Checking& c, const Expression& like, std::string_view text);
 /// `of.text`
@@ -36,6 +40,12 @@ Expression* make_bit(Checking& c, Expression* of, std::string_view number);
 /// `left op right`; `sign` is where the operator is.
 Expression* make_binary(Checking& c, Place place, Place sign, Word op, Expression* left,
                         Expression* right);
+/// `NOT e`
+Expression* make_not(Checking& c, Expression* e);
+/// `e^`, where `like` stands, which is of that type.
+Expression* make_target(Checking& c, const Expression& like, Expression* e, const Type* type);
+/// Where `e` is, as a reference of that type.
+Expression* make_reference_to(Checking& c, Expression* e, const Type& type);
 /// `e` as a value of `to`, which is not converted yet.
 Expression* make_converted(Checking& c, Expression* e, const Type& to);
 /// `callee(arguments)`, where `like` stands.

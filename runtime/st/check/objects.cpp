@@ -1,10 +1,7 @@
-#include "runtime/st/check/objects.hpp"
-
 #include "runtime/st/check/calls.hpp"
-#include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/places.hpp"
+#include "runtime/st/check/types.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
@@ -38,20 +35,14 @@ Variable* declare_program(Checking& c, const Token& name) {
     const Routine* program =
         is_plain && name.place.dialect().is_loose ? c.find_routine(name) : nullptr;
     if (!program || program->pou->kind != PouKind::program) return nullptr;
-    Variable& variable = c.checked.variables.emplace_back();
-    variable.name = program->pou->name;
-    variable.text = program->name;
-    variable.type = program->type;
+    Variable& variable = c.make_variable(program->pou->name, program->name, program->type);
     declare_object(c, variable);
     c.checked.globals.back().object = nullptr;
     return &variable;
 }
 
 const Type* use_object(Checking& c, Expression*& e, const Type& type) {
-    Variable& variable = c.checked.variables.emplace_back();
-    variable.name = e->token;
-    variable.text = e->token.text;
-    variable.type = &type;
+    Variable& variable = c.make_variable(e->token, e->token.text, &type);
     declare_object(c, variable);
     return use(c, e, variable);
 }
@@ -59,11 +50,8 @@ const Type* use_object(Checking& c, Expression*& e, const Type& type) {
 Routine* find_part(Checking& c, const Type& type, std::string_view name) {
     if (type.kind != Kind::handle && !type.is_object()) return nullptr;
     const std::string part = fmt::format("{}.{}", type.standard->handle, name);
-    if (Routine** own = c.find_in(c.prelude.routines, part)) return *own;
-    for (const std::string_view library : c.open_libraries)
-        if (auto** found = c.find_in(c.users.routines, fmt::format("{}.{}", library, part)))
-            return *found;
-    return nullptr;
+    Routine* own = find_in(c.prelude.routines, part);
+    return own ? own : c.find_in_libraries(c.users.routines, part);
 }
 
 bool is_object_of(Checking& c, const Expression& member) {

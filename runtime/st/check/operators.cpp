@@ -1,24 +1,12 @@
-#include "runtime/st/check/operators.hpp"
-
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
-#include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
-#include "runtime/st/check/time_operators.hpp"
 
 namespace lineshaft::st {
 
 namespace {
-
-bool is_logic(Word op) {
-    return op == Word::and_ || op == Word::or_ || op == Word::xor_ || op == Word::and_then_ ||
-           op == Word::or_else_;
-}
 
 /// `w AND NOT 16#FF`: the mask is as wide as what it is for.
 void check_masks(Checking& c, Expression& e, const Type* expected) {
@@ -153,8 +141,7 @@ const Type* check_power(Checking& c, Expression*& e, const Type* expected) {
         if (right->constant.integer <= 64 || left->constant.integer <= 1) {
             if (value >= most || value <= -most)
                 return c.fail(code::value_out_of_range, e->place, "the result is out of range");
-            e = make_constant(c, *e, any_integer_type, {.integer = value});
-            return e->type;
+            return become(c, e, any_integer_type, {.integer = value});
         }
     }
     const auto is_narrow = [](const Type& t) { return t.is_any() || t.bits <= 32; };

@@ -1,8 +1,4 @@
-#include "runtime/st/check/order.hpp"
-
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
+#include "runtime/st/check/declarations.hpp"
 
 namespace lineshaft::st {
 

@@ -1,7 +1,4 @@
-#include "runtime/st/check/overlays.hpp"
-
-#include "runtime/source/codes.hpp"
-#include "runtime/source/units.hpp"
+#include "runtime/st/check/image.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/types/packed.hpp"
@@ -13,14 +10,13 @@ namespace {
 /// What `at` names: a variable of the routine, or what that is a view of.
 Variable* seen_variable(Checking& c, const Routine& routine, const Variable& overlay,
                         const Token& at) {
-    const auto it = routine.names.find(at.text);
-    if (it == routine.names.end()) {
+    Variable* seen = find_in(routine.names, at.text);
+    if (!seen) {
         std::vector<std::string> names;
         for (const auto& [name, variable] : routine.names) names.emplace_back(name);
         return c.fail(code::not_declared, at.place,
                       fmt::format("'{}' is not declared here", at.text), suggest(at.text, names));
     }
-    Variable* seen = it->second;
     if (seen->space == Space::overlay) seen = seen->seen;
     const bool has_bytes = seen && seen != &overlay &&
                            (seen->space == Space::frame || seen->space == Space::reference);
@@ -35,20 +31,18 @@ bool fits(Checking& c, const Variable& overlay, const Variable& seen, const Toke
     for (const Variable* variable : {&overlay, &seen}) {
         if (!variable->type) return false;
         if (!variable->type->is_open && packed_bits(*variable->type, dialect) > 0) continue;
-        c.fail(code::type_does_not_fit, at.place,
-               fmt::format("'{}' is {}, which is not seen as bytes", variable->text,
-                           describe(*variable->type)),
-               "numbers, times, texts, and structures and arrays of such are");
-        return false;
+        return c.fail(code::type_does_not_fit, at.place,
+                      fmt::format("'{}' is {}, which is not seen as bytes", variable->text,
+                                  describe(*variable->type)),
+                      "numbers, times, texts, and structures and arrays of such are");
     }
     const std::uint64_t bits = packed_bits(*overlay.type, dialect),
                         room = packed_bits(*seen.type, dialect);
     if (bits <= room) return true;
-    c.fail(code::value_out_of_range, at.place,
-           fmt::format("'{}' has {} bytes, and '{}' {}", overlay.text, (bits + 7) / 8, seen.text,
-                       (room + 7) / 8),
-           "an overlay is not longer than what it is a view of");
-    return false;
+    return c.fail(code::value_out_of_range, at.place,
+                  fmt::format("'{}' has {} bytes, and '{}' {}", overlay.text, (bits + 7) / 8,
+                              seen.text, (room + 7) / 8),
+                  "an overlay is not longer than what it is a view of");
 }
 
 bool is_overlay(const Declaration& declared) {
@@ -56,9 +50,9 @@ bool is_overlay(const Declaration& declared) {
 }
 
 void declare_overlay(Checking& c, Routine& routine, const Declaration& declared) {
-    const auto it = routine.names.find(declared.name.text);
-    if (it == routine.names.end()) return;
-    Variable& overlay = *it->second;
+    Variable* declared_as = find_in(routine.names, declared.name.text);
+    if (!declared_as) return;
+    Variable& overlay = *declared_as;
     overlay.used = true;
     overlay.space = Space::overlay;
     overlay.section = Section::local;  // no call gives it
@@ -95,13 +89,9 @@ const Type* use_overlay(Checking& c, Expression*& e, const Variable& overlay) {
     Expression* seen = make_copy(c, *e);
     seen->variable = overlay.seen;
     seen->type = overlay.seen->type;
-    Expression* refer = make(c, E::refer, *e);
-    refer->operands[0] = seen;
-    refer->type = &pointer_to(c, *overlay.type);
-    Expression* made = make(c, E::deref, *e);
-    made->operands[0] = refer;
-    e = made;
-    return e->type = overlay.type;
+    Expression* view = make_reference_to(c, seen, pointer_to(c, *overlay.type));
+    e = make_target(c, *seen, view, overlay.type);
+    return e->type;
 }
 
 }  // namespace lineshaft::st

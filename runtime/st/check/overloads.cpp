@@ -1,7 +1,4 @@
-#include "runtime/st/check/overloads.hpp"
-
-#include <algorithm>
-
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/expressions.hpp"
 
 namespace lineshaft::st {
@@ -13,7 +10,7 @@ std::optional<int> closeness(const Type& from, const Type& to) {
     constexpr int same = 8, alike = 6, usual = 5, possible = 3;
     if (same_type(from, to)) return same;
     if (from.kind == Kind::text && to.kind == Kind::text) return alike;
-    if (from.kind == Kind::array && to.is_reference() && to.is_open)
+    if (from.kind == Kind::array && to.is_open_array())
         return to.element && same_type(*from.element, *to.element) ? std::optional(alike)
                                                                    : std::nullopt;
     if (from.routine && to.routine)
@@ -34,12 +31,8 @@ std::optional<int> closeness(const Type& from, const Type& to) {
 
 std::vector<const Variable*> inputs_of(const Routine& routine) {
     std::vector<const Variable*> found;
-    for (const Variable& variable : routine.variables) {
-        const bool is_given = variable.section == Section::input ||
-                              variable.section == Section::in_out ||
-                              variable.section == Section::output;
-        if (is_given && !variable.bound_of) found.push_back(&variable);
-    }
+    for (const Variable& variable : routine.variables)
+        if (variable.is_parameter()) found.push_back(&variable);
     return found;
 }
 
@@ -50,10 +43,8 @@ std::optional<int> closeness(const Expression& call, const Routine& routine) {
         const Argument& argument = call.arguments[i];
         const Variable* input = i < inputs.size() ? inputs[i] : nullptr;
         if (argument.is_named()) {
-            const auto it = std::ranges::find_if(inputs, [&](const Variable* variable) {
-                return same_name(variable->text, argument.name.text);
-            });
-            input = it == inputs.end() ? nullptr : *it;
+            const auto* named = find_called(inputs, argument.name.text, &Variable::text);
+            input = named ? *named : nullptr;
         }
         if (!input || !input->type) return {};
         if (!argument.value->type) continue;

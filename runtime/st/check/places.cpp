@@ -1,34 +1,28 @@
-#include "runtime/st/check/places.hpp"
-
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
-#include "runtime/source/letters.hpp"
-#include "runtime/source/units.hpp"
 #include "runtime/st/check/calls.hpp"
-#include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/image.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/objects.hpp"
-#include "runtime/st/check/overlays.hpp"
 #include "runtime/st/check/references.hpp"
+#include "runtime/st/check/types.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
 Variable* find_member(const Type& type, std::string_view name) {
-    if (type.kind == Kind::block) {
-        const auto it = type.routine->names.find(name);
-        return it == type.routine->names.end() ? nullptr : it->second;
-    }
-    const auto it = std::ranges::find_if(
-        type.members, [&](const Variable* member) { return same_name(member->text, name); });
-    return it == type.members.end() ? nullptr : *it;
+    if (type.kind == Kind::block) return find_in(type.routine->names, name);
+    Variable* const* member = find_called(type.members, name, &Variable::text);
+    return member ? *member : nullptr;
+}
+
+std::vector<std::string> names_of(const std::vector<Variable*>& variables) {
+    std::vector<std::string> names;
+    for (const Variable* variable : variables) names.emplace_back(variable->text);
+    return names;
 }
 
 namespace {
@@ -42,15 +36,12 @@ const Routine* declaring_block(const Routine& block, const Variable& variable) {
 
 /// `type` has no member `name`: nothing, and what is there instead is said.
 const Type* fail_member(Checking& c, const Expression& e, const Type& type, std::string_view name) {
-    std::vector<std::string> names;
-    if (type.kind == Kind::block)
-        for (const Variable* variable : all_variables(*type.routine))
-            names.emplace_back(variable->text);
+    std::vector<std::string> names =
+        names_of(type.kind == Kind::block ? all_variables(*type.routine) : type.members);
     if (type.routine && type.routine->has_unknown_base) return nullptr;
     if (type.kind == Kind::interface)
         for (const auto known : {&Routine::methods, &Routine::getters})
             for (const auto& [method, routine] : type.routine->*known) names.emplace_back(method);
-    for (const Variable* member : type.members) names.emplace_back(member->text);
     if (names.empty())
         return c.fail(code::type_does_not_fit, e.token.place,
                       fmt::format("{} has no parts", describe(type)),
@@ -88,16 +79,9 @@ const Type* check_member(Checking& c, Expression*& e) {
     if (Variable* found = find_member(*type, name)) {
         c.note(e->token.place, *found);
         const bool is_value = found->space == Space::constant;
-        if (is_value && c.is_in_test()) {
-            e = make_constant(c, *e, *found->type, found->value);
-            return found->type;
-        }
-        if (type->kind == Kind::block && e->operands[0]->kind == E::self) {
-            if (is_value) {
-                e = make_constant(c, *e, *found->type, found->value);
-                return found->type;
-            }
-        } else if (type->kind == Kind::block && (found->section == Section::temp || is_value))
+        const bool is_own = type->kind == Kind::block && e->operands[0]->kind == E::self;
+        if (is_value && (is_own || c.is_in_test())) return become(c, e, *found->type, found->value);
+        if (type->kind == Kind::block && !is_own && (found->section == Section::temp || is_value))
             return c.fail(code::not_declared, e->token.place,
                           fmt::format("'{}' of {} is not seen from outside", name, type->name),
                           "make it a VAR_OUTPUT");
@@ -113,10 +97,8 @@ const Type* check_member(Checking& c, Expression*& e) {
         e = e->operands[0];
         return type;
     }
-    if (type->is_instance() && same_name(name, "eno")) {  // what has no such output was executed
-        e = make_boolean(c, *e, true);
-        return &bool_type;
-    }
+    if (type->is_instance() && same_name(name, "eno"))  // what has no such output was executed
+        return become(c, e, bool_type, {.integer = 1});
     return fail_member(c, *e, *type, name);
 }
 
@@ -198,9 +180,8 @@ const Type* check_bit(Checking& c, Expression*& e) {
 
 bool check_target(Checking& c, Expression& target, std::string_view how) {
     const auto refuse = [&](std::string what, std::string help) {
-        c.fail(code::cannot_be_assigned, target.place, fmt::format("{} cannot be {}", what, how),
-               std::move(help));
-        return false;
+        return c.fail(code::cannot_be_assigned, target.place,
+                      fmt::format("{} cannot be {}", what, how), std::move(help));
     };
     if (target.kind == E::constant && target.variable)
         return refuse(fmt::format("the constant '{}'", target.variable->text),

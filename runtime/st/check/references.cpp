@@ -1,18 +1,11 @@
 #include "runtime/st/check/references.hpp"
 
-#include <algorithm>
-
-#include <fmt/format.h>
-
-#include "runtime/source/codes.hpp"
 #include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/operators.hpp"
-#include "runtime/st/check/order.hpp"
-#include "runtime/st/check/places.hpp"
 #include "runtime/st/check/types.hpp"
 #include "runtime/st/types/packed.hpp"
 
@@ -69,41 +62,27 @@ void keep_constant(Checking& c, Expression*& e) {
     Routine* routine = c.routine;
     while (routine && routine->pou != e->variable->of) routine = routine->owner;
     if (!routine) return;
-    Variable& kept = routine->variables.emplace_back();
-    kept.name = e->token;
-    kept.text = e->variable->text;
-    kept.type = e->variable->type;
+    Variable& kept = c.make_variable(*routine, e->token, e->variable->text, e->variable->type);
     kept.initial = e->variable->initial;
-    kept.of = routine->pou;
-    kept.used = true;
-    e = make(c, E::name, *e);
-    e->variable = &kept;
-    e->type = kept.type;
+    e = make_use(c, *e, kept);
 }
 
 /// `e`, a variable, becomes where it is; false for what is no variable, which was told.
 bool refer(Checking& c, Expression*& e, const Type& to) {
     if (e->kind == E::deref && e->operands[0]->type->element == e->type &&
-        (e->operands[0]->kind == E::name || e->operands[0]->kind == E::member)) {
-        e = make_converted(c, e->operands[0], to);
-        return true;
-    }
+        (e->operands[0]->kind == E::name || e->operands[0]->kind == E::member))
+        return e = make_converted(c, e->operands[0], to), true;
     if (to.is_pointer()) keep_constant(c, e);
-    if (const std::string_view why = why_no_place(*e, to.is_pointer()); !why.empty()) {
-        c.fail(code::type_does_not_fit, e->place, std::string(why),
-               "declare a variable, and refer to that");
-        return false;
-    }
+    if (const std::string_view why = why_no_place(*e, to.is_pointer()); !why.empty())
+        return c.fail(code::type_does_not_fit, e->place, std::string(why),
+                      "declare a variable, and refer to that");
     note_lending(c, *e);
     const Expression& root = root_of(*e);
     if (root.variable) {
         root.variable->used = true;
         c.checked.refers_to_in_outs |= root.variable->space == Space::reference;
     }
-    Expression* made = make(c, E::refer, *e);
-    made->operands[0] = e;
-    made->type = &to;
-    e = made;
+    e = make_reference_to(c, e, to);
     return true;
 }
 
@@ -147,24 +126,19 @@ bool refuse_target(Checking& c, const Expression& e, const Type& to, const Type&
     if (to.is_reference() && !from.is_reference())
         help = to.is_alias() ? "a REFERENCE TO is given a variable of its type"
                              : "write ADR(...) or REF(...) of a variable";
-    c.fail(code::type_does_not_fit, e.place,
-           fmt::format("expected {}, found {}", describe(to), describe(from)), std::move(help));
-    return false;
+    return c.fail(code::type_does_not_fit, e.place,
+                  fmt::format("expected {}, found {}", describe(to), describe(from)),
+                  std::move(help));
 }
 
 /// A REFERENCE TO is given a variable, or another reference.
 bool bind(Checking& c, Expression*& e, const Type& to) {
-    if (is_null(*e)) {
-        e = make_constant(c, *e, to, {});
-        return true;
-    }
+    if (is_null(*e)) return become(c, e, to, {}), true;
     const Type& from = *e->type;
     const bool sees_bytes = from.is_pointer() && from.element && to.element &&
                             is_of_bytes(*from.element) && packed_bits(*to.element, iec) > 0;
-    if (from.is_reference() && from.element && (is_target(to, *from.element) || sees_bytes)) {
-        e = make_converted(c, e, to);
-        return true;
-    }
+    if (from.is_reference() && from.element && (is_target(to, *from.element) || sees_bytes))
+        return e = make_converted(c, e, to), true;
     if (!to.element) return false;
     if (!is_target(to, from)) return refuse_target(c, *e, to, from);
     return refer(c, e, to);
@@ -184,8 +158,7 @@ const Type* check_size(Checking& c, Expression*& e) {
     const bool is_type = (qualified || of->kind == E::name) && !find_variable(c, name);
     const Type* type = is_type ? resolve_name(c, name) : check(c, of);
     if (!type) return nullptr;
-    e = make_constant(c, *e, any_integer_type, {.integer = Wide{bytes_of(*type)}});
-    return &any_integer_type;
+    return become(c, e, any_integer_type, {.integer = Wide{bytes_of(*type)}});
 }
 
 const Type* check_refer(Checking& c, Expression*& e, Referring referring) {
@@ -218,10 +191,7 @@ const Type* check_moved(Checking& c, Expression*& e) {
                       fmt::format("'{}' does not go with {} and {}", shown(e->op),
                                   describe(*pointer->type), describe(*by->type)),
                       "to a POINTER a whole number of bytes is added: p + SIZEOF(p^)");
-    if (by->type->is_any())
-        coerce(c, by, lint_type);
-    else
-        convert(c, by, lint_type);
+    become_lint(c, by);
     return e->type = pointer->type;
 }
 
@@ -263,11 +233,8 @@ const Type* check_target_of(Checking& c, Expression& e) {
 
 const Type* take_target(Checking& c, Expression*& e) {
     const Type* target = e->type->element;
-    Expression* made = make(c, E::deref, *e);
-    made->operands[0] = e;
-    made->type = target;
     depend_on_target(c, target, e->place);
-    e = made;
+    e = make_target(c, *e, e, target);
     return target && target->is_alias() ? take_target(c, e) : target;
 }
 
@@ -287,11 +254,9 @@ const Type* check_open_index(Checking& c, Expression*& e, Expression* index) {
     for (const std::string_view which : {"lower", "upper"})
         moved->arguments.push_back({.value = bound_of(c, *array, which)});
     moved->constant.integer = Wide{bytes_of(*target)};
-    Expression* made = make(c, E::deref, *e);
-    made->operands[0] = moved;
     depend_on_target(c, target, e->place);
-    e = made;
-    return e->type = target;
+    e = make_target(c, *e, moved, target);
+    return target;
 }
 
 bool give_open_array(Checking& c, const Argument& argument, Variable& array, OpenBounds bounds,
@@ -300,7 +265,7 @@ bool give_open_array(Checking& c, const Argument& argument, Variable& array, Ope
     if (!check(c, given) || !array.type->element) return false;
     Expression *lower = nullptr, *upper = nullptr;
     const Type& type = *given->type;
-    if (type.is_reference() && type.is_open && same_type(*type.element, *array.type->element)) {
+    if (type.is_open_array() && same_type(*type.element, *array.type->element)) {
         lower = bound_of(c, *given, "lower");
         upper = bound_of(c, *given, "upper");
         given = make_converted(c, given, *array.type);
@@ -310,11 +275,10 @@ bool give_open_array(Checking& c, const Argument& argument, Variable& array, Ope
         given = make_element(c, given, type.lower);
         if (!check(c, given) || !refer(c, given, *array.type)) return false;
     } else {
-        c.fail(code::type_does_not_fit, given->place,
-               fmt::format("'{}' is {}, and {} is given", array.text, describe(*array.type),
-                           describe(type)),
-               "give a variable that is an array of one dimension");
-        return false;
+        return c.fail(code::type_does_not_fit, given->place,
+                      fmt::format("'{}' is {}, and {} is given", array.text, describe(*array.type),
+                                  describe(type)),
+                      "give a variable that is an array of one dimension");
     }
     to.push_back({argument.name, false, given, &array});
     to.push_back({argument.name, false, lower, &bounds.first});
@@ -331,21 +295,16 @@ const Type* check_pointer_index(Checking& c, Expression*& e) {
     if (e->arguments.size() > 1 || !(index->type->is_integer() || index->type->is_bits()))
         return c.fail(code::type_does_not_fit, index->place,
                       "a POINTER has one index, a whole number");
-    if (index->type->is_any())
-        coerce(c, index, lint_type);
-    else
-        convert(c, index, lint_type);
+    become_lint(c, index);
     if (pointer->type->is_open) return check_open_index(c, e, index);
     Expression* size = make_constant(c, *index, lint_type, {.integer = Wide{bytes_of(*target)}});
     Expression* bytes = make_binary(c, index->place, index->place, Word::times, index, size);
     bytes->type = &lint_type;
     Expression* moved = make_binary(c, e->place, e->place, Word::plus, pointer, bytes);
     moved->type = pointer->type;
-    Expression* made = make(c, E::deref, *e);
-    made->operands[0] = moved;
     depend_on_target(c, target, e->place);
-    e = made;
-    return e->type = target;
+    e = make_target(c, *e, moved, target);
+    return target;
 }
 
 void note_lending(Checking& c, const Expression& place) {
@@ -386,12 +345,10 @@ void check_reference_assignment(Checking& c, Statement& s) {
     const Type* given = check(c, s.value);
     if (!type) return;
     Expression*& target = without_alias(s.target);
-    if (!target->type->is_reference()) {
-        c.fail(code::type_does_not_fit, s.target->place,
-               fmt::format("REF= does not go with {}", describe(*type)),
-               "it gives a REFERENCE TO the variable that it refers to");
-        return;
-    }
+    if (!target->type->is_reference())
+        return void(c.fail(code::type_does_not_fit, s.target->place,
+                           fmt::format("REF= does not go with {}", describe(*type)),
+                           "it gives a REFERENCE TO the variable that it refers to"));
     if (!given || !check_target(c, *target)) return;
     s.target = target;
     bind(c, s.value, *target->type);
@@ -441,10 +398,7 @@ bool coerce_reference(Checking& c, Expression*& e, const Type& to) {
     if (!to.is_reference()) return refuse_target(c, *e, to, from);
     const bool is_this = to.is_pointer() && e->kind == E::self;
     if (to.is_alias() || is_this) return bind(c, e, to);
-    if (is_null(*e)) {
-        e = make_constant(c, *e, to, {});
-        return true;
-    }
+    if (is_null(*e)) return become(c, e, to, {}), true;
     if (&from == &to || same_type(from, to)) return true;
     const bool are_pointers = to.is_pointer() && from.is_pointer() && to.element && from.element;
     const bool fits =
@@ -452,10 +406,7 @@ bool coerce_reference(Checking& c, Expression*& e, const Type& to) {
         (is_target(to, *from.element) ||
          (are_pointers && (begins_with(*from.element, *to.element) ||
                            (is_of_bytes(*from.element) && packed_bits(*to.element, iec) > 0))));
-    if (fits) {
-        e = make_converted(c, e, to);
-        return true;
-    }
+    if (fits) return e = make_converted(c, e, to), true;
     if (!to.element || (from.is_reference() && !from.element)) return false;
     return refuse_target(c, *e, to, from);
 }

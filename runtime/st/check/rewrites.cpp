@@ -1,16 +1,8 @@
-#include "runtime/st/check/rewrites.hpp"
-
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
-#include "runtime/st/check/block_moves.hpp"
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/places.hpp"
-#include "runtime/st/check/standard_calls.hpp"
 #include "runtime/st/check/statements.hpp"
-#include "runtime/st/check/test_statements.hpp"
 #include "runtime/st/functions/standard.hpp"
 #include "runtime/st/syntax/literals.hpp"
 
@@ -19,9 +11,7 @@ namespace lineshaft::st {
 namespace {
 
 const Argument* find_argument(const Expression& call, std::string_view name) {
-    const auto it = std::ranges::find_if(
-        call.arguments, [&](const Argument& a) { return same_name(a.name.text, name); });
-    return it == call.arguments.end() ? nullptr : &*it;
+    return find_called(call.arguments, name, &Argument::name);
 }
 
 /// A block of the standard that has a preset time.
@@ -74,12 +64,11 @@ void rewrite_bits(Checking& c, Statement*& s, bool scatters) {
         array ? static_cast<std::size_t>(type->upper - type->lower + 1) : type->members.size();
     const bool fits = bits->kind == Kind::bits && count == static_cast<std::size_t>(bits->bits) &&
                       (array || std::ranges::all_of(type->members, is_bool, &Variable::type));
-    if (!fits || !is_place(*word) || !is_place(*flags)) {
-        c.fail(code::type_does_not_fit, s->place,
-               fmt::format("{} does not go with {} and {}", name, describe(*bits), describe(*type)),
-               "it takes a variable of BYTE to LWORD, and as many BOOL in an array or a structure");
-        return;
-    }
+    if (!fits || !is_place(*word) || !is_place(*flags))
+        return void(c.fail(
+            code::type_does_not_fit, s->place,
+            fmt::format("{} does not go with {} and {}", name, describe(*bits), describe(*type)),
+            "it takes a variable of BYTE to LWORD, and as many BOOL in an array or a structure"));
     Block assignments;
     for (std::size_t i = 0; i < count; ++i) {
         Expression* bit = make_bit(c, word, number_text(i));
@@ -145,14 +134,9 @@ bool rewrite(Checking& c, Statement*& s) {
 }
 
 Variable& eno_of(Checking& c, Routine& routine) {
-    if (const auto it = routine.names.find("eno"); it != routine.names.end()) return *it->second;
-    Variable& variable = routine.variables.emplace_back();
-    variable.text = "ENO";
-    variable.name = routine.pou->name;
-    variable.type = &bool_type;
+    if (Variable* known = find_in(routine.names, "eno")) return *known;
+    Variable& variable = c.make_variable(routine, routine.pou->name, "ENO", &bool_type);
     variable.section = Section::temp;
-    variable.of = routine.pou;
-    variable.used = true;
     variable.initial = make_boolean(c, {}, true);
     routine.names.emplace(variable.text, &variable);
     return variable;
@@ -162,9 +146,7 @@ Block edge_calls(Checking& c, Routine& routine) {
     Block calls;
     for (Variable& variable : routine.variables) {
         if (!variable.edge) continue;
-        Expression like;
-        like.token = variable.name;
-        like.place = variable.name.place;
+        const Expression like{.token = variable.name, .place = variable.name.place};
         Expression* input = make(c, E::name, like);
         input->type = use(c, input, variable);
         const Token clk{.word = Word::name, .place = input->place, .text = "clk"};

@@ -1,15 +1,9 @@
-#include "runtime/st/check/standard_calls.hpp"
-
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
-#include "runtime/st/check/catalog_types.hpp"
-#include "runtime/st/check/conversion_calls.hpp"
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/standard_types.hpp"
+#include "runtime/st/check/types.hpp"
 #include "runtime/st/functions/standard.hpp"
 #include "runtime/st/vendors/instead.hpp"
 #include "runtime/st/vendors/names.hpp"
@@ -49,10 +43,9 @@ const Type* check_typed_function(Checking& c, Expression*& e) {
 bool check_count(Checking& c, const Expression& call, const StandardFunction& f) {
     const int count = static_cast<int>(call.arguments.size());
     if (count >= f.least && count <= f.most) return true;
-    c.fail(code::wrong_arguments, call.operands[0]->place,
-           fmt::format("{} takes {}{} argument{}", f.name, f.least,
-                       f.most > f.least ? " or more" : "", f.most == 1 ? "" : "s"));
-    return false;
+    return c.fail(code::wrong_arguments, call.operands[0]->place,
+                  fmt::format("{} takes {}{} argument{}", f.name, f.least,
+                              f.most > f.least ? " or more" : "", f.most == 1 ? "" : "s"));
 }
 
 bool order_arguments(Checking& c, Expression*& e, const StandardFunction& f) {
@@ -62,8 +55,7 @@ bool order_arguments(Checking& c, Expression*& e, const StandardFunction& f) {
     std::vector<Argument> sorted(call.arguments.size());
     std::vector<std::string> names;
     for (int i = 0; i < count; ++i) names.push_back(argument_name(f, i));
-    const bool has_else = std::ranges::any_of(
-        call.arguments, [](const Argument& a) { return same_name(a.name.text, "inelse"); });
+    const bool has_else = find_called(call.arguments, "inelse", &Argument::name);
     if (f.typing == Typing::chosen && f.most > f.least && has_else) names.back() = "INELSE";
     for (int i = 0; i < count; ++i) {
         const Argument& argument = call.arguments[static_cast<std::size_t>(i)];
@@ -78,12 +70,11 @@ bool order_arguments(Checking& c, Expression*& e, const StandardFunction& f) {
                             : sorted[static_cast<std::size_t>(it - names.begin())].value
                                 ? "given twice to"
                                 : nullptr;
-        if (wrong) {
-            c.fail(code::wrong_arguments, named ? argument.name.place : argument.value->place,
-                   fmt::format("'{}' is {} {}", named ? argument.name.text : *it, wrong, f.name),
-                   fmt::format("it takes {}", fmt::join(names, ", ")));
-            return false;
-        }
+        if (wrong)
+            return c.fail(
+                code::wrong_arguments, named ? argument.name.place : argument.value->place,
+                fmt::format("'{}' is {} {}", named ? argument.name.text : *it, wrong, f.name),
+                fmt::format("it takes {}", fmt::join(names, ", ")));
         sorted[static_cast<std::size_t>(it - names.begin())] = argument;
     }
     e = make_with(c, call, std::move(sorted));

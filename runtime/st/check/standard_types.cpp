@@ -1,9 +1,4 @@
-#include "runtime/st/check/standard_types.hpp"
-
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
-#include "runtime/st/check/constants.hpp"
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -49,29 +44,14 @@ const Type* check_element_count(Checking& c, Expression*& e) {
     std::int64_t count = 1;
     for (; array; array = array->has_inner ? array->element : nullptr)
         count *= array->upper - array->lower + 1;
-    e = make_constant(c, *e, dint_type, {.integer = count});
-    return &dint_type;
+    return become(c, e, dint_type, {.integer = count});
 }
 
-/// Of an ARRAY[*], which has one dimension.
-const Type* check_open_bound(Checking& c, Expression*& e) {
-    Expression*& wanted = e->arguments[1].value;
-    const auto dimension = check_whole(c, wanted, lint_type);
-    if (!dimension) return nullptr;
-    if (*dimension != 1)
-        return c.fail(code::value_out_of_range, wanted->place, "the array's dimensions are 1 to 1");
-    const bool is_lower = e->standard->typing == Typing::lower_bound;
-    e = bound_of(c, *e->arguments[0].value, is_lower ? "lower" : "upper");
-    if (!e->type) return nullptr;
-    convert(c, e, dint_type);
-    return e->type = &dint_type;
-}
-
-/// Of the dimension, which is a constant too.
+/// Of the dimension, which is a constant too, but for an ARRAY[*], which has one dimension.
 const Type* check_bound(Checking& c, Expression*& e) {
     const Type* array = e->arguments[0].value->type;
-    if (array->is_reference() && array->is_open) return check_open_bound(c, e);
-    if (array->kind != Kind::array) return refuse(c, *e, "an array", *array);
+    const bool is_open = array->is_open_array();
+    if (array->kind != Kind::array && !is_open) return refuse(c, *e, "an array", *array);
     Expression*& wanted = e->arguments[1].value;
     const auto dimension = check_whole(c, wanted, lint_type);
     if (!dimension) return nullptr;
@@ -81,8 +61,12 @@ const Type* check_bound(Checking& c, Expression*& e) {
         return c.fail(code::value_out_of_range, wanted->place,
                       fmt::format("the array's dimensions are 1 to {}", static_cast<int>(at)));
     const bool is_lower = e->standard->typing == Typing::lower_bound;
-    e = make_constant(c, *e, dint_type, {.integer = is_lower ? array->lower : array->upper});
-    return &dint_type;
+    if (!is_open)
+        return become(c, e, dint_type, {.integer = is_lower ? array->lower : array->upper});
+    e = bound_of(c, *e->arguments[0].value, is_lower ? "lower" : "upper");
+    if (!e->type) return nullptr;
+    convert(c, e, dint_type);
+    return e->type = &dint_type;
 }
 
 /// `ADD(a, b, c)` is `a + b + c`, `GT(a, b, c)` is `a > b AND b > c`.

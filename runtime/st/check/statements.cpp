@@ -1,19 +1,14 @@
 #include "runtime/st/check/statements.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
-#include "runtime/st/check/beginnings.hpp"
 #include "runtime/st/check/calls.hpp"
-#include "runtime/st/check/charts.hpp"
 #include "runtime/st/check/classes.hpp"
-#include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/places.hpp"
 #include "runtime/st/check/references.hpp"
-#include "runtime/st/check/rewrites.hpp"
+#include "runtime/st/syntax/words.hpp"
 
 namespace lineshaft::st {
 
@@ -67,8 +62,8 @@ void check_call(Checking& c, Statement& s) {
 const Routine* find_action(Checking& c, Expression& name) {
     const auto is_action = [](const Routine* r) { return r && r->pou->is_action; };
     const auto of_block = [&](const Routine& block) -> const Routine* {
-        const auto it = block.methods.find(name.token.text);
-        return it != block.methods.end() && is_action(it->second) ? it->second : nullptr;
+        const Routine* found = find_in(block.methods, name.token.text);
+        return is_action(found) ? found : nullptr;
     };
     if (name.kind == E::member) {
         const Type* of = check(c, name.operands[0]);
@@ -216,25 +211,20 @@ void check_assignment(Checking& c, Statement*& s) {
     if (s->op == Word::attempt_assign) return check_attempt(c, *s);
     if (rewrite_property(c, s)) return;
     const Type* type = check(c, s->target);
-    if (s->op != Word::assign && type) {
-        const Word op = s->op == Word::plus_assign    ? Word::plus
-                        : s->op == Word::minus_assign ? Word::minus
-                        : s->op == Word::times_assign ? Word::times
-                                                      : Word::divided;
-        s = make_assignment(c, s->place, s->target,
-                            make_binary(c, s->place, s->place, op, s->target, s->value));
-    }
+    if (s->op != Word::assign && type)
+        s = make_assignment(
+            c, s->place, s->target,
+            make_binary(c, s->place, s->place, operator_of(s->op), s->target, s->value));
     check(c, s->value, type);
     if (s->value->kind == E::list || !type || !check_target(c, *s->target) || !s->value->type)
         return;
     if (type->kind == Kind::block && s->op == Word::assign && is_place(*s->value) &&
         same_type(*type, *s->value->type))
         return;
-    if (type->is_instance()) {
-        c.fail(code::cannot_be_assigned, s->place, "an instance is not assigned as a whole",
-               "assign its inputs one by one");
-        return;
-    }
+    if (type->is_instance())
+        return void(c.fail(code::cannot_be_assigned, s->place,
+                           "an instance is not assigned as a whole",
+                           "assign its inputs one by one"));
     coerce(c, s->value, *type);
 }
 

@@ -11,4 +11,56 @@ void check(Checking& c, Statement*& s);
 /// `target := value;`; `+=` is one of a sum. L0910 for what may not be assigned.
 void check_assignment(Checking& c, Statement*& s);
 
+// rewrites.cpp
+
+/// A statement that means others, `y := f(EN := go)` or SCATTER, is checked as those, which are
+/// hung in its place. False if it means itself, and is not checked.
+bool rewrite(Checking& c, Statement*& s);
+
+/// Siemens' ENO, a flag of each call that begins as TRUE: a caller may take it.
+Variable& eno_of(Checking& c, Routine& routine);
+
+/// What runs in front of its body: `go.R_EDGE(CLK := go);`.
+Block edge_calls(Checking& c, Routine& routine);
+
+/// `go` in a body is `go.R_EDGE.Q`.
+const Type* use_edge(Checking& c, Expression*& e, Variable& input);
+
+// block_moves.cpp
+
+/// MOVE_BLK, UMOVE_BLK, FILL_BLK and UFILL_BLK of Siemens as what they do with the elements of two
+/// arrays; beyond an array is a fault. Its arguments are in their order.
+void rewrite_block_move(Checking& c, Statement*& s);
+
+// test_statements.cpp
+
+/// A variable, a member or an element.
+bool is_place(const Expression& e);
+/// ASSERT_EQ and the others of TestCall, which is noted: their arguments, and that they stand in a
+/// TEST, L0914. Null: they have no value.
+const Type* check_test_statement(Checking& c, Expression& call, bool as_statement);
+
+// assertions.cpp
+
+// What others have for tests: SIMATIC AX in `AxUnit.Assert`, as `Equal(expected := 5, actual :=
+// x)`, and who has TEST_PROGRAM, as `ASSERT_EQUAL(5, x)`, where what is expected comes first. Any
+// build with tests knows them, in blocks too; no source declares them, since they take values of
+// every type that ASSERT_EQ and the others take.
+
+/// `AxUnit`, `AxUnit.Assert`
+bool is_namespace_of_assertions(std::string_view path);
+
+/// The call as one of ASSERT_EQ and the others; null if it is no such call.
+Expression* assertion_call(Checking& c, const Expression& call);
+
+// charts.cpp
+
+/// A variable for each step of the charts that the routine and its actions have, with its X and T,
+/// and what these keep from scan to scan. Tells steps that are not there, or there twice.
+void declare_charts(Checking& c, Routine& routine);
+
+/// What a scan of the chart of a routine, or of an action, does: its evolution, then its actions.
+/// IEC 61131-3:2013, 6.7.6. That of an action stands still while the action is not called.
+Block chart_statements(Checking& c, Routine& routine);
+
 }  // namespace lineshaft::st

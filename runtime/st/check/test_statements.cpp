@@ -1,13 +1,9 @@
-#include "runtime/st/check/test_statements.hpp"
-
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
-#include "runtime/st/check/catalog_types.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/statements.hpp"
+#include "runtime/st/check/types.hpp"
 #include "runtime/st/functions/standard.hpp"
 
 namespace lineshaft::st {
@@ -41,8 +37,7 @@ void become_text(Checking& c, Expression*& e) {
 bool check_test_arguments(Checking& c, Expression& call, const TestStatement& known) {
     const auto values = static_cast<std::size_t>(known.values), count = call.arguments.size();
     const auto refuse = [&](Place place, std::string message, std::string help = {}) {
-        c.fail(code::wrong_arguments, place, std::move(message), std::move(help));
-        return false;
+        return c.fail(code::wrong_arguments, place, std::move(message), std::move(help));
     };
     if (count < values || count > values + (known.has_message ? 1 : 0))
         return refuse(
@@ -128,11 +123,10 @@ bool check_compared(Checking& c, Expression& call) {
     const bool parts =
         first->kind == Kind::array || first->kind == Kind::structure || first->kind == Kind::union_;
     const auto refuse = [&](std::string help) {
-        c.fail(code::type_does_not_fit, call.place,
-               fmt::format("{} does not go with {} and {}", known.name, describe(*first),
-                           describe(*second)),
-               std::move(help));
-        return false;
+        return c.fail(code::type_does_not_fit, call.place,
+                      fmt::format("{} does not go with {} and {}", known.name, describe(*first),
+                                  describe(*second)),
+                      std::move(help));
     };
     if (first->kind == Kind::text && second->kind == Kind::text) return true;
     if (parts && parts_of(*first) > most_parts)
@@ -164,11 +158,9 @@ bool check_distance(Checking& c, Expression& call) {
         Expression*& value = call.arguments[static_cast<std::size_t>(i)].value;
         const Type* type = check(c, value, like);
         if (!type) return false;
-        if (!type->is_number() && type->kind != Kind::time) {
-            c.fail(code::type_does_not_fit, value->place,
-                   fmt::format("ASSERT_NEAR takes numbers, not {}", describe(*type)));
-            return false;
-        }
+        if (!type->is_number() && type->kind != Kind::time)
+            return c.fail(code::type_does_not_fit, value->place,
+                          fmt::format("ASSERT_NEAR takes numbers, not {}", describe(*type)));
         if (!like && !type->is_any()) like = type;
     }
     for (int i = 0; i < 3; ++i)
@@ -186,8 +178,7 @@ void add_mock(Checking& c, Routine& function) {
     }
     const auto number = std::ranges::find(c.checked.globals, c.mocks, &Global::type);
     for (const Type* type : {&bool_type, function.result->type}) {
-        Variable& variable = c.checked.variables.emplace_back();
-        variable.type = type;
+        Variable& variable = c.make_variable({}, {}, type);
         variable.section = Section::global;
         variable.space = Space::global;
         variable.global = static_cast<int>(number - c.checked.globals.begin());

@@ -1,7 +1,3 @@
-#include "runtime/st/check/time_operators.hpp"
-
-#include "runtime/source/codes.hpp"
-#include "runtime/st/check/constants.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"

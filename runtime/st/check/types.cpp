@@ -1,18 +1,11 @@
 #include "runtime/st/check/types.hpp"
 
-#include <algorithm>
-
-#include "runtime/source/codes.hpp"
-#include "runtime/source/letters.hpp"
-#include "runtime/source/units.hpp"
-#include "runtime/st/check/catalog_types.hpp"
-#include "runtime/st/check/constants.hpp"
+#include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/declarations.hpp"
-#include "runtime/st/check/initial_values.hpp"
+#include "runtime/st/check/image.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
-#include "runtime/st/check/overlays.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/types/packed.hpp"
 #include "runtime/st/vendors/instead.hpp"
@@ -70,12 +63,10 @@ const Type* resolve_array(Checking& c, const TypeText& text) {
 void inherit_members(Checking& c, const Token& name, Type& to, NameMap<Place>& names) {
     const Type* base = resolve_name(c, name);
     if (!base) return;
-    if (base->kind != Kind::structure) {
-        c.fail(code::type_does_not_fit, name.place,
-               fmt::format("{} is not a structure", describe(*base)),
-               "a structure extends another one");
-        return;
-    }
+    if (base->kind != Kind::structure)
+        return void(c.fail(code::type_does_not_fit, name.place,
+                           fmt::format("{} is not a structure", describe(*base)),
+                           "a structure extends another one"));
     for (const Variable* member : base->members) {
         names.emplace(member->text, member->name.place);
         to.members.push_back(&c.checked.variables.emplace_back(*member));
@@ -87,11 +78,11 @@ bool has_packed_form(Checking& c, const TypeText& text, const Type& made) {
     for (const Variable* member : made.members) {
         if (!member->type) return false;
         if (packed_bits(*member->type, text.place.dialect()) > 0) continue;
-        c.fail(code::type_does_not_fit, member->name.place,
-               fmt::format("a UNION has no {}",
-                           member->type->is_reference() ? "reference" : describe(*member->type)),
-               "its members are numbers, times, texts, and structures and arrays of such");
-        return false;
+        return c.fail(
+            code::type_does_not_fit, member->name.place,
+            fmt::format("a UNION has no {}",
+                        member->type->is_reference() ? "reference" : describe(*member->type)),
+            "its members are numbers, times, texts, and structures and arrays of such");
     }
     if (made.members.empty())
         c.fail(code::value_out_of_range, text.place, "the UNION has no member",

@@ -14,4 +14,10 @@ const Type* resolve_parameter(Checking& c, const TypeText& text);
 const Type* resolve_name(Checking& c, const Token& name);
 const Type* resolve_declared(Checking& c, NamedType& named);
 
+// catalog_types.cpp
+
+/// A block of the catalogue, or a reference to one, also by the name that vendors give it; null for
+/// another name.
+const Type* standard_type(Checking& c, std::string_view name);
+
 }  // namespace lineshaft::st

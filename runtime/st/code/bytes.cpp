@@ -199,12 +199,6 @@ Fault write_run(const Code& code, const Bytes& to, const Run& run, std::uint64_t
     return Fault::none;
 }
 
-bool is_inside(const Code& code, const Bytes& bytes, std::uint64_t count) {
-    const std::uint64_t size = code.shapes[bytes.shape].bits / 8;
-    return bytes.first >= 0 && count <= size &&
-           static_cast<std::uint64_t>(bytes.first) <= size - count;
-}
-
 /// Calls `act(first, count)` of each run of `of`, from the last one on if it is to be so.
 template <class Do>
 Fault visit_runs(const Code& code, const Bytes& of, std::uint64_t count, bool backwards,
@@ -242,6 +236,12 @@ Bytes behind(Bytes of, std::uint64_t bits) {
 }
 
 }  // namespace
+
+bool is_inside(const Code& code, const Bytes& bytes, std::uint64_t count) {
+    const std::uint64_t size = code.shapes[bytes.shape].bits / 8;
+    return bytes.first >= 0 && count <= size &&
+           static_cast<std::uint64_t>(bytes.first) <= size - count;
+}
 
 Fault read_bytes(const Code& code, const Bytes& from, std::uint64_t count, std::byte* to) {
     const auto first = static_cast<std::uint64_t>(from.first);

@@ -18,6 +18,9 @@ struct Bytes {
     std::int64_t first = 0;      ///< byte, which may be outside
 };
 
+/// So many of its bytes are those of the variable.
+bool is_inside(const Code& code, const Bytes& bytes, std::uint64_t count);
+
 /// `out_of_range`: what would stand there then is no value of its type.
 /// `outside_of_variable`: the bytes are not, or not to be had.
 Fault read_bytes(const Code& code, const Bytes& from, std::uint64_t count, std::byte* to);

@@ -40,6 +40,12 @@ class Probe {
     std::vector<std::uint32_t> marks_;
 };
 
+/// Where an address leads, in a scan of the instance at `root`.
+inline std::byte* place_of(std::uint64_t address, std::byte* root, const Context& context) {
+    const std::uint64_t space = address >> 32;
+    return (space == 0 ? root : context.instances[space - 1]) + 8 * (address & 0xFFFF'FFFF);
+}
+
 /// Executes the routine on an instance. Its header then says how that ended: the fault, and the
 /// instruction; the return addresses of the calls that ran are left for messages. Allocates
 /// nothing, throws nothing, and ends after at most `fuel` passes of loops and calls. With `times`

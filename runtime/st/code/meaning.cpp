@@ -303,12 +303,6 @@ Fault Frames::copy_to_through(const std::byte* reference, std::uint64_t bit, std
     return told(copy_bytes(code, at, from, code.shapes[shape].bits / 8), reference);
 }
 
-/// Of two variables: which of them was left.
-static bool is_left(const Code& code, const Bytes& at, std::uint64_t count) {
-    const std::uint64_t size = code.shapes[at.shape].bits / 8;
-    return at.first < 0 || count > size || static_cast<std::uint64_t>(at.first) > size - count;
-}
-
 Fault Frames::copy_memory(const std::byte* to, const std::byte* from, std::int64_t count,
                           std::uint64_t next) {
     if (count <= 0) return Fault::none;
@@ -317,7 +311,7 @@ Fault Frames::copy_memory(const std::byte* to, const std::byte* from, std::int64
     if (const Fault wrong = find(from, next, source); wrong != Fault::none) return wrong;
     const auto bytes = static_cast<std::uint64_t>(count);
     const Fault wrong = copy_bytes(code, target, source, bytes);
-    return told(wrong, is_left(code, target, bytes) ? to : from);
+    return told(wrong, is_inside(code, target, bytes) ? from : to);
 }
 
 Fault Frames::fill_memory(const std::byte* to, std::uint64_t value, std::int64_t count,
@@ -341,7 +335,7 @@ Fault Frames::compare_memory(const std::byte* a, const std::byte* b, std::int64_
     const auto bytes = static_cast<std::uint64_t>(count);
     const Fault wrong = compare_bytes(code, left, right, bytes, order);
     reached = static_cast<std::uint64_t>(order);
-    return told(wrong, is_left(code, left, bytes) ? a : b);
+    return told(wrong, is_inside(code, left, bytes) ? b : a);
 }
 
 }  // namespace lineshaft::st::meaning

@@ -22,8 +22,7 @@ const StandardFunction* find_standard_function(std::string_view name) {
         for (const StandardFunction* f : standard_functions()) made.emplace(f->name, f);
         return made;
     }();
-    const auto it = by_name.find(name);
-    return it == by_name.end() ? nullptr : it->second;
+    return find_in(by_name, name);
 }
 
 /// Those behind the row's last one are counted on from it: IN1, IN2, IN3.

@@ -1,11 +1,8 @@
-#include "runtime/st/generate/assertions.hpp"
-
 #include <fmt/format.h>
 
 #include "runtime/st/generate/layout.hpp"
-#include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/places.hpp"
-#include "runtime/st/generate/texts.hpp"
+#include "runtime/st/generate/statements.hpp"
 #include "runtime/st/generate/values.hpp"
 
 namespace lineshaft::st {
@@ -54,28 +51,17 @@ Location calls_of(Writing& w, const Expression& instance) {
 
 /// What the statement asserts of two values.
 Word relation_of(TestCall test) {
-    switch (test) {
-        case TestCall::assert_neq:
-            return Word::unequal;
-        case TestCall::assert_gt:
-            return Word::greater;
-        case TestCall::assert_lt:
-            return Word::less;
-        case TestCall::assert_ge:
-            return Word::greater_or_equal;
-        case TestCall::assert_le:
-            return Word::less_or_equal;
-        default:
-            return Word::equal;
-    }
+    static_assert(TestCall::assert_le == static_cast<TestCall>(7));
+    constexpr Word relations[] = {Word::equal, Word::unequal,          Word::greater,
+                                  Word::less,  Word::greater_or_equal, Word::less_or_equal};
+    return relations[static_cast<int>(test) - static_cast<int>(TestCall::assert_eq)];
 }
 
 Compared compared(Writing& w, const Expression& e) {
     const Expression &first = *e.arguments[0].value, &second = *e.arguments[1].value;
     if (first.type->kind == Kind::text) {
         const Slot a = text_address(w, first), b = text_address(w, second);
-        const Slot order = w.emit(Op::text_compare, none, a, b);
-        return {compare(w, relation_of(e.test), int_type, order, w.constant_slot(0)), a, b};
+        return {compare_texts(w, relation_of(e.test), a, b), a, b};
     }
     const Slot a = value(w, first), b = value(w, second);
     const bool is_unsigned = first.type->is_unsigned_64() || second.type->is_unsigned_64();
@@ -149,8 +135,7 @@ void write_equal(Writing& w, const Expression& e, const Type& type, const Locati
     Compared values;
     if (type.kind == Kind::text) {
         values.found = address_of(w, a), values.wanted = address_of(w, b);
-        const Slot order = w.emit(Op::text_compare, none, values.found, values.wanted);
-        values.holds = compare(w, Word::equal, int_type, order, w.constant_slot(0));
+        values.holds = compare_texts(w, Word::equal, values.found, values.wanted);
     } else if (type.is_scalar()) {
         values.found = load(w, a), values.wanted = load(w, b);
         values.holds = compare(w, Word::equal, type, values.found, values.wanted);

@@ -1,15 +1,8 @@
-#include "runtime/st/generate/calls.hpp"
-
 #include <algorithm>
 
-#include "runtime/st/generate/assertions.hpp"
-#include "runtime/st/generate/conversions.hpp"
-#include "runtime/st/generate/dispatch.hpp"
 #include "runtime/st/generate/layout.hpp"
-#include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/places.hpp"
-#include "runtime/st/generate/references.hpp"
-#include "runtime/st/generate/standard_functions.hpp"
+#include "runtime/st/generate/statements.hpp"
 #include "runtime/st/generate/values.hpp"
 
 namespace lineshaft::st {
@@ -107,27 +100,19 @@ void give(Writing& w, const Location& frame, const Expression& e, const Routine&
     give(w, later);
     if (routine.has_instances()) return;
     for (const Variable& variable : routine.variables) {
-        const bool missing = variable.section == Section::input &&
-                             std::ranges::none_of(e.arguments, [&](const Argument& argument) {
-                                 return argument.variable == &variable;
-                             });
+        const bool missing =
+            variable.section == Section::input &&
+            std::ranges::find(e.arguments, &variable, &Argument::variable) == e.arguments.end();
         if (!missing || variable.space == Space::constant) continue;
         const std::uint32_t slots = slots_of(w, *variable.type);
-        if (e.is_dispatched) {
-            signature_image(w, routine);
-            const Slot made = w.new_temporary(slots);
-            w.image_uses.push_back({w.next(), nullptr, &routine});
-            w.put(Op::initialise, made, slot_in_signature(w, routine, variable), slots);
-            copy(w, parameter(w, frame, e, variable), {Mode::slot, made}, slots);
-            continue;
-        }
-        const Type* block = routine.owner ? routine.owner->type : nullptr;
-        const Slot made =
-            frame.mode == Mode::slot ? frame.slot + variable.slot : w.new_temporary(slots);
-        w.image_uses.push_back({w.next(), block, &routine});
-        w.put(Op::initialise, made, variable.slot, slots);
-        if (frame.mode != Mode::slot)
-            copy(w, behind(frame, variable.slot), {Mode::slot, made}, slots);
+        const bool is_near = !e.is_dispatched && frame.mode == Mode::slot;
+        const bool is_of_block = !e.is_dispatched && routine.owner;
+        if (e.is_dispatched) signature_image(w, routine);
+        const Slot made = is_near ? frame.slot + variable.slot : w.new_temporary(slots);
+        w.image_uses.push_back({w.next(), is_of_block ? routine.owner->type : nullptr, &routine});
+        w.put(Op::initialise, made,
+              e.is_dispatched ? slot_in_signature(w, routine, variable) : variable.slot, slots);
+        if (!is_near) copy(w, parameter(w, frame, e, variable), {Mode::slot, made}, slots);
     }
 }
 

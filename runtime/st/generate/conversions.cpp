@@ -1,21 +1,18 @@
-#include "runtime/st/generate/conversions.hpp"
-
 #include <algorithm>
 
-#include "runtime/st/generate/dispatch.hpp"
+#include "runtime/st/generate/layout.hpp"
 #include "runtime/st/generate/places.hpp"
-#include "runtime/st/generate/references.hpp"
-#include "runtime/st/generate/texts.hpp"
 #include "runtime/st/generate/values.hpp"
 
 namespace lineshaft::st {
 
 namespace {
 
-Slot look_up(Writing& w, Slot slot, const std::vector<std::int64_t>& numbers) {
+Slot look_up(Writing& w, Slot slot, const std::vector<std::int64_t>& numbers,
+             std::int64_t least = 0) {
     const std::uint64_t first = w.code.numbers.size();
     w.code.numbers.insert(w.code.numbers.end(), numbers.begin(), numbers.end());
-    return w.emit(Op::look_up, none, slot, w.table({0, numbers.size(), 1, first}));
+    return w.emit(Op::look_up, none, slot, w.table({least, numbers.size(), 1, first}));
 }
 
 /// Of a number that is none of them a number that is no place.
@@ -24,9 +21,7 @@ Slot look_up_place(Writing& w, Slot slot, const std::vector<std::int64_t>& numbe
     std::vector<std::int64_t> places(static_cast<std::size_t>(most - least) + 1, -1);
     for (std::size_t i = numbers.size(); i > 0; --i)
         places[static_cast<std::size_t>(numbers[i - 1] - least)] = static_cast<std::int64_t>(i) - 1;
-    const std::uint64_t first = w.code.numbers.size();
-    w.code.numbers.insert(w.code.numbers.end(), places.begin(), places.end());
-    return w.emit(Op::look_up, none, slot, w.table({least, places.size(), 1, first}));
+    return look_up(w, slot, places, least);
 }
 
 Slot convert_real(Writing& w, Slot slot, const Type& from, const Type& to, bool truncates,

@@ -1,8 +1,5 @@
-#include "runtime/st/generate/dispatch.hpp"
-
 #include <algorithm>
 
-#include "runtime/st/generate/images.hpp"
 #include "runtime/st/generate/layout.hpp"
 
 namespace lineshaft::st {

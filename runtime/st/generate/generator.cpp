@@ -2,12 +2,8 @@
 
 #include <algorithm>
 
-#include "runtime/st/generate/assertions.hpp"
-#include "runtime/st/generate/dispatch.hpp"
-#include "runtime/st/generate/images.hpp"
 #include "runtime/st/generate/layout.hpp"
-#include "runtime/st/generate/packed.hpp"
-#include "runtime/st/generate/references.hpp"
+#include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/statements.hpp"
 
 namespace lineshaft::st {

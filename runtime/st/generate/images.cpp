@@ -1,11 +1,8 @@
-#include "runtime/st/generate/images.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
 
 #include "runtime/st/generate/layout.hpp"
-#include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/places.hpp"
 
 namespace lineshaft::st {

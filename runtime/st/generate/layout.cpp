@@ -5,8 +5,7 @@
 #include <fmt/format.h>
 
 #include "runtime/source/codes.hpp"
-#include "runtime/st/generate/images.hpp"
-#include "runtime/st/generate/references.hpp"
+#include "runtime/st/generate/places.hpp"
 
 namespace lineshaft::st {
 

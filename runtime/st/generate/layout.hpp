@@ -35,4 +35,39 @@ bool is_in_signature(const Variable& variable, bool is_given);
 /// What is given to a function or a method comes first. A method's frame is a part of its block's.
 void lay_out_call(Writing& w, Routine& routine);
 
+// images.cpp
+
+/// Memory as it begins: from slot `at` of an image on what a variable, a type or a constant says.
+void fill(Writing& w, Writing::Image& image, std::uint32_t at, const Variable& variable);
+void fill(Writing& w, Writing::Image& image, std::uint32_t at, const Type& type,
+          const Expression& value);
+void fill_default(Writing& w, Writing::Image& image, std::uint32_t at, const Type& type);
+
+/// What stands behind BEGIN are initial values.
+void fill_data_block(Writing& w, Writing::Image& image, const Global& global);
+
+/// All images that instructions use go into the code, once each.
+void finish_images(Writing& w);
+
+// dispatch.cpp
+
+/// Levels of calls that an instance has room for beyond those that are known.
+constexpr std::uint32_t found_levels = 64;
+
+/// Which routines what they call may call again, by an instance; and the levels of calls that
+/// blocks have room for: those of a base and of what extends it are one.
+void prepare_dispatch(Writing& w);
+
+/// Where a parameter of a method stands behind its `Routine::first`, the same in all that replace
+/// one another: what is given first, then its result and outputs, whatever its own block is like.
+std::uint32_t slot_in_signature(Writing& w, const Routine& method, const Variable& parameter);
+/// The parameters of a method as they begin, in that order.
+const Writing::Image& signature_image(Writing& w, const Routine& method);
+
+/// The number that all methods share which may be found where this one is called; or bodies.
+std::uint32_t method_number(Writing& w, const Routine& called);
+
+/// When all is laid out: what each kind of instance has for each number.
+void finish_dispatch(Writing& w);
+
 }  // namespace lineshaft::st

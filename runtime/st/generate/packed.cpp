@@ -1,12 +1,10 @@
-#include "runtime/st/generate/packed.hpp"
+#include "runtime/st/types/packed.hpp"
 
 #include <cstring>
 
-#include "runtime/st/generate/images.hpp"
 #include "runtime/st/generate/layout.hpp"
-#include "runtime/st/generate/references.hpp"
+#include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/values.hpp"
-#include "runtime/st/types/packed.hpp"
 
 namespace lineshaft::st {
 
@@ -75,7 +73,7 @@ Location locate_in_image(Writing& w, const Variable& variable) {
     const Slot address = w.emit(Op::set_global, none, static_cast<Slot>(w.checked.image.global));
     const ImageAddress& at = variable.address;
     Location made{Mode::address, 0, address, 0};
-    made.packed = {8 * (w.checked.image.begin(at.area) + at.byte) + at.bit, none,
+    made.packed = {static_cast<std::uint32_t>(w.checked.image.bit_of(at)), none,
                    &variable.name.place.dialect(), variable.type, at.bits == 1};
     return made;
 }
@@ -255,9 +253,7 @@ void fill_process_image(Writing& w, Writing::Image& image) {
         Writing::Image slots(slots_of(w, type), 0);
         fill_default(w, slots, 0, type);
         if (variable->initial) fill(w, slots, 0, type, *variable->initial);
-        const ImageAddress& at = variable->address;
-        const std::uint64_t bit =
-            std::uint64_t{8} * (w.checked.image.begin(at.area) + at.byte) + at.bit;
+        const std::uint64_t bit = w.checked.image.bit_of(variable->address);
         if (type.is_scalar())
             st::store_packed(bytes, bit, format_of(*variable), slots[0]);
         else

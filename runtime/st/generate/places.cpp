@@ -1,11 +1,6 @@
 #include "runtime/st/generate/places.hpp"
 
-#include "runtime/st/generate/calls.hpp"
 #include "runtime/st/generate/layout.hpp"
-#include "runtime/st/generate/packed.hpp"
-#include "runtime/st/generate/references.hpp"
-#include "runtime/st/generate/standard_functions.hpp"
-#include "runtime/st/generate/texts.hpp"
 #include "runtime/st/generate/values.hpp"
 
 namespace lineshaft::st {

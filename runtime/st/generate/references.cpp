@@ -1,14 +1,10 @@
-#include "runtime/st/generate/references.hpp"
-
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "runtime/source/codes.hpp"
-#include "runtime/st/generate/calls.hpp"
-#include "runtime/st/generate/conversions.hpp"
 #include "runtime/st/generate/layout.hpp"
-#include "runtime/st/generate/packed.hpp"
+#include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/values.hpp"
 #include "runtime/st/types/packed.hpp"
 
@@ -72,40 +68,33 @@ Slot refer_to_part(Writing& w, Slot base, const Expression& part, const Expressi
     return made;
 }
 
-/// The instance itself, of a block's body and its methods.
-std::uint32_t piece_number(Writing& w, const Type& own) {
-    const auto number = static_cast<std::uint32_t>(w.code.pieces.size());
-    const auto [it, added] = w.own_pieces.emplace(&own, number);
-    if (added) w.code.pieces.push_back({.name = "THIS", .shape = shape_number(w, own)});
-    return it->second;
+/// The number of the piece that something is, which `make` makes the first time; as a reference has
+/// it, before its bytes.
+std::uint64_t piece_of(Writing& w, Writing::Pieces& known, const void* of, const auto& make) {
+    const auto [it, added] = known.emplace(of, static_cast<std::uint32_t>(w.code.pieces.size()));
+    if (added) w.code.pieces.push_back(make());
+    return (std::uint64_t{it->second} + 1) << 32;
 }
 
-std::uint32_t piece_number(Writing& w, const Variable& variable) {
-    const auto number = static_cast<std::uint32_t>(w.code.pieces.size());
-    const auto [it, added] = w.pieces.emplace(&variable, number);
-    if (!added) return it->second;
+/// The instance itself, of a block's body and its methods.
+std::uint64_t piece_of(Writing& w, const Type& own) {
+    return piece_of(w, w.pieces, &own,
+                    [&] { return Piece{.name = "THIS", .shape = shape_number(w, own)}; });
+}
+
+std::uint64_t piece_of(Writing& w, const Variable& variable) {
     const Routine* routine = w.routine;
     if (routine->owner && variable.of != routine->pou) routine = routine->owner;
-    Piece piece{.name = std::string(variable.text), .shape = shape_number(w, *variable.type)};
-    if (variable.ends_with_call()) {
+    return piece_of(w, w.pieces, &variable, [&] {
+        Piece piece{.name = std::string(variable.text), .shape = shape_number(w, *variable.type)};
+        if (!variable.ends_with_call()) return piece;
         piece.name = fmt::format("{}.{}", routine->name, variable.text);
         piece.ends = true;
         piece.routine = w.routine_number(*routine);
         piece.slot = variable.slot;
         piece.activation = routine->activation;
-    }
-    w.code.pieces.push_back(std::move(piece));
-    return number;
-}
-
-/// Of a variable that stays as long as it is seen so.
-std::uint32_t view_number(Writing& w, const Variable& variable, bool is_s7) {
-    const auto number = static_cast<std::uint32_t>(w.code.pieces.size());
-    const auto [it, added] = w.views.emplace(&variable, number);
-    if (added)
-        w.code.pieces.push_back(
-            {.name = std::string(variable.text), .shape = shape_number(w, *variable.type, is_s7)});
-    return it->second;
+        return piece;
+    });
 }
 
 /// What a VAR_IN_OUT was given; the reference stands behind its address.
@@ -120,8 +109,8 @@ Slot refer_to_variable(Writing& w, const Expression& root) {
     const Slot address = address_of(w, locate(w, root));
     const Slot made = w.new_temporary(reference_slots);
     w.put(Op::lasting, made, address);
-    const std::uint64_t piece = variable ? piece_number(w, *variable) : piece_number(w, *root.type);
-    w.put(Op::move, made + 1, w.constant_slot((piece + 1) << 32));
+    const std::uint64_t piece = variable ? piece_of(w, *variable) : piece_of(w, *root.type);
+    w.put(Op::move, made + 1, w.constant_slot(piece));
     const bool ends = variable && variable->ends_with_call();
     w.put(Op::move, made + 2, ends ? w.routine->activation : w.constant_slot(0));
     return made;
@@ -197,9 +186,9 @@ Slot attempted_reference(Writing& w, const Expression& e) {
     const Slot made = w.new_temporary(reference_slots);
     const Slot at = attempted(w, e, made);
     if (at != made) w.put(Op::move, made, at);
-    const std::uint64_t piece = piece_number(w, *e.type->element);
+    const std::uint64_t piece = piece_of(w, *e.type->element);
     const Slot is_there = w.emit(Op::ne_word, none, made, w.constant_slot(0));
-    w.put(Op::mul_lint, made + 1, is_there, w.constant_slot((piece + 1) << 32));
+    w.put(Op::mul_lint, made + 1, is_there, w.constant_slot(piece));
     w.put(Op::move, made + 2, w.constant_slot(0));
     return made;
 }
@@ -210,13 +199,17 @@ bool is_view(const Expression& refer) {
     return &root_of(place) == &place && place.kind != E::deref;
 }
 
-/// A second view of a variable, which is used at once.
+/// A second view of a variable, which is used at once, and stays as long as it is seen so.
 Slot view_of(Writing& w, const Expression& place, bool is_s7) {
     const Slot made = w.new_temporary(reference_slots);
     const Slot address = address_of(w, locate(w, place));
     w.put(Op::move, made, address);
-    const std::uint64_t piece = view_number(w, *place.variable, is_s7);
-    w.put(Op::move, made + 1, w.constant_slot((piece + 1) << 32));
+    const Variable& variable = *place.variable;
+    const std::uint64_t piece = piece_of(w, w.views, &variable, [&] {
+        return Piece{.name = std::string(variable.text),
+                     .shape = shape_number(w, *variable.type, is_s7)};
+    });
+    w.put(Op::move, made + 1, w.constant_slot(piece));
     return made;
 }
 

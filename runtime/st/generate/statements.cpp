@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "runtime/st/generate/assertions.hpp"
-#include "runtime/st/generate/calls.hpp"
 #include "runtime/st/generate/places.hpp"
-#include "runtime/st/generate/texts.hpp"
 #include "runtime/st/generate/values.hpp"
 
 namespace lineshaft::st {

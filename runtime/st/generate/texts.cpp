@@ -1,13 +1,7 @@
-#include "runtime/st/generate/texts.hpp"
-
 #include <algorithm>
 
 #include "runtime/st/functions/standard.hpp"
-#include "runtime/st/generate/calls.hpp"
-#include "runtime/st/generate/conversions.hpp"
-#include "runtime/st/generate/packed.hpp"
 #include "runtime/st/generate/places.hpp"
-#include "runtime/st/generate/standard_functions.hpp"
 #include "runtime/st/generate/values.hpp"
 
 namespace lineshaft::st {

@@ -1,10 +1,6 @@
 #include "runtime/st/generate/values.hpp"
 
-#include "runtime/st/generate/calls.hpp"
-#include "runtime/st/generate/conversions.hpp"
 #include "runtime/st/generate/places.hpp"
-#include "runtime/st/generate/references.hpp"
-#include "runtime/st/generate/texts.hpp"
 
 namespace lineshaft::st {
 
@@ -46,8 +42,7 @@ Slot comparison(Writing& w, const Expression& e, Slot wanted) {
         return compare(w, e.op, lint_type, compare_references(w, e), w.constant_slot(0), wanted);
     if (left.type->kind == Kind::text) {
         const Slot a = text_address(w, left), b = text_address(w, right);
-        const Slot order = w.emit(Op::text_compare, none, a, b);
-        return compare(w, e.op, lint_type, order, w.constant_slot(0), wanted);
+        return compare_texts(w, e.op, a, b, wanted);
     }
     const Slot a = value_before(w, left, right), b = value(w, right);
     return compare(w, e.op, *left.type, a, b, wanted);
@@ -135,6 +130,11 @@ Op comparison_op(Word relation, const Type& type) {
 Slot compare(Writing& w, Word relation, const Type& type, Slot a, Slot b, Slot wanted) {
     if (is_exchanged(relation)) std::swap(a, b);
     return w.emit(comparison_op(relation, type), wanted, a, b);
+}
+
+Slot compare_texts(Writing& w, Word relation, Slot a, Slot b, Slot wanted) {
+    const Slot order = w.emit(Op::text_compare, none, a, b);
+    return compare(w, relation, lint_type, order, w.constant_slot(0), wanted);
 }
 
 Slot value(Writing& w, const Expression& e, Slot wanted) {

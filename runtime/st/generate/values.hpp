@@ -1,5 +1,6 @@
 #pragma once
 
+#include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/writing.hpp"
 
 namespace lineshaft::st {
@@ -20,7 +21,48 @@ constexpr bool is_exchanged(Word relation) {
 /// Whether a relation of two values holds.
 Slot compare(Writing& w, Word relation, const Type& type, Slot a, Slot b, Slot wanted = none);
 
+/// The same of two texts, by their addresses.
+Slot compare_texts(Writing& w, Word relation, Slot a, Slot b, Slot wanted = none);
+
 /// The slot again; a number that is not of its type is a fault.
 Slot within(Writing& w, const Type& type, Slot slot);
+
+// conversions.cpp
+
+/// Of `?=`: where the instance is, or 0 if it is not of the type.
+Slot attempted(Writing& w, const Expression& e, Slot wanted);
+
+/// An expression that is a conversion.
+Slot converted(Writing& w, const Expression& e, Slot wanted);
+
+/// A number, a time or a boolean in `slot` as one of another type; a real one is rounded, or cut.
+Slot convert(Writing& w, Slot slot, const Type& from, const Type& to, bool truncates, Slot wanted);
+
+// texts.cpp
+
+/// A slot with the address of the value, which is a text.
+Slot text_address(Writing& w, const Expression& e);
+
+/// An empty text among the temporaries, and a slot with its address.
+struct NewText {
+    Slot text, address;
+};
+NewText new_text(Writing& w);
+
+// standard_functions.cpp
+
+/// Of a text, an array or a structure, a slot with its address.
+Slot standard(Writing& w, const Expression& e, Slot wanted);
+
+// calls.cpp
+
+/// Of a function, a method or a standard function.
+Slot call(Writing& w, const Expression& e, Slot wanted);
+
+/// The frame that has the result and the outputs. A call whose arguments call functions themselves
+/// has them first, for they use the same memory; where the places of outputs do, what the function
+/// has made is kept from them.
+Location call_routine(Writing& w, const Expression& e);
+void call_instance(Writing& w, const Expression& e);
 
 }  // namespace lineshaft::st

@@ -92,10 +92,10 @@ struct Writing {
         const Routine* function;
     };
     std::vector<ImageUse> image_uses = {};
-    std::unordered_map<const Variable*, std::uint32_t> pieces = {};
-    std::unordered_map<const Variable*, std::uint32_t> views = {};   ///< pieces of overlays
-    std::unordered_map<const Type*, std::uint32_t> own_pieces = {};  ///< of THIS
-    std::map<IndexTable, std::uint32_t> tables = {};                 ///< their numbers
+    using Pieces = std::unordered_map<const void*, std::uint32_t>;  ///< numbers in Code::pieces
+    Pieces pieces = {};                                             ///< of variables; of types THIS
+    Pieces views = {};                                              ///< of overlays
+    std::map<IndexTable, std::uint32_t> tables = {};                ///< their numbers
 
     /// What is known when all is laid out: so many times the place of a member, or the size of a
     /// type, is the stride of a table, or the distance of an Op::offset.

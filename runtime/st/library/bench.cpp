@@ -30,12 +30,6 @@ std::string written(const Assertion& failed, Place at) {
     return failed.part.empty() ? text : fmt::format("{} at {}", text, failed.part);
 }
 
-std::uint64_t word_at(const std::byte* place) {
-    std::uint64_t value = 0;
-    std::memcpy(&value, place, sizeof value);
-    return value;
-}
-
 }  // namespace
 
 Bench::Bench(const Compiled& made, const Options& options, const Type& unit, Told told)
@@ -117,18 +111,18 @@ bool Bench::ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_
 }
 
 const std::byte* Bench::place(std::uint64_t address) {
-    const std::uint64_t space = address >> 32;
-    return (space == 0 ? root_ : context_.instances[space - 1]) + 8 * (address & 0xFFFF'FFFF);
+    return place_of(address, root_, context_);
 }
 
 std::string_view Bench::text_at(std::uint64_t address) {
     const std::byte* first = place(address);
-    return {reinterpret_cast<const char*>(first + 8), static_cast<std::size_t>(word_at(first))};
+    return {reinterpret_cast<const char*>(first + 8),
+            static_cast<std::size_t>(read<std::uint64_t>(first))};
 }
 
 /// Of the frame that the assertion stands in.
 std::uint64_t Bench::word(std::uint64_t slot) {
-    return word_at(place(frame_ + slot));
+    return read<std::uint64_t>(place(frame_ + slot));
 }
 
 std::string Bench::value(const Type& type, std::uint32_t slot) {
@@ -142,7 +136,7 @@ Place Bench::called_at(Place assertion, std::uint64_t depth) {
     const std::byte* calls = root_ + 8 * std::size_t{code.calls_slot()};
     Place at = assertion;
     while (at.source->is_library() && depth > 0)
-        at = code.places[word_at(calls + 16 * --depth) - 1];
+        at = code.places[read<std::uint64_t>(calls + 16 * --depth) - 1];
     return at;
 }
 

@@ -1,6 +1,6 @@
 #include "runtime/st/library/compiled.hpp"
 
-#include <cstring>
+#include <algorithm>
 #include <set>
 #include <stdexcept>
 
@@ -79,15 +79,11 @@ void make_native(Code& code, const Options& options) {
 
 FaultPlace fault_of(const Code& code, const std::byte* instance) {
     const auto slot = [&](std::uint32_t number) {
-        std::uint64_t value = 0;
-        std::memcpy(&value, instance + 8 * std::size_t{number}, sizeof value);
-        return value;
+        return read<std::uint64_t>(instance + 8 * std::size_t{number});
     };
     const auto place = [&](std::uint64_t instruction) { return code.places[instruction].mark(); };
     const auto routine = [&](std::uint64_t instruction) -> const std::string& {
-        std::size_t i = 0;
-        while (code.routines[i].end <= instruction) ++i;
-        return code.routines[i].name;
+        return std::ranges::upper_bound(code.routines, instruction, {}, &CodeRoutine::end)->name;
     };
     FaultPlace found;
     found.fault = static_cast<Fault>(slot(error_id_slot));
@@ -105,8 +101,7 @@ FaultPlace fault_of(const Code& code, const std::byte* instance) {
 }
 
 std::optional<Mark> cut_of(const Code& code, const std::byte* instance) {
-    std::uint64_t behind = 0;
-    std::memcpy(&behind, instance + 8 * std::size_t{cut_slot}, sizeof behind);
+    const auto behind = read<std::uint64_t>(instance + 8 * std::size_t{cut_slot});
     return behind == 0 ? std::nullopt : std::optional(code.places[behind - 1].mark());
 }
 

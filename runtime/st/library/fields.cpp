@@ -22,32 +22,20 @@ class FieldWriter {
     /// `objects` are the blocks of the program that it names.
     void write_header(const Routine& routine, const std::set<int>& objects) {
         const bool own = routine.names.contains("error") || routine.names.contains("error_id");
-        Field error;
-        error.name = own ? "fault" : "error";
-        error.doc = "the last scan ended with a fault";
-        error.direction = Direction::output;
-        error.type = lineshaft::Type::boolean;
-        error.offset = 8 * error_slot;
-        kind_.fields.push_back(error);
-        Field id = error;
-        id.name = own ? "fault_id" : "error_id";
+        add(own ? "fault" : "error", Direction::output, lineshaft::Type::boolean, 8 * error_slot)
+            .doc = "the last scan ended with a fault";
+        Field& id = add(own ? "fault_id" : "error_id", Direction::output,
+                        lineshaft::Type::enumeration, 8 * error_id_slot);
         id.doc = "the fault of the last scan";
-        id.type = lineshaft::Type::enumeration;
-        id.offset = 8 * error_id_slot;
         id.names = fault_names;
-        kind_.fields.push_back(id);
         for (std::uint32_t i = 0; i < made_.checked.globals.size(); ++i) {
             const Global& global = made_.checked.globals[i];
             if (global.object && !objects.contains(static_cast<int>(i))) continue;
-            Field reference;
-            reference.name = made_.names.emplace_back(fmt::format("\"{}\"", global.name));
+            Field& reference = add(fmt::format("\"{}\"", global.name), Direction::in_out,
+                                   lineshaft::Type::integer, 8 * std::size_t{globals_slot + i});
             reference.global = global.name;
             reference.refers = global.object ? global.type->standard->name : global.name;
             reference.doc = "the program's, by its name";
-            reference.direction = Direction::in_out;
-            reference.type = lineshaft::Type::integer;
-            reference.offset = 8 * std::size_t{globals_slot + i};
-            kind_.fields.push_back(reference);
         }
     }
 
@@ -63,18 +51,14 @@ class FieldWriter {
     /// VAR_IN_OUT: so that a program that has the block itself is told.
     void write_reference(const Variable& variable) {
         if (!variable.type) return;
-        Field reference;
-        reference.name = variable.text;
+        Field& reference = add(std::string(variable.text), Direction::in_out,
+                               lineshaft::Type::integer, 8 * std::size_t{variable.slot});
         reference.refers = made_.names.emplace_back("VAR_IN_OUT " + describe(*variable.type));
         reference.doc = made_.names.emplace_back(fmt::format(
             "a variable ({}) of the block that calls this one; declare an instance in a "
             "PROGRAM, call it there, and use that as a block",
             describe(*variable.type)));
-        reference.direction = Direction::in_out;
-        reference.type = lineshaft::Type::integer;
-        reference.offset = 8 * std::size_t{variable.slot};
         reference.required = true;
-        kind_.fields.push_back(reference);
     }
 
     /// Of a data block, whose variables are all its own.
@@ -93,6 +77,15 @@ class FieldWriter {
     }
 
   private:
+    Field& add(std::string name, Direction direction, lineshaft::Type type, std::size_t offset) {
+        Field& field = kind_.fields.emplace_back();
+        field.name = made_.names.emplace_back(std::move(name));
+        field.direction = direction;
+        field.type = type;
+        field.offset = offset;
+        return field;
+    }
+
     void write(const Type& type, std::size_t offset, const std::string& name, Direction direction,
                const Variable& variable) {
         if (kind_.fields.size() >= Library::most_parts) return;
@@ -134,15 +127,10 @@ class FieldWriter {
     void write_handle(const Type& type, std::size_t offset, const std::string& name,
                       Direction direction) {
         if (direction != Direction::in_out && direction != Direction::input) return;
-        Field field;
-        field.name = made_.names.emplace_back(name);
+        Field& field = add(name, Direction::in_out, lineshaft::Type::integer, offset);
         field.refers = type.standard->name;
         field.doc = type.standard->doc;
-        field.direction = Direction::in_out;
-        field.type = lineshaft::Type::integer;
-        field.offset = offset;
         field.required = true;
-        kind_.fields.push_back(field);
     }
 
     /// `before` is `table[`, or of the next dimension `table[2,`.
@@ -166,17 +154,14 @@ class FieldWriter {
 
     void write_scalar(const Type& type, std::size_t offset, const std::string& name,
                       Direction direction, const Variable& variable) {
-        Field field;
-        field.name = made_.names.emplace_back(name);
+        const auto value = type.kind == Kind::boolean       ? lineshaft::Type::boolean
+                           : type.is_real()                 ? lineshaft::Type::real
+                           : type.kind == Kind::enumeration ? lineshaft::Type::enumeration
+                                                            : lineshaft::Type::integer;
+        Field& field = add(name, direction, value, offset);
         field.unit = type.is_time() ? std::string_view("ns") : std::string_view(variable.unit);
         if (!variable.doc.empty())
             field.doc = made_.names.emplace_back(text_of_comments(variable.doc));
-        field.direction = direction;
-        field.offset = offset;
-        field.type = type.kind == Kind::boolean       ? lineshaft::Type::boolean
-                     : type.is_real()                 ? lineshaft::Type::real
-                     : type.kind == Kind::enumeration ? lineshaft::Type::enumeration
-                                                      : lineshaft::Type::integer;
         if (type.kind == Kind::enumeration)
             field.names = made_.values.emplace_back(type.values.begin(), type.values.end());
         const bool limited = (type.kind == Kind::integer || type.kind == Kind::bits) &&
@@ -193,7 +178,6 @@ class FieldWriter {
         const bool wired = direction == Direction::input;
         if (wired && (limited || (type.is_real() && type.bits == 32)))
             kind_.checks.push_back({static_cast<std::uint32_t>(offset / 8), &type});
-        kind_.fields.push_back(field);
     }
 
     Library::Made& made_;

@@ -104,8 +104,8 @@ class Fields {
         ImageKind& kind = made_.image;
         PackedFormat format{PackedFormat::Coding::bit, 1, false, 0};
         if (address.bits > 1) format = packed_format(type, dialect).value();
-        kind.places.push_back({8 * (image_.begin(address.area) + address.byte) + address.bit,
-                               format, address.area != ImageAddress::Area::output});
+        kind.places.push_back(
+            {image_.bit_of(address), format, address.area != ImageAddress::Area::output});
         Field field = field_of(type, address);
         field.name = made_.names.emplace_back(name);
         field.offset = kind.bytes + 16 * (kind.places.size() - 1);

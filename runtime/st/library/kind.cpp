@@ -19,14 +19,11 @@ using Kind = Type::Kind;
 bool is_in_range(const KindContext::Check& check, std::byte* instance) {
     std::byte* place = instance + 8 * std::size_t{check.slot};
     if (check.type->is_real()) {
-        double value = 0;
-        std::memcpy(&value, place, sizeof value);
-        const double narrow = double{static_cast<float>(value)};
+        const double narrow = double{static_cast<float>(read<double>(place))};
         std::memcpy(place, &narrow, sizeof narrow);
         return true;
     }
-    std::int64_t value = 0;
-    std::memcpy(&value, place, sizeof value);
+    const auto value = read<std::int64_t>(place);
     return value >= smallest(*check.type) && value <= largest(*check.type);
 }
 
@@ -45,11 +42,9 @@ bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
         if (!kind.failure.empty()) refuse(kind, instance, Fault::assertion);
         return !kind.failure.empty();
     }
-    for (const std::uint32_t slot : kind.references) {
-        std::uint64_t address = 0;
-        std::memcpy(&address, instance + 8 * std::size_t{slot}, sizeof address);
-        if (address == 0) return refuse(kind, instance, Fault::no_reference);
-    }
+    for (const std::uint32_t slot : kind.references)
+        if (read<std::uint64_t>(instance + 8 * std::size_t{slot}) == 0)
+            return refuse(kind, instance, Fault::no_reference);
     for (const KindContext::Check& check : kind.checks)
         if (!is_in_range(check, instance)) return refuse(kind, instance, Fault::out_of_range);
     Scan moment = now;
@@ -127,38 +122,30 @@ void take(std::byte* block, const std::byte* kept, const void* context) {
     visit(*kind.type, 0, [&](const Type& type, std::size_t slot) { copy(slot, slots_of(type)); });
 }
 
-bool is_at(const Type& type, std::size_t slot, const Type& wanted);
+std::size_t slots_in_memory(const Type& type) {
+    if (type.kind == Kind::block) return type.routine->frame;
+    if (type.kind != Kind::array) return slots_of(type);
+    return static_cast<std::size_t>(type.upper - type.lower + 1) * element_slots(type);
+}
 
-/// A part of an instance that outlives a scan.
-bool is_in_block(const Type& block, std::size_t slot, const Type& wanted) {
-    return std::ranges::any_of(all_variables(*block.routine), [&](const Variable* variable) {
-        const bool stays = variable->type && variable->section != Section::temp &&
-                           variable->space == Space::frame && !variable->constant;
-        return stays && slot >= variable->slot &&
-               is_at(*variable->type, slot - variable->slot, wanted);
+/// Something that `fits` begins at that slot of a value: itself, or a part of it; of a block one of
+/// those that `may_be`.
+bool is_at(const Type& type, std::size_t slot, const auto& fits, const auto& may_be) {
+    if (slot == 0 && fits(type)) return true;
+    if (slot >= slots_in_memory(type)) return false;
+    if (type.kind == Kind::array)
+        return is_at(*type.element, slot % element_slots(type), fits, may_be);
+    const bool is_block = type.kind == Kind::block;
+    const auto parts = is_block ? all_variables(*type.routine) : type.members;
+    return std::ranges::any_of(parts, [&](const Variable* part) {
+        return part->type && slot >= part->slot && (!is_block || may_be(*part)) &&
+               is_at(*part->type, slot - part->slot, fits, may_be);
     });
 }
 
-/// A value of that type, or an instance, begins there.
-bool is_at(const Type& type, std::size_t slot, const Type& wanted) {
-    const bool is_derived = type.kind == Kind::block && wanted.kind == Kind::block &&
-                            is_a(*type.routine, *wanted.routine);
-    if (slot == 0 && (is_derived || same_type(type, wanted))) return true;
-    switch (type.kind) {
-        case Kind::array: {
-            const auto count = static_cast<std::size_t>(type.upper - type.lower + 1);
-            const std::size_t slots = element_slots(type);
-            return slots > 0 && slot / slots < count && is_at(*type.element, slot % slots, wanted);
-        }
-        case Kind::structure:
-            return std::ranges::any_of(type.members, [&](const Variable* member) {
-                return slot >= member->slot && is_at(*member->type, slot - member->slot, wanted);
-            });
-        case Kind::block:
-            return is_in_block(type, slot, wanted);
-        default:
-            return false;
-    }
+/// A part of an instance that outlives a scan.
+bool stays(const Variable& part) {
+    return part.section != Section::temp && part.space == Space::frame && !part.constant;
 }
 
 /// NULL, or to a variable that is there. One of a call is used only while that goes on, and is then
@@ -176,35 +163,18 @@ bool is_reference(const std::byte* place, const KeptState& machine) {
     const BlockType& type = *machine.context.types[instance - 1];
     if (type.scan_blocks != scan_blocks) return false;
     const auto& kind = *static_cast<const KindContext*>(type.context);
-    return kind.code == own.code &&
-           is_at(*kind.type, address & 0xFFFF'FFFF, *own.code->shapes[to.shape].type);
+    const Type& wanted = *own.code->shapes[to.shape].type;
+    const auto fits = [&](const Type& there) {
+        const bool is_derived = there.kind == Kind::block && wanted.kind == Kind::block &&
+                                is_a(*there.routine, *wanted.routine);
+        return is_derived || same_type(there, wanted);
+    };
+    return kind.code == own.code && is_at(*kind.type, address & 0xFFFF'FFFF, fits, stays);
 }
 
 bool is_handle(const Type& type, std::int64_t number, const Context& context) {
     if (number < 0) return number == -1;
     return number < context.blocks && context.types[number] == type.standard;
-}
-
-std::size_t slots_in_memory(const Type& type) {
-    if (type.kind == Kind::block) return type.routine->frame;
-    if (type.kind != Kind::array) return slots_of(type);
-    return static_cast<std::size_t>(type.upper - type.lower + 1) * element_slots(type);
-}
-
-/// The block whose instance begins at slot `wanted`, in what begins at `slot`; null: none does.
-const Routine* instance_at(const Type& type, std::size_t slot, std::size_t wanted) {
-    if (wanted < slot || wanted - slot >= slots_in_memory(type)) return nullptr;
-    if (type.kind == Kind::array) {
-        const std::size_t one = element_slots(type);
-        return instance_at(*type.element, wanted - (wanted - slot) % one, wanted);
-    }
-    if (type.kind == Kind::block && slot == wanted) return type.routine;
-    const auto parts = type.kind == Kind::block ? all_variables(*type.routine) : type.members;
-    for (const Variable* part : parts)
-        if (part->type && part->space != Space::reference && part->space != Space::constant)
-            if (const Routine* found = instance_at(*part->type, slot + part->slot, wanted))
-                return found;
-    return nullptr;
 }
 
 /// 0, or the address of an instance of the program that implements the interface.
@@ -215,8 +185,13 @@ bool is_instance(const Type& interface, std::uint64_t address, const Context& co
     const BlockType& kind = *context.types[number];
     if (kind.scan_blocks != scan_blocks) return false;
     const Type& type = *static_cast<const KindContext*>(kind.context)->type;
-    const Routine* found = instance_at(type, 0, address & 0xFFFF'FFFF);
-    return found && is_a(*found, *interface.routine);
+    const auto implements = [&](const Type& there) {
+        return there.kind == Kind::block && is_a(*there.routine, *interface.routine);
+    };
+    const auto may_be = [](const Variable& part) {
+        return part.space != Space::reference && part.space != Space::constant;
+    };
+    return is_at(type, address & 0xFFFF'FFFF, implements, may_be);
 }
 
 bool is_value(const Type& type, const std::byte* place, const KeptState& machine) {

@@ -25,8 +25,8 @@ void add_routine(Library::Made& made, const Routine& routine, const CodeRoutine&
 
 /// Of those whose names are here without them, too.
 bool is_here(const Catalog& standard, std::string_view library) {
-    const auto is_it = [&](const LibraryFile& file) { return same_name(file.library, library); };
-    return is_vendor_library(library) || std::ranges::any_of(standard.libraries(), is_it);
+    return is_vendor_library(library) ||
+           find_called(standard.libraries(), library, &LibraryFile::library);
 }
 
 }  // namespace

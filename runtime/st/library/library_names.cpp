@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <deque>
 #include <mutex>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -236,46 +235,35 @@ void LibraryNames::note_pins(const Tree& tree) {
     }
 }
 
-std::size_t LibraryNames::pins_among(std::string_view text, std::string_view name) const {
-    const auto named = pins_.find(name);
-    if (named == pins_.end()) return 0;
+/// Of the pins that the sources name of theirs; empty where they name none, or it is no block.
+std::optional<std::size_t> LibraryNames::pins_of(const LibraryFile& file,
+                                                 std::string_view name) const {
+    const NameSet* named = find_in(pins_, name);
+    std::string_view unit = block_in(file, name);
+    if (!named || named->empty() || unit.empty()) return {};
     NameSet words;
-    for (std::string_view word = first_word(text); !word.empty(); word = first_word(text))
+    for (std::string_view word = first_word(unit); !word.empty(); word = first_word(unit))
         words.insert(word);
-    return static_cast<std::size_t>(std::ranges::count_if(
-        named->second, [&](std::string_view pin) { return words.contains(pin); }));
-}
-
-std::size_t LibraryNames::pins_of(const LibraryFile& file, std::string_view name) const {
-    const std::string_view unit = block_in(file, name);
-    return pins_among(unit.substr(0, unit.rfind("END_VAR")), name);
-}
-
-/// Nothing that the sources name of theirs is in it.
-bool LibraryNames::is_other(const LibraryFile& file, std::string_view name) const {
-    const auto named = pins_.find(name);
-    const std::string_view unit = block_in(file, name);
-    return named != pins_.end() && !named->second.empty() && !unit.empty() &&
-           pins_among(unit, name) == 0;
+    return std::ranges::count_if(*named, [&](auto pin) { return words.contains(pin); });
 }
 
 std::size_t LibraryNames::pins_of_catalog(std::string_view name) const {
     const BlockType* type = catalog_.find(name);
-    const auto named = pins_.find(name);
-    if (!type || named == pins_.end()) return 0;
+    const NameSet* named = find_in(pins_, name);
+    if (!type || !named) return 0;
     const auto is_its = [&](std::string_view pin) {
         return std::ranges::any_of(type->fields, [&](const Field& field) {
             return same_name(field.name, pin) || same_name(field.name, standard_part_name(pin));
         });
     };
-    return static_cast<std::size_t>(std::ranges::count_if(named->second, is_its));
+    return static_cast<std::size_t>(std::ranges::count_if(*named, is_its));
 }
 
 const LibraryFile* LibraryNames::choose(std::string_view name) const {
     std::vector<const LibraryFile*> files = index_.by_name.at(name);
-    std::erase_if(files, [&](const LibraryFile* file) { return is_other(*file, name); });
+    std::erase_if(files, [&](const LibraryFile* file) { return pins_of(*file, name) == 0; });
     if (files.empty()) return nullptr;
-    const auto pins = [&](const LibraryFile* file) { return pins_of(*file, name); };
+    const auto pins = [&](const LibraryFile* file) { return pins_of(*file, name).value_or(0); };
     const std::size_t most = pins(*std::ranges::max_element(files, {}, pins));
     std::erase_if(files, [&](const LibraryFile* file) { return pins(file) < most; });
     if (index_.of_catalog.contains(name) && most > pins_of_catalog(name)) return files.front();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <vector>
@@ -49,9 +50,7 @@ class LibraryNames {
     void note_names(const Tree& tree, bool are_users);
     void note_qualified(const Tokens& tokens, std::size_t at);
     void note_pins(const Tree& tree);
-    std::size_t pins_among(std::string_view text, std::string_view name) const;
-    std::size_t pins_of(const LibraryFile& file, std::string_view name) const;
-    bool is_other(const LibraryFile& file, std::string_view name) const;
+    std::optional<std::size_t> pins_of(const LibraryFile& file, std::string_view name) const;
     std::size_t pins_of_catalog(std::string_view name) const;
     const LibraryFile* choose(std::string_view name) const;
     void take(const LibraryFile& file);

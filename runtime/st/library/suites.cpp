@@ -42,16 +42,9 @@ struct Entry {
     bool finished = false, skipped = false;
 };
 
-std::uint64_t read_word(const std::byte* place) {
-    std::uint64_t value = 0;
-    std::memcpy(&value, place, sizeof value);
-    return value;
-}
-
 const Variable* find(std::span<Variable* const> variables, std::string_view name) {
-    const auto it = std::ranges::find_if(
-        variables, [&](const Variable* variable) { return same_name(variable->text, name); });
-    return it == variables.end() ? nullptr : *it;
+    const auto* found = find_called(variables, name, &Variable::text);
+    return found ? *found : nullptr;
 }
 
 /// A run of all suites.
@@ -120,9 +113,7 @@ class Suites {
         if (variable) *variable = found;
         return bench_.global(0) + 8 * std::size_t{state.slot + found->slot};
     }
-    std::int64_t get(std::string_view name) {
-        return static_cast<std::int64_t>(read_word(place(name)));
-    }
+    std::int64_t get(std::string_view name) { return read<std::int64_t>(place(name)); }
     void set(std::string_view name, std::int64_t value) {
         std::memcpy(place(name), &value, sizeof value);
     }
@@ -137,11 +128,10 @@ class Suites {
             return at + 8 * std::size_t{find(type.members, name)->slot};
         };
         const std::byte* name = part("name");
-        return {
-            static_cast<std::int64_t>(read_word(part("suite"))),
-            {reinterpret_cast<const char*>(name + 8), static_cast<std::size_t>(read_word(name))},
-            read_word(part("finished")) != 0,
-            read_word(part("skipped")) != 0};
+        return {read<std::int64_t>(part("suite")),
+                {reinterpret_cast<const char*>(name + 8), read<std::uint64_t>(name)},
+                read<std::uint64_t>(part("finished")) != 0,
+                read<std::uint64_t>(part("skipped")) != 0};
     }
 
     void call_suites() {
@@ -157,19 +147,20 @@ class Suites {
                 8 * suite.slot;
             const TestResult result = bench_.run(code_of(*suite.block), instance);
             if (!result.failure.empty()) note_fault(i, result);
-            suite.is_done = !result.failure.empty() || is_finished(i);
+            suite.is_done = !result.failure.empty() || open_tests(i).empty();
             if (in_sequence && !suite.is_done) return;
         }
     }
 
-    bool is_finished(std::size_t suite) {
+    /// The numbers of its tests that are not finished.
+    std::vector<std::int64_t> open_tests(std::size_t suite) {
+        std::vector<std::int64_t> open;
         for (std::int64_t i = 1; i <= get("number_of_tests"); ++i) {
             const Entry test = entry(i);
-            if (test.suite == static_cast<std::int64_t>(suite) + 1 && !test.finished &&
-                !test.skipped)
-                return false;
+            const bool is_its = test.suite == static_cast<std::int64_t>(suite) + 1;
+            if (is_its && !test.finished && !test.skipped) open.push_back(i);
         }
-        return true;
+        return open;
     }
 
     bool tell(TestResult result) {
@@ -179,13 +170,9 @@ class Suites {
 
     /// Of the tests that are not finished those that ran fail with it.
     void note_fault(std::size_t suite, const TestResult& result) {
-        for (std::int64_t i = 1; i <= get("number_of_tests"); ++i) {
-            const Entry test = entry(i);
-            if (test.suite == static_cast<std::int64_t>(suite) + 1 && !test.finished &&
-                !test.skipped)
-                failed_.emplace(i, result);
-        }
-        if (is_finished(suite)) faults_.push_back({suite, result});
+        const auto open = open_tests(suite);
+        for (const std::int64_t test : open) failed_.emplace(test, result);
+        if (open.empty()) faults_.push_back({suite, result});
     }
 
     /// The call that begins it.

@@ -10,29 +10,16 @@ namespace lineshaft::st {
 const Dialect iec = {.sign_precedes_power = true,
                      .constants_have_values = true,
                      .quotes_may_enclose_texts = true,
-                     .named_inputs_may_be_left_out = true,
-                     .sets_variables_of_instances = false,
-                     .real_results_reckon_as_real = false,
-                     .dint_becomes_real = false,
-                     .numbers_stand_for_names = false,
-                     .texts_of_integers_have_signs = false};
+                     .named_inputs_may_be_left_out = true};
 
 const Dialect codesys = {.sign_precedes_power = true,
-                         .constants_have_values = false,
                          .quotes_may_enclose_texts = true,
                          .named_inputs_may_be_left_out = true,
-                         .sets_variables_of_instances = false,
-                         .real_results_reckon_as_real = false,
                          .dint_becomes_real = true,
-                         .numbers_stand_for_names = false,
-                         .texts_of_integers_have_signs = false,
                          .bits_count_in_reals = true,
                          .is_loose = true};
 
 const Dialect scl = {.sign_precedes_power = false,
-                     .constants_have_values = false,
-                     .quotes_may_enclose_texts = false,
-                     .named_inputs_may_be_left_out = false,
                      .sets_variables_of_instances = true,
                      .real_results_reckon_as_real = true,
                      .dint_becomes_real = true,

@@ -7,16 +7,16 @@ namespace lineshaft::st {
 /// What one language of the name Structured Text means where another means something else. A source
 /// has one dialect for good, see Source. All else is read alike in all of them.
 struct Dialect {
-    bool sign_precedes_power;           ///< `-2 ** 2` is 4, else -4
-    bool constants_have_values;         ///< VAR CONSTANT without `:=` is a mistake, else 0
-    bool quotes_may_enclose_texts;      ///< an undeclared `"..."` may be meant as a text
-    bool named_inputs_may_be_left_out;  ///< of a function, where it has no value for them
-    bool sets_variables_of_instances;   ///< `instance.x := 1;` also of VAR and VAR_OUTPUT
-    bool real_results_reckon_as_real;   ///< a DINT and a REAL make a REAL where one is due
-    bool dint_becomes_real;             ///< although a REAL does not hold every DINT: a warning
-    bool numbers_stand_for_names;       ///< 1 for `mcPositiveDirection`, as Siemens counts them
-    bool texts_of_integers_have_signs;  ///< INT_TO_STRING(5) is '+5', else '5'
-    bool bits_count_in_reals = false;   ///< DWORD_TO_REAL(1) is 1.0, else the REAL of these bits
+    bool sign_precedes_power = false;           ///< `-2 ** 2` is 4, else -4
+    bool constants_have_values = false;         ///< VAR CONSTANT without `:=` is a mistake, else 0
+    bool quotes_may_enclose_texts = false;      ///< an undeclared `"..."` may be meant as a text
+    bool named_inputs_may_be_left_out = false;  ///< of a function, where it has no value for them
+    bool sets_variables_of_instances = false;   ///< `instance.x := 1;` also of VAR and VAR_OUTPUT
+    bool real_results_reckon_as_real = false;   ///< a DINT and a REAL make a REAL where one is due
+    bool dint_becomes_real = false;        ///< although a REAL does not hold every DINT: a warning
+    bool numbers_stand_for_names = false;  ///< 1 for `mcPositiveDirection`, as Siemens counts them
+    bool texts_of_integers_have_signs = false;  ///< INT_TO_STRING(5) is '+5', else '5'
+    bool bits_count_in_reals = false;  ///< DWORD_TO_REAL(1) is 1.0, else the REAL of these bits
     bool is_loose =
         false;  ///< `f(a, )`, `RETURN(done);`, `;;`, CONCAT(STR1 := a), PROGRAMs by name
     bool packs_as_s7 = false;  ///< bytes of packed memory: the highest first, words even

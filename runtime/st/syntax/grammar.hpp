@@ -1,6 +1,7 @@
 #pragma once
 
-#include "runtime/st/syntax/parsing.hpp"
+#include "runtime/st/syntax/mistakes.hpp"
+#include "runtime/st/syntax/recovery.hpp"
 
 /// The rules of the grammar that others use, each read by a function that its rule stands above, in
 /// parse_*.cpp. A rule is written as in IEC 61131-3:2013, Annex A, and has its name there where it

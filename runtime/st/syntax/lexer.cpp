@@ -107,9 +107,12 @@ class Lexer {
             {tokens_.tokens.size(), new_line_, place(begin, std::min(at_ + 1, text_.size()))});
     }
 
-    /// Stops before the end of the line.
-    void skip_line() {
+    void skip_to_end_of_line() {
         skip_while([](char c) { return c != '\n'; });
+    }
+    /// Stops at the line's last character.
+    void skip_line() {
+        skip_to_end_of_line();
         --at_;
     }
 
@@ -197,12 +200,14 @@ class Lexer {
         if (says_pragma(text, "if")) {
             choices_.push_back(pragma);
             if (!holds(text, defined_)) skip_part(true);
-        } else if (says_pragma(text, "elsif") || says_pragma(text, "else")) {
-            if (!choices_.empty()) skip_part(false);
-        } else if ((says_pragma(text, "end_if") || says_pragma(text, "endif")) &&
-                   !choices_.empty()) {
+        } else if (!choices_.empty() && (says_pragma(text, "elsif") || says_pragma(text, "else"))) {
+            skip_part(false);
+        } else if (!choices_.empty() && ends_choice(text)) {
             choices_.pop_back();
         }
+    }
+    static bool ends_choice(std::string_view pragma) {
+        return says_pragma(pragma, "end_if") || says_pragma(pragma, "endif");
     }
 
     /// Stops at the last character of the pragma that ends the part.
@@ -213,7 +218,7 @@ class Lexer {
             const std::size_t end = std::min(text_.find('}', at_), text_.size() - 1);
             const std::string_view pragma = text_.substr(at_, end + 1 - at_);
             at_ = end;
-            const bool ends = says_pragma(pragma, "end_if") || says_pragma(pragma, "endif");
+            const bool ends = ends_choice(pragma);
             if (ends && inner == 0) return choices_.pop_back();
             inner += says_pragma(pragma, "if");
             inner -= ends;
@@ -251,8 +256,7 @@ class Lexer {
         for (const Sign& sign : signs()) {
             if (!at(sign.text)) continue;
             at_ += sign.text.size();
-            add(sign.word);
-            return;
+            return void(add(sign.word));
         }
         read_foreign();
     }
@@ -260,22 +264,18 @@ class Lexer {
     void read_word() {
         skip_name();
         const std::string_view text = text_.substr(start_, at_ - start_);
-        const bool after_dot = !tokens_.tokens.empty() && tokens_.tokens.back().word == Word::dot;
+        const bool after_dot = is_after_dot();
         if (peek() == '#') return read_prefix(text);
         if (const auto word = read_letter_assign(text)) {
             ++at_;
-            add(*word);
-            return;
+            return void(add(*word));
         }
         if (skip_picture(text)) return;
         const std::optional<Word> word = word_of(text);
         const bool is_variable = word == Word::region_ && (!new_line_ || is_declared_or_assigned());
-        if (!word || after_dot || is_variable) {
-            add(Word::name);
-            return;
-        }
+        if (!word || after_dot || is_variable) return void(add(Word::name));
         add(*word);
-        if (word == Word::region_ || word == Word::end_region_) skip_title();
+        if (word == Word::region_ || word == Word::end_region_) skip_to_end_of_line();  // a title
     }
 
     /// `REF=`, and behind what may be assigned `S=` and `R=`.
@@ -306,22 +306,15 @@ class Lexer {
         return end != std::string_view::npos;
     }
 
-    /// `REGION any text`: up to the end of the line.
-    void skip_title() {
-        skip_while([](char c) { return c != '\n'; });
-    }
-
     void read_prefix(std::string_view text) {
         add(Word::prefix);
         start_ = ++at_;
-        const auto is_prefix = [&](std::string_view p) { return same_name(p, text); };
-        if (std::ranges::any_of(date_prefixes, is_prefix) && is_digit(peek())) {
+        if (find_called(date_prefixes, text) && is_digit(peek())) {
             skip_while(
                 [](char c) { return is_digit(c) || c == '_' || c == '-' || c == ':' || c == '.'; });
-            add(Word::duration);
-            return;
+            return void(add(Word::duration));
         }
-        if (std::ranges::none_of(time_prefixes, is_prefix)) return;
+        if (!find_called(time_prefixes, text)) return;
         if (peek() == '-' || peek() == '+') ++at_;
         skip_while([](char c) { return is_letter(c) || is_digit(c) || c == '.'; });
         add(Word::duration);
@@ -333,11 +326,10 @@ class Lexer {
         if (peek() == '#') {
             ++at_;
             skip_while([](char c) { return is_letter(c) || is_digit(c); });
-            add(Word::integer);
-            return;
+            return void(add(Word::integer));
         }
         bool real = false;
-        if (peek() == '.' && is_digit(peek(1)) && !after_partial_dot()) {
+        if (peek() == '.' && is_digit(peek(1)) && !is_after_dot()) {
             real = true;
             ++at_;
             digits();
@@ -351,8 +343,8 @@ class Lexer {
         add(real ? Word::real : Word::integer);
     }
 
-    /// After `word.` a number is that of a bit.
-    bool after_partial_dot() const {
+    /// After `word.` a number is that of a bit, and a word a name.
+    bool is_after_dot() const {
         return !tokens_.tokens.empty() && tokens_.tokens.back().word == Word::dot;
     }
 
@@ -412,7 +404,7 @@ class Lexer {
     void read_direct() {
         ++at_;
         skip_while([](char c) { return is_letter(c) || is_digit(c); });
-        const bool partial = after_partial_dot();
+        const bool partial = is_after_dot();
         while (!partial && peek() == '.' && is_digit(peek(1))) {
             ++at_;
             skip_while(is_digit);
@@ -430,11 +422,7 @@ class Lexer {
             return out_.add(code::look_alike_character, here.mark(),
                             fmt::format("{} stands where {} is meant", alike->name, alike->instead),
                             fmt::format("type {}", alike->instead));
-        if (last_foreign_ == start_) {
-            last_foreign_ = at_;
-            return;
-        }
-        last_foreign_ = at_;
+        if (std::exchange(last_foreign_, at_) == start_) return;
         if (!character.valid || is_control(character.code) || character.code == 0xFFFD)
             return fail_as_binary(here);
         fail(here, fmt::format("'{}' has no meaning here", here.text()),

@@ -2,25 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "runtime/source/codes.hpp"
 #include "runtime/st/syntax/grammar.hpp"
 #include "runtime/st/syntax/literals.hpp"
-#include "runtime/st/syntax/recovery.hpp"
 
 namespace lineshaft::st {
 
 namespace {
-
-struct Unsupported {
-    Word word;
-    std::string_view what, instead;
-};
-
-constexpr Unsupported unsupported[] = {
-    {Word::test_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
-    {Word::setup_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
-    {Word::teardown_, "TESTs in a program are", "put them into a file for 'lineshaft test'"},
-};
 
 std::string another_name(const Cursor& p) {
     return fmt::format("take another name, or write it in quotes: \"{}\"", p.here().text);
@@ -55,16 +42,11 @@ std::string habit_of_signs(const Cursor& p) {
     return {};
 }
 
-bool is_elementary(std::string_view name) {
-    return std::ranges::any_of(elementary_names,
-                               [&](std::string_view known) { return same_name(known, name); });
-}
-
 }  // namespace
 
 std::string habit(const Parsing& p) {
     if (std::string of_signs = habit_of_signs(p); !of_signs.empty()) return of_signs;
-    if (p.is_in_body && p.is_name() && is_elementary(p.last().text))
+    if (p.is_in_body && p.is_name() && find_called(elementary_names, p.last().text))
         return "variables are declared in VAR ... END_VAR";
     if (p.is(Word::assign) && !p.is_in_body)
         return "statements stand in a PROGRAM, FUNCTION_BLOCK or FUNCTION";
@@ -81,10 +63,9 @@ bool refuse_unsupported(Parsing& p) {
         fail(p, code::something_else_expected, p.here().place, "'^' is not a power", "write '**'");
         return true;
     }
-    const auto* it = std::ranges::find(unsupported, p.here().word, &Unsupported::word);
-    if (it == std::end(unsupported)) return false;
-    fail(p, code::not_supported, p.here().place, fmt::format("{} not supported", it->what),
-         std::string(it->instead));
+    if (!p.is(Word::test_) && !p.is(Word::setup_) && !p.is(Word::teardown_)) return false;
+    fail(p, code::not_supported, p.here().place, "TESTs in a program are not supported",
+         "put them into a file for 'lineshaft test'");
     return true;
 }
 

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
-#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/grammar.hpp"
-#include "runtime/st/syntax/recovery.hpp"
 
 namespace lineshaft::st {
 

@@ -1,7 +1,4 @@
-#include "runtime/source/codes.hpp"
 #include "runtime/st/syntax/grammar.hpp"
-#include "runtime/st/syntax/mistakes.hpp"
-#include "runtime/st/syntax/recovery.hpp"
 #include "runtime/st/syntax/remarks.hpp"
 
 namespace lineshaft::st {

@@ -1,8 +1,5 @@
-#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/grammar.hpp"
-#include "runtime/st/syntax/mistakes.hpp"
-#include "runtime/st/syntax/recovery.hpp"
 #include "runtime/st/syntax/remarks.hpp"
 
 namespace lineshaft::st {

@@ -1,44 +1,29 @@
 #include <array>
 
 #include "runtime/st/syntax/grammar.hpp"
-#include "runtime/st/syntax/mistakes.hpp"
-#include "runtime/st/syntax/recovery.hpp"
 
 namespace lineshaft::st {
 
 namespace {
 
-struct Binary {
-    Word word;
-    int binding;
-};
-
-// IEC 61131-3:2013, table 71.
-constexpr int power_binding = 8;
-constexpr Binary binaries[] = {{Word::power, power_binding},
-                               {Word::times, 7},
-                               {Word::divided, 7},
-                               {Word::mod_, 7},
-                               {Word::plus, 6},
-                               {Word::minus, 6},
-                               {Word::less, 5},
-                               {Word::less_or_equal, 5},
-                               {Word::greater, 5},
-                               {Word::greater_or_equal, 5},
-                               {Word::equal, 4},
-                               {Word::unequal, 4},
-                               {Word::and_, 3},
-                               {Word::ampersand, 3},
-                               {Word::and_then_, 3},
-                               {Word::xor_, 2},
-                               {Word::or_, 1},
-                               {Word::or_else_, 1}};
+// IEC 61131-3:2013, table 71: what binds as strong, from the weakest on.
+constexpr std::initializer_list<Word> operators[] = {
+    {Word::or_, Word::or_else_},
+    {Word::xor_},
+    {Word::and_, Word::ampersand, Word::and_then_},
+    {Word::equal, Word::unequal},
+    {Word::less, Word::less_or_equal, Word::greater, Word::greater_or_equal},
+    {Word::plus, Word::minus},
+    {Word::times, Word::divided, Word::mod_},
+    {Word::power}};
+constexpr int power_binding = std::size(operators);
 
 /// How strong a word binds as an operator; 0: it is none.
 constexpr auto bindings = [] {
     std::array<int, 256> made{};
-    for (const Binary& binary : binaries)
-        made[static_cast<std::size_t>(binary.word)] = binary.binding;
+    for (int binding = 1; binding <= power_binding; ++binding)
+        for (const Word word : operators[binding - 1])
+            made[static_cast<std::size_t>(word)] = binding;
     return made;
 }();
 

@@ -1,6 +1,4 @@
 #include "runtime/st/syntax/grammar.hpp"
-#include "runtime/st/syntax/mistakes.hpp"
-#include "runtime/st/syntax/recovery.hpp"
 
 namespace lineshaft::st {
 

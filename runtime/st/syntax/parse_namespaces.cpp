@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include "runtime/st/syntax/grammar.hpp"
-#include "runtime/st/syntax/recovery.hpp"
 
 namespace lineshaft::st {
 

@@ -1,8 +1,6 @@
 #include <utility>
 
 #include "runtime/st/syntax/grammar.hpp"
-#include "runtime/st/syntax/mistakes.hpp"
-#include "runtime/st/syntax/recovery.hpp"
 
 namespace lineshaft::st {
 
@@ -69,10 +67,7 @@ void parse_value_alone(Parsing& p, Expression* value, Block& to) {
     const bool is_name =
         value->kind == Expression::Kind::name || value->kind == Expression::Kind::member;
     if (!is_name || !p.is(Word::semicolon)) return refuse_value(p, *value);
-    Statement* statement = p.make(Statement::Kind::action, value->token);
-    statement->place = value->place;
-    statement->value = value;
-    to.push_back(statement);
+    to.push_back(p.make(Statement::Kind::action, value));
     p.take();
 }
 
@@ -92,10 +87,7 @@ void parse_simple(Parsing& p, Block& to) {
     if (p.is(Word::name) && p.says("access") && (p.is_name(1) || p.next().word == Word::open))
         return parse_access_statement(p, target, to);
     if (target->kind != Expression::Kind::call) return parse_value_alone(p, target, to);
-    Statement* statement = p.make(Statement::Kind::call, target->token);
-    statement->place = target->place;
-    statement->value = target;
-    to.push_back(statement);
+    to.push_back(p.make(Statement::Kind::call, target));
     end_statement(p);
 }
 
@@ -111,26 +103,24 @@ Expression* parse_condition(Parsing& p, Word end, std::string_view where) {
 
 /// IF_Stmt : 'IF' Expression 'THEN' Stmt_List ( 'ELSIF' Expression 'THEN' Stmt_List ) *
 ///           ( 'ELSE' Stmt_List ) ? 'END_IF'
-void parse_if(Parsing& p, Block& to) {
+void parse_if(Parsing& p, Statement& statement) {
     const Token opener = p.take();
-    Statement* statement = p.make(Statement::Kind::if_, opener);
     const std::size_t else_ifs = p.else_ifs.size();
     do {
         Branch branch;
         branch.condition = parse_condition(p, Word::then_, "after the condition");
         if (p.panic) skip_to_statement(p);
         parse_statements(p, branch.body, Word::end_if_);
-        statement->branches.push_back(std::move(branch));
+        statement.branches.push_back(std::move(branch));
     } while (p.accept(Word::elsif_));
     if (p.is(Word::else_)) {
         const Token word = p.take();
         if (p.is(Word::if_) && !p.here().first_in_line)
             p.else_ifs.push_back(word.place.to(p.here().place));
-        parse_statements(p, statement->body, Word::end_if_);
+        parse_statements(p, statement.body, Word::end_if_);
     }
     close(p, Word::end_if_, opener);
     p.else_ifs.resize(else_ifs);
-    to.push_back(statement);
 }
 
 /// Case_Selection : Case_List ':' Stmt_List
@@ -150,66 +140,58 @@ Branch parse_selection(Parsing& p) {
 }
 
 /// Case_Stmt : 'CASE' Expression 'OF' Case_Selection * ( 'ELSE' ':' ? Stmt_List ) ? 'END_CASE'
-void parse_case(Parsing& p, Block& to) {
+void parse_case(Parsing& p, Statement& statement) {
     const Token opener = p.take();
-    Statement* statement = p.make(Statement::Kind::case_, opener);
-    statement->value = parse_condition(p, Word::of_, "after the selector");
+    statement.value = parse_condition(p, Word::of_, "after the selector");
     if (p.panic) skip_to_statement(p);
     ++p.cases;
-    const auto at_first = [&] { return statement->branches.empty() && p.is(Word::name); };
+    const auto at_first = [&] { return statement.branches.empty() && p.is(Word::name); };
     while (!p.panic && (p.at_label() || at_first()))
-        statement->branches.push_back(parse_selection(p));
+        statement.branches.push_back(parse_selection(p));
     --p.cases;
     if (p.accept(Word::else_)) {
         p.accept(Word::colon);
-        parse_statements(p, statement->body, Word::end_case_);
+        parse_statements(p, statement.body, Word::end_case_);
     }
     close(p, Word::end_case_, opener);
-    to.push_back(statement);
 }
 
 /// For_Stmt : 'FOR' Variable_Access ':=' For_List 'DO' Stmt_List 'END_FOR'
 /// For_List : Expression 'TO' Expression ( 'BY' Expression ) ?
-void parse_for(Parsing& p, Block& to) {
+void parse_for(Parsing& p, Statement& statement) {
     const Token opener = p.take();
-    Statement* statement = p.make(Statement::Kind::for_, opener);
-    statement->target = parse_access(p);
+    statement.target = parse_access(p);
     expect(p, Word::assign, "after the loop's variable");
-    statement->value = parse_expression(p);
+    statement.value = parse_expression(p);
     expect(p, Word::to_, "after the first value");
-    statement->limit = parse_expression(p);
-    if (p.accept(Word::by_)) statement->step = parse_expression(p);
+    statement.limit = parse_expression(p);
+    if (p.accept(Word::by_)) statement.step = parse_expression(p);
     expect(p, Word::do_, "after the last value");
     if (p.panic) skip_to_statement(p);
-    parse_statements(p, statement->body, Word::end_for_);
+    parse_statements(p, statement.body, Word::end_for_);
     close(p, Word::end_for_, opener);
-    to.push_back(statement);
 }
 
 /// While_Stmt : 'WHILE' Expression 'DO' Stmt_List 'END_WHILE'
-void parse_while(Parsing& p, Block& to) {
+void parse_while(Parsing& p, Statement& statement) {
     const Token opener = p.take();
-    Statement* statement = p.make(Statement::Kind::while_, opener);
-    statement->value = parse_condition(p, Word::do_, "after the condition");
+    statement.value = parse_condition(p, Word::do_, "after the condition");
     if (p.panic) skip_to_statement(p);
-    parse_statements(p, statement->body, Word::end_while_);
+    parse_statements(p, statement.body, Word::end_while_);
     close(p, Word::end_while_, opener);
-    to.push_back(statement);
 }
 
 /// Repeat_Stmt : 'REPEAT' Stmt_List 'UNTIL' Expression ';' ? 'END_REPEAT'
-void parse_repeat(Parsing& p, Block& to) {
+void parse_repeat(Parsing& p, Statement& statement) {
     const Token opener = p.take();
-    Statement* statement = p.make(Statement::Kind::repeat, opener);
-    parse_statements(p, statement->body, Word::until_);
+    parse_statements(p, statement.body, Word::until_);
     if (close(p, Word::until_, opener)) {
-        statement->value = parse_expression(p);
+        statement.value = parse_expression(p);
         if (!p.panic && p.is(Word::assign)) refuse_assignment(p);
         p.accept(Word::semicolon);
     }
     if (p.panic) skip_to_statement(p);
     close(p, Word::end_repeat_, opener);
-    if (statement->value) to.push_back(statement);
 }
 
 /// `n := a > 0`: what is assigned is the value.
@@ -272,6 +254,15 @@ void parse_region(Parsing& p) {
     p.accept(Word::semicolon);
 }
 
+/// A loop without its condition, which was told, is left out.
+void parse_structured(Parsing& p, Statement::Kind kind, Block& to,
+                      void (*read)(Parsing&, Statement&)) {
+    Statement* statement = p.make(kind, p.here());
+    read(p, *statement);
+    if (statement->value || kind != Statement::Kind::repeat) to.push_back(statement);
+    p.accept(Word::semicolon);
+}
+
 /// Stmt : ';' | Region | ( IF_Stmt | Case_Stmt | For_Stmt | While_Stmt | Repeat_Stmt ) ';' ?
 ///      | Jump_Stmt | Goto_Stmt | Label | Simple_Stmt | Test_Stmt
 void parse_statement(Parsing& p, Block& to) {
@@ -280,8 +271,7 @@ void parse_statement(Parsing& p, Block& to) {
     using Kind = Statement::Kind;
     switch (p.here().word) {
         case Word::semicolon:
-            p.take();
-            return;
+            return void(p.take());
         case Word::network_:
             if (p.next().word == Word::assign) return parse_simple(p, to);
             return parse_region(p);
@@ -298,27 +288,21 @@ void parse_statement(Parsing& p, Block& to) {
         case Word::goto_:
             return parse_goto(p, Kind::goto_, to);
         case Word::if_:
-            parse_if(p, to);
-            break;
+            return parse_structured(p, Kind::if_, to, parse_if);
         case Word::case_:
-            parse_case(p, to);
-            break;
+            return parse_structured(p, Kind::case_, to, parse_case);
         case Word::for_:
-            parse_for(p, to);
-            break;
+            return parse_structured(p, Kind::for_, to, parse_for);
         case Word::while_:
-            parse_while(p, to);
-            break;
+            return parse_structured(p, Kind::while_, to, parse_while);
         case Word::repeat_:
-            parse_repeat(p, to);
-            break;
+            return parse_structured(p, Kind::repeat, to, parse_repeat);
         default:
             if (p.says("jmp") && p.is_name(1) && p.next(2).word == Word::semicolon)
                 return parse_goto(p, Kind::goto_, to);
             if (at_goto_label(p)) return parse_goto(p, Kind::label, to);
             return parse_simple(p, to);
     }
-    p.accept(Word::semicolon);
 }
 
 }  // namespace

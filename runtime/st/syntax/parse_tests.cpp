@@ -1,5 +1,4 @@
 #include "runtime/st/syntax/grammar.hpp"
-#include "runtime/st/syntax/recovery.hpp"
 
 namespace lineshaft::st {
 
@@ -71,10 +70,7 @@ void parse_test_statement(Parsing& p, Block& to) {
         call->arguments.push_back({{}, false, parse_expression(p), nullptr});
     }
     call->place = call->place.to(p.last().place);
-    Statement* statement = p.make(Statement::Kind::call, name->token);
-    statement->place = call->place;
-    statement->value = call;
-    to.push_back(statement);
+    to.push_back(p.make(Statement::Kind::call, call));
     end_statement(p);
 }
 

@@ -1,8 +1,4 @@
-#include <fmt/format.h>
-
 #include "runtime/st/syntax/grammar.hpp"
-#include "runtime/st/syntax/mistakes.hpp"
-#include "runtime/st/syntax/recovery.hpp"
 
 namespace lineshaft::st {
 

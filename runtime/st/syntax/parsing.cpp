@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "runtime/source/codes.hpp"
 #include "runtime/st/syntax/recovery.hpp"
 
 namespace lineshaft::st {
@@ -26,6 +25,14 @@ Statement* Parsing::make(Statement::Kind kind, const Token& token) {
     Statement& made = tree.statements.emplace_back();
     made.kind = kind;
     made.place = token.place;
+    return &made;
+}
+
+Statement* Parsing::make(Statement::Kind kind, Expression* value) {
+    Statement& made = tree.statements.emplace_back();
+    made.kind = kind;
+    made.place = value->place;
+    made.value = value;
     return &made;
 }
 

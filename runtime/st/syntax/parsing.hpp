@@ -25,6 +25,9 @@ struct Parsing : Cursor {
     Expression* make(Expression::Kind kind, const Token& token);
     Statement* make(Statement::Kind kind, const Token& token);
 
+    /// A statement that is no more than a value, or the name of an action.
+    Statement* make(Statement::Kind kind, Expression* value);
+
     /// Takes up `operand`, and makes the place as large.
     void add_operand(Expression& to, int index, Expression* operand);
     /// Makes `to` deeper than a part of it. A chain that is too long is told.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/mistakes.hpp"
 
@@ -33,11 +32,14 @@ constexpr bool ends_statements(Word word) {
            word == Word::until_;
 }
 
+bool at_end_of_block(const Cursor& p) {
+    return is_end(p.here().word) || ends_statements(p.here().word) || p.at_pou() || p.at_test() ||
+           p.at_action() || (p.is(Word::type_) && p.is_name(1));
+}
+
 /// What stands here cannot be within a block, whose end is missing.
 bool is_left(const Parsing& p) {
-    return p.is(Word::end_of_file) || is_end(p.here().word) || p.is(Word::else_) ||
-           p.is(Word::elsif_) || p.is(Word::until_) || p.at_pou() || p.at_test() || p.at_action() ||
-           at_label_of_case(p) || (p.is(Word::type_) && p.is_name(1));
+    return at_end_of_block(p) || at_label_of_case(p);
 }
 
 /// Of a call: what follows its ')' is no operator and no ';'.
@@ -170,9 +172,7 @@ bool at_doomed_name(const Cursor& p) {
 }
 
 bool at_end_of_statements(const Cursor& p) {
-    if (p.is(Word::end_region_) || p.is(Word::end_network_)) return false;
-    return is_end(p.here().word) || ends_statements(p.here().word) || p.at_pou() || p.at_test() ||
-           p.at_action() || (p.is(Word::type_) && p.is_name(1));
+    return !p.is(Word::end_region_) && !p.is(Word::end_network_) && at_end_of_block(p);
 }
 
 bool at_label_of_case(const Parsing& p) {

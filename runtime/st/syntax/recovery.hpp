@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/st/syntax/parsing.hpp"
 
 /// What is told of a mistake, and where reading goes on after it.

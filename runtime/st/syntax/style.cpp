@@ -18,7 +18,12 @@ struct Piece {
     const Token* token = nullptr;  ///< null: a comment or a pragma
 
     bool is(Word word) const { return token && token->word == word; }
-    std::string_view text() const { return place.text(); }
+    /// Of a comment or a pragma without the blanks behind it.
+    std::string_view text() const {
+        std::string_view text = place.text();
+        if (!token) text = text.substr(0, text.find_last_not_of(" \r\t") + 1);
+        return text;
+    }
     std::string word() const { return token && !token->quoted ? upper(text()) : std::string(); }
 };
 
@@ -43,6 +48,12 @@ bool is_value(const Piece& piece) {
 
 bool is_sign(const Piece& piece) {
     return is_one_of(piece, {Word::plus, Word::minus});
+}
+
+/// 1: it opens a bracket; -1: it closes one; else 0.
+int bracket(const Piece& piece) {
+    if (is_one_of(piece, {Word::open, Word::open_bracket})) return 1;
+    return is_one_of(piece, {Word::close, Word::close_bracket}) ? -1 : 0;
 }
 
 /// Writes the pieces line by line.
@@ -70,6 +81,7 @@ class Style {
         const std::size_t begin = i == 0 ? 0 : pieces_[i - 1].place.end;
         return text_.substr(begin, pieces_[i].place.begin - begin);
     }
+    bool in_case() const { return !open_.empty() && open_.back().word == "CASE"; }
     bool is_spaced(std::size_t i) const;
     bool is_label(std::size_t i) const;
     bool opens(const std::string& word) const;
@@ -106,10 +118,9 @@ bool Style::is_spaced(std::size_t i) const {
 
 /// `1, 3..5:` of a CASE.
 bool Style::is_label(std::size_t i) const {
-    if (open_.empty() || open_.back().word != "CASE" || !pieces_[i].token) return false;
+    if (!in_case() || !pieces_[i].token) return false;
     for (int depth = 0; i < pieces_.size(); ++i) {
-        if (is_one_of(pieces_[i], {Word::open, Word::open_bracket})) ++depth;
-        if (is_one_of(pieces_[i], {Word::close, Word::close_bracket})) --depth;
+        depth += bracket(pieces_[i]);
         if (pieces_[i].is(Word::colon) && depth == 0) return true;
         if (is_one_of(pieces_[i], {Word::semicolon, Word::assign, Word::then_, Word::do_}))
             return false;
@@ -123,11 +134,10 @@ bool Style::opens(const std::string& word) const {
 }
 
 bool is_unindented(const std::string& word) {
-    for (const std::string_view one :
-         {"PROGRAM", "FUNCTION", "FUNCTION_BLOCK", "METHOD", "CLASS", "INTERFACE", "PROPERTY",
-          "NAMESPACE", "ORGANIZATION_BLOCK", "DATA_BLOCK", "ACTION", "CONFIGURATION"})
-        if (word == one) return true;
-    return false;
+    constexpr std::string_view words[] = {
+        "PROGRAM",  "FUNCTION",  "FUNCTION_BLOCK",     "METHOD",     "CLASS",  "INTERFACE",
+        "PROPERTY", "NAMESPACE", "ORGANIZATION_BLOCK", "DATA_BLOCK", "ACTION", "CONFIGURATION"};
+    return std::ranges::find(words, word) != std::end(words);
 }
 
 std::size_t Style::depth() const {
@@ -158,16 +168,15 @@ std::size_t Style::indent_of(std::size_t i) {
         open_ = std::move(inner);
         return blanks_a_level * at;
     }
-    const bool in_case = !open_.empty() && open_.back().word == "CASE";
     std::size_t levels = depth();
     const bool is_middle = word == "ELSE" || word == "ELSIF" ||
                            (word == "UNTIL" && !open_.empty() && open_.back().word == "REPEAT");
     if (is_middle && levels > 0) {
-        levels -= in_case && open_.back().has_label ? 2 : 1;
-    } else if (begins_ && in_case && open_.back().has_label && is_label(i)) {
+        levels -= in_case() && open_.back().has_label ? 2 : 1;
+    } else if (begins_ && in_case() && open_.back().has_label && is_label(i)) {
         --levels;
     } else if (!begins_ && piece.token && !is_one_of(piece, {Word::then_, Word::do_, Word::of_})) {
-        if (!(brackets_ == 1 && is_one_of(piece, {Word::close, Word::close_bracket}))) ++levels;
+        if (!(brackets_ == 1 && bracket(piece) < 0)) ++levels;
     }
     return blanks_a_level * levels;
 }
@@ -177,8 +186,7 @@ void Style::take(std::size_t i) {
     const Piece& piece = pieces_[i];
     if (!piece.token) return;
     const std::string word = piece.word();
-    if (is_one_of(piece, {Word::open, Word::open_bracket})) ++brackets_;
-    if (is_one_of(piece, {Word::close, Word::close_bracket}) && brackets_ > 0) --brackets_;
+    brackets_ = std::max(brackets_ + bracket(piece), 0);
     const bool is_inner = word == "STRUCT" || word == "UNION";
     if (word.starts_with("END_")) {
         close(word.substr(4));
@@ -191,17 +199,15 @@ void Style::take(std::size_t i) {
         begins_ = word == "REPEAT";
         return;
     }
-    if (begins_ && (word == "ELSE") && !open_.empty() && open_.back().word == "CASE")
-        open_.back().has_label = false;
-    const bool in_case = !open_.empty() && open_.back().word == "CASE";
-    if (in_case && piece.is(Word::colon) && brackets_ == 0) {
+    if (begins_ && word == "ELSE" && in_case()) open_.back().has_label = false;
+    if (in_case() && piece.is(Word::colon) && brackets_ == 0) {
         open_.back().has_label = true;
         begins_ = true;
         return;
     }
     begins_ =
         is_one_of(piece, {Word::semicolon, Word::then_, Word::do_, Word::else_, Word::begin_}) ||
-        (piece.is(Word::of_) && in_case);
+        (piece.is(Word::of_) && in_case());
 }
 
 std::optional<std::string> Style::write() {
@@ -222,16 +228,11 @@ std::optional<std::string> Style::write() {
             const auto blanks = gap.size() - left.size();
             out += std::string(std::max<std::size_t>(blanks, 1), ' ');
         } else if (left.empty() && is_spaced(i)) {
-            const bool is_label_colon = pieces_[i].is(Word::colon) && !open_.empty() &&
-                                        open_.back().word == "CASE" && brackets_ == 0;
+            const bool is_label_colon = pieces_[i].is(Word::colon) && in_case() && brackets_ == 0;
             if (!is_label_colon) out += ' ';
         }
         out += left;
-        std::string_view text = pieces_[i].text();
-        while (!pieces_[i].token && !text.empty() &&
-               (text.back() == ' ' || text.back() == '\r' || text.back() == '\t'))
-            text.remove_suffix(1);
-        out += text;
+        out += pieces_[i].text();
         take(i);
     }
     const std::size_t last = pieces_.empty() ? 0 : pieces_.back().place.end;
@@ -248,13 +249,7 @@ bool is_same_code(const std::string& a, const std::string& b, const std::string&
         const auto file = std::make_shared<SourceFile>(SourceFile{path, text});
         const Tokens all = read_tokens(file, untold, SourceKind::tests);
         std::vector<std::string> words;
-        for (const Piece& piece : pieces_of(all)) {
-            std::string word(piece.text());
-            while (!piece.token &&
-                   (word.ends_with(' ') || word.ends_with('\r') || word.ends_with('\t')))
-                word.pop_back();
-            words.push_back(std::move(word));
-        }
+        for (const Piece& piece : pieces_of(all)) words.emplace_back(piece.text());
         return words;
     };
     return bare(a) == bare(b);

@@ -7,10 +7,8 @@
 namespace lineshaft::st {
 
 TestCall find_test_statement(std::string_view name) {
-    const auto* it = std::ranges::find_if(
-        test_statements, [&](const TestStatement& known) { return same_name(known.name, name); });
-    if (it == std::end(test_statements)) return TestCall::none;
-    return static_cast<TestCall>(it - std::begin(test_statements));
+    const TestStatement* found = find_called(test_statements, name, &TestStatement::name);
+    return found ? static_cast<TestCall>(found - test_statements) : TestCall::none;
 }
 
 }  // namespace lineshaft::st

@@ -22,37 +22,10 @@ constexpr std::string_view other_names[] = {
     "the end of the file", "a name", "a type", "a number", "a number", "a time", "a text",
     "a direct address"};
 
-constexpr Sign all_signs[] = {{":=", Word::assign},
-                              {"+=", Word::plus_assign},
-                              {"-=", Word::minus_assign},
-                              {"*=", Word::times_assign},
-                              {"/=", Word::divided_assign},
-                              {"S=", Word::set_assign},
-                              {"R=", Word::reset_assign},
-                              {"=>", Word::output},
-                              {"?=", Word::attempt_assign},
-                              {"**", Word::power},
-                              {"<=", Word::less_or_equal},
-                              {">=", Word::greater_or_equal},
-                              {"<>", Word::unequal},
-                              {"..", Word::range},
-                              {"*", Word::times},
-                              {"/", Word::divided},
-                              {"+", Word::plus},
-                              {"-", Word::minus},
-                              {"<", Word::less},
-                              {">", Word::greater},
-                              {"=", Word::equal},
-                              {"&", Word::ampersand},
-                              {"^", Word::caret},
-                              {"(", Word::open},
-                              {")", Word::close},
-                              {"[", Word::open_bracket},
-                              {"]", Word::close_bracket},
-                              {".", Word::dot},
-                              {",", Word::comma},
-                              {";", Word::semicolon},
-                              {":", Word::colon}};
+/// Of the signs, likewise: from `assign` on.
+constexpr std::string_view sign_texts[] = {
+    ":=", "+=", "-=", "*=", "/=", "S=", "R=", "=>", "REF=", "?=", "**", "*", "/",  "+", "-", "<",
+    "<=", ">",  ">=", "=",  "<>", "&",  "^",  "(",  ")",    "[",  "]",  ".", "..", ",", ";", ":"};
 
 const NameMap<Word>& words() {
     static const NameMap<Word> map = [] {
@@ -81,12 +54,20 @@ std::size_t NameHash::operator()(std::string_view name) const {
 }
 
 std::optional<Word> word_of(std::string_view text) {
-    const auto it = words().find(text);
-    return it == words().end() ? std::nullopt : std::optional(it->second);
+    const Word* word = find_in(words(), text);
+    return word ? std::optional(*word) : std::nullopt;
 }
 
 std::span<const Sign> signs() {
-    return all_signs;
+    static const auto all = [] {
+        std::vector<Sign> made;
+        for (const std::string_view text : sign_texts)
+            made.push_back(
+                {text, static_cast<Word>(static_cast<std::size_t>(Word::assign) + made.size())});
+        std::ranges::stable_sort(made, std::greater{}, [](const Sign& s) { return s.text.size(); });
+        return made;
+    }();
+    return all;
 }
 
 std::string_view shown(Word word) {
@@ -97,8 +78,8 @@ std::string_view shown(Word word) {
     }();
     const auto i = static_cast<std::size_t>(word);
     if (i < capitals.size()) return capitals[i];
-    const auto* sign = std::ranges::find(all_signs, word, &Sign::word);
-    return sign != std::end(all_signs) ? sign->text : other_names[i - capitals.size()];
+    if (word < Word::assign) return other_names[i - capitals.size()];
+    return sign_texts[i - static_cast<std::size_t>(Word::assign)];
 }
 
 }  // namespace lineshaft::st

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -148,5 +149,32 @@ struct Token {
     Place place = {};            ///< with quotes and `#`
     std::string_view text = {};  ///< of a name, a number, a text without its quotes
 };
+
+/// Whether a name, or that of a token, is this one: `std::ranges::any_of(words, is_called(name))`.
+inline auto is_called(std::string_view name) {
+    struct IsCalled {
+        std::string_view name;
+        bool operator()(std::string_view other) const { return same_name(other, name); }
+        bool operator()(const Token& other) const { return same_name(other.text, name); }
+    };
+    return IsCalled{name};
+}
+
+/// The first whose name it is; null: none.
+template <class All, class Name = std::identity>
+auto* find_called(All&& all, std::string_view name, Name name_of = {}) {
+    const auto it = std::ranges::find_if(all, is_called(name), name_of);
+    return it == std::ranges::end(all) ? nullptr : &*it;
+}
+
+/// What a map has for the name: a pointer, else where the value is; null: nothing.
+template <class Map>
+auto find_in(Map& map, std::string_view name) {
+    const auto it = map.find(name);
+    if constexpr (std::is_pointer_v<typename Map::mapped_type>)
+        return it == map.end() ? nullptr : it->second;
+    else
+        return it == map.end() ? nullptr : &it->second;
+}
 
 }  // namespace lineshaft::st

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include "runtime/st/syntax/tree.hpp"
@@ -51,28 +52,31 @@ inline constexpr Word declaration_words[] = {Word::program_,        Word::organi
 inline constexpr Word variable_words[] = {Word::var_,        Word::var_stat_, Word::var_input_,
                                           Word::var_output_, Word::var_temp_, Word::var_in_out_};
 inline constexpr Word end_words[] = {Word::end_var_, Word::end_struct_, Word::end_type_};
-inline constexpr Word statement_words[] = {Word::if_,
-                                           Word::case_,
-                                           Word::for_,
-                                           Word::while_,
-                                           Word::repeat_,
-                                           Word::exit_,
-                                           Word::continue_,
-                                           Word::return_,
-                                           Word::else_,
-                                           Word::elsif_,
-                                           Word::until_,
-                                           Word::end_if_,
-                                           Word::end_case_,
-                                           Word::end_for_,
-                                           Word::end_while_,
-                                           Word::end_repeat_,
-                                           Word::end_function_,
-                                           Word::end_function_block_,
-                                           Word::end_program_,
-                                           Word::end_method_,
-                                           Word::end_organization_block_,
-                                           Word::end_data_block_};
+inline constexpr auto statement_words = [] {
+    using enum Word;
+    return std::array{if_,
+                      case_,
+                      for_,
+                      while_,
+                      repeat_,
+                      exit_,
+                      continue_,
+                      return_,
+                      else_,
+                      elsif_,
+                      until_,
+                      end_if_,
+                      end_case_,
+                      end_for_,
+                      end_while_,
+                      end_repeat_,
+                      end_function_,
+                      end_function_block_,
+                      end_program_,
+                      end_method_,
+                      end_organization_block_,
+                      end_data_block_};
+}();
 
 /// Names of the types that find_elementary() has.
 inline constexpr std::string_view elementary_names[] = {
@@ -98,6 +102,14 @@ constexpr const PouWords* find_pou(Word word) {
 
 constexpr bool ends_pou(Word word) {
     return std::ranges::find(pou_words, word, &PouWords::end) != std::end(pou_words);
+}
+
+/// `+` of `+=`, of an assignment that reckons.
+constexpr Word operator_of(Word assignment) {
+    return assignment == Word::plus_assign    ? Word::plus
+           : assignment == Word::minus_assign ? Word::minus
+           : assignment == Word::times_assign ? Word::times
+                                              : Word::divided;
 }
 
 /// Null for a word that begins no section of variables.

@@ -108,7 +108,7 @@ const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &open_string_type = open_string, &char_type = table[28];
 
 std::string describe(const Type& type) {
-    if (type.is_reference() && type.is_open)
+    if (type.is_open_array())
         return fmt::format("ARRAY[*] OF {}", type.element ? describe(*type.element) : "?");
     if (type.is_reference() && type.name.empty()) {
         static constexpr std::string_view words[] = {"REFERENCE TO", "REF_TO", "POINTER TO"};
@@ -129,17 +129,14 @@ const Type* find_prefix(std::string_view name) {
     static constexpr std::pair<std::string_view, std::string_view> shorter[] = {
         {"b", "byte"}, {"w", "word"}, {"dw", "dword"}, {"lw", "lword"},
         {"l", "dint"}, {"d", "date"}, {"ld", "ldate"}};
-    const auto* it =
-        std::ranges::find_if(shorter, [&](const auto& s) { return same_name(s.first, name); });
-    return find_elementary(it == std::end(shorter) ? name : it->second);
+    const auto* found = find_called(shorter, name, [](const auto& row) { return row.first; });
+    return find_elementary(found ? found->second : name);
 }
 
 const Type* find_elementary(std::string_view name) {
     if (same_name(name, "wstring")) return &string_type;
     if (same_name(name, "wchar")) return &char_type;
-    const auto* it =
-        std::ranges::find_if(table, [&](const Type& type) { return same_name(type.name, name); });
-    return it == std::end(table) ? nullptr : it;
+    return find_called(table, name, &Type::name);
 }
 
 const Type& integer_type(int bits, bool is_signed) {

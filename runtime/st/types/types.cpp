@@ -97,18 +97,18 @@ Routine* find_method(const Routine& block, const Routine& like) {
     const auto& known = accessor == Accessor::get   ? block.getters
                         : accessor == Accessor::set ? block.setters
                                                     : block.methods;
-    const auto it = known.find(like.pou->name.text);
-    if (it == known.end()) return nullptr;
-    const auto several = block.overloads.find(like.pou->name.text);
-    const bool is_one = accessor != Accessor::none ||
-                        (several == block.overloads.end() &&
-                         !(like.owner && like.owner->overloads.contains(like.pou->name.text)));
-    if (is_one) return it->second;
+    Routine* first = find_in(known, like.pou->name.text);
+    if (!first) return nullptr;
+    const std::vector<Routine*>* several = find_in(block.overloads, like.pou->name.text);
+    const bool is_one =
+        accessor != Accessor::none ||
+        (!several && !(like.owner && like.owner->overloads.contains(like.pou->name.text)));
+    if (is_one) return first;
     const std::string wanted = signature_of(*like.pou);
     const auto is_like = [&](const Routine* r) { return signature_of(*r->pou) == wanted; };
-    if (several == block.overloads.end()) return is_like(it->second) ? it->second : nullptr;
-    const auto found = std::ranges::find_if(several->second, is_like);
-    return found == several->second.end() ? nullptr : *found;
+    if (!several) return is_like(first) ? first : nullptr;
+    const auto found = std::ranges::find_if(*several, is_like);
+    return found == several->end() ? nullptr : *found;
 }
 
 bool is_a(const Routine& block, const Routine& other) {

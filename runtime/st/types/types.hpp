@@ -97,6 +97,8 @@ struct Type {
     /// References to it are values, `AXIS_REF`.
     bool is_object() const { return kind == Kind::standard && !standard->handle.empty(); }
     bool is_reference() const { return kind == Kind::reference; }
+    /// ARRAY[*]: where its first element is.
+    bool is_open_array() const { return is_reference() && is_open; }
     bool is_alias() const { return is_reference() && referring == Referring::alias; }
     bool is_pointer() const { return is_reference() && referring == Referring::pointer; }
     bool is_instance() const { return kind == Kind::block || kind == Kind::standard; }
@@ -166,6 +168,12 @@ struct Variable {
     bool ends_with_call() const {
         const bool of_call = of && (of->kind == PouKind::function || of->kind == PouKind::method);
         return space == Space::frame && (section == Section::temp || of_call);
+    }
+
+    /// Of a call, by position or by name.
+    bool is_parameter() const {
+        return !bound_of && (section == Section::input || section == Section::in_out ||
+                             section == Section::output);
     }
 
     /// By a call, with `=>`: an output, and ENO, which is a temporary.
@@ -255,8 +263,10 @@ struct Image {
     std::uint32_t begins[areas] = {};  ///< [bytes]
     std::uint32_t bytes = 0;
 
-    std::uint32_t begin(ImageAddress::Area area) const {
-        return begins[static_cast<std::size_t>(area)];
+    /// Of its bytes, from the first on.
+    std::uint64_t bit_of(const ImageAddress& at) const {
+        const std::uint64_t byte = begins[static_cast<std::size_t>(at.area)] + at.byte;
+        return 8 * byte + at.bit;
     }
 };
 

@@ -1,93 +1,60 @@
 #include "runtime/st/vendors/names.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/token.hpp"
 
 namespace lineshaft::st {
 
 namespace {
 
+/// What vendors call otherwise: their names, each between two blanks.
 struct Renamed {
-    std::string_view theirs, standard;
+    std::string_view standard, theirs;
 };
 
-constexpr Renamed types[] = {{"to_axis", "axis_ref"},
-                             {"to_speedaxis", "axis_ref"},
-                             {"to_positioningaxis", "axis_ref"},
-                             {"to_synchronousaxis", "axis_ref"},
-                             {"axis_ref_sm3", "axis_ref"},
-                             {"axis_ref_virtual_sm3", "axis_ref"},
-                             {"to_cam", "cam_ref"},
-                             {"axis_group_ref_sm3", "axes_group_ref"},
-                             {"mc_path_ref", "path_ref"},
-                             {"ton_time", "ton"},
-                             {"tof_time", "tof"},
-                             {"tp_time", "tp"},
-                             {"ton_ltime", "ton"},
-                             {"tof_ltime", "tof"},
-                             {"tp_ltime", "tp"},
-                             {"iec_timer", "ton"},
-                             {"iec_ltimer", "ton"},
-                             {"iec_counter", "ctu_int"},
-                             {"iec_dcounter", "ctu_dint"},
-                             {"iec_udcounter", "ctu_udint"},
-                             {"iec_scounter", "ctu_sint"},
-                             {"iec_uscounter", "ctu_usint"},
-                             {"iec_ucounter", "ctu_uint"},
-                             // numbers of hardware, blocks, connections and events
-                             {"hw_any", "uint"},
-                             {"hw_device", "uint"},
-                             {"hw_dpmaster", "uint"},
-                             {"hw_dpslave", "uint"},
-                             {"hw_io", "uint"},
-                             {"hw_iosystem", "uint"},
-                             {"hw_submodule", "uint"},
-                             {"hw_module", "uint"},
-                             {"hw_interface", "uint"},
-                             {"hw_ieport", "uint"},
-                             {"hw_hsc", "uint"},
-                             {"hw_pwm", "uint"},
-                             {"hw_pto", "uint"},
-                             {"db_any", "uint"},
-                             {"db_www", "uint"},
-                             {"db_dyn", "uint"},
-                             {"port", "uint"},
-                             {"rtm", "uint"},
-                             {"pip", "uint"},
-                             {"ob_any", "int"},
-                             {"ob_delay", "int"},
-                             {"ob_tod", "int"},
-                             {"ob_cyclic", "int"},
-                             {"ob_att", "int"},
-                             {"ob_pcycle", "int"},
-                             {"ob_hwint", "int"},
-                             {"ob_diag", "int"},
-                             {"ob_timeerror", "int"},
-                             {"ob_startup", "int"},
-                             {"conn_any", "word"},
-                             {"conn_prg", "word"},
-                             {"conn_ouc", "word"},
-                             {"conn_r_id", "dword"},
-                             {"event_any", "dword"},
-                             {"event_att", "dword"},
-                             {"event_hwint", "dword"},
-                             {"aom_ident", "dword"}};
+constexpr Renamed types[] = {
+    {"axis_ref",
+     " to_axis to_speedaxis to_positioningaxis to_synchronousaxis axis_ref_sm3 "
+     "axis_ref_virtual_sm3 "},
+    {"cam_ref", " to_cam "},
+    {"axes_group_ref", " axis_group_ref_sm3 "},
+    {"path_ref", " mc_path_ref "},
+    {"ton", " ton_time ton_ltime iec_timer iec_ltimer "},
+    {"tof", " tof_time tof_ltime "},
+    {"tp", " tp_time tp_ltime "},
+    {"ctu_int", " iec_counter "},
+    {"ctu_dint", " iec_dcounter "},
+    {"ctu_udint", " iec_udcounter "},
+    {"ctu_sint", " iec_scounter "},
+    {"ctu_usint", " iec_uscounter "},
+    {"ctu_uint", " iec_ucounter "},
+    // numbers of hardware, blocks, connections and events
+    {"uint",
+     " hw_any hw_device hw_dpmaster hw_dpslave hw_io hw_iosystem hw_submodule "
+     "hw_module hw_interface hw_ieport hw_hsc hw_pwm hw_pto db_any db_www db_dyn port "
+     "rtm pip "},
+    {"int",
+     " ob_any ob_delay ob_tod ob_cyclic ob_att ob_pcycle ob_hwint ob_diag ob_timeerror "
+     "ob_startup "},
+    {"word", " conn_any conn_prg conn_ouc "},
+    {"dword", " conn_r_id event_any event_att event_hwint aom_ident "},
+};
 
-constexpr Renamed parts[] = {{"reset", "r"},
-                             {"load", "ld"},
-                             {"set1", "s1"},
-                             {"set", "s"},
-                             {"reset1", "r1"},
-                             {"busy", "valid"},
-                             {"mode", "homingmode"},
-                             {"qu", "q"},
-                             {"qd", "q"},
-                             {"enable_positive", "enablepositive"},
-                             {"enable_negative", "enablenegative"}};
+constexpr Renamed parts[] = {{"r", " reset "},
+                             {"ld", " load "},
+                             {"s1", " set1 "},
+                             {"s", " set "},
+                             {"r1", " reset1 "},
+                             {"valid", " busy "},
+                             {"homingmode", " mode "},
+                             {"q", " qu qd "},
+                             {"enablepositive", " enable_positive "},
+                             {"enablenegative", " enable_negative "}};
 
-constexpr Renamed arguments[] = {{"str", "in"}, {"str1", "in1"}, {"str2", "in2"},
-                                 {"size", "l"}, {"len", "l"},    {"pos", "p"}};
+constexpr Renamed arguments[] = {{"in", " str "}, {"in1", " str1 "}, {"in2", " str2 "},
+                                 {"l", " size "}, {"l", " len "},    {"p", " pos "}};
 
 constexpr std::string_view libraries[] = {"standard",     "standard64",     "tc2_standard",
                                           "tc2_system",   "tc2_mc2",        "sm3_basic",
@@ -102,29 +69,35 @@ constexpr AddedInput added_inputs[] = {
 /// Of MC_MOVEABSOLUTE's and MC_MOVEVELOCITY's Direction, and of MC_HOME's Mode.
 constexpr std::int64_t directions[] = {0, 1, 2, 0}, homing_modes[] = {0, -1, -1, -1, -1, -1, -1, 0};
 
+/// Empty: it is none of theirs.
+std::string_view standard_of(std::span<const Renamed> rows, std::string_view name) {
+    const auto it =
+        std::ranges::find_if(rows, [&](const Renamed& row) { return has_word(row.theirs, name); });
+    return it == rows.end() ? std::string_view() : it->standard;
+}
+
 }  // namespace
 
+bool has_word(std::string_view words, std::string_view name) {
+    return words.find(fmt::format(" {} ", lower(name))) != words.npos;
+}
+
 std::string_view standard_type_name(std::string_view name) {
-    const auto* it = std::ranges::find_if(
-        types, [&](const Renamed& renamed) { return same_name(renamed.theirs, name); });
-    return it == std::end(types) ? name : it->standard;
+    const std::string_view standard = standard_of(types, name);
+    return standard.empty() ? name : standard;
 }
 
 std::string_view standard_part_name(std::string_view name) {
-    const auto* it = std::ranges::find_if(
-        parts, [&](const Renamed& renamed) { return same_name(renamed.theirs, name); });
-    return it == std::end(parts) ? std::string_view() : it->standard;
+    return standard_of(parts, name);
 }
 
 std::string_view standard_argument_name(std::string_view name) {
-    const auto* it = std::ranges::find_if(
-        arguments, [&](const Renamed& renamed) { return same_name(renamed.theirs, name); });
-    return it == std::end(arguments) ? name : it->standard;
+    const std::string_view standard = standard_of(arguments, name);
+    return standard.empty() ? name : standard;
 }
 
 bool is_vendor_library(std::string_view name) {
-    return std::ranges::any_of(libraries,
-                               [&](std::string_view known) { return same_name(known, name); });
+    return find_called(libraries, name) != nullptr;
 }
 
 bool is_open(const LibraryFile& file) {
@@ -138,9 +111,7 @@ std::string_view without_library(std::string_view name) {
 }
 
 const AddedInput* find_added_input(std::string_view name) {
-    const auto* it = std::ranges::find_if(
-        added_inputs, [&](const AddedInput& input) { return same_name(input.name, name); });
-    return it == std::end(added_inputs) ? nullptr : it;
+    return find_called(added_inputs, name, &AddedInput::name);
 }
 
 std::span<const std::int64_t> meanings_of_numbers(std::string_view input) {

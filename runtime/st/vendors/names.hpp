@@ -9,6 +9,9 @@
 
 namespace lineshaft::st {
 
+/// `name`, whatever its capitals, is one of `words`, small ones between two blanks each.
+bool has_word(std::string_view words, std::string_view name);
+
 /// IEC 61131-3's or PLCopen's name of a type or a kind of block that vendors call otherwise:
 /// `TO_POSITIONINGAXIS` is AXIS_REF, `IEC_TIMER` is TON. Any other name is its own.
 std::string_view standard_type_name(std::string_view name);
