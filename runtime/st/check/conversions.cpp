@@ -42,7 +42,7 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
 
 /// Siemens gives a number where PLCopen has a name: `Direction := 1`.
 bool coerce_number(Checking& c, Expression*& e, const Type& to) {
-    if (!is_constant(*e)) return convert(c, e, to), true;
+    if (!is_constant(*e)) return convert(c, e, to);
     const Wide number = e->constant.integer;
     const bool exists = number >= 0 && number < static_cast<Wide>(to.of_number.size());
     const std::int64_t value = exists ? to.of_number[static_cast<std::size_t>(number)] : -1;
@@ -51,7 +51,7 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to) {
             code::value_out_of_range, e->place,
             fmt::format("{} has nothing for the number {}", to.name, to_string(number)),
             fmt::format("write one of its values, such as {}#{}", to.name, to.values.front()));
-    return become(c, e, to, {.integer = value}), true;
+    return become(c, e, to, {.integer = value});
 }
 
 /// An enumeration's value and its number stand for each other where the one is known to be one of
@@ -75,7 +75,7 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
     }
     const auto it = std::ranges::find(to.numbers, e->constant.integer);
     if (it == to.numbers.end()) return false;
-    return become(c, e, to, {.integer = it - to.numbers.begin()}), true;
+    return become(c, e, to, {.integer = it - to.numbers.begin()});
 }
 
 bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
@@ -124,11 +124,11 @@ bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
         if (!std::isfinite(real))
             return c.fail(code::value_out_of_range, e->place,
                           fmt::format("'{}' is out of range for {}", e->place.text(), to.name));
-        return take_type(c, e, to, {.real = real}), true;
+        return take_type(c, e, to, {.real = real});
     }
     if (!whole) return refuse_conversion(c, *e, to);
     const bool bit = to.kind == Kind::boolean && (value == 0 || value == 1);
-    if (to.is_any() || bit) return take_type(c, e, to, e->constant), true;
+    if (to.is_any() || bit) return take_type(c, e, to, e->constant);
     if (to.kind != Kind::integer && to.kind != Kind::bits) return refuse_conversion(c, *e, to);
     const Wide pattern = Wide{1} << to.bits;
     const bool is_pattern = from.kind == Kind::any_bits && value < pattern && !to.is_subrange;
@@ -137,7 +137,7 @@ bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
             code::value_out_of_range, e->place,
             fmt::format("{} is out of range for {}", to_string(value), describe(to)),
             fmt::format("it goes from {} to {}", to_string(smallest(to)), to_string(largest(to))));
-    return take_type(c, e, to, {.integer = is_pattern ? wrapped(to, value) : value}), true;
+    return take_type(c, e, to, {.integer = is_pattern ? wrapped(to, value) : value});
 }
 
 bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
@@ -147,7 +147,7 @@ bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
         if (!to.is_integer() || to.is_subrange) return false;
         const auto value = static_cast<std::size_t>(e->constant.integer);
         const Wide number = from.counted ? e->constant.integer : from.numbers[value];
-        return become(c, e, to, {.integer = wrapped(to, number)}), true;
+        return become(c, e, to, {.integer = wrapped(to, number)});
     }
     const bool keeps_bits = to.is_real() && from.is_bits();
     if (keeps_bits || from.is_date() || to.is_date()) return false;
@@ -157,12 +157,12 @@ bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
         if (to.bits == 32)
             value = from.is_real() ? static_cast<float>(value)
                                    : static_cast<float>(e->constant.integer);
-        return become(c, e, to, {.real = value}), true;
+        return become(c, e, to, {.real = value});
     }
     if (from.is_real() || to.kind == Kind::enumeration) return false;
     const Wide given = e->constant.integer;
     const Wide value = to.kind == Kind::boolean ? Wide{given != 0} : wrapped(to.plain(), given);
-    return become(c, e, to, {.integer = value}), true;
+    return become(c, e, to, {.integer = value});
 }
 
 /// The signed type that holds a constant which `typed` does not, and all of that; null if there is
@@ -182,10 +182,9 @@ const Type* wider_for(const Expression& constant, const Type& typed) {
 /// `0` is none.
 bool coerce_instance(Checking& c, Expression*& e, const Type& to) {
     const Type& from = *e->type;
-    if (is_constant(*e) && from.is_any() && e->constant.integer == 0)
-        return become(c, e, to, {}), true;
+    if (is_constant(*e) && from.is_any() && e->constant.integer == 0) return become(c, e, to, {});
     const bool has_methods = from.kind == Kind::block || from.kind == Kind::interface;
-    if (has_methods && is_a(*from.routine, *to.routine)) return e = make_converted(c, e, to), true;
+    if (has_methods && is_a(*from.routine, *to.routine)) return e = make_converted(c, e, to);
     if (has_methods && from.routine->has_unknown_base) return false;
     return c.fail(code::type_does_not_fit, e->place,
                   fmt::format("expected {}, found {}", describe(to), describe(from)),
@@ -218,30 +217,30 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
         return coerce_number(c, e, to);
     if (from.is_any()) return coerce_constant(c, e, to);
     if (from.is_object() && to.kind == Kind::handle && from.standard == to.standard)
-        return convert(c, e, to), true;
+        return convert(c, e, to);
     if (to.is_character && is_constant(*e) && e->constant.text.size() == 1)
-        return become(c, e, to, {.integer = static_cast<unsigned char>(e->constant.text[0])}), true;
-    if (from.is_character && to.kind == Kind::text) return convert(c, e, to), true;
+        return become(c, e, to, {.integer = static_cast<unsigned char>(e->constant.text[0])});
+    if (from.is_character && to.kind == Kind::text) return convert(c, e, to);
     if (to.is_subrange && same_type(from.plain(), to.plain())) {
         if (is_constant(*e) && (e->constant.integer < to.lower || e->constant.integer > to.upper))
             return c.fail(code::value_out_of_range, e->place,
                           fmt::format("{} is out of range for {}", to_string(e->constant.integer),
                                       describe(to)));
-        return convert(c, e, to), true;
+        return convert(c, e, to);
     }
     if (from.kind == Kind::enumeration && to.kind == Kind::enumeration && from.name == to.name &&
         from.values == to.values)
         return true;
-    if (fits_as_constant(*e, to)) return become(c, e, to, {.integer = e->constant.integer}), true;
+    if (fits_as_constant(*e, to)) return become(c, e, to, {.integer = e->constant.integer});
     const bool fits =
         from.is_scalar() && (widens(from, to) || is_same_pattern(from, to) || rounds(c, *e, to));
     if (!fits) return refuse_conversion(c, *e, to);
-    return convert(c, e, to), true;
+    return convert(c, e, to);
 }
 
-void convert(Checking& c, Expression*& e, const Type& to) {
-    if (is_constant(*e) && fold_conversion(c, e, to)) return;
-    e = make_converted(c, e, to);
+const Type* convert(Checking& c, Expression*& e, const Type& to) {
+    if (!is_constant(*e) || !fold_conversion(c, e, to)) e = make_converted(c, e, to);
+    return &to;
 }
 
 void enumeration_becomes_number(Checking& c, Expression*& e) {

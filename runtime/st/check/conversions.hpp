@@ -11,7 +11,8 @@ bool is_single(const Type& type);
 /// constant that is out of range.
 bool coerce(Checking& c, Expression*& e, const Type& to);
 /// Makes `e` a value of `to` in any case: a conversion is put in, or a constant converted at once.
-void convert(Checking& c, Expression*& e, const Type& to);
+/// Gives that type, which is never null.
+const Type* convert(Checking& c, Expression*& e, const Type& to);
 
 /// `16#FF` has that of the bit string that is wanted.
 void take_width(Checking& c, Expression*& e, const Type* expected);

@@ -172,11 +172,12 @@ Statement* make_sequence(Checking& c, Place place, Block statements) {
     return keep(c, {.kind = S::sequence, .place = place, .body = std::move(statements)});
 }
 
-void take_type(Checking& c, Expression*& number, const Type& type, Constant value) {
+const Type* take_type(Checking& c, Expression*& number, const Type& type, Constant value) {
     if (number->kind != E::constant || !number->type->is_any())
-        return (void)(number = make_constant(c, *number, type, std::move(value)));
+        return become(c, number, type, std::move(value));
     number->type = &type;
     number->constant = std::move(value);
+    return &type;
 }
 
 }  // namespace lineshaft::st

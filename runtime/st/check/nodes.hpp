@@ -20,7 +20,7 @@ Expression* make(Checking& c, E kind, const Expression& like);
 Expression* make_copy(Checking& c, const Expression& e);
 /// A value, where `like` stands.
 Expression* make_constant(Checking& c, const Expression& like, const Type& type, Constant value);
-/// `e` becomes that value, whose type is given.
+/// `e` becomes that value, whose type is given. It is never null.
 const Type* become(Checking& c, Expression*& e, const Type& type, Constant value);
 Expression* make_boolean(Checking& c, const Expression& like, bool value);
 /// `"..."`, which is no name, as the text that it encloses.
@@ -67,7 +67,7 @@ Statement* make_if(Checking& c, Place place, Expression* condition, Block then, 
 /// One behind the other.
 Statement* make_sequence(Checking& c, Place place, Block statements);
 
-/// A number without a type of its own takes one: a literal is noted as one of it.
-void take_type(Checking& c, Expression*& number, const Type& type, Constant value);
+/// A number without a type of its own takes one: a literal is noted as one of it. Gives it back.
+const Type* take_type(Checking& c, Expression*& number, const Type& type, Constant value);
 
 }  // namespace lineshaft::st

@@ -71,7 +71,7 @@ void keep_constant(Checking& c, Expression*& e) {
 bool refer(Checking& c, Expression*& e, const Type& to) {
     if (e->kind == E::deref && e->operands[0]->type->element == e->type &&
         (e->operands[0]->kind == E::name || e->operands[0]->kind == E::member))
-        return e = make_converted(c, e->operands[0], to), true;
+        return e = make_converted(c, e->operands[0], to);
     if (to.is_pointer()) keep_constant(c, e);
     if (const std::string_view why = why_no_place(*e, to.is_pointer()); !why.empty())
         return c.fail(code::type_does_not_fit, e->place, std::string(why),
@@ -133,12 +133,12 @@ bool refuse_target(Checking& c, const Expression& e, const Type& to, const Type&
 
 /// A REFERENCE TO is given a variable, or another reference.
 bool bind(Checking& c, Expression*& e, const Type& to) {
-    if (is_null(*e)) return become(c, e, to, {}), true;
+    if (is_null(*e)) return become(c, e, to, {});
     const Type& from = *e->type;
     const bool sees_bytes = from.is_pointer() && from.element && to.element &&
                             is_of_bytes(*from.element) && packed_bits(*to.element, iec) > 0;
     if (from.is_reference() && from.element && (is_target(to, *from.element) || sees_bytes))
-        return e = make_converted(c, e, to), true;
+        return e = make_converted(c, e, to);
     if (!to.element) return false;
     if (!is_target(to, from)) return refuse_target(c, *e, to, from);
     return refer(c, e, to);
@@ -398,7 +398,7 @@ bool coerce_reference(Checking& c, Expression*& e, const Type& to) {
     if (!to.is_reference()) return refuse_target(c, *e, to, from);
     const bool is_this = to.is_pointer() && e->kind == E::self;
     if (to.is_alias() || is_this) return bind(c, e, to);
-    if (is_null(*e)) return become(c, e, to, {}), true;
+    if (is_null(*e)) return become(c, e, to, {});
     if (&from == &to || same_type(from, to)) return true;
     const bool are_pointers = to.is_pointer() && from.is_pointer() && to.element && from.element;
     const bool fits =
@@ -406,7 +406,7 @@ bool coerce_reference(Checking& c, Expression*& e, const Type& to) {
         (is_target(to, *from.element) ||
          (are_pointers && (begins_with(*from.element, *to.element) ||
                            (is_of_bytes(*from.element) && packed_bits(*to.element, iec) > 0))));
-    if (fits) return e = make_converted(c, e, to), true;
+    if (fits) return e = make_converted(c, e, to);
     if (!to.element || (from.is_reference() && !from.element)) return false;
     return refuse_target(c, *e, to, from);
 }

@@ -16,7 +16,10 @@ bool accept_modifier(Parsing& p, DeclarationBlock& block) {
     if (p.is_declared()) return false;
     if (p.accept(Word::constant_)) return block.constant = true;
     if (p.accept(Word::retain_)) return block.retain = true;
-    if (p.is(Word::name) && p.says("db_specific")) return p.take(), true;
+    if (p.is(Word::name) && p.says("db_specific")) {
+        p.take();
+        return true;
+    }
     if (p.is(Word::name) && p.says("persistent")) return p.take(), block.retain = true;
     return p.accept(Word::non_retain_) || accept_access(p, &block.access);
 }

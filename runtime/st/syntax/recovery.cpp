@@ -92,7 +92,10 @@ void expected(Parsing& p, std::string_view what, std::string_view where) {
 
 bool expect(Parsing& p, Word word, std::string_view where) {
     if (p.accept(word)) return true;
-    if (respell(p, {&word, 1})) return p.take(), true;
+    if (respell(p, {&word, 1})) {
+        p.take();
+        return true;
+    }
     expected(p, shown(word), where);
     return false;
 }
