@@ -184,7 +184,7 @@ bool coerce_instance(Checking& c, Expression*& e, const Type& to) {
     const Type& from = *e->type;
     if (is_constant(*e) && from.is_any() && e->constant.integer == 0) return become(c, e, to, {});
     const bool has_methods = from.kind == Kind::block || from.kind == Kind::interface;
-    if (has_methods && is_a(*from.routine, *to.routine)) return e = make_converted(c, e, to);
+    if (has_methods && is_a(*from.routine, *to.routine)) return become_converted(c, e, to);
     if (has_methods && from.routine->has_unknown_base) return false;
     return c.fail(code::type_does_not_fit, e->place,
                   fmt::format("expected {}, found {}", describe(to), describe(from)),
@@ -239,8 +239,8 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
 }
 
 const Type* convert(Checking& c, Expression*& e, const Type& to) {
-    if (!is_constant(*e) || !fold_conversion(c, e, to)) e = make_converted(c, e, to);
-    return &to;
+    if (is_constant(*e) && fold_conversion(c, e, to)) return &to;
+    return become_converted(c, e, to);
 }
 
 void enumeration_becomes_number(Checking& c, Expression*& e) {

@@ -129,6 +129,11 @@ Expression* make_converted(Checking& c, Expression* e, const Type& to) {
     return made;
 }
 
+const Type* become_converted(Checking& c, Expression*& e, const Type& to) {
+    e = make_converted(c, e, to);
+    return &to;
+}
+
 Expression* make_call(Checking& c, const Expression& like, Expression* callee,
                       std::vector<Argument> arguments) {
     return keep(c, {.kind = E::call,

@@ -48,6 +48,8 @@ Expression* make_target(Checking& c, const Expression& like, Expression* e, cons
 Expression* make_reference_to(Checking& c, Expression* e, const Type& type);
 /// `e` as a value of `to`, which is not converted yet.
 Expression* make_converted(Checking& c, Expression* e, const Type& to);
+/// `e` becomes that. Gives the type, which is never null.
+const Type* become_converted(Checking& c, Expression*& e, const Type& to);
 /// `callee(arguments)`, where `like` stands.
 Expression* make_call(Checking& c, const Expression& like, Expression* callee,
                       std::vector<Argument> arguments);

@@ -70,8 +70,10 @@ void keep_constant(Checking& c, Expression*& e) {
 /// `e`, a variable, becomes where it is; false for what is no variable, which was told.
 bool refer(Checking& c, Expression*& e, const Type& to) {
     if (e->kind == E::deref && e->operands[0]->type->element == e->type &&
-        (e->operands[0]->kind == E::name || e->operands[0]->kind == E::member))
-        return e = make_converted(c, e->operands[0], to);
+        (e->operands[0]->kind == E::name || e->operands[0]->kind == E::member)) {
+        e = e->operands[0];
+        return become_converted(c, e, to);
+    }
     if (to.is_pointer()) keep_constant(c, e);
     if (const std::string_view why = why_no_place(*e, to.is_pointer()); !why.empty())
         return c.fail(code::type_does_not_fit, e->place, std::string(why),
@@ -138,7 +140,7 @@ bool bind(Checking& c, Expression*& e, const Type& to) {
     const bool sees_bytes = from.is_pointer() && from.element && to.element &&
                             is_of_bytes(*from.element) && packed_bits(*to.element, iec) > 0;
     if (from.is_reference() && from.element && (is_target(to, *from.element) || sees_bytes))
-        return e = make_converted(c, e, to);
+        return become_converted(c, e, to);
     if (!to.element) return false;
     if (!is_target(to, from)) return refuse_target(c, *e, to, from);
     return refer(c, e, to);
@@ -406,7 +408,7 @@ bool coerce_reference(Checking& c, Expression*& e, const Type& to) {
         (is_target(to, *from.element) ||
          (are_pointers && (begins_with(*from.element, *to.element) ||
                            (is_of_bytes(*from.element) && packed_bits(*to.element, iec) > 0))));
-    if (fits) return e = make_converted(c, e, to);
+    if (fits) return become_converted(c, e, to);
     if (!to.element || (from.is_reference() && !from.element)) return false;
     return refuse_target(c, *e, to, from);
 }
