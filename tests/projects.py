@@ -118,6 +118,11 @@ def check_yaml_folder():
     assert "one/c.yaml:4:" in run("check", "one", code=2)
 
 
+def check_nothing():
+    write("nothing/below/notes.txt", "no source\n")
+    assert "there is no source of a controller in 'nothing'" in run("check", "nothing", code=2)
+
+
 def check_automation_studio():
     program = ('<?xml version="1.0" encoding="utf-8"?>\n<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program">\n <Files>\n'
                + "".join(f"  <File{more}>{name}</File>\n" for name, more in
@@ -297,6 +302,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_configuration()
     check_older_forms()
     check_yaml_folder()
+    check_nothing()
     check_automation_studio()
     check_apax()
     check_solution()

@@ -104,8 +104,14 @@ std::optional<st::Library> compile_files(const std::vector<std::string>& files,
                                          const std::vector<std::string>& include_dirs,
                                          Diagnostics& out) {
     projects::Project all;
-    for (const std::string& file : files)
-        for (auto& source : read_project(file, include_dirs, out).sources) all.add(source);
+    for (const std::string& file : files) {
+        const projects::Project read = read_project(file, include_dirs, out);
+        for (const auto& source : read.sources) all.add(source);
+        if (read.sources.empty() && out.empty())
+            out.add(code::file_cannot_be_read, {},
+                    fmt::format("there is no source of a controller in '{}'", file),
+                    "name Structured Text, or a project of another tool: lineshaft check --help");
+    }
     return out.empty() ? st::compile(all.sources, standard_blocks(), out) : std::nullopt;
 }
 

@@ -88,7 +88,8 @@ bool is_time_conversion(const Type& from, const Type& to) {
 }
 
 bool is_conversion(const Type& from, const Type& to) {
-    if (from.kind == Kind::text) return to.is_scalar() && to.kind != Kind::enumeration;
+    if (from.kind == Kind::text)
+        return to.kind == Kind::text || (to.is_scalar() && to.kind != Kind::enumeration);
     if (!from.is_scalar()) return false;
     if (from.is_time() && to.is_time()) return is_time_conversion(from, to);
     return to.is_scalar() || to.kind == Kind::text;
@@ -123,9 +124,10 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
         return c.fail(
             code::type_does_not_fit, e->place,
             fmt::format("there is no conversion of {} to {}", describe(from), describe(*target)));
-    if (same_type(from, *target) && from.is_character == target->is_character) {
+    const bool are_texts = from.kind == Kind::text && target->kind == Kind::text;
+    if (are_texts || (same_type(from, *target) && from.is_character == target->is_character)) {
         e = make_copy(c, *value);
-        return target;
+        return e->type;
     }
     if (target->kind == Kind::enumeration && !target->counted)
         return c.fail(code::not_supported, e->place,
