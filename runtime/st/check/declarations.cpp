@@ -56,8 +56,8 @@ void make_constant(Checking& c, Variable& variable) {
     if (!variable.initial) {
         variable.value = variable.type->initial;
         if (!variable.name.place.dialect().constants_have_values) return;
-        c.fail(code::not_a_constant, variable.name.place,
-               fmt::format("the constant '{}' has no value", variable.text),
+        c.warn(code::not_a_constant, variable.name.place,
+               fmt::format("the constant '{}' is what its type begins with", variable.text),
                "write ':= value' behind its type");
         return;
     }

@@ -8,7 +8,7 @@ namespace lineshaft::st {
 /// has one dialect for good, see Source. All else is read alike in all of them.
 struct Dialect {
     bool sign_precedes_power = false;           ///< `-2 ** 2` is 4, else -4
-    bool constants_have_values = false;         ///< VAR CONSTANT without `:=` is a mistake, else 0
+    bool constants_have_values = false;         ///< VAR CONSTANT without `:=` is told, which is 0
     bool quotes_may_enclose_texts = false;      ///< an undeclared `"..."` may be meant as a text
     bool named_inputs_may_be_left_out = false;  ///< of a function, where it has no value for them
     bool sets_variables_of_instances = false;   ///< `instance.x := 1;` also of VAR and VAR_OUTPUT
