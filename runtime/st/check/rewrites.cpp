@@ -50,8 +50,7 @@ void rewrite_bits(Checking& c, Statement*& s, bool scatters) {
     if (!bits || !type) return;
     const auto is_bool = [](const Type* t) { return t && t->kind == Kind::boolean; };
     const bool array = type->kind == Kind::array && is_bool(type->element);
-    const std::size_t count =
-        array ? static_cast<std::size_t>(type->upper - type->lower + 1) : type->members.size();
+    const std::size_t count = array ? type->count() : type->members.size();
     const bool fits = bits->kind == Kind::bits && count == static_cast<std::size_t>(bits->bits) &&
                       (array || std::ranges::all_of(type->members, is_bool, &Variable::type));
     if (!fits || !is_place(*word) || !is_place(*flags))

@@ -5,7 +5,6 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/types.hpp"
 #include "runtime/st/functions/standard.hpp"
-#include "runtime/st/vendors/instead.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {

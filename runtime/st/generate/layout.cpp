@@ -129,9 +129,7 @@ std::uint32_t slots_of(Writing& w, const Type& type) {
     if (type.slots != 0) return type.slots;
     std::uint64_t slots = 0;
     if (type.kind == Kind::text) slots = 1 + (type.length + 7U) / 8;
-    if (type.kind == Kind::array)
-        slots =
-            static_cast<std::uint64_t>(type.upper - type.lower + 1) * slots_of(w, *type.element);
+    if (type.kind == Kind::array) slots = type.count() * slots_of(w, *type.element);
     if (type.kind == Kind::structure)
         for (Variable* member : type.members) {
             member->slot = static_cast<std::uint32_t>(slots);

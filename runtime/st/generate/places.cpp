@@ -110,8 +110,7 @@ Location element(Writing& w, Location at, const Expression& e) {
             at = is_late ? behind(w, at, {.type = type->element, .times = place})
                          : behind(at, place * stride);
         } else {
-            const IndexTable made{
-                type->lower, static_cast<std::uint64_t>(type->upper - type->lower) + 1, stride};
+            const IndexTable made{type->lower, type->count(), stride};
             const Slot given = value(w, number);
             if (index == none)
                 index = w.emit(Op::index, none, given, table_of(w, made, is_late, type));

@@ -128,7 +128,7 @@ void take(std::byte* block, const std::byte* kept, const void* context) {
 std::size_t slots_in_memory(const Type& type) {
     if (type.kind == Kind::block) return type.routine->frame;
     if (type.kind != Kind::array) return slots_of(type);
-    return static_cast<std::size_t>(type.upper - type.lower + 1) * element_slots(type);
+    return type.count() * element_slots(type);
 }
 
 /// Something that `fits` begins at that slot of a value: itself, or a part of it; of a block one of
