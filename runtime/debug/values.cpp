@@ -64,7 +64,7 @@ List groups_of(const st::Routine& routine, std::byte* base, const Frame& frame) 
 
 List elements_of(const Seat& seat, std::size_t first, std::size_t count) {
     const st::Type& array = *seat.type;
-    const auto size = static_cast<std::size_t>(array.upper - array.lower + 1);
+    const auto size = array.count();
     const std::size_t end =
         first + std::min(count == 0 ? size : count, size - std::min(first, size));
     List elements;
@@ -106,7 +106,7 @@ std::string handle_text(const Seat& seat) {
 void show_parts(Shown& shown, const Seat& seat) {
     switch (seat.type->kind) {
         case Kind::array:
-            shown.elements = static_cast<std::size_t>(seat.type->upper - seat.type->lower + 1);
+            shown.elements = seat.type->count();
             shown.inside = [seat](std::size_t first, std::size_t count) {
                 return elements_of(seat, first, count);
             };

@@ -6,7 +6,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/st/check/check.hpp"
-#include "runtime/st/library/evaluate.hpp"
+#include "runtime/st/library/compiled.hpp"
 #include "runtime/st/library/library.hpp"
 #include "runtime/st/syntax/parser.hpp"
 

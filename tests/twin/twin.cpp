@@ -23,7 +23,7 @@
 #include "runtime/model/random.hpp"
 #include "runtime/st/code/native/compile.hpp"
 #include "runtime/st/generate/generator.hpp"
-#include "runtime/st/library/evaluate.hpp"
+#include "runtime/st/library/compiled.hpp"
 #include "runtime/st/syntax/parser.hpp"
 #include "runtime/st/types/elementary.hpp"
 #include "tests/fuzz/random_source.hpp"

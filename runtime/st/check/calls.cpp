@@ -10,7 +10,6 @@
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/functions/standard.hpp"
-#include "runtime/st/vendors/instead.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {

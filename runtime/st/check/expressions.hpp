@@ -34,6 +34,9 @@ inline bool is_logic(Word op) {
 const Type* check_unary(Checking& c, Expression*& e, const Type* expected);
 const Type* check_binary(Checking& c, Expression*& e, const Type* expected);
 
+/// Tells that the operator does not go with what it stands between.
+Nothing refuse_operands(Checking& c, const Expression& e, std::string help);
+
 // time_operators.cpp
 
 /// Operands that are DTL become LDT.

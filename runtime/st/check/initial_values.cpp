@@ -88,27 +88,21 @@ void check_members(Checking& c, Expression& list, const Type& type) {
             code::value_out_of_range, list.place,
             fmt::format("{} values for {} members", list.arguments.size(), type.members.size()),
             "leave some out");
-    for (std::size_t i = 0; by_place && i < list.arguments.size(); ++i) {
-        Variable& member = *type.members[i];
-        list.arguments[i].variable = &member;
-        if (member.type) check_part(c, list.arguments[i].value, *member.type, member.text);
-    }
-    for (Argument& argument : list.arguments) {
-        if (by_place) break;
-        if (argument.name.word == Word::end_of_file) {
+    for (std::size_t i = 0; i < list.arguments.size(); ++i) {
+        Argument& argument = list.arguments[i];
+        if (!by_place && !argument.is_named()) {
             c.fail(code::type_does_not_fit, argument.value->place, "this value has no name",
                    fmt::format("name the member of {}: (name := value)", describe(type)));
             continue;
         }
-        Variable* found = find_member(type, argument.name.text);
+        Variable* found = by_place ? type.members[i] : find_member(type, argument.name.text);
         argument.variable = found;
-        if (!found) {
+        if (!found)
             c.fail(code::not_declared, argument.name.place,
                    fmt::format("{} has no '{}'", describe(type), argument.name.text),
                    suggest(argument.name.text, names_of(type.members)));
-        } else if (found->type) {
+        else if (found->type)
             check_part(c, argument.value, *found->type, found->text);
-        }
     }
 }
 

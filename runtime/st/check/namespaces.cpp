@@ -27,17 +27,13 @@ std::string find_namespace(const Checking& c, Place place, std::string_view name
     return is_namespace(c, name) ? std::string(name) : std::string();
 }
 
-std::vector<std::string> known_namespaces(const Checking& c) {
-    std::vector<std::string> names;
-    for (const auto& [path, is_known] : c.namespaces)
-        if (is_known) names.emplace_back(path);
-    std::ranges::sort(names);
-    return names;
-}
-
 void refuse_namespace(Checking& c, Place place, std::string_view path) {
     if (!c.namespaces.emplace(c.checked.names.emplace_back(path), false).second) return;
-    const std::string near = suggest(path, known_namespaces(c));
+    std::vector<std::string> names;
+    for (const auto& [known, is_there] : c.namespaces)
+        if (is_there) names.emplace_back(known);
+    std::ranges::sort(names);
+    const std::string near = suggest(path, names);
     Token name;
     name.text = path;
     name.place = place;

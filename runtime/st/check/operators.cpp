@@ -74,20 +74,15 @@ const Type* check_comparison(Checking& c, Expression*& e) {
     }
     if (a.kind == Kind::text && b.kind == Kind::text) return &bool_type;
     if (a.kind == Kind::text || b.kind == Kind::text)
-        return c.fail(
-            code::type_does_not_fit, e->token.place,
-            fmt::format("'{}' does not go with {} and {}", shown(e->op), describe(a), describe(b)),
-            "a STRING is compared with a STRING");
+        return refuse_operands(c, *e, "a STRING is compared with a STRING");
     for (const Type* type : {&a, &b}) {
-        if (type->kind == Kind::interface)
-            return c.fail(code::type_does_not_fit, e->token.place,
-                          fmt::format("'{}' does not compare {}", shown(e->op), describe(*type)),
-                          "instances are equal or not");
+        const bool is_instance = type->kind == Kind::interface;
         const bool fits = type->is_scalar() && !(order && type->kind == Kind::enumeration);
-        if (!fits)
+        if (!fits || is_instance)
             return c.fail(code::type_does_not_fit, e->token.place,
                           fmt::format("'{}' does not compare {}", shown(e->op), describe(*type)),
-                          type->is_scalar()
+                          is_instance ? "instances are equal or not"
+                          : type->is_scalar()
                               ? "the values of an enumeration are equal or not; compare TO_INT(...)"
                               : "compare its parts one by one");
     }
@@ -159,6 +154,13 @@ const Type* check_power(Checking& c, Expression*& e, const Type* expected) {
 }
 
 }  // namespace
+
+Nothing refuse_operands(Checking& c, const Expression& e, std::string help) {
+    return c.fail(code::type_does_not_fit, e.token.place,
+                  fmt::format("'{}' does not go with {} and {}", shown(e.op),
+                              describe(*e.operands[0]->type), describe(*e.operands[1]->type)),
+                  std::move(help));
+}
 
 const Type* check_unary(Checking& c, Expression*& e, const Type* expected) {
     Expression*& operand = e->operands[0];

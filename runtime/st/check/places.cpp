@@ -1,3 +1,4 @@
+#include "runtime/source/letters.hpp"
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/conversions.hpp"
@@ -137,43 +138,40 @@ const Type* check_index(Checking& c, Expression*& node) {
 }
 
 const Type* check_bit(Checking& c, Expression*& e) {
+    struct Part {
+        char letter;
+        int bits;
+        std::string_view names;
+    };
+    static constexpr Part parts[] = {
+        {'X', 1, "bits"}, {'B', 8, "bytes"}, {'W', 16, "words"}, {'D', 32, "double words"}};
     const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
     std::string_view text = e->token.text;
-    int bits = 1;
+    const Part* known = parts;
     if (e->token.word == Word::direct) {
         const char letter = text.size() > 1 ? text[1] : '\0';
-        const bool has_letter = letter < '0' || letter > '9';
-        bits = !has_letter || letter == 'X' || letter == 'x' ? 1
-               : letter == 'B' || letter == 'b'              ? 8
-               : letter == 'W' || letter == 'w'              ? 16
-               : letter == 'D' || letter == 'd'              ? 32
-                                                             : 0;
-        text.remove_prefix(std::min<std::size_t>(has_letter ? 2 : 1, text.size()));
+        if (!is_digit(letter)) known = std::ranges::find(parts, upper(letter), &Part::letter);
+        text.remove_prefix(std::min<std::size_t>(is_digit(letter) ? 1 : 2, text.size()));
     }
     const auto number = read_integer(text);
-    if (!number || bits == 0)
+    if (!number || known == std::end(parts))
         return c.fail(code::something_else_expected, e->token.place,
                       fmt::format("'{}' is not a bit", e->token.text),
                       "write .%X0 for a bit, .%B0 for a byte, .%W0 for a word");
-    const bool whole = type->kind == Kind::bits || type->kind == Kind::integer;
-    if (!whole)
+    const auto& [letter, bits, names] = *known;
+    if (type->kind != Kind::bits && type->kind != Kind::integer)
         return c.fail(code::type_does_not_fit, e->token.place,
                       fmt::format("{} has no bits", describe(*type)),
                       "bits are those of BYTE to LWORD and of integers");
     if ((*number + 1) * bits > type->bits)
         return c.fail(code::value_out_of_range, e->token.place,
                       fmt::format("{} has no part '{}'", describe(*type), e->token.text),
-                      fmt::format("its {} are 0 to {}",
-                                  bits == 1    ? "bits"
-                                  : bits == 8  ? "bytes"
-                                  : bits == 16 ? "words"
-                                               : "double words",
-                                  type->bits / bits - 1));
-    const Expression& part = *e->operands[0];
-    const bool of_part = part.kind == E::bit;
-    const Wide first = *number * bits + (of_part ? part.bits.first : 0);
-    if (of_part) e = make_bit(c, *e, part.operands[0]);
+                      fmt::format("its {} are 0 to {}", names, type->bits / bits - 1));
+    const Expression& whole = *e->operands[0];
+    const bool of_part = whole.kind == E::bit;
+    const Wide first = *number * bits + (of_part ? whole.bits.first : 0);
+    if (of_part) e = make_bit(c, *e, whole.operands[0]);
     e->bits = {static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(bits)};
     return bits == 1 ? &bool_type : &bits_type(bits);
 }

@@ -189,10 +189,8 @@ const Type* check_moved(Checking& c, Expression*& e) {
     if (e->op == Word::plus && !pointer->type->is_reference()) std::swap(pointer, by);
     const bool is_number = by->type->is_integer() || by->type->is_bits();
     if (!pointer->type->is_pointer() || !is_number)
-        return c.fail(code::type_does_not_fit, e->token.place,
-                      fmt::format("'{}' does not go with {} and {}", shown(e->op),
-                                  describe(*pointer->type), describe(*by->type)),
-                      "to a POINTER a whole number of bytes is added: p + SIZEOF(p^)");
+        return refuse_operands(c, *e,
+                               "to a POINTER a whole number of bytes is added: p + SIZEOF(p^)");
     become_lint(c, by);
     return e->type = pointer->type;
 }

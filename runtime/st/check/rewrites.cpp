@@ -22,16 +22,6 @@ bool is_timer(const Type& type) {
            std::ranges::any_of(type.members, [](const Variable* m) { return m->text == "pt"; });
 }
 
-/// `0` to `63`, which tokens refer to.
-std::string_view number_text(std::size_t number) {
-    static const auto texts = [] {
-        std::vector<std::string> made;
-        for (int i = 0; i < 64; ++i) made.push_back(std::to_string(i));
-        return made;
-    }();
-    return texts[number];
-}
-
 /// `y := f(EN := go, a := x, ENO => ok);` is an IF around `y := f(a := x, ENO => ok);`
 Statement* if_enabled(Checking& c, const Statement& s, bool has_eno) {
     const Expression& call = *s.value;
@@ -60,8 +50,7 @@ void rewrite_bits(Checking& c, Statement*& s, bool scatters) {
     if (!bits || !type) return;
     const auto is_bool = [](const Type* t) { return t && t->kind == Kind::boolean; };
     const bool array = type->kind == Kind::array && is_bool(type->element);
-    const std::size_t count =
-        array ? static_cast<std::size_t>(type->upper - type->lower + 1) : type->members.size();
+    const std::size_t count = array ? type->count() : type->members.size();
     const bool fits = bits->kind == Kind::bits && count == static_cast<std::size_t>(bits->bits) &&
                       (array || std::ranges::all_of(type->members, is_bool, &Variable::type));
     if (!fits || !is_place(*word) || !is_place(*flags))
@@ -71,7 +60,7 @@ void rewrite_bits(Checking& c, Statement*& s, bool scatters) {
             "it takes a variable of BYTE to LWORD, and as many BOOL in an array or a structure"));
     Block assignments;
     for (std::size_t i = 0; i < count; ++i) {
-        Expression* bit = make_bit(c, word, number_text(i));
+        Expression* bit = make_bit(c, word, c.checked.names.emplace_back(std::to_string(i)));
         Expression* flag = array ? make_element(c, flags, type->lower + static_cast<int>(i))
                                  : make_member(c, flags, type->members[i]->text);
         assignments.push_back(

@@ -5,37 +5,30 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/types.hpp"
 #include "runtime/st/functions/standard.hpp"
-#include "runtime/st/vendors/instead.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
 namespace {
 
-/// `LIMIT_INT`, `SHL_WORD`: IEC 61131-3:2013, 6.6.1.7.
-bool is_typed_function(std::string_view name) {
-    const std::size_t end = name.rfind('_');
-    if (end == name.npos || !find_elementary(name.substr(end + 1))) return false;
-    const StandardFunction* standard = find_standard_function(name.substr(0, end));
-    return standard && standard->typing != Typing::statement;
-}
-
-const Type* check_typed_function(Checking& c, Expression*& e) {
+/// `LIMIT_INT`, `SHL_WORD`: IEC 61131-3:2013, 6.6.1.7. Empty: it is none.
+std::optional<const Type*> check_typed_function(Checking& c, Expression*& e) {
     const std::string_view written = e->operands[0]->token.text;
-    const std::size_t end = written.rfind('_');
-    const Type& type = *find_elementary(written.substr(end + 1));
-    Expression* callee = make_name(c, *e->operands[0], written.substr(0, end));
-    Expression* call = make_call(c, *e, callee, e->arguments);
-    const Type* result = check_standard_function(c, call, &type);
+    const std::size_t end = std::min(written.rfind('_'), written.size() - 1);
+    const std::string_view name = written.substr(0, end);
+    const Type* type = find_elementary(written.substr(end + 1));
+    const StandardFunction* standard = find_standard_function(name);
+    if (!type || !standard || standard->typing == Typing::statement) return {};
+    Expression* call = make_call(c, *e, make_name(c, *e->operands[0], name), e->arguments);
+    const Type* result = check_standard_function(c, call, type);
     if (!result) return nullptr;
-    const bool fits = result->kind == Kind::boolean || same_type(*result, type);
-    if (fits || widens(*result, type)) {
-        e = call;
-        return fits ? result : convert_result(c, e, *result, type);
-    }
-    return c.fail(code::conversion_may_lose, e->place,
-                  fmt::format("{} takes {}, not {}", written, type.name, describe(*result)),
-                  fmt::format("write {}", written.substr(0, end)));
+    const bool fits = result->kind == Kind::boolean || same_type(*result, *type);
+    if (!fits && !widens(*result, *type))
+        return c.fail(code::conversion_may_lose, e->place,
+                      fmt::format("{} takes {}, not {}", written, type->name, describe(*result)),
+                      fmt::format("write {}", name));
+    e = call;
+    return fits ? result : convert_result(c, e, *result, *type);
 }
 
 }  // namespace
@@ -106,7 +99,7 @@ const Type* check_standard_function(Checking& c, Expression*& e, const Type* exp
             return c.fail(code::wrong_arguments, name.place,
                           fmt::format("'{}' is a kind of block, not an instance", name.text),
                           "declare one in VAR, and call that");
-        if (is_typed_function(name.text)) return check_typed_function(c, e);
+        if (const auto typed = check_typed_function(c, e)) return *typed;
         std::vector<std::string> names = visible_names(c);
         for (const StandardFunction* f : standard_functions()) names.emplace_back(f->name);
         if (c.is_in_test())

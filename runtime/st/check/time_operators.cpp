@@ -17,10 +17,8 @@ const Type* check_date_arithmetic(Checking& c, Expression*& e) {
     const bool moves = (op == Word::plus || op == Word::minus) && b.kind == Kind::time &&
                        (a.kind == Kind::clock || a.kind == Kind::moment);
     if (!distance && !moves && !joins)
-        return c.fail(
-            code::type_does_not_fit, e->token.place,
-            fmt::format("'{}' does not go with {} and {}", shown(op), describe(a), describe(b)),
-            "a TIME is added to a TOD or a DT, and two dates have a TIME between them");
+        return refuse_operands(
+            c, *e, "a TIME is added to a TOD or a DT, and two dates have a TIME between them");
     const bool within_day = moves && a.kind == Kind::clock;
     e->type = distance ? &time_type : joins || within_day ? &moment_type : &a;
     fold(c, e);
@@ -49,11 +47,10 @@ const Type* check_time_arithmetic(Checking& c, Expression*& e) {
     const bool scales = !both && number->type->is_number() &&
                         (op == Word::times || (op == Word::divided && &number == &right));
     if (!(both && adds) && !scales)
-        return c.fail(code::type_does_not_fit, e->token.place,
-                      fmt::format("'{}' does not go with {} and {}", shown(op),
-                                  describe(*left->type), describe(*right->type)),
-                      "times are added and subtracted, and multiplied or divided by a number; "
-                      "TIME_TO_LREAL gives a number of ms");
+        return refuse_operands(
+            c, *e,
+            "times are added and subtracted, and multiplied or divided by a number; "
+            "TIME_TO_LREAL gives a number of ms");
     if (scales) {
         const Type& to = number->type->is_real() ? lreal_type : lint_type;
         const bool is_long = number->type->is_unsigned_64();

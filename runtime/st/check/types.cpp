@@ -8,7 +8,6 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/types/packed.hpp"
-#include "runtime/st/vendors/instead.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {

@@ -23,6 +23,8 @@ std::string operand_error(const Code& code, const CodeRoutine& routine, char kin
         case 'r':
         case 's':
             return beyond(routine.frame) ? "a slot outside of the frame" : "";
+        case 't':
+            return x + 2 >= routine.frame ? "a reference that is not whole" : "";
         case 'j':
             return is_jump(code, routine, x) ? "" : "a jump out of the routine";
         case 'f':
@@ -46,33 +48,6 @@ bool jumps_out(const Code& code, const CodeRoutine& routine, const Instruction& 
     return targets.empty() || std::ranges::any_of(targets, [&](std::int64_t x) {
                return !is_jump(code, routine, static_cast<std::uint64_t>(x));
            });
-}
-
-/// A reference is three slots.
-std::string reference_error(const Code& code, const CodeRoutine& routine, const Instruction& in) {
-    constexpr const char* broken = "a reference that is not whole";
-    switch (in.op) {
-        case Op::reach:
-            return in.b + 2 >= routine.frame || in.c >= code.shapes.size() ? broken : "";
-        case Op::load_through:
-        case Op::store_through:
-        case Op::load_text_through:
-        case Op::store_text_through:
-        case Op::copy_from_through:
-        case Op::copy_to_through:
-            return in.b + 2 >= routine.frame || in.c >> 32 >= code.shapes.size() ? broken : "";
-        case Op::copy_memory:
-        case Op::move_reference:
-            return in.a + 2 >= routine.frame || in.b + 2 >= routine.frame ? broken : "";
-        case Op::fill_memory:
-            return in.a + 2 >= routine.frame ? broken : "";
-        case Op::compare_memory:
-        case Op::compare_references:
-        case Op::reference_distance:
-            return in.b + 2 >= routine.frame || in.c + 2 >= routine.frame ? broken : "";
-        default:
-            return "";
-    }
 }
 
 std::string instruction_error(const Code& code, const CodeRoutine& routine, const Instruction& in) {
@@ -118,7 +93,15 @@ std::string instruction_error(const Code& code, const CodeRoutine& routine, cons
         case Op::cover:
             return in.a >= code.points.size() ? "a point that is not there" : "";
         case Op::bytes_of_slots:
+        case Op::reach:
             return in.c >= code.shapes.size() ? "a shape that is not there" : "";
+        case Op::load_through:
+        case Op::store_through:
+        case Op::load_text_through:
+        case Op::store_text_through:
+        case Op::copy_from_through:
+        case Op::copy_to_through:
+            return in.c >> 32 >= code.shapes.size() ? "a shape that is not there" : "";
         case Op::look_up:
             return numbers_of(code, in).empty() ? "a list of numbers that is not there" : "";
         case Op::choose:
@@ -132,7 +115,7 @@ std::string instruction_error(const Code& code, const CodeRoutine& routine, cons
                        : "";
         }
         default:
-            return reference_error(code, routine, in);
+            return "";
     }
 }
 

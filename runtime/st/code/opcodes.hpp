@@ -11,10 +11,10 @@
 ///
 /// An operand is a slot of the frame (w written, r read), a number (n), an instruction of the same
 /// routine, by its address (j), a routine (f), an index table (x), the first of several slots (s),
-/// or unused (-). In meanings `I(b)` is slot b as std::int64_t, `U(b)` as std::uint64_t, `R(b)` as
-/// double; `put` writes; ELEMENT(b, c) finds the `element` of an array; GO(to) jumps to c,
-/// AGAIN(to) too and takes fuel; CALL and LEAVE begin and end a call; FAIL ends the scan with a
-/// fault.
+/// or of the three of a reference (t), or unused (-). In meanings `I(b)` is slot b as std::int64_t,
+/// `U(b)` as std::uint64_t, `R(b)` as double; `put` writes; ELEMENT(b, c) finds the `element` of an
+/// array; GO(to) jumps to c, AGAIN(to) too and takes fuel; CALL and LEAVE begin and end a call;
+/// FAIL ends the scan with a fault.
 ///
 /// Of packed memory the lower half of c is where a value begins [bits], on from what slot d has,
 /// and the upper one, UPPER(to), its PackedFormat; of what a reference is to (`..._through`) the
@@ -39,19 +39,19 @@
     OP(lasting, move, "wr--", put(a, frames.lasting(U(b))))                                          \
     OP(number_call, move, "w---", put(a, frames.number_of_call(fuel)))                                \
     OP(bytes_of_slots, integer, "wrn-", put(a, byte_of(code, c, U(b))))                              \
-    OP(move_reference, move, "ssr-", if (!move_reference(at(a), at(b), I(c))) FAIL(out_of_range))    \
-    OP(compare_references, integer, "wss-", put(a, compare_references(at(b), at(c))))                \
-    OP(reference_distance, integer, "wss-", if (const auto n = reference_distance(at(b), at(c))) put(a, *n); else FAIL(out_of_range)) \
-    OP(reach, move, "wsn-", LINESHAFT_ST_REACHED(frames.reach(at(b), c, BEHIND)); put(a, frames.reached)) \
-    OP(load_through, move, "wsnr", LINESHAFT_ST_REACHED(frames.load_through(at(b), c + U(d), UPPER(to), BEHIND)); put(a, frames.reached)) \
-    OP(store_through, move, "rsnr", LINESHAFT_ST_REACHED(frames.store_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(load_text_through, text, "rsnr", LINESHAFT_ST_REACHED(frames.load_text_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(store_text_through, text, "rsnr", LINESHAFT_ST_REACHED(frames.store_text_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(copy_from_through, move, "rsnr", LINESHAFT_ST_REACHED(frames.copy_from_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(copy_to_through, move, "rsnr", LINESHAFT_ST_REACHED(frames.copy_to_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(copy_memory, move, "ssr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.copy_memory(at(a), at(b), I(c), BEHIND))) \
-    OP(fill_memory, move, "srr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.fill_memory(at(a), U(b), I(c), BEHIND))) \
-    OP(compare_memory, integer, "wssr", if ((fuel -= effort(I(d))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.compare_memory(at(b), at(c), I(d), BEHIND)); put(a, frames.reached)) \
+    OP(move_reference, move, "ttr-", if (!move_reference(at(a), at(b), I(c))) FAIL(out_of_range))    \
+    OP(compare_references, integer, "wtt-", put(a, compare_references(at(b), at(c))))                \
+    OP(reference_distance, integer, "wtt-", if (const auto n = reference_distance(at(b), at(c))) put(a, *n); else FAIL(out_of_range)) \
+    OP(reach, move, "wtn-", LINESHAFT_ST_REACHED(frames.reach(at(b), c, BEHIND)); put(a, frames.reached)) \
+    OP(load_through, move, "wtnr", LINESHAFT_ST_REACHED(frames.load_through(at(b), c + U(d), UPPER(to), BEHIND)); put(a, frames.reached)) \
+    OP(store_through, move, "rtnr", LINESHAFT_ST_REACHED(frames.store_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(load_text_through, text, "rtnr", LINESHAFT_ST_REACHED(frames.load_text_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(store_text_through, text, "rtnr", LINESHAFT_ST_REACHED(frames.store_text_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(copy_from_through, move, "rtnr", LINESHAFT_ST_REACHED(frames.copy_from_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(copy_to_through, move, "rtnr", LINESHAFT_ST_REACHED(frames.copy_to_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(copy_memory, move, "ttr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.copy_memory(at(a), at(b), I(c), BEHIND))) \
+    OP(fill_memory, move, "trr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.fill_memory(at(a), U(b), I(c), BEHIND))) \
+    OP(compare_memory, integer, "wttr", if ((fuel -= effort(I(d))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.compare_memory(at(b), at(c), I(d), BEHIND)); put(a, frames.reached)) \
     OP(offset, move, "wrn-", put(a, U(b) + c))                                                       \
     OP(offset_by, move, "wrr-", put(a, U(b) + U(c)))                                                 \
     OP(load, move, "wrn-", put(a, word(target(U(b)), c)))                                            \

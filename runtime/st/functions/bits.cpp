@@ -19,18 +19,10 @@ Slot emit_shift(Emission& e) {
     return e.result(of_type(Op::wrap_sint, type), e.emit(op, pattern, n));
 }
 
-Slot emit_swap(Emission& e) {
-    return e.result(Op::swap_bytes, e.kept(0), static_cast<Slot>(e.type().bits));
-}
-
 Slot emit_decode(Emission& e) {
     const Slot last = e.constant(static_cast<std::uint64_t>(e.type().bits - 1));
     const Slot place = e.emit(Op::and_bits, e.kept(0), last);
     return e.result(Op::shl_64, e.constant(1), place);
-}
-
-Slot emit_encode(Emission& e) {
-    return e.result(Op::lowest_bit, e.kept(0));
 }
 
 consteval StandardFunction shift(std::string_view signature, std::string_view doc, Op op) {
@@ -44,10 +36,11 @@ constexpr StandardFunction bit_strings[] = {
           "the bits N places to the right, filled with 0, of a signed integer with its sign", Op::shr_8),
     shift("ROL(IN: ANY_WHOLE; N: ANY_INT): ANY_WHOLE", "the bits N places to the left, in a circle", Op::rol_8),
     shift("ROR(IN: ANY_WHOLE; N: ANY_INT): ANY_WHOLE", "the bits N places to the right, in a circle", Op::ror_8),
-    {"SWAP(IN: ANY_BIT): ANY_BIT", "the bytes in reverse order", Typing::bits, emit_swap},
+    {"SWAP(IN: ANY_BIT): ANY_BIT", "the bytes in reverse order", Typing::bits,
+     [](Emission& e) { return e.result(Op::swap_bytes, e.kept(0), static_cast<Slot>(e.type().bits)); }},
     {"DECO(IN: ANY_INT): ANY_BIT", "the bit of number IN, from 0 on, and no other", Typing::bit_number, emit_decode},
     {"ENCO(IN: ANY_BIT): INT", "the number of the lowest bit that is set, from 0 on; of 0 it is 0",
-     Typing::bits, emit_encode},
+     Typing::bits, [](Emission& e) { return e.result(Op::lowest_bit, e.kept(0)); }},
     {"SCATTER(IN: ANY_BIT; OUT: ARRAY)", "writes each bit of IN to an element of OUT, an array of BOOL",
      Typing::statement, nullptr},
     {"GATHER(IN: ARRAY; OUT: ANY_BIT)", "writes each element of IN, an array of BOOL, to a bit of OUT",

@@ -20,14 +20,6 @@ Slot emit_scale(Emission& e) {
     return e.result(e.of_real(Op::add_real, Op::add_lreal), above, min);
 }
 
-Slot emit_finite(Emission& e) {
-    return e.result(Op::is_finite, e.kept(0));
-}
-
-Slot emit_valid_bcd(Emission& e) {
-    return e.result(Op::is_bcd, e.kept(0));
-}
-
 // clang-format off
 /// What comes from outside, and what it is to be.
 constexpr StandardFunction measured[] = {
@@ -35,8 +27,10 @@ constexpr StandardFunction measured[] = {
      Typing::reals, emit_normalise},
     {"SCALE_X(MIN, VALUE, MAX: ANY_NUM): ANY_NUM", "VALUE * (MAX - MIN) + MIN, rounded where that is an integer",
      Typing::scaled, emit_scale},
-    {"IS_VALID(IN: ANY_REAL): BOOL", "IN is a number, and not infinite", Typing::real, emit_finite},
-    {"IS_VALID_BCD(IN: ANY_BIT): BOOL", "each four bits of IN are a decimal digit", Typing::bits, emit_valid_bcd},
+    {"IS_VALID(IN: ANY_REAL): BOOL", "IN is a number, and not infinite", Typing::real,
+     [](Emission& e) { return e.result(Op::is_finite, e.kept(0)); }},
+    {"IS_VALID_BCD(IN: ANY_BIT): BOOL", "each four bits of IN are a decimal digit", Typing::bits,
+     [](Emission& e) { return e.result(Op::is_bcd, e.kept(0)); }},
 };
 // clang-format on
 

@@ -30,10 +30,16 @@ Slot emit_absolute(Emission& e) {
     return e.fitted(e.emit(Op::abs_signed, e.kept(0)));
 }
 
+Op greatest(Emission& e) {
+    return e.of_number(Op::max_lreal, Op::max_unsigned, Op::max_signed);
+}
+
+Op least(Emission& e) {
+    return e.of_number(Op::min_lreal, Op::min_unsigned, Op::min_signed);
+}
+
 Slot emit_extremum(Emission& e) {
-    const Op op = e.call.standard->op == Op::max_signed
-                      ? e.of_number(Op::max_lreal, Op::max_unsigned, Op::max_signed)
-                      : e.of_number(Op::min_lreal, Op::min_unsigned, Op::min_signed);
+    const Op op = e.call.standard->op == Op::max_signed ? greatest(e) : least(e);
     Slot so_far = e.kept(0);
     for (std::size_t i = 1; i + 1 < e.count(); ++i) so_far = e.emit(op, so_far, e.value(i));
     return e.result(op, so_far, e.value(e.count() - 1));
@@ -41,9 +47,7 @@ Slot emit_extremum(Emission& e) {
 
 Slot emit_limit(Emission& e) {
     const Slot mn = e.kept(0), in = e.kept(1), mx = e.kept(2);
-    const Slot at_least =
-        e.emit(e.of_number(Op::max_lreal, Op::max_unsigned, Op::max_signed), in, mn);
-    return e.result(e.of_number(Op::min_lreal, Op::min_unsigned, Op::min_signed), at_least, mx);
+    return e.result(least(e), e.emit(greatest(e), in, mn), mx);
 }
 
 Slot emit_select(Emission& e) {

@@ -4,13 +4,9 @@ namespace lineshaft::st {
 
 namespace {
 
-Slot emit_move(Emission& e) {
-    return e.value_or_address(0);
-}
-
 // clang-format off
 constexpr StandardFunction operators[] = {
-    {"MOVE(IN: ANY): ANY", "IN", Typing::common, emit_move},
+    {"MOVE(IN: ANY): ANY", "IN", Typing::common, [](Emission& e) { return e.value_or_address(0); }},
     {"ADD(IN1, IN2, ...: ANY_MAGNITUDE): ANY_MAGNITUDE", "IN1 + IN2", Word::plus},
     {"SUB(IN1, IN2: ANY_MAGNITUDE): ANY_MAGNITUDE", "IN1 - IN2", Word::minus},
     {"MUL(IN1, IN2, ...: ANY_NUM): ANY_NUM", "IN1 * IN2; also of a TIME and a number", Word::times},

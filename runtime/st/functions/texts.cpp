@@ -84,24 +84,18 @@ Slot emit_replace(Emission& e) {
     return emit_replaced(parts, other, parts.difference(e.value(3), parts.one), count);
 }
 
-Slot emit_length(Emission& e) {
-    return e.result(Op::text_length, e.text(0));
-}
-
 Slot emit_find(Emission& e) {
     const Slot in = e.text(0);
     return e.result(Op::text_find, in, e.text(1));
 }
 
-Slot emit_capacity(Emission& e) {
-    return e.capacity(0);
-}
-
 // clang-format off
 /// Characters are counted from 1. A text that is made has at most 254.
 constexpr StandardFunction texts[] = {
-    {"LEN(IN: STRING): INT", "how many characters the text has", Typing::texts, emit_length},
-    {"MAX_LEN(IN: STRING): INT", "how many characters the variable can hold", Typing::capacity, emit_capacity},
+    {"LEN(IN: STRING): INT", "how many characters the text has", Typing::texts,
+     [](Emission& e) { return e.result(Op::text_length, e.text(0)); }},
+    {"MAX_LEN(IN: STRING): INT", "how many characters the variable can hold", Typing::capacity,
+     [](Emission& e) { return e.capacity(0); }},
     {"FIND(IN1, IN2: STRING): INT", "where IN2 begins in IN1 for the first time, from 1 on; 0 if it does not",
      Typing::texts, emit_find},
     {"CONCAT(IN1, IN2, ...: STRING): STRING", "the texts one behind the other", Typing::texts, emit_concatenate},

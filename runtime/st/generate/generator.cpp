@@ -67,10 +67,8 @@ void finish(Writing& w, Routine& routine) {
     for (std::uint32_t i = code.entry; i < code.end; ++i) {
         Instruction& in = w.code.instructions[i];
         const std::string_view operands = info(in.op).operands;
-        const auto is_slot = [&](int k) {
-            return operands[static_cast<std::size_t>(k)] == 'w' ||
-                   operands[static_cast<std::size_t>(k)] == 'r' ||
-                   operands[static_cast<std::size_t>(k)] == 's';
+        const auto is_slot = [&](std::size_t k) {
+            return std::string_view("wrst").find(operands[k]) != std::string_view::npos;
         };
         if (is_slot(0)) place(in.a);
         if (is_slot(1)) place(in.b);

@@ -52,6 +52,14 @@ std::uint32_t begin_block(Writing& w, Routine& block, Writing::Image& image) {
     return block.base->frame;
 }
 
+bool has_block(const Type& type) {
+    if (type.kind == Kind::array) return has_block(*type.element);
+    return type.kind == Kind::block || (type.kind == Kind::structure &&
+                                        std::ranges::any_of(type.members, [](const Variable* m) {
+                                            return has_block(*m->type);
+                                        }));
+}
+
 /// A slot that says that the routine runs, if it may meet itself.
 void place_mark(Routine& routine, std::uint32_t& at) {
     if (routine.may_meet_itself && !routine.is_function()) routine.mark = at++;
@@ -72,18 +80,6 @@ bool is_in_signature(const Variable& variable, bool is_given) {
     return is_given ? section == Section::input || section == Section::in_out
                     : section == Section::result || section == Section::output;
 }
-
-namespace {
-
-bool has_block(const Type& type) {
-    if (type.kind == Kind::array) return has_block(*type.element);
-    return type.kind == Kind::block || (type.kind == Kind::structure &&
-                                        std::ranges::any_of(type.members, [](const Variable* m) {
-                                            return has_block(*m->type);
-                                        }));
-}
-
-}  // namespace
 
 void forget_places(Writing& w) {
     for (Routine& routine : w.checked.routines)
@@ -133,9 +129,7 @@ std::uint32_t slots_of(Writing& w, const Type& type) {
     if (type.slots != 0) return type.slots;
     std::uint64_t slots = 0;
     if (type.kind == Kind::text) slots = 1 + (type.length + 7U) / 8;
-    if (type.kind == Kind::array)
-        slots =
-            static_cast<std::uint64_t>(type.upper - type.lower + 1) * slots_of(w, *type.element);
+    if (type.kind == Kind::array) slots = type.count() * slots_of(w, *type.element);
     if (type.kind == Kind::structure)
         for (Variable* member : type.members) {
             member->slot = static_cast<std::uint32_t>(slots);

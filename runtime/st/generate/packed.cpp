@@ -119,8 +119,7 @@ Location packed_element(Writing& w, Location at, const Expression& e) {
                 static_cast<std::uint32_t>((number.constant.integer - array.lower) * stride);
             continue;
         }
-        const IndexTable made{array.lower,
-                              static_cast<std::uint64_t>(array.upper - array.lower) + 1, stride};
+        const IndexTable made{array.lower, array.count(), stride};
         const Slot given = value(w, number), before = at.packed->index;
         at.packed->index = w.emit(Op::index, none, given, w.table(made));
         if (before != none)

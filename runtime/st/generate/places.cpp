@@ -30,6 +30,15 @@ void copy_value(Writing& w, const Location& to, const Type& type, const Expressi
     copy_value(w, to, locate(w, from), type);
 }
 
+/// Of elements whose size is not known yet it is no other's.
+std::uint32_t table_of(Writing& w, const IndexTable& made, bool is_late, const Type* array) {
+    if (!is_late) return w.table(made);
+    const auto number = static_cast<std::uint32_t>(w.code.tables.size());
+    w.code.tables.push_back(made);
+    w.late.push_back({.type = array->element, .is_stride = true, .at = number});
+    return number;
+}
+
 }  // namespace
 
 void store_bits(Writing& w, const Expression& target, Slot bits) {
@@ -89,19 +98,6 @@ Location part(Writing& w, Location of, const Variable& member) {
     return behind(of, member.slot);
 }
 
-namespace {
-
-/// Of elements whose size is not known yet it is no other's.
-std::uint32_t table_of(Writing& w, const IndexTable& made, bool is_late, const Type* array) {
-    if (!is_late) return w.table(made);
-    const auto number = static_cast<std::uint32_t>(w.code.tables.size());
-    w.code.tables.push_back(made);
-    w.late.push_back({.type = array->element, .is_stride = true, .at = number});
-    return number;
-}
-
-}  // namespace
-
 Location element(Writing& w, Location at, const Expression& e) {
     const Type* type = e.operands[0]->type;
     Slot index = none;
@@ -114,8 +110,7 @@ Location element(Writing& w, Location at, const Expression& e) {
             at = is_late ? behind(w, at, {.type = type->element, .times = place})
                          : behind(at, place * stride);
         } else {
-            const IndexTable made{
-                type->lower, static_cast<std::uint64_t>(type->upper - type->lower) + 1, stride};
+            const IndexTable made{type->lower, type->count(), stride};
             const Slot given = value(w, number);
             if (index == none)
                 index = w.emit(Op::index, none, given, table_of(w, made, is_late, type));

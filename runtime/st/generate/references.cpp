@@ -169,7 +169,7 @@ void finish_shape(Writing& w, std::uint32_t number) {
         made.kind = Shape::Kind::raw;
     } else if (type.kind == Kind::array) {
         made.kind = Shape::Kind::array;
-        made.count = static_cast<std::uint32_t>(type.upper - type.lower + 1);
+        made.count = static_cast<std::uint32_t>(type.count());
         made.stride = bits > 0 ? packed_stride(type, dialect) : 8 * bytes_of(*type.element);
         made.element = shape_number(w, *type.element, made.is_s7);
     } else if (type.kind == Kind::structure) {

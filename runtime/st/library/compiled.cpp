@@ -8,10 +8,8 @@
 
 #include "runtime/st/code/native/native.hpp"
 #include "runtime/st/library/coverage.hpp"
-#include "runtime/st/library/evaluate.hpp"
 #include "runtime/st/library/library_names.hpp"
 #include "runtime/st/prelude/standard_source.hpp"
-#include "runtime/st/syntax/declared_apart.hpp"
 #include "runtime/st/syntax/parser.hpp"
 
 namespace lineshaft::st {

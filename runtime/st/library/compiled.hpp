@@ -1,5 +1,6 @@
 #pragma once
 
+#include "runtime/st/check/check.hpp"
 #include "runtime/st/check/uses.hpp"
 #include "runtime/st/generate/generator.hpp"
 #include "runtime/st/library/library.hpp"
@@ -37,5 +38,8 @@ FaultPlace fault_of(const Code& code, const std::byte* instance);
 
 /// Where an instance first cut a text short.
 std::optional<Mark> cut_of(const Code& code, const std::byte* instance);
+
+/// For check(): assigns the expression to a variable in a program of its own, and runs that.
+Evaluated evaluate(Expression& expression);
 
 }  // namespace lineshaft::st

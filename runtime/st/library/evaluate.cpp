@@ -1,9 +1,8 @@
-#include "runtime/st/library/evaluate.hpp"
-
 #include <bit>
 
 #include "runtime/st/code/machine.hpp"
 #include "runtime/st/generate/generator.hpp"
+#include "runtime/st/library/compiled.hpp"
 
 namespace lineshaft::st {
 

@@ -1,5 +1,3 @@
-#include "runtime/st/library/image.hpp"
-
 #include <cstring>
 #include <limits>
 #include <set>

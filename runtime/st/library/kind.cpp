@@ -81,6 +81,11 @@ void shift(std::byte* block, std::int64_t by, const void* context) {
         part.kind->shift(block + part.offset, by, part.kind->context);
 }
 
+/// A part of an instance that outlives a scan.
+bool stays(const Variable& part) {
+    return part.section != Section::temp && part.space == Space::frame && !part.constant;
+}
+
 /// Each value that outlives a scan, and where: `value(type, slot)`.
 template <class Value>
 void visit(const Type& type, std::size_t slot, const Value& value) {
@@ -92,11 +97,9 @@ void visit(const Type& type, std::size_t slot, const Value& value) {
             visit(*member->type, slot + member->slot, value);
     } else if (type.kind == Kind::block) {
         const auto visit_kept = [&](const Variable& member) {
-            if (!member.type || member.space != Space::frame || member.constant) return;
-            visit(*member.type, slot + member.slot, value);
+            if (member.type && stays(member)) visit(*member.type, slot + member.slot, value);
         };
-        for (const Variable* member : all_variables(*type.routine))
-            if (member->section != Section::temp) visit_kept(*member);
+        for (const Variable* member : all_variables(*type.routine)) visit_kept(*member);
         for (const Routine* block = type.routine; block; block = block->base)
             for (const Routine* method : block->own_methods)
                 for (const Variable& member : method->variables)
@@ -125,7 +128,7 @@ void take(std::byte* block, const std::byte* kept, const void* context) {
 std::size_t slots_in_memory(const Type& type) {
     if (type.kind == Kind::block) return type.routine->frame;
     if (type.kind != Kind::array) return slots_of(type);
-    return static_cast<std::size_t>(type.upper - type.lower + 1) * element_slots(type);
+    return type.count() * element_slots(type);
 }
 
 /// Something that `fits` begins at that slot of a value: itself, or a part of it; of a block one of
@@ -141,11 +144,6 @@ bool is_at(const Type& type, std::size_t slot, const auto& fits, const auto& may
         return part->type && slot >= part->slot && (!is_block || may_be(*part)) &&
                is_at(*part->type, slot - part->slot, fits, may_be);
     });
-}
-
-/// A part of an instance that outlives a scan.
-bool stays(const Variable& part) {
-    return part.section != Section::temp && part.space == Space::frame && !part.constant;
 }
 
 /// NULL, or to a variable that is there. One of a call is used only while that goes on, and is then

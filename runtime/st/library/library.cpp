@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "runtime/st/library/fields.hpp"
-#include "runtime/st/library/image.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {

@@ -32,18 +32,6 @@ std::size_t nearness(const std::string& a, const std::string& b) {
     return slash == std::string::npos ? 0 : slash + 1;
 }
 
-}  // namespace
-
-bool is_test_file(const std::shared_ptr<const SourceFile>& file) {
-    Diagnostics unread;
-    Cursor cursor{read_tokens(file, unread, SourceKind::tests)};
-    while (!cursor.is(Word::end_of_file) && !(cursor.is(Word::test_) && cursor.at_test()))
-        cursor.take();
-    return !cursor.is(Word::end_of_file);
-}
-
-namespace {
-
 /// Of `a.b.T` also `b.T` and `T`, each with the whole.
 void add_declared(std::multimap<std::string, std::string>& to, std::string_view space,
                   std::string_view name) {
@@ -91,6 +79,14 @@ std::string_view space_at(const Tree& tree, Place place) {
 
 }  // namespace
 
+bool is_test_file(const std::shared_ptr<const SourceFile>& file) {
+    Diagnostics unread;
+    Cursor cursor{read_tokens(file, unread, SourceKind::tests)};
+    while (!cursor.is(Word::end_of_file) && !(cursor.is(Word::test_) && cursor.at_test()))
+        cursor.take();
+    return !cursor.is(Word::end_of_file);
+}
+
 SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& file) {
     Entry entry;
     entry.file = file;
@@ -107,11 +103,11 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
     for (const Pou& pou : tree.pous)
         for (const auto& names : {pou.bases, pou.implemented})
             for (const Token& name : names) entry.used.insert(lower(name.text));
-    for (const TypeText& type : tree.type_texts)
-        if (type.kind == TypeText::Kind::enumeration)
-            for (const Argument& value : type.values) entry.values.insert(lower(value.name.text));
-    for (const TypeText& type : tree.type_texts)
+    for (const TypeText& type : tree.type_texts) {
         if (!type.name.text.empty()) entry.used.insert(lower(type.name.text));
+        if (type.kind != TypeText::Kind::enumeration) continue;
+        for (const Argument& value : type.values) entry.values.insert(lower(value.name.text));
+    }
     for (const Declaration& variable : tree.declarations)
         entry.own.insert(lower(variable.name.text));
     for (const DeclarationBlock& block : tree.globals)
@@ -120,10 +116,8 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
             entry.types.emplace(name, name);
             if (const auto point = block.list.find('.'); point != block.list.npos)
                 entry.types.emplace(name.substr(point + 1), name);
-        }
-    for (const DeclarationBlock& block : tree.globals)
-        for (const Declaration* variable : block.declarations)
             if (block.section == Section::global) entry.values.insert(lower(variable->name.text));
+        }
     for (const Expression& e : tree.expressions) {
         if (e.kind == Expression::Kind::member) add_used(entry.used, entry.own, e);
         const bool is_name = e.kind == Expression::Kind::name || e.kind == Expression::Kind::typed;

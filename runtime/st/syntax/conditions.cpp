@@ -1,8 +1,7 @@
-#include "runtime/st/syntax/conditions.hpp"
-
 #include <algorithm>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/remarks.hpp"
 
 namespace lineshaft::st {
 

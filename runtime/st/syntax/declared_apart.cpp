@@ -1,8 +1,7 @@
-#include "runtime/st/syntax/declared_apart.hpp"
-
 #include <algorithm>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/parser.hpp"
 
 namespace lineshaft::st {
 

@@ -11,7 +11,7 @@
 #include "runtime/source/habits.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
-#include "runtime/st/syntax/conditions.hpp"
+#include "runtime/st/syntax/remarks.hpp"
 
 namespace lineshaft::st {
 

@@ -84,6 +84,28 @@ std::optional<Wide> read_part(std::string_view number, std::int64_t nanoseconds)
     return value + fraction;
 }
 
+/// Midnight [ns since 1970].
+std::optional<Wide> read_day(std::string_view text) {
+    int parts[3] = {};
+    for (int& part : parts) {
+        const std::size_t end = &part == &parts[2] ? text.size() : text.find('-');
+        if (end == std::string_view::npos) return {};
+        const auto number = read_digits(text.substr(0, end), 10);
+        if (!number || *number > 9999) return {};
+        part = static_cast<int>(*number);
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    const std::chrono::year_month_day day{std::chrono::year(parts[0]),
+                                          std::chrono::month(static_cast<unsigned>(parts[1])),
+                                          std::chrono::day(static_cast<unsigned>(parts[2]))};
+    if (!day.ok()) return {};
+    return Wide{std::chrono::sys_days(day).time_since_epoch().count()} * time_units[0].nanoseconds;
+}
+
+std::optional<Wide> within_64_bits(Wide value) {
+    return value < beyond / 2 && value >= -beyond / 2 ? std::optional(value) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Wide> read_integer(std::string_view text) {
@@ -133,32 +155,6 @@ std::optional<Wide> read_duration(std::string_view given) {
     }
     return negative ? -total : total;
 }
-
-namespace {
-
-/// Midnight [ns since 1970].
-std::optional<Wide> read_day(std::string_view text) {
-    int parts[3] = {};
-    for (int& part : parts) {
-        const std::size_t end = &part == &parts[2] ? text.size() : text.find('-');
-        if (end == std::string_view::npos) return {};
-        const auto number = read_digits(text.substr(0, end), 10);
-        if (!number || *number > 9999) return {};
-        part = static_cast<int>(*number);
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    const std::chrono::year_month_day day{std::chrono::year(parts[0]),
-                                          std::chrono::month(static_cast<unsigned>(parts[1])),
-                                          std::chrono::day(static_cast<unsigned>(parts[2]))};
-    if (!day.ok()) return {};
-    return Wide{std::chrono::sys_days(day).time_since_epoch().count()} * time_units[0].nanoseconds;
-}
-
-std::optional<Wide> within_64_bits(Wide value) {
-    return value < beyond / 2 && value >= -beyond / 2 ? std::optional(value) : std::nullopt;
-}
-
-}  // namespace
 
 std::optional<Wide> read_date(std::string_view text) {
     const auto day = read_day(text);

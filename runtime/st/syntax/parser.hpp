@@ -13,4 +13,9 @@ namespace lineshaft::st {
 /// Where a source is no file of tests, TEST, SETUP and TEARDOWN are refused.
 void parse(Tokens tokens, Tree& tree, Diagnostics& out);
 
+/// B&R declares the functions and blocks of a library in a file of its own, `.fun`, and writes
+/// their bodies elsewhere, without variables: both are one unit. A declaration that has no body
+/// anywhere stays as it is.
+void join_declared_apart(Tree& tree);
+
 }  // namespace lineshaft::st

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "runtime/st/syntax/conditions.hpp"
-
 namespace lineshaft::st {
 
 std::pair<std::string_view, Place> unit_between(const Tokens& tokens, std::size_t first,

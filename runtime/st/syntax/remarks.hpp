@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "runtime/st/syntax/lexer.hpp"
+#include "runtime/st/syntax/token.hpp"
 
 /// What comments and pragmas say of what they stand beside.
 namespace lineshaft::st {
@@ -21,5 +22,18 @@ bool is_of_caller(const Tokens& tokens, std::size_t token);
 /// The comments before a token that begin their lines, or that do not: those behind the last empty
 /// line.
 std::string_view comment_before(const Tokens& tokens, std::size_t token, bool first_in_line);
+
+// conditions.cpp
+
+/// Pragmas that choose parts of a source, as CODESYS has them.
+/// `{IF defined (x)}` begins with `IF`, whatever its letters.
+bool says_pragma(std::string_view pragma, std::string_view word);
+
+/// The condition of `{IF ...}` or `{ELSIF ...}`: `defined (x)`, NOT, AND, OR, parentheses. What
+/// else can be asked there, of a project or a device, does not hold.
+bool holds(std::string_view pragma, const NameSet& defined);
+
+/// `{define x}` and `{undefine x}`.
+void note_definition(std::string_view pragma, NameSet& defined);
 
 }  // namespace lineshaft::st

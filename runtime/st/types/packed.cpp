@@ -91,8 +91,7 @@ std::uint64_t packed_bits(const Type& type, const Dialect& dialect) {
         return format ? 8U * format->bytes : 0;
     }
     if (type.kind == Kind::array) {
-        const std::uint64_t stride = type.element ? packed_stride(type, dialect) : 0;
-        const std::uint64_t bits = stride * static_cast<std::uint64_t>(type.upper - type.lower + 1);
+        const std::uint64_t bits = type.element ? packed_stride(type, dialect) * type.count() : 0;
         return dialect.packs_as_s7 ? aligned(bits, 16) : bits;
     }
     if (type.kind == Kind::text) return 8 * (type.length + (dialect.packs_as_s7 ? 2 : 1));

@@ -29,8 +29,7 @@ std::uint64_t bytes_of(const Type& type) {
         case Kind::enumeration:
             return type.base ? bytes_of(*type.base) : 0;
         case Kind::array:
-            return static_cast<std::uint64_t>(type.upper - type.lower + 1) *
-                   bytes_of(*type.element);
+            return type.count() * bytes_of(*type.element);
         case Kind::structure:
             for (const Variable* member : type.members)
                 bytes += member->type ? bytes_of(*member->type) : 0;  // told, if it has none

@@ -12,10 +12,6 @@
 
 namespace lineshaft::st {
 
-struct Variable;
-struct Routine;
-struct Layout;
-
 /// What a reference may be used for.
 enum class Referring : std::uint8_t {
     alias,    ///< REFERENCE TO: its name means what it refers to
@@ -105,6 +101,7 @@ struct Type {
     bool is_unsigned_64() const {
         return (is_bits() || kind == Kind::integer) && !is_signed && bits == 64;
     }
+    std::uint64_t count() const { return static_cast<std::uint64_t>(upper - lower) + 1; }
     /// Of an array of all its dimensions.
     const Type& innermost() const { return has_inner ? element->innermost() : *element; }
     const Type& plain() const { return is_subrange ? *base : *this; }
@@ -223,8 +220,6 @@ struct Routine {
     }
 
     // What the generator gives it.
-    std::uint32_t entry = 0;          ///< first instruction
-    std::uint32_t end = 0;            ///< behind the last
     std::uint32_t temps_begin = 0;    ///< first slot of what is initialised at each call
     std::uint32_t variables_end = 0;  ///< behind its own variables
     std::uint32_t frame = 0;          ///< slots with temporaries and what its functions need

@@ -1,5 +1,3 @@
-#include "runtime/st/vendors/instead.hpp"
-
 #include <algorithm>
 #include <span>
 
