@@ -2,405 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
-#include "blocks/profile/peak_equations.hpp"
+#include "blocks/profile/motion_track.hpp"
+#include "blocks/profile/peak_motion.hpp"
+#include "blocks/profile/standstill.hpp"
+#include "blocks/profile/twice.hpp"
 
 namespace lineshaft {
 namespace {
 
-constexpr double ulp = std::numeric_limits<double>::epsilon();
-
-/// What rounding took from a sum, exactly (Knuth).
-double sum_error(double a, double b, double sum) {
-    const double bb = sum - a;
-    return (a - (sum - bb)) + (b - bb);
-}
-
-/// A number with twice the digits, for what is left of great terms that cancel.
-struct Twice {
-    double high, low = 0;
-
-    static Twice sum(double a, double b, double low) {
-        const double s = a + b;
-        return {s, sum_error(a, b, s) + low};
-    }
-    friend Twice operator+(Twice a, Twice b) { return sum(a.high, b.high, a.low + b.low); }
-    friend Twice operator-(Twice a, Twice b) { return sum(a.high, -b.high, a.low - b.low); }
-    friend Twice operator*(Twice a, Twice b) {
-        const double p = a.high * b.high;
-        return sum(p, product_error(a.high, b.high, p) + (a.high * b.low + a.low * b.high), 0);
-    }
-    friend Twice operator/(Twice a, double b) {
-        const double q = a.high / b;
-        return sum(q, (a - Twice{q} * Twice{b}).value() / b, 0);
-    }
-    friend Twice root(Twice a) {
-        const double r = std::sqrt(std::max(a.value(), 0.0));
-        return r > 0 ? sum(r, (a - Twice{r} * Twice{r}).value() / (2 * r), 0) : Twice{0};
-    }
-    double value() const { return high + low; }
-};
-
-/// A motion as its jerks, with the acceleration at the end of each.
-struct Steps {
-    struct Step {
-        double duration, jerk, acceleration;
-        double x, v;  ///< at its start, the position counted from the first one's
-    };
-    std::array<Step, MotionPlan::most_phases + 1> list;
-    std::size_t count = 0;
-    double duration = 0;
-
-    void add(double time, double jerk, double acceleration) {
-        list[count].duration = time;
-        list[count].jerk = jerk;
-        list[count].acceleration = acceleration;
-        count += time > 0 ? 1 : 0;
-        duration += time;
-    }
-};
-
-/// The problem seen so that the way ahead is positive.
-struct Frame {
-    const MotionLimits::Side* side;
-    double J, per_J;
-    double sign;
-    double v, a, vf, way;
-    double e;            ///< velocity missing once a is at zero at once
-    double tau, vb, vt;  ///< a/J; velocities of the virtual point, and at the jerk time tau
-    double Dv;           ///< vb - vf
-    double ramp = 0;     ///< way of the direct ramp from the virtual point
-    double miss = 0;     ///< from its end to the goal
-
-    double vz() const { return a > 0 ? vt : vb; }  ///< with a at zero at once
-};
-
-Frame frame(const MotionLimits& limits, double sign, const MotionState& s, double vf, double way,
-            double e) {
-    const double v = sign * s.velocity, a = sign * s.acceleration, goal = sign * vf;
-    const double tau = a * limits.per_J, gain = 0.5 * a * tau;
-    const double missing = e == 0 ? std::copysign(gain, a) : goal - v;
-    return {&limits.side[sign < 0],
-            limits.J,
-            limits.per_J,
-            sign,
-            v,
-            a,
-            goal,
-            sign * way,
-            sign * e,
-            tau,
-            v - gain,
-            v + gain,
-            -missing - gain};
-}
-
-/// Jerk +J for q - tau, hold, -J for q, cruise, -J for r, hold, +J for r.
-struct Peak {
-    double rise, up_hold, q, cruise, r, down_hold, turn;
-    double v;                             ///< velocity at the peak, a virtual one in a dip
-    double rise_rest = 0, turn_rest = 0;  ///< what the rise and the turn have lost by rounding
-};
-
-/// The way from the virtual point.
-double reach(const Frame& f, const Peak& p) {
-    return (f.vb + p.v) * (p.q + 0.5 * p.up_hold) + (p.v + f.vf) * (p.r + 0.5 * p.down_hold) +
-           p.v * p.cruise;
-}
-
-/// The way left to the goal.
-double left(const Frame& f, const Peak& p) {
-    return f.miss - (reach(f, p) - f.ramp);
-}
-
-double time(const Peak& p) {
-    return p.rise + p.up_hold + p.turn + p.cruise + p.down_hold + p.r;
-}
-
-/// The direct ramp.
-Peak direct(const Frame& f) {
-    if (f.e > 0 || (f.e == 0 && f.a < 0)) {
-        const RampShape s = ramp_shape(f.a, f.e, f.side->A, f.J);
-        return {s.to_peak, s.hold, s.to_zero, 0, 0, 0, s.to_zero, f.vf};
-    }
-    const RampShape s = ramp_shape(-f.a, -f.e, f.side->D, f.J);
-    return {0, 0, f.tau, 0, s.to_zero, s.hold, s.to_peak, f.vt};
-}
-
-/// The same ramp in the mirrored frame.
-Peak mirrored(const Frame& f, const Peak& p) {
-    if (p.r == 0) return {0, 0, f.tau, 0, p.q, p.up_hold, p.rise, f.vt};
-    return {p.turn, p.down_hold, p.r, 0, 0, 0, p.r, f.vf};
-}
-
-struct Ramp {
-    double jerk_time, hold;
-};
-
-/// Selects instead of branching.
-Ramp ramp(double dv, double per_J, double per_limit, double jerk_time, double triangle) {
-    const double root = std::sqrt(dv > 0 ? dv * per_J : 0), hold = dv * per_limit - jerk_time;
-    const bool held = dv > triangle;
-    return {held ? jerk_time : root, held && hold > 0 ? hold : 0};
-}
-
-/// Both ramps over a peak velocity that a does not overshoot.
-Peak over(const Frame& f, double v) {
-    const Ramp up = ramp(v - f.vb, f.per_J, f.side->per_A, f.side->alpha, f.side->rise);
-    const Ramp down = ramp(v - f.vf, f.per_J, f.side->per_D, f.side->delta, f.side->fall);
-    const double q = std::max(up.jerk_time, f.tau);
-    return {q - f.tau, up.hold, q, 0, down.jerk_time, down.hold, q + down.jerk_time, v};
-}
-
-/// A motion of the side, and which of its ramps stay as they are but for their holds when it gets
-/// fuller.
-struct Section {
-    Peak from;
-    bool up_held = false, down_held = false;
-    double high = HUGE_VAL;  ///< what is unknown is no more
-};
-
-/// Both ramps triangular, the sum of their jerk times y longer.
-Peak longer(const Frame& f, Peak p, double y) {
-    if (!(y > 0)) return p;
-    const double m = p.turn + y, half = 0.5 * y / m;
-    const double up = half * (2 * p.r + y);
-    p.v += f.J * up * (2 * p.q + up);
-    p.rise += up;
-    p.r = std::max(p.r + half * (2 * p.q + y), 0.0);
-    p.q += up;
-    p.turn = m;
-    return p;
-}
-
-/// The way up triangular, its jerk time x longer, the way down held.
-Peak longer_up(const Frame& f, Peak p, double x) {
-    const double gain = f.J * x * (2 * p.q + x);
-    p.down_hold = std::max(p.down_hold + gain * f.side->per_D, 0.0);
-    p.v += gain;
-    p.rise += x;
-    p.q += x;
-    p.turn += x;
-    return p;
-}
-
-/// The way down triangular, its jerk time x longer, the way up held.
-Peak longer_down(const Frame& f, Peak p, double x) {
-    const double gain = f.J * x * (2 * p.r + x);
-    p.up_hold += gain * f.side->per_A;
-    p.v += gain;
-    p.r += x;
-    p.turn += x;
-    return p;
-}
-
-/// Both ramps held, the peak faster by gain.
-Peak faster(const Frame& f, Peak p, double gain) {
-    p.up_hold += gain * f.side->per_A;
-    p.down_hold += gain * f.side->per_D;
-    p.v += gain;
-    return p;
-}
-
-/// The q < 0 at which the hold of a dip ends, or 0.
-double end_of_hold(const Frame& f) {
-    const double square = f.side->delta * f.side->delta - f.Dv * f.per_J;
-    return square > 0 ? -std::sqrt(square) : 0;
-}
-
-/// From a motion below V on over the shapes' borders that `beyond` tells to lie before the goal.
-template <class Beyond>
-Section section(const Frame& f, const Peak& from, const Beyond& beyond) {
-    Section s{from};
-    if (from.q < 0 && from.down_hold > 0) {
-        const double q = end_of_hold(f);
-        if (q < 0 && q > from.q) {
-            Peak border = longer_up(f, from, q - from.q);
-            if (!beyond(border)) return {from, false, true};
-            border.down_hold = 0;
-            s.from = border;
-        }
-    }
-    const double start = std::max({f.vf, f.vz(), from.q > 0 ? from.v : f.vf});
-    const double holds_up = f.vb + f.side->rise, holds_down = f.vf + f.side->fall;
-    const bool up_first = holds_up < holds_down;
-    for (const bool up : {up_first, !up_first}) {
-        const double v = up ? holds_up : holds_down;
-        if (v > start) {
-            if (!(v < f.side->V)) break;
-            Peak border = over(f, v);
-            if (up) {
-                border.q = f.side->alpha;
-                border.rise = border.q - f.tau;
-                border.up_hold = 0;
-            } else {
-                border.r = f.side->delta;
-                border.down_hold = 0;
-            }
-            border.turn = border.q + border.r;
-            if (!beyond(border)) break;
-            s.from = border;
-        }
-        (up ? s.up_held : s.down_held) = true;
-    }
-    return s;
-}
-
-/// The motion of the section that goes `miss` farther.
-Peak farther(const Frame& f, const Section& s, double miss) {
-    const Peak& p = s.from;
-    const MotionLimits::Side& side = *f.side;
-    const auto high = [&](double x) { return std::min(std::max(x, 0.0), s.high); };
-    if (!(miss > 0)) return p;
-    if (s.up_held && s.down_held) {
-        const double curvature = side.per_A + side.per_D;
-        const double slope = p.v * curvature + 0.5 * (side.alpha + side.delta);
-        const double root = std::sqrt(slope * slope + 2 * curvature * miss);
-        return faster(f, p, slope > 0 ? 2 * miss / (slope + root) : (root - slope) / curvature);
-    }
-    if (s.down_held)
-        return longer_up(
-            f, p,
-            mixed_step({f.J, p.v, p.q, p.r, p.turn}, side.delta, miss, high(side.alpha - p.q)));
-    if (s.up_held)
-        return longer_down(
-            f, p,
-            mixed_step({f.J, p.v, p.r, p.q, p.turn}, side.alpha, miss, high(side.delta - p.r)));
-    return longer(f, p,
-                  triangular_step({f.J, p.v, p.q, p.r, p.turn}, miss,
-                                  high(side.alpha + side.delta - p.turn)));
-}
-
-/// The motion of the section that lasts `time` longer.
-Peak longer_lasting(const Frame& f, const Section& s, double time) {
-    const Peak& p = s.from;
-    const MotionLimits::Side& side = *f.side;
-    const auto step = [&](double q, double t) {
-        const double u = 1 + q / t;
-        return time / (u + std::sqrt(u * u + time / t));
-    };
-    if (!(time > 0)) return p;
-    if (s.up_held && s.down_held) return faster(f, p, time / (side.per_A + side.per_D));
-    if (s.down_held) return longer_up(f, p, step(p.q, side.delta));
-    if (s.up_held) return longer_down(f, p, step(p.r, side.alpha));
-    return longer(f, p, 0.5 * time);
-}
-
-/// How much longer q, or q + r, is where the way in a dip is greatest.
-double top_of_dip(const Frame& f, const Section& s) {
-    if (s.down_held) {
-        const double square = f.side->D * f.side->D - 16 * f.J * f.vb;
-        return square > 0 ? -0.25 * (f.side->D + std::sqrt(square)) * f.per_J - s.from.q : 0;
-    }
-    const double S = f.vb + f.vf, square = 4 * S * S - 3 * f.Dv * f.Dv;
-    if (!(S < 0 && square > 0)) return 0;
-    return std::sqrt((-2 * S - std::sqrt(square)) * (1.0 / 3) * f.per_J) - s.from.turn;
-}
-
-/// For vf < 0 the way has a greatest value in a dip at most: whether the goal is hit before.
-bool hits_in_dip(const Frame& f, const Peak& from, Section& s) {
-    s = {from, false, from.down_hold > 0};
-    if (s.down_held) {
-        const double last = end_of_hold(f), end = last - from.q, top = top_of_dip(f, s);
-        s.high = top > 0 && top < end ? top : end;
-        if (s.high > 0 && left(f, longer_up(f, from, s.high)) <= 0) return true;
-        if (last == 0) return false;
-        s = {longer_up(f, from, std::max(end, 0.0))};
-        s.from.down_hold = 0;
-    }
-    s.high = top_of_dip(f, s);
-    const Peak highest = longer(f, s.from, s.high);
-    return s.high > 0 && highest.q < 0 && left(f, highest) <= 0;
-}
-
-/// The first motion after `from` that ends at the goal.
-Peak solve(const Frame& f, const Peak& from) {
-    Section s;
-    if (f.vf < 0 && from.q < 0 && hits_in_dip(f, from, s)) return farther(f, s, left(f, s.from));
-    Peak fullest = over(f, std::max(f.side->V, f.vz()));
-    const double rest = left(f, fullest);
-    if (rest < 0 && (from.q < 0 || std::max(f.vf, f.vz()) < f.side->V)) {
-        s = section(f, from, [&](const Peak& border) { return left(f, border) > 0; });
-        return farther(f, s, left(f, s.from));
-    }
-    fullest.cruise = std::max(rest, 0.0) / fullest.v;
-    return fullest;
-}
-
-/// The motion to the greatest position that is reached in a time.
-Peak timed(const Frame& f, const Peak& from, double duration) {
-    Peak fullest = over(f, std::max(f.side->V, f.vz()));
-    const double rest = duration - time(fullest);
-    if (rest < 0 && (from.q < 0 || std::max(f.vf, f.vz()) < f.side->V)) {
-        const Section s =
-            section(f, from, [&](const Peak& border) { return time(border) < duration; });
-        return longer_lasting(f, s, duration - time(s.from));
-    }
-    fullest.cruise = std::max(rest, 0.0);
-    return fullest;
-}
-
-/// What rounding takes from one jerk time the later ones make up for. Where acceleration left over
-/// would matter in a hold or a cruise, a phase as short as the rounding frees it of that before.
-void fit(const Frame& f, double a_rest, Peak& p) {
-    if (!(p.up_hold > 0 || p.down_hold > 0 || p.cruise > 0)) return;
-    const double grain = ulp * f.per_J * std::max({std::abs(f.v), std::abs(f.vf), std::abs(p.v)});
-    const auto matters = [&](double rest, double time) { return std::abs(rest) * time > grain; };
-    const double product = f.J * f.tau;
-    double sum = p.rise + f.tau;
-    double rest =
-        sum_error(p.rise, f.tau, sum) +
-        ((f.a - product) - product_error(f.J, f.tau, product) + f.sign * a_rest) * f.per_J;
-    if (const double missing = (p.q - sum) - rest; matters(missing, p.up_hold)) {
-        p.rise_rest = missing;
-        sum = p.q;
-        rest = 0;
-    }
-    if (p.cruise > 0) {
-        p.q = std::max(sum + rest, 0.0);
-        const double left_over = (sum - p.q) + rest;
-        p.turn_rest = matters(left_over, p.cruise) ? left_over : 0;
-        return;
-    }
-    const double r = p.turn - sum;
-    const double left_over = (r - p.r) + (sum_error(p.turn, -sum, r) - rest);
-    if (matters(left_over, p.down_hold))
-        p.turn_rest = -left_over;
-    else
-        p.r += left_over;
-}
-
-/// The cruise makes up for what rounding does to the ramps.
-void fit_cruise(const Frame& f, Peak& p) {
-    MotionState s{0, f.v, f.a, f.J};
-    s = s.after(p.rise);
-    s = MotionState{s.position, s.velocity, f.J * p.q, 0}.after(p.up_hold);
-    s = MotionState{s.position, s.velocity, f.J * p.q, -f.J}.after(p.q);
-    const double down = (p.v + f.vf) * (p.r + 0.5 * p.down_hold);
-    p.cruise = std::max(f.way - s.position - down, 0.0) / p.v;
-}
-
-void add(const Frame& f, const Peak& p, Steps& steps) {
-    const double J = f.sign * f.J, up = J * p.q, down = -J * p.r;
-    const auto add_rest = [&](double rest, double jerk, double acceleration) {
-        if (rest != 0) steps.add(std::abs(rest), std::copysign(jerk, rest * jerk), acceleration);
-    };
-    steps.add(p.rise, J, up);
-    add_rest(p.rise_rest, J, up);
-    steps.add(p.up_hold, 0, up);
-    if (p.cruise > 0) {
-        steps.add(p.q, -J, 0);
-        add_rest(p.turn_rest, -J, 0);
-        steps.add(p.cruise, 0, 0);
-        steps.add(p.r, -J, down);
-    } else {
-        steps.add(p.turn, -J, down);
-        add_rest(p.turn_rest, -J, down);
-    }
-    steps.add(p.down_hold, 0, down);
-    steps.add(p.r, J, 0);
-}
+using namespace peak_motion;
 
 /// Along `sign`: the velocity above the limit once a is at zero.
 double excess(const MotionLimits& limits, const MotionState& s, double sign) {
@@ -412,13 +25,13 @@ double excess(const MotionLimits& limits, const MotionState& s, double sign) {
 /// the digits: what is left of a far too great velocity is small beside it.
 struct Return {
     const MotionLimits& limits;
-    Steps& steps;
+    Track& track;
     Twice x, v, a;
     MotionState s;
 
-    Return(const MotionLimits& l, Steps& list, const MotionState& from)
+    Return(const MotionLimits& l, Track& to, const MotionState& from)
         : limits(l),
-          steps(list),
+          track(to),
           x{0},
           v{from.velocity},
           a{from.acceleration},
@@ -431,7 +44,7 @@ struct Return {
         v = v + t * (a + t * j * Twice{0.5});
         a = a + t * j;
         s = {x.value(), v.value(), a.value(), 0};
-        steps.add(time, jerk, s.acceleration);
+        track.add(time, jerk, s.acceleration);
     }
 
     /// What rounding has left of the acceleration beside that of the state.
@@ -470,10 +83,10 @@ bool is_inside(const MotionLimits& limits, const MotionState& s) {
 
 /// The state from which the motion is planned, after the steps that bring it inside the limits.
 MotionState enter(const MotionLimits& limits, const MotionState& from, const PlanOptions& options,
-                  Steps& steps, double& a_rest) {
+                  Track& track, double& a_rest) {
     if (is_inside(limits, from)) return {0, from.velocity, from.acceleration, 0};
     const double slack = options.tolerance * ulp;
-    Return back(limits, steps, from);
+    Return back(limits, track, from);
     for (const double sign : {1.0, -1.0}) {
         const MotionLimits::Side& side = limits.side[sign < 0];
         const double room = slack * std::max(side.V, std::abs(from.velocity));
@@ -503,28 +116,32 @@ MotionState enter(const MotionLimits& limits, const MotionState& from, const Pla
 /// rounding would change the velocity of a hold by more than `grain`, a short phase frees it of
 /// that.
 void blend(const Steps& one, const Steps& other, double lambda, Twice a, double J, double grain,
-           Steps& out) {
+           Track& track) {
     const auto mean = [&](double x, double y) { return lambda * x + (1 - lambda) * y; };
-    std::size_t i = 0, k = 0;
-    double left_i = one.list[0].duration, left_k = other.list[0].duration;
-    double a_i = a.high, a_k = a.high, begin = a.high;
-    while (i < one.count && k < other.count) {
-        const Steps::Step &x = one.list[i], &y = other.list[k];
-        const double time = std::min(left_i, left_k), jerk = mean(x.jerk, y.jerk);
+    const Steps::Step *x = one.list.data(), *y = other.list.data();
+    const Steps::Step *const end_x = x + one.count, *const end_y = y + other.count;
+    double left_x = x->duration, left_y = y->duration;
+    double a_x = a.high, a_y = a.high, begin = a.high;
+    Track out = track;
+    while (x != end_x && y != end_y) {
+        const double time = std::min(left_x, left_y), jerk = mean(x->jerk, y->jerk);
         const double rest = (Twice{begin} - a).value();
         if (jerk == 0 && std::abs(rest) * time > grain) {
             out.add(std::abs(rest) / J, std::copysign(J, rest), begin);
             a = {begin};
         }
-        const bool ends_i = left_i <= time, ends_k = left_k <= time;
-        a_i = ends_i ? x.acceleration : a_i + x.jerk * time;
-        a_k = ends_k ? y.acceleration : a_k + y.jerk * time;
-        begin = mean(a_i, a_k);
+        const bool ends_x = left_x <= time, ends_y = left_y <= time;
+        a_x = ends_x ? x->acceleration : a_x + x->jerk * time;
+        a_y = ends_y ? y->acceleration : a_y + y->jerk * time;
+        begin = mean(a_x, a_y);
         out.add(time, jerk, begin);
-        a = a + Twice{time} * Twice{jerk};
-        left_i = ends_i ? one.list[++i].duration : left_i - time;
-        left_k = ends_k ? other.list[++k].duration : left_k - time;
+        a = a + Twice::product(time, jerk);
+        x += ends_x;
+        y += ends_y;
+        left_x = ends_x ? x->duration : left_x - time;
+        left_y = ends_y ? y->duration : left_y - time;
     }
+    track = out;
 }
 
 PlanResult check(const MotionLimits& limits, const MotionState& from, const Goal& to) {
@@ -536,54 +153,40 @@ PlanResult check(const MotionLimits& limits, const MotionState& from, const Goal
                : PlanResult::velocity_above_limit;
 }
 
-/// Runs the steps forwards to the last one, which is run back from the end: a state within it is
-/// as near to the goal as rounding allows. `duration` is what their sum stands for. Refuses what
-/// misses by more than rounding can tell: the numbers are too many decades apart.
-PlanResult write(Steps& steps, const MotionState& from, const Goal& to, double duration,
-                 MotionPlan& out) {
+/// The last phase is run back from the end: a state within it is as near to the goal as rounding
+/// allows. `duration` is what the sum of the times stands for. Refuses what misses by more than
+/// rounding can tell: the numbers are too many decades apart.
+PlanResult write(const Track::Phase* phases, const Track& track, const MotionState& from,
+                 const Goal& to, double duration, MotionPlan& out) {
     constexpr double most = 1e-6;
-    double x = 0, v = from.velocity, a = from.acceleration, path = 0;
-    double fastest = std::max(std::abs(v), std::abs(to.velocity));
-    MotionState back{0, to.velocity, 0, 0};
-    for (std::size_t i = 0; i < steps.count; ++i) {
-        Steps::Step& step = steps.list[i];
-        step.x = x;
-        step.v = v;
-        if (i + 1 == steps.count) {
-            back = MotionState{0, to.velocity, 0, step.jerk}.after(-step.duration);
-            break;
-        }
-        const MotionState end = MotionState{x, v, a, step.jerk}.after(step.duration);
-        path += std::abs(end.position - x);
-        fastest = std::max(fastest, std::abs(end.velocity));
-        x = end.position;
-        v = end.velocity;
-        a = step.acceleration;
+    const auto count = static_cast<std::size_t>(track.next - phases);
+    MotionState last{0, from.velocity, 0, 0}, back{0, to.velocity, 0, 0};
+    if (count > 0) {
+        const Track::Phase& phase = phases[count - 1];
+        last = {phase.x, phase.position_velocity[1], 0, phase.acceleration_jerk[1]};
+        back = MotionState{0, to.velocity, 0, last.jerk}.after(-phase.begin_duration[1]);
     }
-    const double missed = ((to.position - from.position) + back.position) - x;
+    const double missed = ((to.position - from.position) + back.position) - last.position;
     const double size =
-        std::max({std::abs(from.position), std::abs(to.position), path + std::abs(back.position)});
-    if (!(std::abs(missed) <= most * size && std::abs(back.velocity - v) <= most * fastest &&
-          std::abs(duration - steps.duration) <= most * duration &&
+        std::max(std::max(std::abs(from.position), std::abs(to.position)), track.path);
+    const double fastest = std::max(track.fastest, std::abs(to.velocity));
+    if (!(std::abs(missed) <= most * size &&
+          std::abs(back.velocity - last.velocity) <= most * fastest &&
+          std::abs(duration - track.duration) <= most * duration &&
           std::isfinite(size + fastest * duration)))
         return PlanResult::not_finite;
     out.phases[0] = {0, 0, from};
-    double begin = 0;
-    a = from.acceleration;
-    for (std::size_t i = 0; i < steps.count; ++i) {
-        const Steps::Step& step = steps.list[i];
-        out.phases[i] = {begin, step.duration, {from.position + step.x, step.v, a, step.jerk}};
-        begin += step.duration;
-        a = step.acceleration;
+    for (std::size_t i = 0; i < count; ++i)
+        std::memcpy(static_cast<void*>(&out.phases.data()[i]), &phases[i],
+                    sizeof(MotionPlan::Phase));
+    if (count > 1) {
+        MotionState& start = out.phases.data()[count - 1].start;
+        start.position = to.position + back.position;
+        start.velocity = back.velocity;
     }
-    if (steps.count > 1) {
-        MotionState& last = out.phases[steps.count - 1].start;
-        last.position = to.position + back.position;
-        last.velocity = back.velocity;
-    }
-    out.count = steps.count;
+    out.count = count;
     out.duration = duration;
-    out.missed = steps.count > 1 ? missed : 0;
+    out.missed = count > 1 ? missed : 0;
     out.haste = duration > 0 ? MotionPlan::spread / duration : 0;
     out.end = {to.position, to.velocity, 0, 0};
     return PlanResult::ok;
@@ -591,7 +194,8 @@ PlanResult write(Steps& steps, const MotionState& from, const Goal& to, double d
 
 /// The problem from where the state is inside the limits, with its direct ramp.
 struct Start {
-    Steps steps;
+    std::array<Track::Phase, MotionPlan::most_phases + 1> phases;
+    Track track;
     double a_rest = 0;
     MotionState state;
     double vf, way;
@@ -609,7 +213,8 @@ struct Start {
         const double v = std::max(std::abs(state.velocity), std::abs(vf));
         if (std::abs(e) > slack * std::max(v, std::abs(a) * tau)) return e;
         const double x = tau * (state.velocity + a * tau * (1.0 / 3));
-        const double size = std::max({std::abs(from.position), std::abs(to.position), v * tau});
+        const double size =
+            std::max(std::max(std::abs(from.position), std::abs(to.position)), v * tau);
         if (std::abs(way - x) <= slack * size) return 0;
         return exact_missing(limits.J);
     }
@@ -637,14 +242,16 @@ struct Start {
 
     Start(const MotionLimits& limits, const MotionState& from, const Goal& to,
           const PlanOptions& options)
-        : state(enter(limits, from, options, steps, a_rest)),
+        : track(from, phases.data()),
+          state(enter(limits, from, options, track, a_rest)),
           vf(to.velocity),
           way((to.position - from.position) - state.position),
           ahead(
               frame(limits, 1, state, vf, way, missing(limits, from, to, options.tolerance * ulp))),
           ramp(direct(ahead)) {
         const double path = duration() * std::max(std::abs(state.velocity), std::abs(vf));
-        const double grain = ulp * std::max({std::abs(from.position), std::abs(to.position), path});
+        const double grain =
+            ulp * std::max(std::max(std::abs(from.position), std::abs(to.position)), path);
         tolerance = options.tolerance * grain;
         ahead.ramp = reach(ahead, ramp);
         ahead.miss = way + ahead.tau * (ahead.v - ahead.a * ahead.tau * (1.0 / 3)) - ahead.ramp;
@@ -661,12 +268,19 @@ struct Start {
     }
 };
 
-/// The first motion of the frame's side after `from` that ends at the goal.
-void add_solved(const Frame& f, const Peak& from, Start& start) {
-    Peak p = solve(f, from);
+/// In registers: the track is read and written once.
+[[gnu::noinline]] void add_to(const Frame& f, const Peak& p, Track& to) {
+    Track track = to;
+    add(f, p, track);
+    to = track;
+}
+
+/// The motion of the frame's side becomes the first after it that ends at the goal, and is added.
+void add_solved(const Frame& f, Peak& p, Start& start) {
+    solve(f, p);
     fit(f, start.a_rest, p);
     if (p.cruise > 0) fit_cruise(f, p);
-    add(f, p, start.steps);
+    add_to(f, p, start.track);
 }
 
 void add_soonest(const MotionLimits& limits, Start& start) {
@@ -674,13 +288,27 @@ void add_soonest(const MotionLimits& limits, Start& start) {
     if (std::abs(missing) <= start.tolerance) {
         Peak p = start.ramp;
         fit(start.ahead, start.a_rest, p);
-        add(start.ahead, p, start.steps);
+        add_to(start.ahead, p, start.track);
     } else if (missing > 0) {
         add_solved(start.ahead, start.ramp, start);
     } else {
         const Frame back = start.back(limits);
-        add_solved(back, mirrored(back, start.ramp), start);
+        Peak p = mirrored(back, start.ramp);
+        add_solved(back, p, start);
     }
+}
+
+/// From standstill to standstill at a goal beyond the tolerance.
+[[gnu::flatten]] PlanResult plan_from_standstill(const MotionLimits& limits,
+                                                 const MotionState& from, const Goal& to,
+                                                 MotionPlan& out) {
+    const double way = to.position - from.position, sign = std::copysign(1.0, way);
+    const Frame f{&limits.side[way < 0], limits.J, limits.per_J, sign, 0, 0, 0, sign * way};
+    std::array<Track::Phase, 9> phases;
+    Track track(from, phases.data());
+    const Peak p = from_standstill(f, f.way);
+    add(f, p, track);
+    return write(phases.data(), track, from, to, track.duration, out);
 }
 
 /// The motions to the greatest and the least position in a time are closed forms, and any mean of
@@ -692,8 +320,9 @@ bool add_timed(const MotionLimits& limits, Start& start, double duration) {
         return false;
     }
     const Frame back = start.back(limits);
-    const Peak up = timed(start.ahead, start.ramp, duration);
-    const Peak down = timed(back, mirrored(back, start.ramp), duration);
+    Peak up = start.ramp, down = mirrored(back, start.ramp);
+    solve_timed(start.ahead, up, duration);
+    solve_timed(back, down, duration);
     const double above = left(start.ahead, up);
     const double below = left(back, down);
     if (above > start.tolerance || below > start.tolerance) {
@@ -710,7 +339,7 @@ bool add_timed(const MotionLimits& limits, Start& start, double duration) {
     const double lambda = room > 0 ? std::min(std::max(-below / room, 0.0), 1.0) : 1;
     const double velocity = std::max({std::abs(up.v), std::abs(down.v), std::abs(start.vf)});
     blend(upper, lower, lambda, {start.state.acceleration, start.a_rest}, limits.J, ulp * velocity,
-          start.steps);
+          start.track);
     return true;
 }
 
@@ -732,9 +361,14 @@ PlanResult MotionLimits::set(double V, double Vmin, double A, double D, double j
 PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal& to,
                 MotionPlan& out, const PlanOptions& options) {
     if (const PlanResult result = check(limits, from, to); result != PlanResult::ok) return result;
+    if (from.velocity == 0 && from.acceleration == 0 && to.velocity == 0) {
+        const double size = std::max(std::abs(from.position), std::abs(to.position));
+        if (std::abs(to.position - from.position) > options.tolerance * ulp * size)
+            return plan_from_standstill(limits, from, to, out);
+    }
     Start start(limits, from, to, options);
     add_soonest(limits, start);
-    return write(start.steps, from, to, start.steps.duration, out);
+    return write(start.phases.data(), start.track, from, to, start.track.duration, out);
 }
 
 PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal& to,
@@ -742,9 +376,9 @@ PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal&
     if (!std::isfinite(duration)) return PlanResult::not_finite;
     if (const PlanResult result = check(limits, from, to); result != PlanResult::ok) return result;
     Start start(limits, from, to, options);
-    const bool kept = add_timed(limits, start, duration - start.steps.duration);
-    const double taken = kept ? duration : std::max(start.steps.duration, duration);
-    return write(start.steps, from, to, taken, out);
+    const bool kept = add_timed(limits, start, duration - start.track.duration);
+    const double taken = kept ? duration : std::max(start.track.duration, duration);
+    return write(start.phases.data(), start.track, from, to, taken, out);
 }
 
 PlanResult synchronise(std::span<const AxisMove> axes, std::span<MotionPlan> out, double least,

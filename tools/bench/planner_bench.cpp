@@ -2,15 +2,18 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <string>
 #include <vector>
 
 #include <benchmark/benchmark.h>
+#include <dlfcn.h>
 
 #include "blocks/profile/any_state.hpp"
 #include "blocks/profile/seven_segment.hpp"
 #include "blocks/profile/velocity_ramp.hpp"
+#include "tools/bench/planner_peer.hpp"
 #include "tools/bench/quickest.hpp"
 
 using namespace lineshaft;
@@ -169,7 +172,33 @@ struct Reach {
     double duration = 0;  ///< 1.2 times the least
 };
 
-enum class From : std::int64_t { any_state, rest, last_ramp };
+enum class From : std::int64_t { any_state, rest, near, last_ramp };
+
+/// Normally distributed (Box and Muller).
+double normal(Random& random, double deviation) {
+    const double radius = std::sqrt(-2 * std::log(1 - random.unit()));
+    return deviation * radius * std::cos(6.283185307179586 * random.unit());
+}
+
+/// Random states as Ruckig's own benchmark draws them, within limits that are the same both ways.
+std::vector<Reach> peer_states() {
+    Random random{2029};
+    std::vector<Reach> list;
+    MotionPlan out;
+    const auto some = [&](double part) { return random.unit() < part ? normal(random, 0.8) : 0; };
+    while (list.size() < 65536) {
+        Reach r;
+        r.from = {normal(random, 4), some(0.9), some(0.8), 0};
+        r.to = {normal(random, 4), some(0.7)};
+        const double V = random.between(0.1, 12) + std::abs(r.to.velocity);
+        const double A = random.between(0.1, 12);
+        r.limits.set(V, -V, A, A, random.between(0.1, 12));
+        if (plan(r.limits, r.from, r.to, out) != PlanResult::ok) continue;
+        r.duration = 1.2 * out.duration;
+        list.push_back(r);
+    }
+    return list;
+}
 
 std::vector<Reach> reaches(From kind) {
     Random random{2026};
@@ -180,7 +209,9 @@ std::vector<Reach> reaches(From kind) {
         const double A = random.decades(0, 4), J = A * random.decades(0, 3);
         const double V = A * A / J * random.decades(-1.5, 1.5);
         r.limits.set(V, -V * random.between(0.3, 1), A, A * random.between(0.3, 1), J);
-        const double way = V * ramp_duration(V, A, J) * random.decades(-3, 1);
+        const bool near = kind == From::near;  // from rest to rest, too
+        const double way =
+            V * ramp_duration(V, A, J) * (near ? random.decades(-9, -4) : random.decades(-3, 1));
         r.to.position = random.next() % 2 ? way : -way;
         if (kind == From::any_state) {
             r.to.velocity = random.next() % 2 ? 0 : V * random.between(-0.3, 1);
@@ -205,6 +236,51 @@ void plan_reaches(benchmark::State& state, const std::vector<Reach>& list, bool 
                                        : plan(r.limits, r.from, r.to, out));
         benchmark::ClobberMemory();
     });
+}
+
+/// What another planner, which `peers` builds and names in LINESHAFT_PEER, takes for the same;
+/// `failures`: refused, `late`: taking longer by more than 1e-7.
+struct PlannerPeer {
+    decltype(&planner_peer_prepare) prepare = nullptr;
+    decltype(&planner_peer_plan) plan = nullptr;
+    decltype(&planner_peer_release) release = nullptr;
+
+    explicit PlannerPeer(const char* file) {
+        void* const object = ::dlopen(file, RTLD_NOW);
+        if (!object) return;
+        prepare = reinterpret_cast<decltype(prepare)>(::dlsym(object, "planner_peer_prepare"));
+        plan = reinterpret_cast<decltype(plan)>(::dlsym(object, "planner_peer_plan"));
+        release = reinterpret_cast<decltype(release)>(::dlsym(object, "planner_peer_release"));
+    }
+    explicit operator bool() const { return prepare && plan && release; }
+};
+
+void plan_by_peer(benchmark::State& state, const std::vector<Reach>& list, bool timed,
+                  const PlannerPeer& peer) {
+    std::vector<PeerProblem> problems;
+    std::vector<std::size_t> order;
+    for (const Reach& r : list) {
+        const MotionLimits::Side& side = r.limits.side[0];
+        order.push_back(problems.size());
+        problems.push_back({side.V, -r.limits.side[1].V, side.A, side.D, r.limits.J,
+                            r.from.position, r.from.velocity, r.from.acceleration, r.to.position,
+                            r.to.velocity, timed ? r.duration : 0});
+    }
+    void* const prepared = peer.prepare(problems.data(), problems.size());
+    double failures = 0, late = 0;
+    MotionPlan own;
+    for (const std::size_t i : order) {
+        const Reach& r = list[i];
+        const double taken = peer.plan(prepared, i);
+        timed ? plan(r.limits, r.from, r.to, r.duration, own) : plan(r.limits, r.from, r.to, own);
+        failures += std::isnan(taken);
+        late += taken > own.duration * (1 + 1e-7);
+    }
+    measure_stream(state, order,
+                   [&](std::size_t i) { benchmark::DoNotOptimize(peer.plan(prepared, i)); });
+    peer.release(prepared);
+    state.counters["failures"] = failures;
+    state.counters["late"] = late;
 }
 
 void evaluate_reach(benchmark::State& state) {
@@ -306,13 +382,28 @@ int main(int argc, char** argv) {
         const std::string title = "plan/" + std::string(name(kind));
         benchmark::RegisterBenchmark(title.c_str(), plan_all, problems_of(kind));
     }
-    const std::vector<Reach> any = reaches(From::any_state);
+    const std::vector<Reach> any = reaches(From::any_state), rest = reaches(From::rest),
+                             near = reaches(From::near), states = peer_states();
     benchmark::RegisterBenchmark("reach/at", evaluate_reaches, any);
     benchmark::RegisterBenchmark("reach/at_one_after_the_other", evaluate_reach);
     benchmark::RegisterBenchmark("reach/any_state", plan_reaches, any, false);
-    benchmark::RegisterBenchmark("reach/rest_to_rest", plan_reaches, reaches(From::rest), false);
+    benchmark::RegisterBenchmark("reach/peer_states", plan_reaches, states, false);
+    benchmark::RegisterBenchmark("reach/peer_states_given_duration", plan_reaches, states, true);
+    benchmark::RegisterBenchmark("reach/rest_to_rest", plan_reaches, rest, false);
+    benchmark::RegisterBenchmark("reach/tiny_distance", plan_reaches, near, false);
     benchmark::RegisterBenchmark("reach/last_ramp", plan_reaches, reaches(From::last_ramp), false);
     benchmark::RegisterBenchmark("reach/given_duration", plan_reaches, any, true);
+    if (const char* file = std::getenv("LINESHAFT_PEER")) {
+        const PlannerPeer peer(file);
+        if (!peer) return std::fprintf(stderr, "%s is no planner\n", file), 2;
+        benchmark::RegisterBenchmark("peer/any_state", plan_by_peer, any, false, peer);
+        benchmark::RegisterBenchmark("peer/peer_states", plan_by_peer, states, false, peer);
+        benchmark::RegisterBenchmark("peer/peer_states_given_duration", plan_by_peer, states, true,
+                                     peer);
+        benchmark::RegisterBenchmark("peer/rest_to_rest", plan_by_peer, rest, false, peer);
+        benchmark::RegisterBenchmark("peer/tiny_distance", plan_by_peer, near, false, peer);
+        benchmark::RegisterBenchmark("peer/given_duration", plan_by_peer, any, true, peer);
+    }
     benchmark::RunSpecifiedBenchmarks();
     return 0;
 }
