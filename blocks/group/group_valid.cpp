@@ -58,6 +58,11 @@ bool is_valid(const MotionPlan& plan) {
            plan.duration >= 0;
 }
 
+bool is_valid(const PathCourse& course) {
+    return course.count <= PathCourse::most_phases && std::isfinite(course.duration) &&
+           course.duration >= 0;
+}
+
 bool is_valid(const PathPiece& piece) {
     return is_one_of(piece.curve.kind, PathCurveKind::spline) && piece.curve.length > 0 &&
            std::isfinite(piece.curve.length) && std::isfinite(piece.begin);
@@ -66,8 +71,9 @@ bool is_valid(const PathPiece& piece) {
 /// It ends in one of the stretches, or the path is over.
 bool is_valid(const PathLeg& leg, const Path& path) {
     const bool has_goal = leg.goal >= path.stretch && leg.goal < path.stretches;
-    return is_valid(leg.plan) && std::isfinite(leg.base) && std::isfinite(leg.end) &&
-           !std::isnan(leg.ripe) && (has_goal || leg.plan.count == 0);
+    return is_valid(leg.plan) && is_valid(leg.course) && std::isfinite(leg.base) &&
+           std::isfinite(leg.end) && !std::isnan(leg.ripe) &&
+           (has_goal || leg.plan.count + leg.course.count == 0);
 }
 
 bool is_valid(const PathStretch& stretch, std::uint64_t number, const Path& path) {

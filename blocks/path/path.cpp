@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "blocks/path/path_ahead.hpp"
 #include "blocks/path/path_spline.hpp"
 
 namespace lineshaft {
@@ -48,12 +49,12 @@ void note_change(Path& path, std::uint64_t stretch) {
 }
 
 MotionState state_of(const Path& path) {
-    return path.leg.plan.at(path.time);
+    return path.leg.at(path.time);
 }
 
 /// Along the path, from its start on [u].
 double place_of(const Path& path, const MotionState& now) {
-    return path.time >= path.leg.plan.duration ? path.leg.end : path.leg.base + now.position;
+    return path.time >= path.leg.duration() ? path.leg.end : path.leg.base + now.position;
 }
 
 double place_of(const Path& path) {
@@ -69,29 +70,61 @@ bool stops_short(const Path& path, std::span<const PathPiece> ring) {
     return path.leg.end != piece_at(ring, path.leg.goal).stretch.end && factor_of(path) > 0;
 }
 
+PathOutlook outlook_of(const Path& path, std::span<const PathPiece> ring) {
+    return {stretches_of(path, ring), {ring, path.first, path.count}, factor_of(path), path.gently};
+}
+
+/// A course that ends where not all of the path is over is looked at again as soon as it comes down
+/// to that end.
+void note_leg(Path& path, std::span<const PathPiece> ring) {
+    constexpr double at_least = 0.05;
+    path.stale = stops_short(path, ring);
+    path.fresh = path.leg.course.count > 0 && path.leg.goal + 1 < path.stretches &&
+                 path.leg.ripe > at_least * path.leg.duration();
+}
+
 /// Plans anew from now; where that cannot be, what was planned goes on.
 bool plan_anew(Path& path, std::span<PathPiece> ring) {
     look_back_where_changed(path, ring);
     path.fresh = false;
     MotionState from = state_of(path);
     from.position = 0;
-    if (!plan_leg(stretches_of(path, ring), from, place_of(path), factor_of(path), path.gently,
-                  path.leg))
-        return false;
+    const double base = place_of(path);
+    const PathOutlook outlook = outlook_of(path, ring);
+    PathLeg leg;
+    IntoBoxes into = IntoBoxes::soon;
+    if (!plan_leg(outlook.stretches, from, base, outlook.factor, path.gently, leg))
+        into =
+            path.leg.course.count > 0 ? plan_into_boxes(outlook, from, base, leg) : IntoBoxes::none;
+    if (into == IntoBoxes::none) return false;
+    if (outlook.factor > 0 && into == IntoBoxes::soon) look_ahead(outlook, 0, leg);
+    path.leg = leg;
     path.time = 0;
-    path.stale = stops_short(path, ring);
+    note_leg(path, ring);
+    path.stale = path.stale || into == IntoBoxes::late;
     return true;
 }
 
+/// What is known of the path by now may make the course under way sooner.
+void go_on(Path& path, std::span<PathPiece> ring) {
+    look_back_where_changed(path, ring);
+    path.fresh = false;
+    if (path.time < path.leg.duration() &&
+        look_ahead(outlook_of(path, ring), path.time, path.leg)) {
+        path.time = 0;
+        note_leg(path, ring);
+    }
+}
+
 bool at_end_of_stretch(const Path& path, std::span<PathPiece> ring) {
-    return path.time >= path.leg.plan.duration &&
+    return path.time >= path.leg.duration() &&
            path.leg.end == piece_at(ring, path.leg.goal).stretch.end;
 }
 
 /// The leg is over: on with the next one, at the velocity that was left with.
 void enter_next(Path& path, std::span<PathPiece> ring) {
-    const MotionState from{0, path.leg.plan.end.velocity, 0, 0};
-    path.time -= path.leg.plan.duration;
+    const MotionState from{0, path.leg.end_velocity(), 0, 0};
+    path.time -= path.leg.duration();
     path.stretch = path.leg.goal + 1;
     const double base = path.leg.end;
     path.leg = {};
@@ -103,10 +136,10 @@ void enter_next(Path& path, std::span<PathPiece> ring) {
         return;
     }
     look_back_where_changed(path, ring);
-    path.fresh = false;
-    path.lost =
-        !plan_leg(stretches_of(path, ring), from, base, factor_of(path), path.gently, path.leg);
-    path.stale = stops_short(path, ring);
+    const PathOutlook outlook = outlook_of(path, ring);
+    path.lost = !plan_leg(outlook.stretches, from, base, outlook.factor, path.gently, path.leg);
+    if (!path.lost && outlook.factor > 0) look_ahead(outlook, 0, path.leg);
+    note_leg(path, ring);
 }
 
 /// The piece and the stretch under way.
@@ -168,9 +201,11 @@ void append_stretch(Path& path, std::span<PathPiece> ring, const PathLimit& box,
 }
 
 void append_piece(Path& path, std::span<PathPiece> ring, const PathCurve& curve,
-                  const PathLimit& box, double joint) {
+                  const PathLimits& limits, const PathLimit& box, double joint) {
     PathPiece& piece = piece_at(ring, path.count);
     piece.curve = curve;
+    piece.limits = limits;
+    for (std::size_t i = 0; i < most_path_axes; ++i) piece.bounds[i] = bound_of(curve, i);
     piece.begin = path.total;
     ++path.count;
     append_stretch(path, ring, box, joint);
@@ -181,7 +216,7 @@ bool holds(Path& path, std::span<PathPiece> ring, std::uint64_t cut) {
     look_back_where_changed(path, ring, false);
     if (path.standing()) return true;
     if (path.leg.goal < cut &&
-        path.leg.plan.end.velocity <= stretches_of(path, ring).exit(path.leg.goal))
+        path.leg.end_velocity() <= stretches_of(path, ring).exit(path.leg.goal))
         return true;
     return plan_anew(path, ring);
 }
@@ -233,10 +268,11 @@ bool append_round(Path& path, std::span<PathPiece> ring, PathCurve next, const P
     }
     const Path before = path;
     constexpr double any = std::numeric_limits<double>::infinity();
+    const PathLimits both = least_of(last.limits, limits);
     path.total = cut.end = last.end();
     for (std::size_t i = 0; i < round.count; ++i)
-        append_piece(path, ring, round.curves[i], round.boxes[i], any);
-    append_piece(path, ring, next, box, any);
+        append_piece(path, ring, round.curves[i], both, round.boxes[i], any);
+    append_piece(path, ring, next, limits, box, any);
     if (holds(path, ring, before.stretches - 1)) return true;
     path = before;
     last.curve = curve;
@@ -284,7 +320,7 @@ PathFault Path::append(std::span<PathPiece> ring, const PathCurve& curve, const 
             return PathFault::none;
         if (is_smooth(before, curve)) velocity = joint.velocity;
     }
-    append_piece(*this, ring, curve, box, velocity);
+    append_piece(*this, ring, curve, limits, box, velocity);
     return PathFault::none;
 }
 
@@ -313,10 +349,14 @@ void Path::clear() {
 
 PathMotion Path::advance(std::span<PathPiece> ring, double dt) {
     if (finished() || lost) return now(ring);
-    if ((stale || (fresh && time + dt >= leg.ripe)) && !plan_anew(*this, ring)) stale = true;
+    const bool is_ripe = fresh && time + dt >= leg.ripe;
+    if (!stale && is_ripe && leg.course.count > 0)
+        go_on(*this, ring);
+    else if ((stale || is_ripe) && !plan_anew(*this, ring))
+        stale = true;
     time += dt;
     while (!finished() && !lost && at_end_of_stretch(*this, ring)) enter_next(*this, ring);
-    if (standing()) time = leg.plan.duration;
+    if (standing()) time = leg.duration();
     MotionState m = state_of(*this);
     m.position = place_of(*this, m);
     if (!finished()) move_up(*this, ring, m.position);

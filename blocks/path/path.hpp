@@ -73,7 +73,7 @@ struct Path {
     /// The motion now.
     PathMotion now(std::span<const PathPiece> ring) const;
 
-    bool standing() const { return time >= leg.plan.duration && leg.plan.end.velocity == 0; }
+    bool standing() const { return time >= leg.duration() && leg.end_velocity() == 0; }
     bool finished() const { return first == count; }
 
     /// What is left to its end [u].

@@ -6,7 +6,7 @@
 
 #include <sleef.h>
 
-#include "blocks/path/path_spline.hpp"
+#include "blocks/path/path_bound.hpp"
 #include "blocks/profile/seven_segment.hpp"
 
 namespace lineshaft {
@@ -44,7 +44,7 @@ constexpr double of_acceleration = 0.9, of_jerk = 0.8;
 AllBounded bounds_of_corner(const PathCurve& u, const PathCurve& w, double length,
                             const PathLimits& limits) {
     const auto bound = [&](double tangent, double turn, const PathLimit& limit) {
-        return Bounded{{tangent, 1.5 * turn / length, 6 * turn / (length * length)}, limit};
+        return Bounded{{tangent, 1.5 * turn / length, 6 * turn / (length * length), 0, 0}, limit};
     };
     AllBounded out{bound(1, bend_between(u, w), limits.path)};
     for (std::size_t i = 0; i < most_path_axes; ++i)
@@ -54,9 +54,9 @@ AllBounded bounds_of_corner(const PathCurve& u, const PathCurve& w, double lengt
 }
 
 AllBounded bounds_of_spline(const PathCurve& spline, const PathLimits& limits) {
-    AllBounded out{Bounded{{1, 0, 0}, limits.path}};
+    AllBounded out{Bounded{{1, 0, 0, 0, 0}, limits.path}};
     for (std::size_t i = 0; i < most_path_axes; ++i)
-        out[i + 1] = {spline_bound(spline, i), limits.axes[i]};
+        out[i + 1] = {bound_of(spline, i), limits.axes[i]};
     return out;
 }
 
@@ -147,6 +147,12 @@ PathLimit box_of(const PathCurve& curve, const PathLimits& limits) {
 PathLimit least_of(const PathLimit& a, const PathLimit& b) {
     return {std::min(a.velocity, b.velocity), std::min(a.acceleration, b.acceleration),
             std::min(a.jerk, b.jerk)};
+}
+
+PathLimits least_of(const PathLimits& a, const PathLimits& b) {
+    PathLimits out{least_of(a.path, b.path), {}};
+    for (std::size_t i = 0; i < most_path_axes; ++i) out.axes[i] = least_of(a.axes[i], b.axes[i]);
+    return out;
 }
 
 double corner_distance_at(double velocity, const PathCurve& before, const PathCurve& after,

@@ -23,6 +23,7 @@ inline constexpr PathLimit no_path_limit{1e300, 1e300, 1e300};
 bool is_good(const PathLimit& limit);
 
 PathLimit least_of(const PathLimit& a, const PathLimit& b);
+PathLimits least_of(const PathLimits& a, const PathLimits& b);
 
 /// The box of a line or an arc: while 0 <= s' <= velocity, |s''| <= acceleration and |s'''| <= jerk
 /// all limits are kept (README.md, "Why no limit is passed").

@@ -5,7 +5,7 @@
 
 #include <sleef.h>
 
-#include "blocks/path/path_spline.hpp"
+#include "blocks/path/path_bound.hpp"
 
 namespace lineshaft {
 
@@ -167,7 +167,7 @@ PathPoint PathCurve::at(double s) const {
 }
 
 double PathCurve::share(std::size_t axis) const {
-    if (kind == PathCurveKind::spline) return spline_bound(*this, axis).tangent;
+    if (kind == PathCurveKind::spline) return bound_of(*this, axis).tangent;
     if (kind == PathCurveKind::line) return std::abs(u[axis]);
     if (kind == PathCurveKind::corner) return std::fmax(std::abs(u[axis]), std::abs(w[axis]));
     return slope[axis] != 0 ? std::abs(slope[axis]) : std::hypot(u[axis], w[axis]);

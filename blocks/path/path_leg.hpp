@@ -2,19 +2,26 @@
 
 #include <cstdint>
 
+#include "blocks/path/path_course.hpp"
 #include "blocks/path/path_stretch.hpp"
 #include "blocks/profile/any_state.hpp"
 
 namespace lineshaft {
 
-/// One motion along the path, within the boxes of all stretches that it passes, to the end of one
-/// of them, where the acceleration is 0; or, of a halt, to standstill anywhere.
+/// One motion along the path to the end of a stretch, where the acceleration is 0; or, of a halt,
+/// to standstill anywhere. A plan is within the boxes of all stretches that it passes, a course
+/// within the limits of all pieces.
 struct PathLeg {
     MotionPlan plan;         ///< from `base` on
+    PathCourse course;       ///< in its place, where it has phases
     double base = 0;         ///< where it begins along the path [u]
     double end = 0;          ///< ... and ends [u]
     double ripe = 0;         ///< until then [s] what comes behind cannot make it any faster
     std::uint64_t goal = 0;  ///< the stretch in which it ends
+
+    double duration() const { return course.count > 0 ? course.duration : plan.duration; }
+    double end_velocity() const { return (course.count > 0 ? course.end : plan.end).velocity; }
+    MotionState at(double t) const { return course.count > 0 ? course.at(t) : plan.at(t); }
 };
 
 /// The next leg from a state (its position is 0) at `base` within the first of the stretches, with

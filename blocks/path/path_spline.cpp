@@ -38,17 +38,6 @@ Polynomial part_of(Polynomial p, double at, double width) {
     return out;
 }
 
-/// No less than |p| is anywhere within `half` of `middle`: its Taylor series there.
-double greatest(Polynomial p, double middle, double half) {
-    double sum = 0, scale = 1;
-    for (std::size_t k = 0; k < terms; ++k) {
-        sum += std::abs(value(p, middle)) * scale;
-        p = derivative(p);
-        scale *= half / static_cast<double>(k + 1);
-    }
-    return sum;
-}
-
 /// Of degree five, with value, slope and second derivative at 0 and at 1.
 Polynomial hermite(double p0, double d0, double b0, double p1, double d1, double b1) {
     const double P = p1 - p0 - d0 - 0.5 * b0, D = d1 - d0 - b0, B = b1 - b0;
@@ -217,29 +206,6 @@ PathPoint waypoint(const PathVector& before, const PathVector& at, const PathVec
     for (std::size_t i = 0; i < most_path_axes; ++i) {
         out.tangent[i] = first[i] / std::sqrt(square);
         out.bend[i] = second[i] / square - first[i] * product / (square * square);
-    }
-    return out;
-}
-
-PathBound spline_bound(const PathCurve& c, std::size_t axis) {
-    constexpr int parts = 16;
-    constexpr double half = 0.5 / parts;
-    const Polynomial x1 = derivative(polynomial_of(c, axis)), x2 = derivative(x1),
-                     x3 = derivative(x2), t1 = derivative(c.map), t2 = derivative(t1),
-                     t3 = derivative(t2);
-    PathBound out;
-    for (int k = 0; k < parts; ++k) {
-        const double middle = (k + 0.5) / parts;
-        const double per = 1 / c.length;
-        const double a = greatest(t1, middle, half) * per;
-        const double b = greatest(t2, middle, half) * per * per;
-        const double d = greatest(t3, middle, half) * per * per * per;
-        const double t = value(c.map, middle), wide = a * half * c.length;
-        const double p = greatest(x1, t, wide), q = greatest(x2, t, wide),
-                     r = greatest(x3, t, wide);
-        out.tangent = std::max(out.tangent, p * a);
-        out.bend = std::max(out.bend, q * a * a + p * b);
-        out.twist = std::max(out.twist, r * a * a * a + 3 * q * a * b + p * d);
     }
     return out;
 }

@@ -21,13 +21,6 @@ std::size_t spline_between(const PathPoint& from, const PathPoint& to,
 /// at the last one.
 PathPoint waypoint(const PathVector& before, const PathVector& at, const PathVector& after);
 
-/// Greatest sizes of an axis' derivatives along a curve, no less than they are anywhere between.
-struct PathBound {
-    double tangent = 0, bend = 0, twist = 0;
-};
-
-PathBound spline_bound(const PathCurve& spline, std::size_t axis);
-
 /// How far from the joint of two lines or arcs a corner or a transition may begin that stays within
 /// `deviation` of them [u]; 0 where there is none.
 double distance_within(double deviation, const PathCurve& before, const PathCurve& after);

@@ -88,19 +88,4 @@ void look_back(PathStretches stretches, std::uint64_t changed, bool keeps) {
     }
 }
 
-double time_at_way(const MotionState& from, double duration, double way) {
-    double lo = 0, hi = duration;
-    double t = from.velocity > 0 ? std::min(way / from.velocity, duration) : 0.5 * duration;
-    for (int step = 0; step < 64 && hi > lo; ++step) {
-        const MotionState s = from.after(t);
-        const double missing = way - (s.position - from.position);
-        (missing > 0 ? lo : hi) = t;
-        double next = s.velocity > 0 ? t + missing / s.velocity : lo - 1;
-        if (!(next > lo && next < hi)) next = 0.5 * (lo + hi);
-        if (std::abs(next - t) <= 1e-15 * duration) break;
-        t = next;
-    }
-    return t;
-}
-
 }  // namespace lineshaft

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 
+#include "blocks/path/path_bound.hpp"
 #include "blocks/path/path_box.hpp"
-#include "blocks/profile/velocity_ramp.hpp"
+#include "blocks/path/path_phase.hpp"
 
 namespace lineshaft {
 
@@ -29,7 +31,9 @@ struct PathStretch {
 /// no more stretches than pieces.
 struct PathPiece {
     PathCurve curve;
-    double begin = 0;  ///< along the path [u]
+    PathLimits limits;  ///< of a corner the lesser ones of both its neighbours
+    std::array<PathBound, most_path_axes> bounds{};  ///< of the curve
+    double begin = 0;                                ///< along the path [u]
     PathStretch stretch;
 
     double end() const { return begin + curve.length; }
@@ -64,9 +68,5 @@ using ConstPathStretches = PathStretchesOf<const PathPiece>;
 /// `changed` on, and of those before as far as that goes. `keeps`: what was there has only grown,
 /// so that the ramps found before hold, and none is given up for a lesser one.
 void look_back(PathStretches stretches, std::uint64_t changed, bool keeps);
-
-/// When a way [u] has been run from a state with this jerk, within `duration`, where the velocity
-/// is not negative [s].
-double time_at_way(const MotionState& from, double duration, double way);
 
 }  // namespace lineshaft

@@ -228,8 +228,8 @@ void PathPlanner::run(std::string& rows, bool to_end) {
     while (!path_.finished() && !path_.lost && (to_end || path_.first == first)) {
         if (options_.every == 0) {
             path_.advance(ring_, 0);
-            const double left = std::max(path_.leg.plan.duration - path_.time, 0.0);
-            const double step = to_end ? left : std::min(left, path_.leg.plan.duration / 64);
+            const double left = std::max(path_.leg.duration() - path_.time, 0.0);
+            const double step = to_end ? left : std::min(left, path_.leg.duration() / 64);
             path_.advance(ring_, step);
             duration_ += step;
             continue;

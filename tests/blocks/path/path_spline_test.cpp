@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "blocks/path/path.hpp"
+#include "blocks/path/path_bound.hpp"
 
 using namespace lineshaft;
 
@@ -83,7 +84,7 @@ TEST_CASE("path_spline: derivatives are those of the position, and bounds hold b
             }
         }
         for (std::size_t i = 0; i < 4; ++i) {
-            const PathBound bound = spline_bound(c, i);
+            const PathBound bound = bound_of(c, i);
             CHECK(bound.tangent >= most[i].tangent);
             CHECK(bound.bend >= most[i].bend);
             CHECK(bound.twist >= most[i].twist);

@@ -1,0 +1,26 @@
+#include "blocks/path/path_course.hpp"
+
+#include <algorithm>
+
+namespace lineshaft {
+
+bool PathCourse::add(const PathPhase& phase, double lasts) {
+    if (count == phases.size()) return false;
+    phases[count] = phase;
+    phases[count].begin = duration;
+    ++count;
+    duration += lasts;
+    end = phase.after(lasts);
+    return true;
+}
+
+MotionState PathCourse::at(double t) const {
+    if (!(t < duration) || count == 0) return end;
+    const auto behind =
+        std::upper_bound(phases.begin() + 1, phases.begin() + static_cast<std::ptrdiff_t>(count), t,
+                         [](double time, const PathPhase& phase) { return time < phase.begin; });
+    const PathPhase& phase = *(behind - 1);
+    return phase.after(std::max(0.0, t - phase.begin));
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "blocks/path/path_course.hpp"
+#include "blocks/path/path_pieces.hpp"
+
+namespace lineshaft {
+
+/// By how much a course exceeds its limits: the greatest quotient of what it comes to and the limit
+/// that is for it, in each of its phases; bounds that hold between any samples, so that 1 and below
+/// is proof. The quotients are exact up to what `near` says; phases behind the first that is above
+/// 1 are looked at, too.
+bool keeps_limits(const PathPieces& pieces, const PathCourse& course, double base,
+                  std::span<double> quotients);
+
+}  // namespace lineshaft

@@ -1,0 +1,366 @@
+#include "blocks/path/path_speed.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lineshaft {
+
+namespace {
+
+constexpr double no_limit = 1e200;
+
+/// A direction in the plane of a corner.
+struct Across {
+    double cosine, sine;
+
+    double part(const PathVector& x, const std::array<PathVector, 2>& plane) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < path_space; ++i)
+            sum += x[i] * (cosine * plane[0][i] + sine * plane[1][i]);
+        return sum;
+    }
+};
+
+/// The limits of the path hold for the whole vector in a corner: a polygon of 16 sides within the
+/// circle.
+constexpr double c1 = 0.9238795325112867, c2 = 0.7071067811865476, c3 = 0.3826834323650898;
+constexpr Across polygon[] = {{1, 0}, {c1, c3},  {c2, c2},  {c3, c1},
+                              {0, 1}, {-c3, c1}, {-c2, c2}, {-c1, c3}};
+constexpr double polygon_share = 0.9807852804032304;  ///< cos(pi/16)
+
+/// Calls `use(tangent, bend, twist, limit)` for all that is bounded by a limit of one kind.
+template <class Use>
+void each_bounded(const SpeedInterval& here, const PathPoint& x, double PathLimit::*of,
+                  const Use& use) {
+    if (here.kind == PathCurveKind::line) return use(1, 0, 0, here.along.*of);
+    const double path = here.limits->path.*of;
+    use(1, 0, 0, path);
+    if (here.kind == PathCurveKind::corner && path < no_limit)
+        for (const Across& side : polygon)
+            use(side.part(x.tangent, here.plane), side.part(x.bend, here.plane),
+                side.part(x.twist, here.plane), polygon_share * path);
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        if (x.tangent[i] != 0 || x.bend[i] != 0 || x.twist[i] != 0)
+            use(x.tangent[i], x.bend[i], x.twist[i], here.limits->axes[i].*of);
+}
+
+}  // namespace
+
+SpeedProblem::SpeedProblem(std::span<const SpeedInterval> intervals, const SpeedEnd& from,
+                           const SpeedEnd& to, std::span<const double> energies)
+    : in(intervals), n(intervals.size()) {
+    for (std::size_t k = 1; k < n; ++k) {
+        const double both = in[k - 1].length + in[k].length;
+        weights[k] = {in[k].length / both, in[k - 1].length / both, 2 / both};
+    }
+    nodes[0] = from;
+    nodes[n] = to;
+    std::copy(energies.begin(), energies.end(), b.begin());
+    b[0] = from.energy + 0.5 * from.acceleration * in[0].length;
+    b[n - 1] = to.energy - 0.5 * to.acceleration * in[n - 1].length;
+    time = 0;
+    for (std::size_t k = 0; k < n; ++k) time += in[k].length / std::sqrt(2 * b[k]);
+    find_nodes();
+}
+
+void SpeedProblem::find_nodes() {
+    for (std::size_t k = 1; k < n; ++k)
+        nodes[k] = {weights[k].before * b[k - 1] + weights[k].behind * b[k],
+                    weights[k].rise * (b[k] - b[k - 1])};
+}
+
+void SpeedProblem::add(const Row& row) {
+    if (count < rows.size()) rows[count] = row;
+    ++count;
+}
+
+void SpeedProblem::add_rows_at_node(std::size_t k) {
+    const double w = nodes[k].energy, a = nodes[k].acceleration;
+    const double before = weights[k].before, behind = weights[k].behind, rise = weights[k].rise;
+    const double fastest = std::min(in[k - 1].along.velocity, in[k].along.velocity);
+    const double most = 0.5 * fastest * fastest;
+    add({k, {before / most, behind / most, 0}, {}, w / most, true});
+    const double tight = std::min(in[k - 1].tight, in[k].tight);
+    const auto bounded = [&](double tangent, double bend, double, double limit) {
+        if (limit >= no_limit) return;
+        const double p = tangent / (tight * limit), q = 2 * bend / (tight * limit);
+        add({k, {q * before - p * rise, q * behind + p * rise, 0}, {}, p * a + q * w, false});
+    };
+    const bool is_line = in[k].kind == PathCurveKind::line && in[k - 1].kind != PathCurveKind::line;
+    const SpeedInterval& here = is_line ? in[k - 1] : in[k];
+    each_bounded(here, is_line ? here.right : here.left, &PathLimit::acceleration, bounded);
+    if (is_line || in[k].limits != in[k - 1].limits)
+        each_bounded(is_line ? in[k] : in[k - 1], is_line ? in[k].left : in[k - 1].right,
+                     &PathLimit::acceleration, bounded);
+}
+
+void SpeedProblem::add_rows_of_jerk(std::size_t k, bool at_left) {
+    const SpeedInterval& here = in[k];
+    const std::size_t at = at_left ? k : k + 1;
+    const double w = nodes[at].energy, a = nodes[at].acceleration;
+    const Weights &l = weights[k], &r = weights[k + 1];
+    const double per = 1 / here.length, v = std::sqrt(2 * w), half = 0.5 / w;
+    const double slope = (nodes[k + 1].acceleration - nodes[k].acceleration) * per;
+    const Triple gs{l.rise * per, -(l.rise + r.rise) * per, r.rise * per};
+    const Triple gw = at_left ? Triple{l.before, l.behind, 0} : Triple{0, r.before, r.behind};
+    const Triple ga = at_left ? Triple{-l.rise, l.rise, 0} : Triple{0, -r.rise, r.rise};
+    const Triple falls{half * gw[0], half * gw[1], half * gw[2]};
+    each_bounded(here, at_left ? here.left : here.right, &PathLimit::jerk,
+                 [&](double tangent, double bend, double twist, double limit) {
+                     if (limit >= no_limit) return;
+                     const double f = v / (here.tight * limit);
+                     const double x = f * tangent, y = 3 * f * bend, z = 2 * f * twist;
+                     Row row{k, {}, falls, x * slope + y * a + z * w, false};
+                     for (std::size_t i = 0; i < 3; ++i)
+                         row.gradient[i] = x * gs[i] + y * ga[i] + z * gw[i];
+                     add(row);
+                 });
+}
+
+/// Always in the same order.
+void SpeedProblem::find_rows() {
+    count = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        if (k > 0) add_rows_at_node(k);
+        if (k > 0 && k + 1 < n) {
+            const double most = 0.5 * in[k].along.velocity * in[k].along.velocity;
+            add({k, {0, 1 / most, 0}, {}, b[k] / most, true});
+        }
+        add_rows_of_jerk(k, true);
+        add_rows_of_jerk(k, false);
+    }
+}
+
+void SpeedProblem::begin() {
+    find_rows();
+    if (count > rows.size()) return;
+    const double start = 1.0 / static_cast<double>(count);
+    for (std::size_t r = 0; r < count; ++r) {
+        const double value = rows[r].value;
+        const double first = std::max(0.1, 1 - value), other = std::max(0.1, 1 + value);
+        duals[r] = {};
+        duals[r].slack = {first, rows[r].is_one_sided ? 1 : other};
+        duals[r].weight = {start / first, rows[r].is_one_sided ? 0 : start / other};
+    }
+}
+
+/// From where the last solution was: multipliers and slacks are kept away from 0.
+void SpeedProblem::begin_again() {
+    find_rows();
+    const double least = 1e-2 / static_cast<double>(count);
+    for (std::size_t r = 0; r < count; ++r) {
+        for (std::size_t side = 0; side < (rows[r].is_one_sided ? 1 : 2); ++side) {
+            double &s = duals[r].slack[side], &weight = duals[r].weight[side];
+            s = std::max(side == 0 ? 1 - rows[r].value : 1 + rows[r].value, 1e-3);
+            weight = std::max(weight, least / s);
+        }
+    }
+}
+
+double SpeedProblem::gap() const {
+    double sum = 0;
+    for (std::size_t r = 0; r < count; ++r)
+        sum += duals[r].slack[0] * duals[r].weight[0] + duals[r].slack[1] * duals[r].weight[1];
+    return sum;
+}
+
+/// By how much a row is off at most.
+double SpeedProblem::residual() const {
+    double off = 0;
+    for (std::size_t r = 0; r < count; ++r) {
+        off = std::max(off, rows[r].value - 1 + duals[r].slack[0]);
+        if (!rows[r].is_one_sided) off = std::max(off, -rows[r].value - 1 + duals[r].slack[1]);
+    }
+    return off;
+}
+
+/// The matrix of the linear equations.
+void SpeedProblem::assemble() {
+    diagonal.fill(0), next.fill(0), second.fill(0);
+    for (std::size_t k = 1; k + 1 < n; ++k) {
+        const double square = 2 * b[k];
+        diagonal[k] += 3 * in[k].length / (square * square * std::sqrt(square) * time);
+    }
+    for (std::size_t r = 0; r < count; ++r) {
+        const Row& row = rows[r];
+        Dual& dual = duals[r];
+        const std::size_t k = row.middle;
+        dual.inverse = {1 / dual.slack[0], 1 / dual.slack[1]};
+        const double f1 = dual.weight[0] * dual.inverse[0];
+        const double f2 = dual.weight[1] * dual.inverse[1];
+        const double both = f1 + f2, odd = f1 - f2;
+        const Triple &g = row.gradient, &e = row.falls;
+        Triple mg, me;
+        for (std::size_t i = 0; i < 3; ++i) {
+            mg[i] = both * g[i] + odd * e[i];
+            me[i] = odd * g[i] + both * e[i];
+        }
+        diagonal[k] += g[1] * mg[1] + e[1] * me[1];
+        if (k > 0) {
+            diagonal[k - 1] += g[0] * mg[0] + e[0] * me[0];
+            next[k - 1] += g[0] * mg[1] + e[0] * me[1];
+            second[k - 1] += g[0] * mg[2] + e[0] * me[2];
+        }
+        if (k + 1 < n) {
+            diagonal[k + 1] += g[2] * mg[2] + e[2] * me[2];
+            next[k] += g[1] * mg[2] + e[1] * me[2];
+        }
+    }
+}
+
+/// Of five bands, to L D L^T; both ends stay.
+bool SpeedProblem::factor() {
+    std::array<double, most_speed_intervals>& d = diagonal;
+    for (std::size_t k = 1; k + 1 < n; ++k) {
+        double one = k >= 2 ? next[k - 1] : 0;
+        const double two = k >= 3 ? second[k - 2] : 0;
+        if (k >= 3) {
+            l2[k] = two / d[k - 2];
+            one -= two * l1[k - 1];
+            d[k] -= two * l2[k];
+        }
+        if (k >= 2) {
+            l1[k] = one / d[k - 1];
+            d[k] -= one * l1[k];
+        }
+        if (!(d[k] > 0) || !std::isfinite(d[k])) return false;
+    }
+    return true;
+}
+
+/// The step that leads each product of slack and multiplier to `target`, less what the product of
+/// their own changes came to in the step before if that `corrects`.
+void SpeedProblem::find_step(double target, bool corrects) {
+    right.fill(0);
+    for (std::size_t k = 1; k + 1 < n; ++k) {
+        const double square = 2 * b[k];
+        right[k] += in[k].length / (square * std::sqrt(square) * time);
+    }
+    for (std::size_t r = 0; r < count; ++r) {
+        const Row& row = rows[r];
+        const Dual& dual = duals[r];
+        const std::size_t k = row.middle;
+        const auto pull_of = [&](std::size_t side, double value) {
+            const double s = dual.slack[side], weight = dual.weight[side];
+            const double wanted = target - (corrects ? dual.product[side] : 0);
+            return (wanted + weight * (value - 1 + s)) * dual.inverse[side];
+        };
+        const double p1 = pull_of(0, row.value);
+        const double p2 = row.is_one_sided ? 0 : pull_of(1, -row.value);
+        Triple rhs;
+        for (std::size_t i = 0; i < 3; ++i)
+            rhs[i] = row.gradient[i] * (p1 - p2) + row.falls[i] * (p1 + p2);
+        right[k] -= rhs[1];
+        if (k > 0) right[k - 1] -= rhs[0];
+        if (k + 1 < n) right[k + 1] -= rhs[2];
+    }
+    for (std::size_t k = 1; k + 1 < n; ++k) {
+        step[k] = right[k];
+        if (k >= 3) step[k] -= l2[k] * step[k - 2];
+        if (k >= 2) step[k] -= l1[k] * step[k - 1];
+    }
+    for (std::size_t k = n - 1; k-- > 1;) {
+        step[k] /= diagonal[k];
+        if (k + 2 < n) step[k] -= l1[k + 1] * step[k + 1];
+        if (k + 3 < n) step[k] -= l2[k + 2] * step[k + 2];
+    }
+    step[0] = step[n - 1] = 0;
+}
+
+double SpeedProblem::along(const Row& row, const Triple& gradient) const {
+    const std::size_t k = row.middle;
+    return (k > 0 ? gradient[0] * step[k - 1] : 0) + gradient[1] * step[k] +
+           (k + 1 < n ? gradient[2] * step[k + 1] : 0);
+}
+
+/// What the step does to slacks and multipliers, and how far along it they and w stay above 0.
+SpeedProblem::Parts SpeedProblem::find_changes(double target, bool corrects) {
+    constexpr double nearly = 0.985, least_energy = 0.2;
+    Parts out;
+    for (std::size_t r = 0; r < count; ++r) {
+        const Row& row = rows[r];
+        Dual& dual = duals[r];
+        const double by = along(row, row.gradient), fall = along(row, row.falls);
+        for (std::size_t side = 0; side < (row.is_one_sided ? 1 : 2); ++side) {
+            const double sign = side == 0 ? 1 : -1, s = dual.slack[side], w = dual.weight[side];
+            const double ds = 1 - s - sign * (row.value + by) - fall;
+            const double wanted = target - (corrects ? dual.product[side] : 0);
+            const double dw = (wanted - w * (s + ds)) * dual.inverse[side];
+            if (out.primal * ds < -nearly * s) out.primal = -nearly * s / ds;
+            if (out.dual * dw < -nearly * w) out.dual = -nearly * w / dw;
+            dual.slack_change[side] = ds;
+            dual.weight_change[side] = dw;
+        }
+    }
+    for (std::size_t k = 1; k + 1 < n; ++k)
+        if (out.primal * step[k] < (least_energy - 1) * b[k])
+            out.primal = (least_energy - 1) * b[k] / step[k];
+    return out;
+}
+
+/// Mehrotra's target: the better the step towards 0 would be, the nearer.
+double SpeedProblem::look_ahead(double now) {
+    find_step(0, false);
+    const Parts part = find_changes(0, false);
+    double then = 0;
+    for (std::size_t r = 0; r < count; ++r) {
+        Dual& dual = duals[r];
+        for (std::size_t side = 0; side < 2; ++side) {
+            const double ds = dual.slack_change[side], dw = dual.weight_change[side];
+            then += (dual.slack[side] + part.primal * ds) * (dual.weight[side] + part.dual * dw);
+            dual.product[side] = ds * dw;
+        }
+    }
+    const double share = then / now;
+    return share * share * share * now;
+}
+
+void SpeedProblem::go(const Parts& part) {
+    for (std::size_t r = 0; r < count; ++r) {
+        Dual& dual = duals[r];
+        for (std::size_t side = 0; side < 2; ++side) {
+            dual.slack[side] += part.primal * dual.slack_change[side];
+            dual.weight[side] += part.dual * dual.weight_change[side];
+        }
+    }
+    for (std::size_t k = 1; k + 1 < n; ++k) b[k] += part.primal * step[k];
+    find_nodes();
+    find_rows();
+}
+
+/// What is next to the greatest velocity along a way is run along with exactly that.
+void SpeedProblem::settle() {
+    constexpr double next_to = 1e-4, same = 1e-12, rounding = 1e-15;
+    for (std::size_t k = 1; k + 1 < n; ++k) {
+        const double v = in[k].along.velocity, most = 0.5 * v * v;
+        const bool is_even = std::abs(in[k - 1].along.velocity - v) <= same * v &&
+                             std::abs(in[k + 1].along.velocity - v) <= same * v;
+        if (is_even && b[k] > (1 - next_to) * most) b[k] = (1 - rounding) * most;
+    }
+    find_nodes();
+}
+
+bool SpeedProblem::solve() {
+    constexpr double near = 2e-4;  ///< to the least time, as a part of the first guess
+    constexpr double nearly_kept = 1e-5;
+    constexpr int most_steps = 32, soon = 9;
+    constexpr double hopeless = 0.2;  ///< of a gap that is not met any more
+    is_warm ? begin_again() : begin();
+    if (count > rows.size()) return false;
+    for (int tries = 0; tries < most_steps; ++tries) {
+        const double now = gap(), off = residual();
+        if (now < near && off < nearly_kept) {
+            settle();
+            return is_warm = true;
+        }
+        if (tries >= soon && now > hopeless) return false;
+        assemble();
+        if (!factor()) return false;
+        const double target = std::max(look_ahead(now), 0.1 * near) / static_cast<double>(count);
+        find_step(target, true);
+        go(find_changes(target, true));
+    }
+    return false;
+}
+
+}  // namespace lineshaft
