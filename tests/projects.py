@@ -121,6 +121,9 @@ def check_yaml_folder():
 def check_nothing():
     write("nothing/below/notes.txt", "no source\n")
     assert "there is no source of a controller in 'nothing'" in run("check", "nothing", code=2)
+    write("nothing/below/history.db", b"SQLite format 3\0\1")
+    assert "there is no source of a controller in 'nothing'" in run("check", "nothing", code=2)
+    assert "the file is not a text" in run("check", "nothing/below/history.db", code=2)
 
 
 def check_automation_studio():

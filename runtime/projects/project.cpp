@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 
 #include <fmt/format.h>
 
@@ -76,6 +77,15 @@ bool is_test_file(const std::string& file) {
     return source && (has_fixtures(*source) || st::is_test_file(source));
 }
 
+/// Siemens' data blocks are texts; other programs have databases whose names end alike.
+bool is_database(const std::string& file) {
+    if (!ends_with(file, ".db")) return false;
+    std::array<char, 16> first{};
+    std::ifstream(file, std::ios::binary).read(first.data(), first.size());
+    constexpr std::string_view sqlite = "SQLite format 3";
+    return std::string_view(first.data(), sqlite.size()) == sqlite;
+}
+
 /// What projects list themselves: all below a `.plcproj`, all beside a `.prg`; and what lists them.
 void leave_to_projects(std::vector<std::string>& files) {
     std::vector<std::string> folders, programs;
@@ -117,6 +127,7 @@ std::vector<std::string> sources_below(const std::string& folder, std::error_cod
         if (is_source(entry->path()) && !is_apax(entry->path()) && entry->is_regular_file(unknown))
             files.push_back(entry->path().string());
     std::erase_if(files, is_test_file);
+    std::erase_if(files, is_database);
     leave_to_projects(files);
     std::ranges::sort(files);
     return files;
