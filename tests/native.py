@@ -188,6 +188,24 @@ def check_damaged(runs, native):
     assert log.read_text().count("\n") == 4, log.read_text()
 
 
+def check_bounded(runs, native):
+    """256 MiB remain in the cache: what was unused longest goes, and what is loaded is used."""
+    cache, (script, _) = runs.folder / "cache/lineshaft", compiler(runs)
+    before = set(libraries(runs))
+    assert runs.run("--native", CXX=script) == native
+    made, = set(libraries(runs)) - before
+    os.utime(made, (1, 1))
+    assert runs.run("--native", CXX=script) == native
+    assert made.stat().st_mtime > 1
+    for name, used in ("older.so", 2), ("old.so", 3):
+        with open(cache / name, "wb") as file:
+            file.truncate(150 << 20)
+        os.utime(cache / name, (used, used))
+    assert runs.run("--native", CXX=compiler(runs)[0]) == native
+    assert made.exists() and (cache / "old.so").exists() and not (cache / "older.so").exists()
+    (cache / "old.so").unlink()
+
+
 def check_side_by_side(runs):
     """One compiler for all of them."""
     script, log = compiler(runs)
@@ -212,6 +230,7 @@ def main():
         check_loaded(runs)
         check_hardened(runs, native)
         check_damaged(runs, native)
+        check_bounded(runs, native)
         check_side_by_side(runs)
         runs.write("100")
         told = check_ways(runs, 3)[2]

@@ -1,12 +1,15 @@
 #include "runtime/st/code/native/cache.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <utility>
+#include <vector>
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -16,13 +19,13 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-#include "runtime/source/sha256.hpp"
+#include "runtime/source/text_hash.hpp"
 
 namespace lineshaft::st {
 
 namespace {
 
-constexpr std::size_t sum_size = 64;
+constexpr std::uintmax_t most_bytes = 256 << 20;
 
 std::string folder_of_user() {
     const char* cache = std::getenv("XDG_CACHE_HOME");
@@ -46,10 +49,17 @@ std::string content(int descriptor) {
     return bytes;
 }
 
-bool is_whole(std::string_view bytes) {
-    if (bytes.size() <= sum_size) return false;
-    const std::size_t size = bytes.size() - sum_size;
-    return sha256(bytes.substr(0, size)) == bytes.substr(size);
+constexpr std::size_t hash_size = 16;
+
+std::string named(std::string_view key) {
+    return text_hash(key) + ".so";
+}
+
+bool is_whole(std::string_view bytes, std::string_view key) {
+    if (bytes.size() <= key.size() + hash_size) return false;
+    const std::size_t size = bytes.size() - hash_size;
+    return bytes.substr(size - key.size(), key.size()) == key &&
+           text_hash(bytes.substr(0, size)) == bytes.substr(size);
 }
 
 }  // namespace
@@ -86,13 +96,15 @@ std::string Cache::path(std::string_view name) const {
     return fmt::format("{}/{}", folder_, name);
 }
 
-void* Cache::load(const std::string& name) const {
+void* Cache::load(std::string_view key) const {
+    const std::string name = named(key);
     const int file = ::openat(descriptor_, name.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
     if (file < 0) return nullptr;
     struct stat status {};
     const bool is_ours =
         ::fstat(file, &status) == 0 && S_ISREG(status.st_mode) && is_users_alone(status, 022);
-    const bool is_good = is_ours && is_whole(content(file));
+    const bool is_good = is_ours && is_whole(content(file), key);
+    if (is_good) ::futimens(file, nullptr);
     ::close(file);
     if (!is_good) return nullptr;
     void* library = ::dlopen(path(name).c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -111,15 +123,36 @@ void Cache::unlock() {
     if (lock_ >= 0) ::close(std::exchange(lock_, -1));
 }
 
-void Cache::keep(const std::string& made, const std::string& name) const {
+void Cache::keep(const std::string& made, std::string_view key) const {
     std::ifstream file(made, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    bytes += key;
     std::ofstream whole(made, std::ios::binary | std::ios::app);
-    whole << sha256(bytes);
+    whole << key << text_hash(bytes);
     whole.close();
     if (!whole || ::chmod(made.c_str(), 0600) != 0 ||
-        ::rename(made.c_str(), path(name).c_str()) != 0)
+        ::rename(made.c_str(), path(named(key)).c_str()) != 0)
         throw NoCompiledCode(fmt::format("cannot write {}", folder_));
+    delete_unused();
+}
+
+/// What goes wrong here remains: the next that is made tries again.
+void Cache::delete_unused() const {
+    struct File {
+        std::filesystem::file_time_type used;
+        std::uintmax_t size;
+        std::filesystem::path path;
+        auto operator<=>(const File&) const = default;
+    };
+    std::vector<File> files;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_, none))
+        if (entry.is_regular_file(none))
+            files.push_back({entry.last_write_time(none), entry.file_size(none), entry.path()});
+    std::sort(files.begin(), files.end(), std::greater<>());
+    std::uintmax_t sum = 0;
+    for (const File& file : files)
+        if ((sum += file.size) > most_bytes) std::filesystem::remove(file.path, none);
 }
 
 }  // namespace lineshaft::st

@@ -12,7 +12,9 @@ struct NoCompiledCode : std::runtime_error {
 };
 
 /// Shared objects in a folder that is the user's alone: `lineshaft` in $XDG_CACHE_HOME or ~/.cache.
-/// Behind each stands the SHA-256 of its bytes, so that one that is not whole is not loaded.
+/// Each is named by the hash of its key, what it was made of. Behind its bytes stand the key, and
+/// the hash of both, so that none is loaded of another key, or that is not whole. The longest
+/// unused are deleted: 256 MiB remain.
 class Cache {
   public:
     /// NoCompiledCode where the folder cannot be, or others may write it.
@@ -22,7 +24,7 @@ class Cache {
 
     /// The handle of dlopen(3); null where it is not there, or not whole. NoCompiledCode where it
     /// cannot be executed.
-    void* load(const std::string& name) const;
+    void* load(std::string_view key) const;
 
     /// False while another process has it.
     bool lock();
@@ -30,9 +32,11 @@ class Cache {
 
     std::string path(std::string_view name) const;
     /// A file of this process that gets its name when it is whole.
-    void keep(const std::string& made, const std::string& name) const;
+    void keep(const std::string& made, std::string_view key) const;
 
   private:
+    void delete_unused() const;
+
     std::string folder_;
     int descriptor_ = -1, lock_ = -1;
 };

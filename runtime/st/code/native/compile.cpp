@@ -26,7 +26,6 @@
 #include <unistd.h>
 
 #include "runtime/source/input_file.hpp"
-#include "runtime/source/sha256.hpp"
 #include "runtime/st/code/native/cache.hpp"
 #include "runtime/st/code/native/emit.hpp"
 #include "runtime/st/code/native/self_test.hpp"
@@ -77,6 +76,15 @@ std::string found_in_path(const std::string& name) {
     return {};
 }
 
+/// Another one after an update; empty where there is no such file.
+std::string version_of(const std::string& file) {
+    struct stat status {};
+    if (::stat(file.c_str(), &status) != 0) return {};
+    std::error_code same;
+    return fmt::format("{} {} {}.{}", std::filesystem::canonical(file, same).string(),
+                       status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+}
+
 Compiler find_compiler() {
     Compiler found;
     const char* named = std::getenv("CXX");
@@ -91,13 +99,10 @@ Compiler find_compiler() {
     } else {
         file = found_in_path(found.words[0]);
     }
-    struct stat status {};
-    if (::stat(file.c_str(), &status) != 0)
+    const std::string version = version_of(file);
+    if (version.empty())
         throw NoCompiledCode(fmt::format("there is no compiler '{}' (CXX)", named));
-    std::error_code same;
-    found.identity = fmt::format("{} {} {} {}.{}", fmt::join(found.words, " "),
-                                 std::filesystem::canonical(file, same).string(), status.st_size,
-                                 status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+    found.identity = fmt::format("{} {}", fmt::join(found.words, " "), version);
     return found;
 }
 
@@ -129,21 +134,20 @@ class Compiling {
 
     void ask(const Code& code, const std::shared_ptr<Native>& native) {
         try {
-            const std::string text = emitted(code, names_);
-            if (text.empty()) return;
+            if (!code.points.empty()) return;
             const std::lock_guard lock(mutex_);
             if (is_given_up_) return;
             if (!cache_) begin_working();
-            const std::string name = sha256(text + compiler_.identity) + ".so";
-            const auto [made, is_new] = made_.try_emplace(name);
+            const std::string key = emission_key(code) + compiler_.identity;
+            const auto [made, is_new] = made_.try_emplace(key);
             Made& it = made->second;
             if (is_new)
-                if (void* library = cache_->load(name)) it.entries = begin(library);
+                if (void* library = cache_->load(key)) it.entries = begin(library);
             if (it.entries) return give(*native, it.entries);
             is_ending_ = false;
             it.waiting.push_back(native);
             if (!is_new) return;
-            jobs_.push_back({name, text});
+            jobs_.push_back({key, emitted(code, names_)});
             if (!std::exchange(is_busy_, true)) std::thread([this] { work(); }).detach();
         } catch (const NoCompiledCode& why) {
             give_up(why.what());
@@ -164,12 +168,15 @@ class Compiling {
         std::vector<std::shared_ptr<Native>> waiting;
     };
     struct Job {
-        std::string name, text;
+        std::string key, text;
     };
 
     void begin_working() {
         compiler_ = find_compiler();
         for (const char* flag : flags) compiler_.identity += flag;
+        const std::string writer = version_of("/proc/self/exe");
+        if (writer.empty()) throw NoCompiledCode("/proc/self/exe is not there");
+        compiler_.identity += writer;
         cache_.emplace();
     }
 
@@ -196,7 +203,7 @@ class Compiling {
                 give_up(why.what());
             }
             lock.lock();
-            Made& made = made_[job.name];
+            Made& made = made_[job.key];
             made.entries = entries;
             for (const auto& native : std::exchange(made.waiting, {})) give(*native, entries);
         }
@@ -210,10 +217,10 @@ class Compiling {
             if (is_ending_) return nullptr;
             std::this_thread::sleep_for(50ms);
         }
-        void* library = cache_->load(job.name);
+        void* library = cache_->load(job.key);
         if (!library) {
             compile(job);
-            library = cache_->load(job.name);
+            library = cache_->load(job.key);
         }
         cache_->unlock();
         if (!library) throw NoCompiledCode("what the compiler has made is not there any more");
@@ -229,7 +236,7 @@ class Compiling {
         std::ifstream text(log);
         std::getline(text, first);
         for (const std::string& file : {source, log}) ::unlink(file.c_str());
-        if (fine) return cache_->keep(made, job.name);
+        if (fine) return cache_->keep(made, job.key);
         ::unlink(made.c_str());
         throw NoCompiledCode(fmt::format("{} failed: {}", compiler_.words[0], first));
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -118,8 +119,34 @@ class Writer {
 
 }  // namespace
 
+std::string emission_key(const Code& code) {
+    std::string key;
+    key.reserve(code.instructions.size() * sizeof(Instruction));
+    const auto add = [&](const auto&... values) {
+        (key.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
+    };
+    std::vector<std::int64_t> numbers = code.numbers;
+    add(code.instructions.size(), code.routines.size(), code.tables.size(), numbers.size());
+    for (const Instruction& in : code.instructions) {
+        const bool jumps = info(in.op).operands[2] == 'j';
+        add(in.op, in.a, in.b, in.d, jumps ? code.place_of(in.c) : in.c);
+        if (in.op != Op::choose) continue;
+        const IndexTable& table = code.tables[in.c];
+        for (std::uint64_t i = 0; i < table.count; ++i) {
+            const std::uint64_t at = table.first + i * table.stride;
+            const auto address = static_cast<std::uint64_t>(code.numbers[at]);
+            numbers[at] = static_cast<std::int64_t>(code.place_of(address));
+        }
+    }
+    for (const CodeRoutine& routine : code.routines) add(routine.entry, routine.end);
+    for (const IndexTable& t : code.tables) add(t.lower, t.count, t.stride, t.first);
+    for (const std::int64_t number : numbers) add(number);
+    for (const std::uint64_t word : code.images) add(word);
+    return key;
+}
+
 std::string emitted(const Code& code, std::span<const std::string_view> externals) {
-    return code.points.empty() ? Writer(code).write(externals) : std::string();
+    return Writer(code).write(externals);
 }
 
 }  // namespace lineshaft::st
