@@ -147,7 +147,7 @@ void Cache::delete_unused() const {
     std::vector<File> files;
     std::error_code none;
     for (const auto& entry : std::filesystem::directory_iterator(folder_, none))
-        if (entry.is_regular_file(none))
+        if (entry.is_regular_file(none) && entry.path().extension() == ".so")
             files.push_back({entry.last_write_time(none), entry.file_size(none), entry.path()});
     std::sort(files.begin(), files.end(), std::greater<>());
     std::uintmax_t sum = 0;
