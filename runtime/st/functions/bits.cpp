@@ -12,7 +12,7 @@ Slot emit_shift(Emission& e) {
     int width = 0;
     while ((8 << width) < type.bits) ++width;
     const Op op = after(first, 4 * width);
-    const Slot a = e.kept(0), n = e.kept(1);
+    const Slot a = e.value(0), n = e.value(1);
     if (!type.is_signed) return e.result(op, a, n);
     if (first == Op::shr_8) return e.result(Op::shr_signed, a, n);
     const Slot pattern = e.emit(of_type(Op::wrap_sint, bits_type(type.bits)), a);
@@ -20,17 +20,17 @@ Slot emit_shift(Emission& e) {
 }
 
 Slot emit_swap(Emission& e) {
-    return e.result(Op::swap_bytes, e.kept(0), static_cast<Slot>(e.type().bits));
+    return e.result(Op::swap_bytes, e.value(0), static_cast<Slot>(e.type().bits));
 }
 
 Slot emit_decode(Emission& e) {
     const Slot last = e.constant(static_cast<std::uint64_t>(e.type().bits - 1));
-    const Slot place = e.emit(Op::and_bits, e.kept(0), last);
+    const Slot place = e.emit(Op::and_bits, e.value(0), last);
     return e.result(Op::shl_64, e.constant(1), place);
 }
 
 Slot emit_encode(Emission& e) {
-    return e.result(Op::lowest_bit, e.kept(0));
+    return e.result(Op::lowest_bit, e.value(0));
 }
 
 consteval StandardFunction shift(std::string_view signature, std::string_view doc, Op op) {
