@@ -648,8 +648,10 @@ class SourceMaker {
     }
 
     /// `type`, or now and then one that widens to it, where both will do.
-    const Type& narrower(const Type& type) {
-        if (below(6) != 5) return type;
+    const Type& narrower(const Type& type) { return below(6) == 5 ? widening(type) : type; }
+
+    /// One that widens to it; `type` if there is none.
+    const Type& widening(const Type& type) {
         std::vector<const Type*> fitting;
         for (const Type* t : scalars_)
             if (widens(*t, type)) fitting.push_back(t);
@@ -675,6 +677,8 @@ class SourceMaker {
         if (type.base) return into_subrange(type, depth);
         if (below(9) == 8)
             if (auto text = function_call(type, depth)) return *text;
+        if (below(24) == 23)
+            if (auto text = beside_call(type, depth)) return *text;
         switch (type.kind) {
             case Kind::boolean:
                 return boolean(type, depth);
@@ -1173,6 +1177,15 @@ class SourceMaker {
         const std::string of = callable.of ? receiver(callable) + "." : "";
         if (callable.is_abstract && of == "SUPER^.") return {};
         return Text{of + callable.name + *given};
+    }
+
+    /// A variable, often one that widens, beside a call, which may write it.
+    std::optional<Text> beside_call(const Type& type, int depth) {
+        if (type.kind != Kind::integer && type.kind != Kind::real) return {};
+        const auto variable = place(below(2) == 0 ? type : widening(type), false);
+        const auto call = variable ? function_call(type, depth) : std::nullopt;
+        if (!call) return {};
+        return Text{fmt::format("({} + {})", *variable, call->text)};
     }
 
     static Use use_of(const Callable& callable) {

@@ -567,7 +567,7 @@ class CWriter {
                        c_type(*target.operands[0]->type), mask, first, bits);
         }
         if (target.is_character()) {
-            const std::string c = value(*s.value), in = text(*target.operands[0]);
+            const std::string c = value(*s.value), in = "&" + place(*target.operands[0]);
             return put("twin_set_character({}, {}, {}, {});", in, value(*target.arguments[0].value),
                        c, line_);
         }
@@ -1020,7 +1020,8 @@ class CWriter {
             return "&" + name;
         }
         if (e.kind == E::call) return e.routine ? "&" + call(e) : text_function(e);
-        if (e.kind != E::converted) return "&" + place(e);
+        if (e.kind != E::converted)
+            return "&" + (e.type->is_open ? place(e) : made(*e.type, place(e)));
         const Type& from = *e.operands[0]->type;
         std::string number = value(*e.operands[0]);
         if (from.kind == Kind::enumeration) number = convert(number, from, lint_type);

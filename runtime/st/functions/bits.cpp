@@ -12,7 +12,7 @@ Slot emit_shift(Emission& e) {
     int width = 0;
     while ((8 << width) < type.bits) ++width;
     const Op op = after(first, 4 * width);
-    const Slot a = e.kept(0), n = e.kept(1);
+    const Slot a = e.value(0), n = e.value(1);
     if (!type.is_signed) return e.result(op, a, n);
     if (first == Op::shr_8) return e.result(Op::shr_signed, a, n);
     const Slot pattern = e.emit(of_type(Op::wrap_sint, bits_type(type.bits)), a);
@@ -21,7 +21,7 @@ Slot emit_shift(Emission& e) {
 
 Slot emit_decode(Emission& e) {
     const Slot last = e.constant(static_cast<std::uint64_t>(e.type().bits - 1));
-    const Slot place = e.emit(Op::and_bits, e.kept(0), last);
+    const Slot place = e.emit(Op::and_bits, e.value(0), last);
     return e.result(Op::shl_64, e.constant(1), place);
 }
 
@@ -37,10 +37,10 @@ constexpr StandardFunction bit_strings[] = {
     shift("ROL(IN: ANY_WHOLE; N: ANY_INT): ANY_WHOLE", "the bits N places to the left, in a circle", Op::rol_8),
     shift("ROR(IN: ANY_WHOLE; N: ANY_INT): ANY_WHOLE", "the bits N places to the right, in a circle", Op::ror_8),
     {"SWAP(IN: ANY_BIT): ANY_BIT", "the bytes in reverse order", Typing::bits,
-     [](Emission& e) { return e.result(Op::swap_bytes, e.kept(0), static_cast<Slot>(e.type().bits)); }},
+     [](Emission& e) { return e.result(Op::swap_bytes, e.value(0), static_cast<Slot>(e.type().bits)); }},
     {"DECO(IN: ANY_INT): ANY_BIT", "the bit of number IN, from 0 on, and no other", Typing::bit_number, emit_decode},
     {"ENCO(IN: ANY_BIT): INT", "the number of the lowest bit that is set, from 0 on; of 0 it is 0",
-     Typing::bits, [](Emission& e) { return e.result(Op::lowest_bit, e.kept(0)); }},
+     Typing::bits, [](Emission& e) { return e.result(Op::lowest_bit, e.value(0)); }},
     {"SCATTER(IN: ANY_BIT; OUT: ARRAY)", "writes each bit of IN to an element of OUT, an array of BOOL",
      Typing::statement, nullptr},
     {"GATHER(IN: ARRAY; OUT: ANY_BIT)", "writes each element of IN, an array of BOOL, to a bit of OUT",

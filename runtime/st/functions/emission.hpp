@@ -40,9 +40,8 @@ struct Emission {
         return type().is_real() ? real : type().is_unsigned_64() ? of_unsigned : of_signed;
     }
 
+    /// It stays what it is while the arguments behind it are computed; so does a text.
     virtual Slot value(std::size_t argument) = 0;
-    /// A value that stays what it is while the arguments behind it are computed.
-    virtual Slot kept(std::size_t argument) = 0;
     virtual Slot text(std::size_t argument) = 0;  ///< a slot with its address
     /// A value; of a text, an array, a structure a slot with its address.
     virtual Slot value_or_address(std::size_t argument) = 0;

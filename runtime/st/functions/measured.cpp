@@ -5,7 +5,7 @@ namespace lineshaft::st {
 namespace {
 
 Slot emit_normalise(Emission& e) {
-    const Slot min = e.kept(0), in = e.kept(1), max = e.kept(2);
+    const Slot min = e.value(0), in = e.value(1), max = e.value(2);
     e.land();  // MIN is read twice
     const Op sub = e.of_real(Op::sub_real, Op::sub_lreal);
     const Slot above = e.emit(sub, in, min), range = e.emit(sub, max, min);
@@ -13,7 +13,7 @@ Slot emit_normalise(Emission& e) {
 }
 
 Slot emit_scale(Emission& e) {
-    const Slot min = e.kept(0), in = e.kept(1), max = e.kept(2);
+    const Slot min = e.value(0), in = e.value(1), max = e.value(2);
     e.land();  // MIN is read twice
     const Slot range = e.emit(e.of_real(Op::sub_real, Op::sub_lreal), max, min);
     const Slot above = e.emit(e.of_real(Op::mul_real, Op::mul_lreal), in, range);
@@ -28,9 +28,9 @@ constexpr StandardFunction measured[] = {
     {"SCALE_X(MIN, VALUE, MAX: ANY_NUM): ANY_NUM", "VALUE * (MAX - MIN) + MIN, rounded where that is an integer",
      Typing::scaled, emit_scale},
     {"IS_VALID(IN: ANY_REAL): BOOL", "IN is a number, and not infinite", Typing::real,
-     [](Emission& e) { return e.result(Op::is_finite, e.kept(0)); }},
+     [](Emission& e) { return e.result(Op::is_finite, e.value(0)); }},
     {"IS_VALID_BCD(IN: ANY_BIT): BOOL", "each four bits of IN are a decimal digit", Typing::bits,
-     [](Emission& e) { return e.result(Op::is_bcd, e.kept(0)); }},
+     [](Emission& e) { return e.result(Op::is_bcd, e.value(0)); }},
 };
 // clang-format on
 

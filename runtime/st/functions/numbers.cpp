@@ -5,29 +5,29 @@ namespace lineshaft::st {
 namespace {
 
 Slot emit_real(Emission& e) {
-    const Slot a = e.kept(0);
-    return e.rounded(e.call.standard->op, a, e.count() > 1 ? e.kept(1) : 0);
+    const Slot a = e.value(0);
+    return e.rounded(e.call.standard->op, a, e.count() > 1 ? e.value(1) : 0);
 }
 
 Slot emit_square(Emission& e) {
-    const Slot a = e.kept(0);
+    const Slot a = e.value(0);
     return e.result(e.of_real(Op::mul_real, Op::mul_lreal), a, a);
 }
 
 Slot emit_fraction(Emission& e) {
-    const Slot a = e.kept(0);
+    const Slot a = e.value(0);
     return e.result(Op::sub_lreal, a, e.emit(Op::truncate, a));
 }
 
 Slot emit_whole(Emission& e) {
-    const Slot whole = e.emit(e.call.standard->op, e.kept(0));
+    const Slot whole = e.emit(e.call.standard->op, e.value(0));
     return e.result(of_type(Op::round_sint, e.type()), whole);
 }
 
 Slot emit_absolute(Emission& e) {
-    if (e.type().is_real()) return e.result(Op::abs_lreal, e.kept(0));
-    if (!e.type().is_signed) return e.kept(0);
-    return e.fitted(e.emit(Op::abs_signed, e.kept(0)));
+    if (e.type().is_real()) return e.result(Op::abs_lreal, e.value(0));
+    if (!e.type().is_signed) return e.value(0);
+    return e.fitted(e.emit(Op::abs_signed, e.value(0)));
 }
 
 Op greatest(Emission& e) {
@@ -40,23 +40,23 @@ Op least(Emission& e) {
 
 Slot emit_extremum(Emission& e) {
     const Op op = e.call.standard->op == Op::max_signed ? greatest(e) : least(e);
-    Slot so_far = e.kept(0);
+    Slot so_far = e.value(0);
     for (std::size_t i = 1; i + 1 < e.count(); ++i) so_far = e.emit(op, so_far, e.value(i));
     return e.result(op, so_far, e.value(e.count() - 1));
 }
 
 Slot emit_limit(Emission& e) {
-    const Slot mn = e.kept(0), in = e.kept(1), mx = e.kept(2);
+    const Slot mn = e.value(0), in = e.value(1), mx = e.value(2);
     return e.result(least(e), e.emit(greatest(e), in, mn), mx);
 }
 
 Slot emit_select(Emission& e) {
-    const Slot second = e.kept(0), first = e.several(1);
+    const Slot second = e.value(0), first = e.several(1);
     return e.result(Op::select, second, first);
 }
 
 Slot emit_multiplex(Emission& e) {
-    const Slot k = e.kept(0), first = e.several(1);
+    const Slot k = e.value(0), first = e.several(1);
     const std::uint64_t count = e.count() - 1;
     const bool has_else = same_name(e.call.arguments.back().name.text, "inelse");
     const Slot place =

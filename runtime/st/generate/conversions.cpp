@@ -112,6 +112,8 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
         if (operand.type->kind == Kind::interface) return value(w, operand, wanted);
         return w.emit(Op::lasting, wanted, address_of(w, locate(w, operand)));
     }
+    if (operand.type->is_reference())
+        return convert(w, address_number(w, operand), lint_type, *e.type, false, wanted);
     if (operand.type->kind == Kind::text) {
         const Slot text = text_address(w, operand);
         if (e.type->kind == Kind::real) {

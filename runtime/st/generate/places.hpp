@@ -76,6 +76,9 @@ Slot compare_references(Writing& w, const Expression& e);
 /// `p - q`, in bytes.
 Slot reference_distance(Writing& w, const Expression& e, Slot wanted);
 
+/// Where it points as a number: bytes, of which a slot has 8, and the instance above 2^35.
+Slot address_number(Writing& w, const Expression& e);
+
 /// The number of a type's shape. What it is made of is known when all routines are written.
 std::uint32_t shape_number(Writing& w, const Type& type, bool is_s7 = false);
 void finish_shapes(Writing& w);

@@ -116,13 +116,20 @@ Slot refer_to_variable(Writing& w, const Expression& root) {
     return made;
 }
 
-/// How many bytes behind the first element of an ARRAY[*] the one of that index is.
+/// How many bytes an index of an ARRAY[*] is behind the first one of its dimension.
 Slot bytes_of_index(Writing& w, const Expression& e) {
     const Slot index = value(w, *e.operands[1]);
     w.land();
     const Slot lower = value(w, *e.arguments[0].value), upper = value(w, *e.arguments[1].value);
     w.put(Op::between, 0, index, lower, upper);
-    const Slot place = w.emit(Op::sub_lint, none, index, lower);
+    Slot place = w.emit(Op::sub_lint, none, index, lower);
+    for (std::size_t i = 2; i < e.arguments.size(); i += 2) {
+        const Slot first = value(w, *e.arguments[i].value);
+        const Slot last = value(w, *e.arguments[i + 1].value);
+        const Slot more = w.emit(Op::sub_lint, none, last, first);
+        place =
+            w.emit(Op::mul_lint, none, place, w.emit(Op::add_lint, none, more, w.constant_slot(1)));
+    }
     const auto size = static_cast<std::uint64_t>(e.constant.integer);
     return w.emit(Op::mul_lint, none, place, w.constant_slot(size));
 }
@@ -134,6 +141,14 @@ Slot moved(Writing& w, const Expression& e) {
     const Slot made = w.new_temporary(reference_slots);
     w.put(Op::move_reference, made, base, by);
     return made;
+}
+
+/// Both references; what the second one calls may write the variable of the first.
+std::pair<Slot, Slot> operands(Writing& w, const Expression& e) {
+    const Slot first = reference(w, *e.operands[0]);
+    const bool is_called = has_call(*e.operands[1]);
+    const Slot kept = is_called ? copied(w, {Mode::slot, first}) : first;
+    return {kept, reference(w, *e.operands[1])};
 }
 
 void add_members(Writing& w, Shape& made) {
@@ -258,13 +273,20 @@ Location locate_target(Writing& w, const Expression& e) {
 }
 
 Slot compare_references(Writing& w, const Expression& e) {
-    const Slot a = reference(w, *e.operands[0]), b = reference(w, *e.operands[1]);
+    const auto [a, b] = operands(w, e);
     return w.emit(Op::compare_references, none, a, b);
 }
 
 Slot reference_distance(Writing& w, const Expression& e, Slot wanted) {
-    const Slot a = reference(w, *e.operands[0]), b = reference(w, *e.operands[1]);
+    const auto [a, b] = operands(w, e);
     return w.emit(Op::reference_distance, wanted, a, b);
+}
+
+Slot address_number(Writing& w, const Expression& e) {
+    const Slot from = reference(w, e);
+    const Slot whole = w.emit(Op::mul_lint, none, from, w.constant_slot(8));
+    const Slot bytes = w.emit(of_type(Op::wrap_sint, dint_type), none, from + 1);
+    return w.emit(Op::add_lint, none, whole, bytes);
 }
 
 std::uint32_t shape_number(Writing& w, const Type& type, bool is_s7) {

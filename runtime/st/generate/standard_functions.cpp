@@ -59,9 +59,8 @@ struct Call : Emission {
 
     Slot emit(Op op, Slot b, Slot c) override { return w.emit(op, none, b, c); }
     Slot result(Op op, Slot b, Slot c) override { return w.emit(op, wanted, b, c); }
-    Slot value(std::size_t i) override { return st::value(w, given(i)); }
-    Slot kept(std::size_t i) override { return value_before(w, given(i), call); }
-    Slot text(std::size_t i) override { return text_address(w, given(i)); }
+    Slot value(std::size_t i) override { return value_before(w, given(i), call); }
+    Slot text(std::size_t i) override { return text_before(w, given(i), call); }
     Slot value_or_address(std::size_t i) override { return st::value_or_address(w, given(i)); }
     Slot several(std::size_t first) override { return st::several(w, call, first); }
     Slot capacity(std::size_t i) override {

@@ -42,6 +42,16 @@ NewText new_text(Writing& w) {
     return {text, w.emit(Op::set_address, none, text)};
 }
 
+Slot text_before(Writing& w, const Expression& e, const Expression& later) {
+    const Slot from = text_address(w, e);
+    const bool is_variable = e.kind != E::constant && e.kind != E::call && e.kind != E::converted;
+    if (!is_variable || e.type->is_open || !has_call(later)) return from;
+    const Slot text = w.new_temporary(1 + (e.type->length + 7) / 8);
+    const Slot made = w.emit(Op::set_address, none, text);
+    w.put(Op::text_copy, made, from, w.constant_slot(e.type->length));
+    return made;
+}
+
 Slot text_address(Writing& w, const Expression& e) {
     if (e.kind == E::constant) {
         const auto first = static_cast<std::uint32_t>(w.constants.size());

@@ -41,7 +41,7 @@ Slot comparison(Writing& w, const Expression& e, Slot wanted) {
     if (left.type->is_reference())
         return compare(w, e.op, lint_type, compare_references(w, e), w.constant_slot(0), wanted);
     if (left.type->kind == Kind::text) {
-        const Slot a = text_address(w, left), b = text_address(w, right);
+        const Slot a = text_before(w, left, right), b = text_address(w, right);
         return compare_texts(w, e.op, a, b, wanted);
     }
     const Slot a = value_before(w, left, right), b = value(w, right);
@@ -170,7 +170,10 @@ void value_to(Writing& w, const Expression& e, Slot to) {
 
 Slot value_before(Writing& w, const Expression& e, const Expression& later) {
     const Slot slot = value(w, e);
-    const bool is_variable = e.kind == E::name || e.kind == E::member;
+    const Expression* from = &e;  // a wider value, and that of '+', may be in the variable's slot
+    while (from->kind == E::converted || from->kind == E::unary) from = from->operands[0];
+    const bool is_variable =
+        from->kind == E::name || from->kind == E::member || from->kind == E::index;
     return is_variable && has_call(later) ? w.emit(Op::move, none, slot) : slot;
 }
 

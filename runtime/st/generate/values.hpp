@@ -43,6 +43,9 @@ Slot convert(Writing& w, Slot slot, const Type& from, const Type& to, bool trunc
 /// A slot with the address of the value, which is a text.
 Slot text_address(Writing& w, const Expression& e);
 
+/// That of a copy, where `e` is a variable and `later` calls what may write it.
+Slot text_before(Writing& w, const Expression& e, const Expression& later);
+
 /// An empty text among the temporaries, and a slot with its address.
 struct NewText {
     Slot text, address;
