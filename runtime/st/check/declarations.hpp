@@ -13,6 +13,10 @@ Variable* add(Checking& c, std::deque<Variable>& to, const Declaration& declared
 /// itself, or over too many others.
 Variable* declare_early(Checking& c, const Checking::GlobalConstant& constant);
 
+/// The variable stands beside all blocks, where no source names it: VAR_STAT, and what the checker
+/// adds.
+void keep_once(Checking& c, Variable& variable);
+
 /// VAR_GLOBAL and data blocks.
 void declare_globals(Checking& c);
 /// Variables, results and constants of all routines, and which they are made of.

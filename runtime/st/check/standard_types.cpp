@@ -7,6 +7,7 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/open_arrays.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/functions/standard.hpp"
 
@@ -53,15 +54,16 @@ const Type* check_element_count(Checking& c, Expression*& e) {
     return &dint_type;
 }
 
-/// Of an ARRAY[*], which has one dimension.
 const Type* check_open_bound(Checking& c, Expression*& e) {
     Expression*& wanted = e->arguments[1].value;
     const auto dimension = check_whole(c, wanted, lint_type);
     if (!dimension) return nullptr;
-    if (*dimension != 1)
-        return c.fail(code::value_out_of_range, wanted->place, "the array's dimensions are 1 to 1");
+    Expression* array = e->arguments[0].value;
+    if (*dimension < 1 || *dimension > Wide{array->type->dimensions})
+        return c.fail(code::value_out_of_range, wanted->place,
+                      fmt::format("the array's dimensions are 1 to {}", array->type->dimensions));
     const bool is_lower = e->standard->typing == Typing::lower_bound;
-    e = bound_of(c, *e->arguments[0].value, is_lower ? "lower" : "upper");
+    e = bound_of(c, *array, is_lower, static_cast<std::size_t>(*dimension) - 1);
     if (!e->type) return nullptr;
     convert(c, e, dint_type);
     return e->type = &dint_type;
