@@ -26,10 +26,24 @@ std::string_view class_of(const Type& type) {
     return type.is_any() ? "NONE" : "USERDEF";
 }
 
+/// What ANY_BIT and its like take (6.3.2, table 10).
+bool takes(std::string_view family, const Type& given) {
+    const bool is_number = given.is_number();
+    if (family == "ANY_BIT") return given.is_bits() || given.kind == Kind::boolean;
+    if (family == "ANY_INT") return given.is_integer();
+    if (family == "ANY_REAL") return given.is_real();
+    if (family == "ANY_NUM") return is_number;
+    if (family == "ANY_MAGNITUDE") return is_number || given.kind == Kind::time;
+    if (family == "ANY_STRING") return given.kind == Kind::text;
+    if (family == "ANY_DATE") return given.is_date();
+    return true;
+}
+
 }  // namespace
 
 bool is_any_input(const Type& type) {
-    return type.kind == Kind::structure && type.name == "__SYSTEM.AnyType";
+    return type.kind == Kind::structure &&
+           (type.name == "__SYSTEM.AnyType" || type.name.starts_with("__SYSTEM.ANY_"));
 }
 
 void become_any(Checking& c, Expression*& value, const Type& type) {
@@ -37,10 +51,15 @@ void become_any(Checking& c, Expression*& value, const Type& type) {
     const Type* pointer = check(c, place);
     if (!pointer) return;
     const Type& given = *pointer->element;
-    if (&given == &type) {
-        value = place->operands[0];
-        return;
-    }
+    const auto as_input = [&](Expression* any) {
+        value = make_copy(c, *any);
+        value->type = &type;
+    };
+    if (is_any_input(given)) return as_input(place->operands[0]);
+    const std::string family = type.name.substr(type.name.find('.') + 1);
+    if (!takes(family, given.plain()))
+        return (void)c.fail(code::type_does_not_fit, value->place,
+                            fmt::format("{} takes no {}", family, describe(given)));
     const Type& classes = *type.members[0]->type;
     const auto found =
         std::ranges::find(classes.values, fmt::format("TYPE_{}", class_of(given.plain())));
@@ -51,7 +70,7 @@ void become_any(Checking& c, Expression*& value, const Type& type) {
                       {number(classes, found - classes.values.begin()),
                        {.value = place},
                        number(dint_type, static_cast<std::int64_t>(bytes_of(given)))});
-    check(c, value, &type);
+    if (check(c, value)) as_input(value);
 }
 
 }  // namespace lineshaft::st

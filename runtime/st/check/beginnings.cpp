@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <functional>
+
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -14,15 +17,26 @@ bool is_of_call(const Routine& routine, const Variable& variable) {
 
 bool may_begin(const Checking& c) {
     const Variable* variable = c.beginning.variable;
-    if (!variable || !c.routine || c.beginning.is_repeated) return false;
+    if (!variable || c.beginning.is_repeated) return false;
+    if (!c.routine) return variable->space == Space::global && !variable->constant;
     const bool is_own = variable->section == Section::local || variable->section == Section::temp ||
                         variable->section == Section::output;
     return is_own && !variable->constant && variable->space == Space::frame;
 }
 
+/// One that no source names has its type already.
+Expression* named(Checking& c, const Expression& like, Variable& variable) {
+    Expression* name = make_name(c, like, variable.text);
+    if (variable.space == Space::frame) return name;
+    variable.used = true;
+    name->variable = &variable;
+    name->type = variable.type;
+    return name;
+}
+
 /// `variable.a[3].b`, which is to begin with something.
 Expression* place_of(Checking& c, const Expression& like) {
-    Expression* place = make_name(c, like, c.beginning.variable->text);
+    Expression* place = named(c, like, *c.beginning.variable);
     for (const auto& [member, index] : c.beginning.path)
         place = member.empty() ? make_element(c, place, index) : make_member(c, place, member);
     return place;
@@ -39,20 +53,41 @@ Expression* nothing(Checking& c, const Expression& like, const Type& type) {
     return list;
 }
 
+/// A variable that no source has, named after what stands at `like`.
+Variable& add_hidden(Checking& c, std::deque<Variable>& to, const Expression& like,
+                     std::string_view name, const Type& type) {
+    Variable& made = to.emplace_back();
+    made.name = like.token;
+    made.text = c.checked.names.emplace_back(fmt::format("{}.{}", like.token.text, name));
+    made.type = &type;
+    made.used = true;
+    return made;
+}
+
+Expression like_name(const Token& name, Place place) {
+    Expression like;
+    like.token = name;
+    like.place = place;
+    return like;
+}
+
+/// `IF NOT flag THEN flag := TRUE; begins END_IF`
+Statement* make_once(Checking& c, const Expression& like, Variable& flag, const Block& begins) {
+    Block first = {
+        make_assignment(c, like.place, make_use(c, like, flag), make_boolean(c, like, true))};
+    first.insert(first.end(), begins.begin(), begins.end());
+    return make_if(c, like.place, make_not(c, make_use(c, like, flag)), std::move(first), {});
+}
+
 /// Assigned once, of the block alone and not of its bases.
 void add_once(Checking& c, Routine& block, Place place, Block& to) {
     if (block.begins.empty()) return;
+    const Expression like = like_name(block.pou->name, place);
     if (!block.begun) {
-        const Token& name = block.pou->name;
-        block.begun = &c.make_variable(
-            block, name, c.checked.names.emplace_back(fmt::format("{}.begun", name.text)),
-            &bool_type);
+        block.begun = &add_hidden(c, block.variables, like, "begun", bool_type);
+        block.begun->of = block.pou;
     }
-    const Expression like{.token = block.pou->name, .place = place};
-    const auto flag = [&] { return make_use(c, like, *block.begun); };
-    Block first = {make_assignment(c, place, flag(), make_boolean(c, like, true))};
-    first.insert(first.end(), block.begins.begin(), block.begins.end());
-    to.push_back(make_if(c, place, make_not(c, flag()), std::move(first), {}));
+    to.push_back(make_once(c, like, *block.begun, block.begins));
 }
 
 void add_bases_first(Checking& c, Routine& block, Place place, Block& to) {
@@ -82,7 +117,7 @@ void add_constructor_of_base(Checking& c, const Routine& method, Block& to) {
     const Routine* base = method.owner->base;
     const Routine* of_base = base ? find_in(base->methods, constructor) : nullptr;
     if (!of_base) return;
-    const Expression like{.token = method.pou->name, .place = method.pou->place};
+    const Expression like = like_name(method.pou->name, method.pou->place);
     std::vector<Argument> given;
     for (const Variable& input : of_base->variables)
         if (input.section == Section::input)
@@ -92,41 +127,140 @@ void add_constructor_of_base(Checking& c, const Routine& method, Block& to) {
         c, make_call(c, like, make_member(c, super, of_base->pou->name.text), std::move(given))));
 }
 
+/// FB_init of a block; null: it has none.
+Routine* constructor_of(const Type& block) {
+    return find_in(block.routine->methods, constructor);
+}
+
+/// The variable is an instance that has an FB_init, or has such in it.
+bool is_constructed(const Type* type) {
+    if (!type) return false;
+    if (type->kind == Kind::array) return is_constructed(type->element);
+    if (type->kind == Kind::structure)
+        return std::ranges::any_of(type->members, is_constructed, &Variable::type);
+    return type->kind == Kind::block && constructor_of(*type);
+}
+
+/// Where what is constructed stands, and who counts through its elements.
+struct Constructing {
+    Expression like;
+    std::deque<Variable>& counters;
+    const Pou* of;
+};
+
+/// Calls FB_init of the instances in `part`, which makes a node each time, with `values`.
+void construct(Checking& c, const Constructing& at, const Type& type,
+               const std::vector<Argument>* values, const std::function<Expression*()>& part,
+               Block& to) {
+    if (!is_constructed(&type)) return;
+    if (type.kind == Kind::block)
+        return to.push_back(call_constructor(
+            c, at.like, part(), values ? *values : std::vector<Argument>{}, *constructor_of(type)));
+    if (type.kind == Kind::structure) {
+        for (const Variable* member : type.members)
+            construct(
+                c, at, *member->type, member->constructed,
+                [&] { return make_member(c, part(), member->text); }, to);
+        return;
+    }
+    Variable& counter =
+        add_hidden(c, at.counters, at.like, fmt::format("index{}", at.counters.size()), lint_type);
+    counter.of = at.of;
+    const auto bound = [&](std::int64_t value) {
+        return make_constant(c, at.like, lint_type, {.integer = value});
+    };
+    Statement* loop =
+        make_assignment(c, at.like.place, make_use(c, at.like, counter), bound(type.lower));
+    loop->kind = S::for_;
+    loop->limit = bound(type.upper);
+    const auto element = [&] {
+        Expression* made = make(c, E::index, at.like);
+        made->operands[0] = part();
+        made->arguments.push_back({.value = make_use(c, at.like, counter)});
+        return made;
+    };
+    construct(c, at, *type.element, values, element, loop->body);
+    to.push_back(loop);
+}
+
+/// What VAR_GLOBAL begins with.
+Routine& begin_of_globals(Checking& c, const Expression& like) {
+    if (c.begin_of_globals) return *c.begin_of_globals;
+    Pou& pou = c.tree.pous.emplace_back();
+    pou.kind = PouKind::function;
+    pou.name = like.token;
+    pou.place = like.place;
+    Routine& made = c.checked.routines.emplace_back();
+    made.pou = &pou;
+    made.name = "VAR_GLOBAL";
+    c.prelude.routines.emplace(made.name, &made);
+    c.begin_of_globals = &made;
+    return made;
+}
+
+/// No other block has an instance of it, so that nothing runs before it.
+bool is_first(const Checking& c, const Routine& block) {
+    if (block.is_test() || block.pou->kind == PouKind::program) return true;
+    const auto has_it = [&](const Routine& other) {
+        return other.owner != &block && std::ranges::find(other.calls, &block) != other.calls.end();
+    };
+    return !block.owner && block.has_instances() && !block.pou->is_tests &&
+           std::ranges::none_of(c.checked.routines, has_it);
+}
+
 }  // namespace
 
 bool begin_with(Checking& c, Expression*& value, const Type& type) {
     if (!may_begin(c)) return false;
     Statement* s = make_assignment(c, value->place, place_of(c, *value), value);
     if (type.is_alias()) s->op = Word::reference_assign;
-    const bool of_call = is_of_call(*c.routine, *c.beginning.variable);
-    (of_call ? c.routine->call_begins : c.routine->begins).push_back(s);
+    Routine& of = c.routine ? *c.routine : begin_of_globals(c, *value);
+    (is_of_call(of, *c.beginning.variable) ? of.call_begins : of.begins).push_back(s);
     c.beginning.is_made = true;
     value = nothing(c, *value, type);
     return true;
 }
 
 void begin_instance(Checking& c, Variable& variable) {
-    const bool has_values = variable.constructed && !variable.constructed->empty();
     const Type* type = variable.type;
-    const bool is_block = type && type->kind == Kind::block && variable.space == Space::frame;
-    const Routine* method = is_block ? find_in(type->routine->methods, constructor) : nullptr;
-    if (!method) {
-        if (has_values && type)
+    const bool is_own = type && variable.space == Space::frame;
+    if (variable.constructed && !variable.constructed->empty() && !is_constructed(type)) {
+        if (type)
             c.fail(code::wrong_arguments, variable.name.place,
                    fmt::format("{} takes no arguments behind its name", describe(*type)),
                    "a FUNCTION_BLOCK with a METHOD FB_init does: name : Block(argument := value)");
         return;
     }
-    if (!c.routine || !c.routine->has_instances()) return;
-    const Expression like{.token = variable.name, .place = variable.name.place};
-    c.routine->begins.push_back(
-        call_constructor(c, like, make_name(c, like, variable.text),
-                         has_values ? *variable.constructed : std::vector<Argument>{}, *method));
+    const bool is_global = variable.space == Space::global && !c.routine;
+    if (!is_constructed(type) || !(is_own ? c.routine && c.routine->has_instances() : is_global))
+        return;
+    const Expression like = like_name(variable.name, variable.name.place);
+    Routine& of = is_own ? *c.routine : begin_of_globals(c, like);
+    construct(
+        c, {like, of.variables, of.pou}, *type, variable.constructed,
+        [&] { return named(c, like, variable); }, is_own ? of.begins : of.call_begins);
+}
+
+void begin_globals(Checking& c) {
+    if (!c.begin_of_globals) return;
+    Routine& begin = *c.begin_of_globals;
+    const Expression like = like_name(begin.pou->name, begin.pou->place);
+    Variable& begun = add_hidden(c, c.checked.variables, like, "begun", bool_type);
+    keep_once(c, begun);
+    for (Routine& routine : c.checked.routines) {
+        if (!is_first(c, routine)) continue;
+        Block& begins = routine.is_test() ? routine.call_begins : routine.begins;
+        begins.insert(begins.begin(),
+                      make_once(c, like, begun,
+                                {make_call_statement(
+                                    c, make_call(c, like, make_name(c, like, begin.name), {}))}));
+    }
 }
 
 Block beginnings(Checking& c, Routine& routine) {
     Block made;
-    if (routine.is_prototype() || routine.is_test() || routine.pou->is_tests) return made;
+    if (routine.is_prototype() || routine.pou->is_tests) return made;
+    if (routine.is_test()) return routine.call_begins;
     Routine* block = routine.owner ? routine.owner : &routine;
     if (block->has_instances()) add_bases_first(c, *block, routine.pou->place, made);
     if (routine.owner && same_name(routine.pou->name.text, constructor))

@@ -7,6 +7,7 @@
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/open_arrays.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/functions/standard.hpp"
@@ -142,12 +143,12 @@ bool is_open_array(const Variable& variable) {
     return variable.type && variable.type->is_open_array();
 }
 
-/// Its bounds stand behind it.
-OpenBounds bounds_of(const Routine& routine, const Variable& array) {
+/// They stand behind it.
+std::vector<Variable*> bounds_of(const Routine& routine, const Variable& array) {
     std::vector<Variable*> found;
     for (Variable* variable : all_variables(routine))
         if (variable->bound_of == &array) found.push_back(variable);
-    return {*found[0], *found[1]};
+    return found;
 }
 
 /// An ARRAY[*] takes where its first element is and two bounds.
@@ -381,6 +382,7 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
             }
         Routine* routine = c.find_routine(callee.token);
         if (routine && !routine->type) {
+            if (!take_query(c, e, *routine)) return nullptr;
             const auto& overloads = c.names_beside(routine->pou->name).overloads;
             return check_routine_call(c, e, overload_of(c, *e, overloads, *routine), as_statement);
         }

@@ -109,7 +109,8 @@ struct Checking {
     std::unordered_set<const Pou*> assigned_inputs = {};  ///< blocks that were warned of it
     NameMap<const Type*> catalog_types = {};
     bool has_tests = false;
-    Type* mocks = nullptr;  ///< of the global that has what MOCK_FUNCTION says
+    Type* statics = nullptr;              ///< of the global that keep_once() fills
+    Routine* begin_of_globals = nullptr;  ///< runs before all others; null: nothing is to be done
 
     Routine* routine = nullptr;  ///< that is being checked
     /// The variable whose initial value is being checked, and the way to the part at hand.

@@ -120,6 +120,12 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     if (!check_operand(c, e->arguments[0].value, source)) return nullptr;
     Expression* value = e->arguments[0].value;
     const Type& from = *value->type;
+    const bool is_text = from.kind == Kind::text && target->kind == Kind::text;
+    if (is_text || from.is_pointer()) {
+        if (!is_text && !coerce(c, value, *target)) return nullptr;
+        e = value;
+        return e->type;
+    }
     if (!is_conversion(from, *target))
         return c.fail(
             code::type_does_not_fit, e->place,

@@ -55,7 +55,8 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to) {
 }
 
 /// An enumeration's value and its number stand for each other where the one is known to be one of
-/// the other, as CODESYS has it; false where nothing was done.
+/// the other, as CODESYS has it, which so takes values of another enumeration, too; false where
+/// nothing was done.
 bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
     const Type& from = *e->type;
     if (from.has_numbers && (to.kind == Kind::integer || to.kind == Kind::bits)) {
@@ -64,6 +65,13 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
         });
         if (fits) convert(c, e, to);
         return fits;
+    }
+    if (from.has_numbers && to.has_numbers && from.name != to.name && e->place.dialect().is_loose) {
+        Expression* number = e;
+        convert(c, number, lint_type);
+        if (!coerce_enumeration(c, number, to)) return false;
+        e = number;
+        return true;
     }
     if (!to.has_numbers || !from.is_integer()) return false;
     if (!is_constant(*e)) {
@@ -131,7 +139,14 @@ bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
     if (to.is_any() || bit) return take_type(c, e, to, e->constant);
     if (to.kind != Kind::integer && to.kind != Kind::bits) return refuse_conversion(c, *e, to);
     const Wide pattern = Wide{1} << to.bits;
-    const bool is_pattern = from.kind == Kind::any_bits && value < pattern && !to.is_subrange;
+    const bool is_negative = value < 0 && -value <= pattern / 2 && !to.is_signed &&
+                             to.kind == Kind::integer && e->place.dialect().is_loose;
+    if (is_negative && !to.is_subrange)
+        c.warn(code::conversion_may_lose, e->place,
+               fmt::format("{} has no negative numbers", to.name),
+               fmt::format("write {}, which is the same bits", to_string(value + pattern)));
+    const bool is_pattern =
+        (is_negative || (from.kind == Kind::any_bits && value < pattern)) && !to.is_subrange;
     if (!is_pattern && (value < smallest(to) || value > largest(to)))
         return c.fail(
             code::value_out_of_range, e->place,

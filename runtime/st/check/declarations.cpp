@@ -9,6 +9,7 @@
 #include "runtime/st/check/image.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
+#include "runtime/st/check/open_arrays.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"
@@ -16,6 +17,16 @@
 namespace lineshaft::st {
 
 namespace {
+
+/// `Motor(number := 3)` of a block, or of an array of such, which is written as an enumeration with
+/// a base; null: it is one, or there are none.
+const std::vector<Argument>* constructor_arguments(const TypeText* text, const Type* type) {
+    for (; text && text->kind == TypeText::Kind::array; text = text->element)
+        if (type && type->kind == Kind::array) type = &type->innermost();
+    const bool is_written = text && text->kind == TypeText::Kind::enumeration && type &&
+                            text->name.word != Word::end_of_file;
+    return is_written && type->kind == Kind::block ? &text->values : nullptr;
+}
 
 void check_unit(Checking& c, Variable& variable, const Declaration& declared) {
     if (declared.unit.empty()) return;
@@ -172,14 +183,15 @@ void declare_edge(Checking& c, Routine& routine, Variable& variable, const Token
     variable.edge = &instance;
 }
 
-/// `a : ARRAY[*] OF INT` is given as where its first element is, and its bounds beside it.
+/// `a : ARRAY[*] OF INT` is given as where its first element is, and its bounds beside it, the
+/// lower and the upper one of each dimension.
 void declare_bounds(Checking& c, Routine& routine, Variable& array) {
     array.section = Section::input;
     array.space = Space::frame;
-    for (const std::string_view bound : {"lower", "upper"}) {
+    for (std::size_t i = 0; i < 2 * array.type->dimensions; ++i) {
         Variable& made = c.make_variable(
-            routine, array.name,
-            c.checked.names.emplace_back(fmt::format("{}.{}", array.text, bound)), &lint_type);
+            routine, array.name, c.checked.names.emplace_back(bound_name(array, i % 2 == 0, i / 2)),
+            &lint_type);
         made.section = Section::input;
         made.bound_of = &array;
         routine.names.emplace(made.text, &made);
@@ -198,24 +210,11 @@ const Type& longer_string(Checking& c) {
     return type;
 }
 
-/// `Motor(number := 3)` of a block, which is written as an enumeration with a base; null: it is
-/// one.
-const std::vector<Argument>* constructor_arguments(Checking& c, const TypeText& text) {
-    const bool may_be =
-        text.kind == TypeText::Kind::enumeration && text.name.word != Word::end_of_file;
-    if (!may_be || standard_type(c, text.name.text)) return nullptr;
-    const Type* type = resolve_name(c, text.name);
-    return type && type->kind == Kind::block ? &text.values : nullptr;
-}
-
 void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
     for (const Declaration* declared : block.declarations) {
         const bool is_given = block.section == Section::in_out || block.section == Section::input ||
                               (block.section == Section::output && !routine.has_instances());
-        const auto* constructed =
-            declared->type ? constructor_arguments(c, *declared->type) : nullptr;
         const Type* type = !declared->type ? nullptr
-                           : constructed   ? resolve_name(c, declared->type->name)
                            : is_given      ? resolve_parameter(c, *declared->type)
                                            : resolve(c, *declared->type);
         const bool is_value = takes_values(block, type);
@@ -223,9 +222,10 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         const bool constant = block.constant && !is_value;
         if (is_value && type == &string_type) type = &longer_string(c);
         if (section == Section::in_out && type == &string_type) type = &open_string_type;
-        Variable* variable = add(c, routine.variables, *declared, type);
-        variable->section = section;
-        variable->constructed = constructed;
+        const bool is_static = section == Section::static_;
+        Variable* variable =
+            add(c, is_static ? c.checked.variables : routine.variables, *declared, type);
+        variable->section = is_static ? Section::global : section;
         variable->constant = constant;
         variable->retain = block.retain;
         variable->of = routine.pou;
@@ -241,7 +241,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
                    : it->second->section == Section::result
                        ? "the function's own name is that of its result"
                        : fmt::format("first in line {}", it->second->name.place.mark().line));
-        const bool is_kept = routine.has_instances() || routine.is_test() ||
+        const bool is_kept = routine.has_instances() || routine.is_test() || is_static ||
                              section == Section::kept || section == Section::in_out;
         if (type && type->is_instance() && !is_kept && !declared->name.place.dialect().is_loose)
             c.fail(code::wrong_place, declared->name.place,
@@ -254,6 +254,13 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
             is_own || (routine.is_prototype() && type && type->kind == Kind::block);
         if (!is_only_named) depend(c, type, declared->name.place);
         locate_in_image(c, *variable, *declared);
+        const bool has_memory =
+            variable->space == Space::frame && !(constant && type && type->is_scalar());
+        if (is_static && has_memory) {
+            variable->text =
+                c.checked.names.emplace_back(fmt::format("{}.{}", routine.name, variable->text));
+            keep_once(c, *variable);
+        }
         if (type && type->is_open_array()) declare_bounds(c, routine, *variable);
         if (routine.pou->is_tests || routine.is_test()) make_object(c, *variable);
         if (!declared->type)
@@ -302,7 +309,8 @@ void declare_routine(Checking& c, Routine& routine) {
     declare_result(c, routine);
     for (const bool constant : {true, false})  // bounds may name what stands further down
         for (const DeclarationBlock& block : routine.pou->blocks)
-            if ((block.constant && block.section == Section::local) == constant)
+            if ((block.constant && (block.section == Section::local ||
+                                    block.section == Section::static_)) == constant)
                 declare(c, routine, block);
     declare_overlays(c, routine);
     declare_charts(c, routine);
@@ -359,9 +367,23 @@ Variable* add(Checking& c, std::deque<Variable>& to, const Declaration& declared
     variable.type = type;
     variable.initial = declared.initial;
     variable.doc = declared.doc;
+    variable.constructed = constructor_arguments(declared.type, type);
     check_unit(c, variable, declared);
     c.note(variable.name.place, variable);
     return &variable;
+}
+
+void keep_once(Checking& c, Variable& variable) {
+    if (!c.statics) {
+        c.statics = &c.make_type(Kind::structure, "statics");
+        c.checked.globals.push_back({c.statics->name, c.statics});
+    }
+    const auto global = std::ranges::find(c.checked.globals, c.statics, &Global::type);
+    variable.section = Section::global;
+    variable.space = Space::global;
+    variable.of = nullptr;
+    variable.global = static_cast<int>(global - c.checked.globals.begin());
+    c.statics->members.push_back(&variable);
 }
 
 Variable* declare_early(Checking& c, const Checking::GlobalConstant& constant) {

@@ -13,6 +13,10 @@ Variable* add(Checking& c, std::deque<Variable>& to, const Declaration& declared
 /// itself, or over too many others.
 Variable* declare_early(Checking& c, const Checking::GlobalConstant& constant);
 
+/// The variable stands beside all blocks, where no source names it: VAR_STAT, and what the checker
+/// adds.
+void keep_once(Checking& c, Variable& variable);
+
 /// VAR_GLOBAL and data blocks.
 void declare_globals(Checking& c);
 /// Variables, results and constants of all routines, and which they are made of.
@@ -30,14 +34,18 @@ void check_initial(Checking& c, Expression*& value, const Type& type);
 
 // beginnings.cpp
 
-/// What a variable of a block or a call begins with, where that is no constant: `p : POINTER TO INT
-/// := ADR(x);`. It is assigned when the block or one of its methods runs first, of a call in each.
+/// What a variable begins with, where that is no constant: `p : POINTER TO INT := ADR(x);`. It is
+/// assigned when the block or one of its methods runs first, of a call in each.
 /// False: the variable begins with constants only.
 bool begin_with(Checking& c, Expression*& value, const Type& type);
 
-/// Calls FB_init of the instance that the variable is, with what stands behind its type, at the
-/// same time.
+/// Calls FB_init of the instances that the variable is or has in it, with what stands behind its
+/// type, at the same time.
 void begin_instance(Checking& c, Variable& variable);
+
+/// What VAR_GLOBAL begins with so comes before the first block that runs, one that no other has an
+/// instance of.
+void begin_globals(Checking& c);
 
 /// These assignments and calls: of a base first, and of its FB_init in one that stands for it.
 Block beginnings(Checking& c, Routine& routine);

@@ -120,7 +120,10 @@ void check_initial_values(Checking& c) {
         if (!variable.initial || !variable.type || variable.space == Space::constant) return;
         check_initial(c, variable);
     };
-    for (Variable& variable : c.checked.variables) check_one(variable);
+    for (Variable& variable : c.checked.variables) {
+        check_one(variable);
+        begin_instance(c, variable);
+    }
     for (const Global& global : c.checked.globals) check_data_block(c, global);
     for (Routine& routine : c.checked.routines) {
         c.routine = &routine;
@@ -135,13 +138,15 @@ void check_initial_values(Checking& c) {
         }
     }
     c.routine = nullptr;
+    begin_globals(c);
 }
 
 void check_initial(Checking& c, Variable& variable) {
     Expression& written = *variable.initial;
     if (!written.initial) {
         Expression* value = &written;
-        const Checking::Beginning own{.variable = c.routine && variable.of ? &variable : nullptr};
+        const bool begins = variable.space == Space::global || (c.routine && variable.of);
+        const Checking::Beginning own{.variable = begins ? &variable : nullptr};
         Checking::Beginning outer = std::exchange(c.beginning, own);
         check_initial(c, value, *variable.type);
         const bool is_made = std::exchange(c.beginning, std::move(outer)).is_made;

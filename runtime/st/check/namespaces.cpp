@@ -50,12 +50,15 @@ std::string joined(const Expression& e) {
     return before.empty() ? before : fmt::format("{}.{}", before, e.token.text);
 }
 
-/// Its first name, where that may be one of a namespace.
+/// Its first name, where that may be one of a namespace, or of a list of globals that has the name
+/// of a library's variable.
 const Expression* root_of(Checking& c, const Expression& member) {
     const Expression* root = &member;
     while (root->kind == E::member) root = root->operands[0];
-    const bool is_free = root->kind == E::name && !root->token.local && !root->token.quoted &&
-                         !root->type && !find_variable(c, root->token);
+    if (root->kind != E::name || root->token.local || root->token.quoted || root->type)
+        return nullptr;
+    const Variable* variable = find_variable(c, root->token);
+    const bool is_free = !variable || (is_library(variable->name) && !is_library(root->token));
     return is_free ? root : nullptr;
 }
 

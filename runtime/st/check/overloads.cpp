@@ -10,9 +10,12 @@ std::optional<int> closeness(const Type& from, const Type& to) {
     constexpr int same = 8, alike = 6, usual = 5, possible = 3;
     if (same_type(from, to)) return same;
     if (from.kind == Kind::text && to.kind == Kind::text) return alike;
-    if (from.kind == Kind::array && to.is_open_array())
-        return to.element && same_type(*from.element, *to.element) ? std::optional(alike)
-                                                                   : std::nullopt;
+    if (from.kind == Kind::array && to.is_open_array()) {
+        const Type* element = &from;
+        for (std::size_t i = 0; i < to.dimensions && element->kind == Kind::array; ++i)
+            element = element->element;
+        return to.element && same_type(*element, *to.element) ? std::optional(alike) : std::nullopt;
+    }
     if (from.routine && to.routine)
         return is_a(*from.routine, *to.routine) ? std::optional(alike) : std::nullopt;
     if (from.is_any()) {

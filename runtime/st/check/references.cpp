@@ -6,6 +6,7 @@
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/open_arrays.hpp"
 #include "runtime/st/check/types.hpp"
 #include "runtime/st/types/packed.hpp"
 
@@ -56,36 +57,18 @@ std::string_view why_no_place(const Expression& e, bool is_pointer) {
     return {};
 }
 
-/// A constant scalar that a POINTER TO is to point at stands in its block once more, as a variable.
+/// A constant scalar that a POINTER TO is to point at, or a text, stands in its block once more, as
+/// a variable.
 void keep_constant(Checking& c, Expression*& e) {
-    if (e->kind != E::constant || !e->variable) return;
+    const bool is_text = !e->variable && e->type->kind == Kind::text;
+    if (e->kind != E::constant || (!e->variable && !is_text)) return;
     Routine* routine = c.routine;
-    while (routine && routine->pou != e->variable->of) routine = routine->owner;
+    while (routine && !is_text && routine->pou != e->variable->of) routine = routine->owner;
     if (!routine) return;
-    Variable& kept = c.make_variable(*routine, e->token, e->variable->text, e->variable->type);
-    kept.initial = e->variable->initial;
+    Variable& kept =
+        c.make_variable(*routine, e->token, is_text ? e->token.text : e->variable->text, e->type);
+    kept.initial = is_text ? e : e->variable->initial;
     e = make_use(c, *e, kept);
-}
-
-/// `e`, a variable, becomes where it is; false for what is no variable, which was told.
-bool refer(Checking& c, Expression*& e, const Type& to) {
-    if (e->kind == E::deref && e->operands[0]->type->element == e->type &&
-        (e->operands[0]->kind == E::name || e->operands[0]->kind == E::member)) {
-        e = e->operands[0];
-        return become_converted(c, e, to);
-    }
-    if (to.is_pointer()) keep_constant(c, e);
-    if (const std::string_view why = why_no_place(*e, to.is_pointer()); !why.empty())
-        return c.fail(code::type_does_not_fit, e->place, std::string(why),
-                      "declare a variable, and refer to that");
-    note_lending(c, *e);
-    const Expression& root = root_of(*e);
-    if (root.variable) {
-        root.variable->used = true;
-        c.checked.refers_to_in_outs |= root.variable->space == Space::reference;
-    }
-    e = make_reference_to(c, e, to);
-    return true;
 }
 
 /// Its first element or member, or that one's, is of the type: a pointer to the one is one to the
@@ -117,6 +100,11 @@ bool is_target(const Type& reference, const Type& given) {
     return derives || same_type(wanted, given);
 }
 
+/// A number of 32 bits or more is given where a POINTER points; there is no way back.
+bool holds_address(const Type& to) {
+    return (to.kind == Kind::integer || to.kind == Kind::bits) && to.bits >= 32 && !to.is_subrange;
+}
+
 bool refuse_target(Checking& c, const Expression& e, const Type& to, const Type& from) {
     std::string help = "write '^' behind it: what it refers to";
     if (to.is_integer() || to.is_bits())
@@ -144,6 +132,23 @@ bool bind(Checking& c, Expression*& e, const Type& to) {
     if (!to.element) return false;
     if (!is_target(to, from)) return refuse_target(c, *e, to, from);
     return refer(c, e, to);
+}
+
+bool is_of_block(const Type& type) {
+    return type.kind == Kind::block || type.kind == Kind::interface;
+}
+
+bool refers_to_block(const Type& type) {
+    return type.is_reference() && type.element && is_of_block(*type.element);
+}
+
+/// `given` as one of `to`, or none if it is not.
+Expression* attempted(Checking& c, Expression* given, const Type& to) {
+    if (given->type->kind == Kind::block) note_lending(c, *given);
+    if (Variable* root = root_of(*given).variable) root->used = true;
+    Expression* made = make_converted(c, given, to);
+    made->conversion.is_attempt = c.checked.dispatches = true;
+    return made;
 }
 
 /// What another block is made of is to be known before what refers to it.
@@ -175,6 +180,11 @@ const Type* check_is_bound(Checking& c, Expression*& e) {
     Expression*& given = e->arguments[0].value;
     if (!check(c, given)) return nullptr;
     Expression* reference = without_alias(given);
+    const bool is_in_out = given->kind == E::name && given->variable->section == Section::in_out;
+    if (is_in_out && !reference->type->is_reference()) {
+        e = make_boolean(c, *e, true);  // a call has given it
+        return e->type;
+    }
     if (!reference->type->is_reference())
         return c.fail(
             code::type_does_not_fit, given->place,
@@ -195,7 +205,39 @@ const Type* check_moved(Checking& c, Expression*& e) {
     return e->type = pointer->type;
 }
 
+/// `p + index * SIZEOF(p^)`
+Expression* moved_by_index(Checking& c, const Expression& e) {
+    Expression *pointer = e.operands[0], *index = e.arguments[0].value;
+    Expression* size =
+        make_constant(c, *index, lint_type, {.integer = Wide{bytes_of(*pointer->type->element)}});
+    Expression* bytes = make_binary(c, index->place, index->place, Word::times, index, size);
+    bytes->type = &lint_type;
+    Expression* moved = make_binary(c, e.place, e.place, Word::plus, pointer, bytes);
+    moved->type = pointer->type;
+    return moved;
+}
+
 }  // namespace
+
+bool refer(Checking& c, Expression*& e, const Type& to) {
+    if (e->kind == E::deref && e->operands[0]->type->element == e->type &&
+        (e->operands[0]->kind == E::name || e->operands[0]->kind == E::member)) {
+        e = e->operands[0];
+        return become_converted(c, e, to);
+    }
+    if (to.is_pointer()) keep_constant(c, e);
+    if (const std::string_view why = why_no_place(*e, to.is_pointer()); !why.empty())
+        return c.fail(code::type_does_not_fit, e->place, std::string(why),
+                      "declare a variable, and refer to that");
+    note_lending(c, *e);
+    const Expression& root = root_of(*e);
+    if (root.variable) {
+        root.variable->used = true;
+        c.checked.refers_to_in_outs |= root.variable->space == Space::reference;
+    }
+    e = make_reference_to(c, e, to);
+    return true;
+}
 
 const Type& pointer_to(Checking& c, const Type& target) {
     return make_reference(c, Referring::pointer, &target);
@@ -238,70 +280,25 @@ const Type* take_target(Checking& c, Expression*& e) {
     return target && target->is_alias() ? take_target(c, e) : target;
 }
 
-Expression* bound_of(Checking& c, const Expression& array, std::string_view which) {
-    const std::string name = fmt::format("{}.{}", array.variable->text, which);
-    Expression* made = make_name(c, array, c.checked.names.emplace_back(name));
-    check(c, made);
-    return made;
-}
-
-/// Its bounds are the sum's arguments, and the size of an element its constant.
-const Type* check_open_index(Checking& c, Expression*& e, Expression* index) {
-    Expression* array = e->operands[0];
-    const Type* target = array->type->element;
-    Expression* moved = make_binary(c, e->place, e->place, Word::plus, array, index);
-    moved->type = array->type;
-    for (const std::string_view which : {"lower", "upper"})
-        moved->arguments.push_back({.value = bound_of(c, *array, which)});
-    moved->constant.integer = Wide{bytes_of(*target)};
-    depend_on_target(c, target, e->place);
-    e = make_target(c, *e, moved, target);
-    return target;
-}
-
-bool give_open_array(Checking& c, const Argument& argument, Variable& array, OpenBounds bounds,
-                     std::vector<Argument>& to) {
-    Expression* given = argument.value;
-    if (!check(c, given) || !array.type->element) return false;
-    Expression *lower = nullptr, *upper = nullptr;
-    const Type& type = *given->type;
-    if (type.is_open_array() && same_type(*type.element, *array.type->element)) {
-        lower = bound_of(c, *given, "lower");
-        upper = bound_of(c, *given, "upper");
-        given = make_converted(c, given, *array.type);
-    } else if (type.kind == Kind::array && same_type(*type.element, *array.type->element)) {
-        lower = make_constant(c, *given, lint_type, {.integer = type.lower});
-        upper = make_constant(c, *given, lint_type, {.integer = type.upper});
-        given = make_element(c, given, type.lower);
-        if (!check(c, given) || !refer(c, given, *array.type)) return false;
-    } else {
-        return c.fail(code::type_does_not_fit, given->place,
-                      fmt::format("'{}' is {}, and {} is given", array.text, describe(*array.type),
-                                  describe(type)),
-                      "give a variable that is an array of one dimension");
-    }
-    to.push_back({argument.name, false, given, &array});
-    to.push_back({argument.name, false, lower, &bounds.first});
-    to.push_back({argument.name, false, upper, &bounds.second});
-    return true;
-}
-
 const Type* check_pointer_index(Checking& c, Expression*& e) {
     Expression* pointer = e->operands[0];
     const Type* target = pointer->type->element;
-    Expression* index = e->arguments[0].value;
-    if (!target || !index->type) return nullptr;
-    enumeration_becomes_number(c, index);
-    if (e->arguments.size() > 1 || !(index->type->is_integer() || index->type->is_bits()))
-        return c.fail(code::type_does_not_fit, index->place,
-                      "a POINTER has one index, a whole number");
-    become_lint(c, index);
-    if (pointer->type->is_open) return check_open_index(c, e, index);
-    Expression* size = make_constant(c, *index, lint_type, {.integer = Wide{bytes_of(*target)}});
-    Expression* bytes = make_binary(c, index->place, index->place, Word::times, index, size);
-    bytes->type = &lint_type;
-    Expression* moved = make_binary(c, e->place, e->place, Word::plus, pointer, bytes);
-    moved->type = pointer->type;
+    std::vector<Argument> indices = e->arguments;
+    for (Argument& argument : indices) {
+        Expression*& index = argument.value;
+        if (!target || !index->type) return nullptr;
+        enumeration_becomes_number(c, index);
+        if (indices.size() != pointer->type->dimensions ||
+            !(index->type->is_integer() || index->type->is_bits()))
+            return c.fail(code::type_does_not_fit, index->place,
+                          pointer->type->is_open
+                              ? fmt::format("{} has {} whole numbers as index",
+                                            describe(*pointer->type), pointer->type->dimensions)
+                              : "a POINTER has one index, a whole number");
+        become_lint(c, index);
+    }
+    e = make_with(c, *e, std::move(indices));
+    Expression* moved = pointer->type->is_open ? moved_in_open_array(c, *e) : moved_by_index(c, *e);
     depend_on_target(c, target, e->place);
     e = make_target(c, *e, moved, target);
     return target;
@@ -316,12 +313,6 @@ void check_attempt(Checking& c, Statement& s) {
     const Type* type = check(c, s.target);
     if (!check(c, s.value, type) || !type) return;
     Expression *&target = without_alias(s.target), *&given = without_alias(s.value);
-    const auto is_of_block = [](const Type& t) {
-        return t.kind == Kind::block || t.kind == Kind::interface;
-    };
-    const auto refers_to_block = [&](const Type& t) {
-        return t.is_reference() && t.element && is_of_block(*t.element);
-    };
     const Type &to = *target->type, &from = *given->type;
     const bool fits = (to.kind == Kind::interface || refers_to_block(to)) &&
                       (is_of_block(from) || refers_to_block(from) || is_null(*given));
@@ -333,11 +324,24 @@ void check_attempt(Checking& c, Statement& s) {
     s.op = Word::assign;
     s.target = target;
     if (!check_target(c, *target) || is_null(*given)) return (void)coerce(c, given, to);
-    if (from.kind == Kind::block) note_lending(c, *given);
-    if (Variable* root = root_of(*given).variable) root->used = true;
-    given = make_converted(c, given, to);
-    given->conversion.is_attempt = c.checked.dispatches = true;
-    s.value = given;
+    s.value = attempted(c, given, to);
+}
+
+bool take_query(Checking& c, Expression*& e, const Routine& called) {
+    const Token& name = called.pou->name;
+    if (!is_library(name) || !same_name(name.text, "__queryinterface") || e->arguments.size() != 2)
+        return true;
+    Expression *from = e->arguments[0].value, *to = e->arguments[1].value;
+    if (!check(c, from) || !check(c, to)) return false;
+    Expression* given = without_alias(from);
+    const bool fits = is_of_block(*given->type) || refers_to_block(*given->type);
+    if (!fits || to->type->kind != Kind::interface) return true;
+    const Type& any = *called.variables.back().type;
+    to = make_copy(c, *to);
+    given = make_converted(c, attempted(c, given, *to->type), any);
+    to->type = &any;
+    e = make_with(c, *e, {{.value = given}, {.value = to}});
+    return true;
 }
 
 void check_reference_assignment(Checking& c, Statement& s) {
@@ -384,6 +388,11 @@ const Type* check_reference_operator(Checking& c, Expression*& e, const Type* ex
         const bool fits = expected && expected->is_integer() && expected->bits >= 32;
         return e->type = fits ? expected : &dint_type;
     }
+    Expression*& number = left->type->is_reference() ? right : left;
+    if (is_comparison(e->op) && type.is_pointer() && holds_address(*number->type)) {
+        Expression*& pointer = left->type->is_reference() ? left : right;
+        return coerce(c, pointer, *number->type) ? e->type = &bool_type : nullptr;
+    }
     const bool order = e->op != Word::equal && e->op != Word::unequal;
     if (!is_comparison(e->op) || (order && !type.is_pointer()))
         return c.fail(code::type_does_not_fit, e->token.place,
@@ -395,6 +404,10 @@ const Type* check_reference_operator(Checking& c, Expression*& e, const Type* ex
 
 bool coerce_reference(Checking& c, Expression*& e, const Type& to) {
     const Type& from = *e->type;
+    if (from.is_pointer() && &from != &null_type && holds_address(to)) {
+        e = make_converted(c, e, to);
+        return true;
+    }
     if (!to.is_reference()) return refuse_target(c, *e, to, from);
     const bool is_this = to.is_pointer() && e->kind == E::self;
     if (to.is_alias() || is_this) return bind(c, e, to);

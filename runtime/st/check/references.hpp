@@ -13,6 +13,10 @@ const Type* resolve_reference(Checking& c, const TypeText& text);
 /// Of those that had to wait until all types are known.
 void resolve_targets(Checking& c);
 
+/// `e`, a variable, becomes where it is, as a reference of that type; false for what is no
+/// variable, which was told.
+bool refer(Checking& c, Expression*& e, const Type& to);
+
 /// `p^`
 const Type* check_target_of(Checking& c, Expression& e);
 /// `e`, a REFERENCE TO, becomes what it refers to, whose type is given.
@@ -27,6 +31,10 @@ void note_lending(Checking& c, const Expression& place);
 /// `target ?= value;`: NULL, where what the value is to is not of the target's type.
 void check_attempt(Checking& c, Statement& s);
 
+/// What a call of __QUERYINTERFACE is given, so that its variables are of one type; false: an
+/// argument is wrong, which was told.
+bool take_query(Checking& c, Expression*& e, const Routine& called);
+
 void check_reference_assignment(Checking& c, Statement& s);
 /// ADR, REF, SIZEOF, __ISVALIDREF; __NEW and __DELETE, which are refused. Empty: none of them.
 std::optional<const Type*> check_reference_call(Checking& c, Expression*& e, const Type* expected);
@@ -34,18 +42,5 @@ std::optional<const Type*> check_reference_call(Checking& c, Expression*& e, con
 const Type* check_reference_operator(Checking& c, Expression*& e, const Type* expected);
 /// As coerce(), where one of both types is that of a reference.
 bool coerce_reference(Checking& c, Expression*& e, const Type& to);
-
-/// `lower` or `upper`: the bound of an ARRAY[*] that the routine was given.
-Expression* bound_of(Checking& c, const Expression& array, std::string_view which);
-
-/// The inputs that have the bounds of an ARRAY[*].
-struct OpenBounds {
-    Variable &first, &second;
-};
-
-/// What a call gives an ARRAY[*]: where the first element is, and the bounds; false for what is no
-/// such array, which was told.
-bool give_open_array(Checking& c, const Argument& argument, Variable& array, OpenBounds bounds,
-                     std::vector<Argument>& to);
 
 }  // namespace lineshaft::st

@@ -2,6 +2,7 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/open_arrays.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/functions/standard.hpp"
 
@@ -47,11 +48,26 @@ const Type* check_element_count(Checking& c, Expression*& e) {
     return become(c, e, dint_type, {.integer = count});
 }
 
-/// Of the dimension, which is a constant too, but for an ARRAY[*], which has one dimension.
+const Type* check_open_bound(Checking& c, Expression*& e) {
+    Expression*& wanted = e->arguments[1].value;
+    const auto dimension = check_whole(c, wanted, lint_type);
+    if (!dimension) return nullptr;
+    Expression* array = e->arguments[0].value;
+    if (*dimension < 1 || *dimension > Wide{array->type->dimensions})
+        return c.fail(code::value_out_of_range, wanted->place,
+                      fmt::format("the array's dimensions are 1 to {}", array->type->dimensions));
+    const bool is_lower = e->standard->typing == Typing::lower_bound;
+    e = bound_of(c, *array, is_lower, static_cast<std::size_t>(*dimension) - 1);
+    if (!e->type) return nullptr;
+    convert(c, e, dint_type);
+    return e->type = &dint_type;
+}
+
+/// Of the dimension, which is a constant too.
 const Type* check_bound(Checking& c, Expression*& e) {
     const Type* array = e->arguments[0].value->type;
-    const bool is_open = array->is_open_array();
-    if (array->kind != Kind::array && !is_open) return refuse(c, *e, "an array", *array);
+    if (array->is_open_array()) return check_open_bound(c, e);
+    if (array->kind != Kind::array) return refuse(c, *e, "an array", *array);
     Expression*& wanted = e->arguments[1].value;
     const auto dimension = check_whole(c, wanted, lint_type);
     if (!dimension) return nullptr;
@@ -61,12 +77,7 @@ const Type* check_bound(Checking& c, Expression*& e) {
         return c.fail(code::value_out_of_range, wanted->place,
                       fmt::format("the array's dimensions are 1 to {}", static_cast<int>(at)));
     const bool is_lower = e->standard->typing == Typing::lower_bound;
-    if (!is_open)
-        return become(c, e, dint_type, {.integer = is_lower ? array->lower : array->upper});
-    e = bound_of(c, *e->arguments[0].value, is_lower ? "lower" : "upper");
-    if (!e->type) return nullptr;
-    convert(c, e, dint_type);
-    return e->type = &dint_type;
+    return become(c, e, dint_type, {.integer = is_lower ? array->lower : array->upper});
 }
 
 /// `ADD(a, b, c)` is `a + b + c`, `GT(a, b, c)` is `a > b AND b > c`.

@@ -1,4 +1,5 @@
 #include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -172,17 +173,9 @@ bool check_distance(Checking& c, Expression& call) {
 
 /// Two variables that the function looks at: whether it is replaced, and its value then.
 void add_mock(Checking& c, Routine& function) {
-    if (!c.mocks) {
-        c.mocks = &c.make_type(Kind::structure, "the mocks");
-        c.checked.globals.push_back({c.mocks->name, c.mocks});
-    }
-    const auto number = std::ranges::find(c.checked.globals, c.mocks, &Global::type);
     for (const Type* type : {&bool_type, function.result->type}) {
         Variable& variable = c.make_variable({}, {}, type);
-        variable.section = Section::global;
-        variable.space = Space::global;
-        variable.global = static_cast<int>(number - c.checked.globals.begin());
-        c.mocks->members.push_back(&variable);
+        keep_once(c, variable);
         (type == &bool_type && !function.mock_flag ? function.mock_flag : function.mock_value) =
             &variable;
     }

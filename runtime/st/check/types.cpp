@@ -20,12 +20,10 @@ bool is_open_array(const TypeText& text) {
 
 /// `ARRAY[*] OF INT` of what is given to a call.
 const Type* resolve_open_array(Checking& c, const TypeText& text) {
-    if (text.ranges.size() > 1)
-        return c.fail(code::not_supported, text.place,
-                      "arrays of any length have one dimension here", "write their bounds");
     auto& type = const_cast<Type&>(*resolve_reference(c, text));
     type.referring = Referring::pointer;
     type.is_open = true;
+    type.dimensions = text.ranges.size();
     return &type;
 }
 
@@ -105,39 +103,38 @@ const Type* resolve_structure(Checking& c, const TypeText& text) {
     return is_union && !has_packed_form(c, text, type) ? nullptr : &type;
 }
 
-/// `LONG := SHORT + 1`: the values before it become their numbers.
-void use_values_before(Checking& c, Expression*& e, const Type& type) {
-    if (!e) return;
-    for (Expression*& operand : e->operands) use_values_before(c, operand, type);
-    if (e->kind != E::name) return;
-    for (std::size_t i = 0; i < type.values.size(); ++i)
+/// `LONG := SHORT + 1` with the numbers of the values before it.
+Expression* with_values_before(Checking& c, Expression* e, const Type& type) {
+    if (!e) return e;
+    for (std::size_t i = 0; e->kind == E::name && i < type.values.size(); ++i)
         if (same_name(type.values[i], e->token.text))
-            return void(e = make_constant(c, *e, any_integer_type, {.integer = type.numbers[i]}));
+            return make_constant(c, *e, any_integer_type, {.integer = type.numbers[i]});
+    Expression* made = make_copy(c, *e);
+    for (Expression*& operand : made->operands) operand = with_values_before(c, operand, type);
+    return made;
 }
 
+/// A block's name with values is the block, with arguments of its FB_init.
 const Type* resolve_enumeration(Checking& c, const TypeText& text) {
-    Type& type = c.make_type(Kind::enumeration, "enumeration");
-    type.slots = 1;
-    type.base = &int_type;
-    type.has_numbers = true;
     const bool has_base = text.name.word != Word::end_of_file;
-    if (has_base) type.base = resolve_name(c, text.name);
-    if (type.base && type.base->kind != Kind::integer && type.base->kind != Kind::bits)
+    const Type* base = has_base ? resolve_name(c, text.name) : &int_type;
+    if (!base || base->kind == Kind::block) return base;
+    if (base->kind != Kind::integer && base->kind != Kind::bits)
         return c.fail(code::not_supported, text.place, "arguments behind a type are not supported",
                       "write values behind ':=': (name := value)");
+    Type& type = c.make_type(Kind::enumeration, "enumeration");
+    type.slots = 1;
+    type.base = base;
+    type.has_numbers = true;
     NameMap<Place> names;
     std::int64_t number = 0;
     for (const Argument& value : text.values) {
         if (!value.is_named())
             return c.fail(code::wrong_arguments, value.value->place,
                           "a value of an enumeration has a name", "write values as name := 1");
-        Expression* given = value.value;
-        use_values_before(c, given, type);
+        Expression* given = with_values_before(c, value.value, type);
         if (given)
-            if (const auto whole = check_whole(c, given,
-                                               !has_base   ? lint_type
-                                               : type.base ? *type.base
-                                                           : int_type))
+            if (const auto whole = check_whole(c, given, has_base ? *base : lint_type))
                 number = static_cast<std::int64_t>(*whole);
         const auto fits = [&](const Type& in) {
             return number >= smallest(in) && number <= largest(in);

@@ -248,7 +248,7 @@ void add_data_blocks(Library::Made& made, const Options& options) {
         const bool is_there = is_program(global) && std::ranges::any_of(made.kinds, is_its);
         if (global.object || is_there || global.name == image_name) continue;
         KindContext& kind = add_kind(made, global.name, *global.type, options);
-        kind.doc = global.pou ? "DATA_BLOCK" : "VAR_GLOBAL";
+        kind.doc = global.pou ? "DATA_BLOCK" : global.name == "statics" ? "VAR_STAT" : "VAR_GLOBAL";
         write_fields(made, kind, global);
     }
 }

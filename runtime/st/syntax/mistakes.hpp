@@ -24,7 +24,7 @@ void refuse_chart(Parsing& p);
 
 /// VAR_ACCESS. False: it is none.
 bool skip_section(Parsing& p);
-/// VAR_INST and VAR_STAT where nothing stays.
+/// VAR_INST where nothing stays.
 void refuse_static(Parsing& p, PouKind kind);
 void refuse_shared_place(Parsing& p);
 /// A statement stands where a declaration is due.

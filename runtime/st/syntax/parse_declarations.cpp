@@ -103,9 +103,8 @@ void parse_sections(Parsing& p, Pou& pou, Word end) {
         if (!is_inst && p.is_name(1) && is_list) respell(p, variable_words);
         const SectionWord* word = find_section(p.here().word);
         if (!word && !is_inst) return;
-        const bool is_static = is_inst || (p.is(Word::var_stat_) && !stays(pou.kind));
-        const bool is_kept = is_static && pou.kind == PouKind::method;
-        if (is_static && !is_kept && !stays(pou.kind)) refuse_static(p, pou.kind);
+        const bool is_kept = is_inst && pou.kind == PouKind::method;
+        if (is_inst && !is_kept && !stays(pou.kind)) refuse_static(p, pou.kind);
         DeclarationBlock block = parse_section(p, is_kept   ? Section::kept
                                                   : is_inst ? Section::local
                                                             : word->section);

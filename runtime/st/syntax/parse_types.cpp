@@ -46,12 +46,14 @@ void parse_structure(Parsing& p, TypeText& type, TypeText::Kind kind) {
 /// Enum_Spec : Enum_Values Name ?
 /// Enum_Values : '(' Enum_Value ( ',' Enum_Value ) * ')'
 /// Enum_Value : Name ( ':=' Expression ) ?
-/// Init_Values : '(' ( Enum_Value | Expression ) ( ',' ( Enum_Value | Expression ) ) * ')'
+/// Init_Values : '(' ( Init_Value ( ',' Init_Value ) * ) ? ')'
+/// Init_Value : Enum_Value | Expression
 /// The name is that of the numbers' type, where none stands before. Behind a block's name these are
 /// arguments of its FB_init.
 void parse_enumeration(Parsing& p, TypeText& type) {
     type.kind = TypeText::Kind::enumeration;
     expect(p, Word::open);
+    if (type.name.word != Word::end_of_file && p.accept(Word::close)) return;
     do {
         Argument& value = type.values.emplace_back();
         const Word behind = p.next().word;
@@ -127,12 +129,14 @@ void parse_reference(Parsing& p, TypeText& type) {
 
 }  // namespace
 
-/// Data_Type_Decl : 'TYPE' Access_Spec * ( Type_Decl ( ';' Type_Decl ) * ';' ? ) ? 'END_TYPE' ';' ?
+/// Data_Type_Decl : 'TYPE' ( Access_Spec | 'ABSTRACT' ) * Type_Decls 'END_TYPE' ';' ?
+/// Type_Decls : ( Type_Decl ( ';' Type_Decl ) * ';' ? ) ?
 /// Type_Decl : Name ( 'EXTENDS' Qualified_Name ) ? Attribute *
 ///             ( ':' Data_Type | Struct_Decl | Union_Decl ) ( ':=' Init ) ?
 void parse_type_declarations(Parsing& p) {
     const Token opener = p.take();
-    while (accept_access(p)) continue;
+    while (accept_access(p) || (p.is(Word::abstract_) && p.is_name(1) && p.accept(Word::abstract_)))
+        continue;
     while (!is_end(p.here().word) && !p.is(Word::end_of_file) && !p.at_pou()) {
         TypeDeclaration declared;
         declared.name = expect_name(p, "the name of a type");

@@ -219,7 +219,8 @@ enum class Section : std::uint8_t {
     global,
     external,
     result,
-    kept,  ///< VAR_INST of a method: stays in its instance
+    kept,     ///< VAR_INST of a method: stays in its instance
+    static_,  ///< VAR_STAT: there is one of it, however many instances or calls
 };
 
 /// Who may name a variable or a method of a block.

@@ -30,7 +30,7 @@ struct SectionWord {
 };
 
 inline constexpr SectionWord section_words[] = {
-    {Word::var_, Section::local},         {Word::var_stat_, Section::local},
+    {Word::var_, Section::local},         {Word::var_stat_, Section::static_},
     {Word::var_input_, Section::input},   {Word::var_output_, Section::output},
     {Word::var_in_out_, Section::in_out}, {Word::var_temp_, Section::temp},
     {Word::var_global_, Section::global}, {Word::var_external_, Section::external}};

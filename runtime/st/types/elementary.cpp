@@ -84,7 +84,9 @@ bool refer_to_the_same(const Type* a, const Type* b) {
     for (int hops = 0; hops < 64; ++hops) {
         if (a == b) return true;
         if (!a || !b || !a->is_reference() || !b->is_reference()) break;
-        if (a->referring != b->referring) return false;
+        if (a->referring != b->referring || a->is_open != b->is_open ||
+            a->dimensions != b->dimensions)
+            return false;
         a = a->element;
         b = b->element;
     }
@@ -109,7 +111,8 @@ const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
 
 std::string describe(const Type& type) {
     if (type.is_open_array())
-        return fmt::format("ARRAY[*] OF {}", type.element ? describe(*type.element) : "?");
+        return fmt::format("ARRAY[{}] OF {}", fmt::join(std::vector(type.dimensions, '*'), ", "),
+                           type.element ? describe(*type.element) : "?");
     if (type.is_reference() && type.name.empty()) {
         static constexpr std::string_view words[] = {"REFERENCE TO", "REF_TO", "POINTER TO"};
         return fmt::format("{} {}", words[static_cast<std::size_t>(type.referring)],

@@ -63,8 +63,9 @@ struct Type {
     Referring referring = Referring::ref;  ///< of a reference
     bool has_inner = false;                ///< of an array: its element is its next dimension
     std::uint32_t length = 0;              ///< of a text, in characters
-    bool is_open = false;  ///< VAR_IN_OUT STRING: of what length is given; of a reference:
-                           ///< ARRAY[*], to the first element of what is given
+    bool is_open = false;        ///< VAR_IN_OUT STRING: of what length is given; of a reference:
+                                 ///< ARRAY[*], to the first element of what is given
+    std::size_t dimensions = 1;  ///< of ARRAY[*]
     std::vector<Variable*> members = {};       ///< of a structure, a union
     std::vector<std::string> values = {};      ///< of an enumeration
     std::vector<std::int64_t> numbers = {};    ///< of its values

@@ -46,14 +46,16 @@ Instances::Instances(const Library& library) : library_(library) {
                           static_cast<std::int64_t>(k));
 }
 
+bool Instances::is_scanned(const BlockType& kind) const {
+    const auto is_program = [](const BlockType& one) { return one.doc.starts_with("PROGRAM"); };
+    return is_program(kind) || std::ranges::none_of(library_.kinds(), is_program);
+}
+
 void Instances::scan(std::int64_t time, std::int64_t interval) {
-    const auto is_program = [](const BlockType& kind) { return kind.doc.starts_with("PROGRAM"); };
-    bool has_program = false;
-    for (const BlockType& kind : library_.kinds()) has_program |= is_program(kind);
     const Scan now{time, interval, interval == 0 ? 0 : time / interval};
     for (std::size_t i = 0; i < places_.size(); ++i) {
         const BlockType& kind = library_.kinds()[i];
-        if (is_program(kind) || !has_program)
+        if (is_scanned(kind))
             kind.scan_blocks(places_[i], 1, now,
                              {.kind = kind.context,
                               .instances = places_.data(),
@@ -80,11 +82,14 @@ std::vector<std::string> Instances::faults() const {
 }
 
 std::string Instances::text(const std::string& name) const {
-    for (std::size_t i = 0; i < places_.size(); ++i)
-        for (const Field& field : library_.kinds()[i].fields)
-            if (field.direction != Direction::in_out && same_name(field.name, name))
-                return describe(load(field.type, places_[i] + field.offset), field.type,
-                                field.names, {});
+    for (const bool scanned : {true, false})
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            if (is_scanned(library_.kinds()[i]) != scanned) continue;
+            for (const Field& field : library_.kinds()[i].fields)
+                if (field.direction != Direction::in_out && same_name(field.name, name))
+                    return describe(load(field.type, places_[i] + field.offset), field.type,
+                                    field.names, {});
+        }
     return "no such field";
 }
 

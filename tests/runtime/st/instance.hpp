@@ -22,7 +22,8 @@ class Instances {
     /// `12 array_bounds` of each that ended with a fault in the last scan.
     std::vector<std::string> faults() const;
 
-    /// Of the first kind that has a field of that name; enumerations by their names.
+    /// Of the first kind that has a field of that name, of those that are scanned if one of them
+    /// does; enumerations by their names.
     std::string text(const std::string& field) const;
     /// Whether nothing was written before or behind an instance.
     bool is_guarded() const;
@@ -31,6 +32,8 @@ class Instances {
     std::byte* memory(std::size_t kind) { return places_[kind]; }
 
   private:
+    bool is_scanned(const BlockType& kind) const;
+
     const Library& library_;
     std::vector<std::vector<std::uint64_t>> memory_;
     std::vector<std::byte*> places_;

@@ -99,8 +99,8 @@ TEST_CASE("Structured Text: every line of tests/st does what stands beside it", 
     int cases = 0;
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(test::in_source("tests/st")))
-        if (entry.path().extension() == ".st" || entry.path().extension() == ".scl")
-            files.push_back(entry.path());
+        for (const char* ending : {".st", ".scl", ".EXP"})
+            if (entry.path().extension() == ending) files.push_back(entry.path());
     std::ranges::sort(files);
     for (const auto& file : files) cases += judge(file);
     WARN(cases << " cases in " << files.size() << " files");
