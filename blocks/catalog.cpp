@@ -108,6 +108,7 @@ Catalog make_catalog() {
     blocks.add<GroupInterrupt>();
     blocks.add<GroupContinue>();
     blocks.add<GroupSetOverride>();
+    blocks.add<SetCartesianTransform>();
     blocks.add<GroupReadStatus>();
     blocks.add<GroupReadError>();
     blocks.add<GroupReadActualPosition>();

@@ -50,6 +50,7 @@ struct AxesGroup {
     Holder resetter;     ///< MC_GroupReset, until all stand
     Path path;
     std::array<PathPiece, look_ahead> ring{};
+    PathFrame frame;               ///< of the product, for moves that are taken up from now on
     PathVector position{};         ///< set-point
     PathVector end_point{};        ///< of the last piece in the path
     PathVector turned{};           ///< of each axis' own position against the one it shows (modulo)
@@ -73,6 +74,11 @@ struct AxesGroup {
 
     /// Of the axes, by the drives where they have some; 0 where there is none.
     PathVector actual_position(const Context& context) const;
+
+    /// Where coordinates of this kind stand in those of the machine.
+    PathFrame frame_of(CoordSystem coordinates) const {
+        return coordinates == CoordSystem::product ? frame : PathFrame{};
+    }
     bool is_in_path() const { return following != 0 && !path.finished(); }
 
   private:
@@ -97,6 +103,7 @@ struct AxesGroup {
     MotionError enable();
     void disable(const Context& context);
     MotionError set_override(const Context& context, GroupJob& job);
+    void set_transform(const GroupRequest& request);
     void begin_interrupt(const Context& context, GroupJob& job);
     MotionError go_on(const Context& context);
     void hold(const Context& context, GroupJob& job);
@@ -116,12 +123,14 @@ struct AxesGroup {
     // axes_group_tables.cpp: as far as there is room, row by row.
     MotionError lay_table(const Context& context, GroupJob& job);
     MotionError look_through(const Context& context, const GroupJob& job) const;
-    const PathCurve* last_curve(const GroupJob& job) const;
+    bool goes_on(const GroupJob& job) const;
+    PathCurve last_curve(const GroupJob& job) const;
 
     // axes_group_moves.cpp: moves are put into the path.
     void lay(const Context& context);
     MotionError lay(const Context& context, GroupJob& job);
-    MotionError check(const Context& context, const GroupRequest& request) const;
+    MotionError check(const Context& context, const GroupRequest& request,
+                      const PathFrame& of) const;
     void find_axes(const Context& context);
     MotionError begin_to_follow(const Context& context);
     PathLimits limits_of(const Context& context, const GroupRequest& request) const;

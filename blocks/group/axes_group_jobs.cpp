@@ -49,12 +49,14 @@ void AxesGroup::take(const Context& context, GroupJob& job) {
 
 /// One that aborts begins where the group then stands on the path of before.
 void AxesGroup::take_move(const Context& context, GroupJob& job) {
-    if (const MotionError why = check(context, job.request); why != MotionError::none)
+    const PathFrame of = frame_of(job.request.coordinates);
+    if (const MotionError why = check(context, job.request, of); why != MotionError::none)
         return tell(job, Progress::failed, why);
     if (job.request.mode == BufferMode::aborting && following != 0) {
         abort_all(context, Progress::aborted);
         brake();
     }
+    job.frame = of;
     job.first_piece = job.end_piece = job.rows = job.is_laid = 0;
     link(context, job, queue, JobPlace::queue);
     tell(job, Progress::waiting);
@@ -76,6 +78,9 @@ MotionError AxesGroup::administer(const Context& context, GroupJob& job) {
             return MotionError::none;
         case GroupCommand::go_on:
             return go_on(context);
+        case GroupCommand::set_transform:
+            set_transform(job.request);
+            return MotionError::none;
         default:
             return set_override(context, job);
     }
@@ -147,6 +152,12 @@ MotionError AxesGroup::set_override(const Context& context, GroupJob& job) {
     overriding = {context.place_of(job), job.ticket, request.command};
     path.set_override(request.velocity_factor);
     return MotionError::none;
+}
+
+/// Moves that have been taken up keep the one of before.
+void AxesGroup::set_transform(const GroupRequest& request) {
+    const PathVector& x = request.target;
+    frame = PathFrame::of({x[0], x[1], x[2]}, {x[3], x[4], x[5]});
 }
 
 /// The moves go on waiting.

@@ -76,7 +76,8 @@ MotionError motion_error_of(PathFault fault) {
 }
 
 /// Whatever the place where it will begin.
-MotionError AxesGroup::check(const Context& context, const GroupRequest& request) const {
+MotionError AxesGroup::check(const Context& context, const GroupRequest& request,
+                             const PathFrame& of) const {
     const auto chosen = [](double asked, double otherwise) {
         return asked < 0 ? otherwise : asked;
     };
@@ -89,12 +90,15 @@ MotionError AxesGroup::check(const Context& context, const GroupRequest& request
             if (axes[i] == nowhere && x[i] != 0) return false;
         return true;
     };
-    if (!has_axes(request.target)) return MotionError::out_of_range;
-    if (request.command != GroupCommand::move_path) return MotionError::none;
+    const PathVector& target = request.target;
+    if (request.command != GroupCommand::move_path)
+        return has_axes(is_relative(request.command) ? of.direction(target) : of.place(target))
+                   ? MotionError::none
+                   : MotionError::out_of_range;
     const PathTable& table = context.instance<PathTable>(request.table);
     if (table.unit != unit) return MotionError::unit_of_group;
     for (std::size_t i = 0; i < static_cast<std::size_t>(table.table.size); ++i)
-        if (!has_axes(table.table.rows[i].target())) return MotionError::out_of_range;
+        if (!has_axes(of.place(table.table.rows[i].target()))) return MotionError::out_of_range;
     return MotionError::none;
 }
 
@@ -122,10 +126,10 @@ MotionError AxesGroup::lay(const Context& context, GroupJob& job) {
     if (job.request.command == GroupCommand::move_path) return lay_table(context, job);
     if (!has_room(most_spline_parts)) return MotionError::none;
     PathCurve curve;
-    const PathFault fault = curve_of(job.request, end_point, curve);
+    const PathFault fault = curve_of(job.request, job.frame.inverse().place(end_point), curve);
     job.first_piece = job.end_piece = static_cast<std::int64_t>(path.count);
     if (fault == PathFault::none) {
-        if (const MotionError why = append(context, job.request, curve, false);
+        if (const MotionError why = append(context, job.request, job.frame.curve(curve), false);
             why != MotionError::none)
             return why;
     } else if (const MotionError why = motion_error_of(fault); why != MotionError::none) {

@@ -13,20 +13,24 @@ const PathTablePoint* behind(const PathTable::Points& points, std::size_t i) {
 
 }  // namespace
 
-/// The curve that the next row goes on from, where that is not to be a stop.
-const PathCurve* AxesGroup::last_curve(const GroupJob& job) const {
-    if (path.finished() || (job.rows == 0 && job.request.mode <= BufferMode::buffered))
-        return nullptr;
-    return &ring[(path.count - 1) % ring.size()].curve;
+/// The next row is not to begin with a stop.
+bool AxesGroup::goes_on(const GroupJob& job) const {
+    return !path.finished() && (job.rows > 0 || job.request.mode > BufferMode::buffered);
+}
+
+/// The curve that the next row goes on from, in the coordinates of its move.
+PathCurve AxesGroup::last_curve(const GroupJob& job) const {
+    return goes_on(job) ? job.frame.inverse().curve(ring[(path.count - 1) % ring.size()].curve)
+                        : PathCurve{};
 }
 
 /// Before it begins.
 MotionError AxesGroup::look_through(const Context& context, const GroupJob& job) const {
     const PathTable::Points& points = context.instance<PathTable>(job.request.table).table;
     PathRowCurves curves;
-    PathCurve last;
-    const PathCurve* before = last_curve(job);
-    PathVector from = end_point;
+    PathCurve last = last_curve(job);
+    const PathCurve* before = goes_on(job) ? &last : nullptr;
+    PathVector from = job.frame.inverse().place(end_point);
     for (std::size_t i = 0; i < static_cast<std::size_t>(points.size); ++i) {
         std::size_t count = 0;
         const PathFault fault =
@@ -34,7 +38,8 @@ MotionError AxesGroup::look_through(const Context& context, const GroupJob& job)
         if (const MotionError why = motion_error_of(fault); why != MotionError::none) return why;
         if (fault != PathFault::none) continue;
         for (std::size_t k = 0; k < count; ++k)
-            if (const MotionError why = stays_inside(context, curves[k]); why != MotionError::none)
+            if (const MotionError why = stays_inside(context, job.frame.curve(curves[k]));
+                why != MotionError::none)
                 return why;
         last = curves[count - 1];
         before = &last;
@@ -54,12 +59,13 @@ MotionError AxesGroup::lay_table(const Context& context, GroupJob& job) {
     for (; job.rows < points.size && has_room(most_spline_parts); ++job.rows) {
         const auto i = static_cast<std::size_t>(job.rows);
         std::size_t count = 0;
-        if (curves_of(points.rows[i], behind(points, i), end_point, last_curve(job), curves,
-                      count) != PathFault::none)
+        const PathCurve last = last_curve(job);
+        if (curves_of(points.rows[i], behind(points, i), job.frame.inverse().place(end_point),
+                      goes_on(job) ? &last : nullptr, curves, count) != PathFault::none)
             continue;
         for (std::size_t k = 0; k < count; ++k)
             if (const MotionError why =
-                    append(context, job.request, curves[k], job.rows > 0 || k > 0);
+                    append(context, job.request, job.frame.curve(curves[k]), job.rows > 0 || k > 0);
                 why != MotionError::none)
                 return why;
     }

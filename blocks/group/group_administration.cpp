@@ -83,6 +83,18 @@ std::span<const Field> standing_fields() {
     return fields;
 }
 
+std::span<const Field> transform_fields() {
+    static const auto fields = [] {
+        auto shift = group_pin::coordinates("Trans", &GroupRequest::target, most_path_axes,
+                                            "of the product's origin");
+        constexpr std::string_view about[] = {"about the product's x, after the others",
+                                              "about its y, after z", "about its z, first"};
+        for (std::size_t i = 0; i < path_space; ++i) shift[path_space + i].doc = about[i];
+        return group_pin::table({shift}, "moves that are taken up from now on count from there");
+    }();
+    return fields;
+}
+
 }  // namespace group_kinds
 
 }  // namespace lineshaft

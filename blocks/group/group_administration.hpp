@@ -41,6 +41,7 @@ namespace group_kinds {
 std::span<const Field> remove_axis_fields();
 std::span<const Field> plain_fields();
 std::span<const Field> standing_fields();
+std::span<const Field> transform_fields();
 
 inline constexpr GroupCommandKind remove_axis{GroupCommand::remove_axis, "MC_RemoveAxisFromGroup",
                                               "takes an axis out of a group", remove_axis_fields};
@@ -60,6 +61,10 @@ inline constexpr GroupCommandKind interrupt{GroupCommand::interrupt, "MC_GroupIn
 inline constexpr GroupCommandKind go_on{GroupCommand::go_on, "MC_GroupContinue",
                                         "lets an interrupted group go on", plain_fields};
 
+inline constexpr GroupCommandKind set_transform{
+    GroupCommand::set_transform, "MC_SetCartesianTransform",
+    "says where the product's coordinates stand in the machine's", transform_fields};
+
 }  // namespace group_kinds
 
 using RemoveAxisFromGroup = PlainGroupCommand<group_kinds::remove_axis>;
@@ -69,6 +74,7 @@ using GroupDisable = PlainGroupCommand<group_kinds::disable>;
 using GroupReset = PlainGroupCommand<group_kinds::reset>;
 using GroupHalt = PlainGroupCommand<group_kinds::halt>;
 using GroupInterrupt = PlainGroupCommand<group_kinds::interrupt>;
+using SetCartesianTransform = PlainGroupCommand<group_kinds::set_transform>;
 using GroupContinue = PlainGroupCommand<group_kinds::go_on>;
 
 }  // namespace lineshaft

@@ -44,6 +44,7 @@ std::vector<Field> coordinates(std::string_view name, PathVector GroupRequest::*
         {"Position1", "Position2", "Position3", "Position4", "Position5", "Position6"},
         {"Distance1", "Distance2", "Distance3", "Distance4", "Distance5", "Distance6"},
         {"AuxPoint1", "AuxPoint2", "AuxPoint3", "AuxPoint4", "AuxPoint5", "AuxPoint6"},
+        {"TransX", "TransY", "TransZ", "RotAngle1", "RotAngle2", "RotAngle3"},
         {"EndPoint1", "EndPoint2", "EndPoint3", "EndPoint4", "EndPoint5", "EndPoint6"}};
     const auto& row =
         *std::ranges::find_if(names, [&](const auto& n) { return n[0].starts_with(name); });
@@ -76,6 +77,12 @@ std::vector<Field> braking() {
                   "along the path; below 0: as hard as the moves allow"),
             input("Jerk", &B::pins, &GroupRequest::jerk, "{AxesGroup}/s^3",
                   "along the path; below 0: as the moves allow")};
+}
+
+std::vector<Field> coordinate_system() {
+    return {input("CoordSystem", &B::pins, &GroupRequest::coordinates, "",
+                  "positions are the machine's, or the product's (MC_SetCartesianTransform)")
+                .one_of(coord_system_names)};
 }
 
 std::vector<Field> blending() {

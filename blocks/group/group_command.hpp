@@ -42,6 +42,8 @@ std::vector<Field> coordinates(std::string_view name, PathVector GroupRequest::*
                                std::size_t count, std::string_view doc);
 std::vector<Field> dynamics();
 std::vector<Field> blending();
+/// CoordSystem.
+std::vector<Field> coordinate_system();
 /// Of a command that brakes.
 std::vector<Field> braking();
 

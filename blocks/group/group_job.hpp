@@ -5,7 +5,7 @@
 
 #include "blocks/axis/job.hpp"
 #include "blocks/group/group_states.hpp"
-#include "blocks/path/path_curve.hpp"
+#include "blocks/path/path_frame.hpp"
 
 namespace lineshaft {
 
@@ -21,6 +21,12 @@ enum class CircleMode : std::int64_t { border, centre, radius };
 
 inline constexpr std::string_view circle_mode_names[] = {"mcBorder", "mcCenter", "mcRadius"};
 
+/// In which coordinates positions are: those of the axes, which are the machine's, or those of the
+/// product, as MC_SetCartesianTransform places it.
+enum class CoordSystem : std::int64_t { axes, machine, product };
+
+inline constexpr std::string_view coord_system_names[] = {"mcACS", "mcMCS", "mcPCS"};
+
 enum class PathChoice : std::int64_t { clockwise, counter_clockwise };
 
 inline constexpr std::string_view path_choice_names[] = {"mcClockwise", "mcCounterClockwise"};
@@ -34,7 +40,8 @@ struct GroupRequest {
     double corner_parameter = 0;  ///< [u], of start_velocity [u/s]
     CircleMode circle = CircleMode::border;
     PathChoice choice = PathChoice::clockwise;
-    PathVector target{};     ///< position or distance
+    CoordSystem coordinates = CoordSystem::machine;
+    PathVector target{};     ///< position or distance; of a transformation shift and angles [deg]
     PathVector auxiliary{};  ///< AuxPoint
     double velocity = -1, acceleration = -1, deceleration = -1, jerk = -1;
     std::int64_t holds = 0;                  ///< Execute of MC_GroupStop
@@ -49,6 +56,7 @@ struct GroupRequest {
 /// of its table has been put into the path.
 struct GroupJob : JobState {
     GroupRequest request;
+    PathFrame frame;  ///< of a move: where its coordinates stand, since it was taken up
     std::int64_t first_piece = 0, end_piece = 0;
     std::int64_t rows = 0;
     std::int64_t is_laid = 0;  ///< all of it is in the path

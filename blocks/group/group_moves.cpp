@@ -36,34 +36,38 @@ namespace group_kinds {
 using namespace group_pin;
 
 std::span<const Field> move_absolute_fields() {
-    static const auto fields =
-        table({positions("Position", "target of the axis"), dynamics(), blending()});
+    static const auto fields = table(
+        {positions("Position", "target of the axis"), dynamics(), coordinate_system(), blending()});
     return fields;
 }
 
 std::span<const Field> move_relative_fields() {
-    static const auto fields =
-        table({positions("Distance", "way of the axis"), dynamics(), blending()});
+    static const auto fields = table(
+        {positions("Distance", "way of the axis"), dynamics(), coordinate_system(), blending()});
     return fields;
 }
 
 std::span<const Field> circle_absolute_fields() {
-    static const auto fields = table({circle_pins("target of the axis"), dynamics(), blending()});
+    static const auto fields =
+        table({circle_pins("target of the axis"), dynamics(), coordinate_system(), blending()});
     return fields;
 }
 
 std::span<const Field> circle_relative_fields() {
-    static const auto fields = table({circle_pins("way of the axis"), dynamics(), blending()});
+    static const auto fields =
+        table({circle_pins("way of the axis"), dynamics(), coordinate_system(), blending()});
     return fields;
 }
 
 std::span<const Field> direct_absolute_fields() {
-    static const auto fields = table({positions("Position", "target of the axis"), blending()});
+    static const auto fields =
+        table({positions("Position", "target of the axis"), coordinate_system(), blending()});
     return fields;
 }
 
 std::span<const Field> direct_relative_fields() {
-    static const auto fields = table({positions("Distance", "way of the axis"), blending()});
+    static const auto fields =
+        table({positions("Distance", "way of the axis"), coordinate_system(), blending()});
     return fields;
 }
 
@@ -73,6 +77,7 @@ std::span<const Field> MovePath::fields() {
     static const auto fields =
         group_pin::table({{in_out("PathData", &MovePath::path_data, PathTable::type, "the points")},
                           group_pin::dynamics(),
+                          group_pin::coordinate_system(),
                           group_pin::blending()});
     return fields;
 }

@@ -87,6 +87,9 @@ std::span<const Field> GroupReadActualPosition::fields() {
         constexpr std::string_view names[] = {"Position1", "Position2", "Position3",
                                               "Position4", "Position5", "Position6"};
         auto fields = group_read_table();
+        fields.push_back(input("CoordSystem", &GroupReadActualPosition::coordinates, "",
+                               "of the positions: the machine's, or the product's")
+                             .one_of(coord_system_names));
         const std::size_t first = detail::offset_of(&GroupReadActualPosition::position);
         for (std::size_t i = 0; i < most_path_axes; ++i) {
             Field f = element(names[i], "of the axis in that place", Type::real,
@@ -100,7 +103,8 @@ std::span<const Field> GroupReadActualPosition::fields() {
 }
 
 void GroupReadActualPosition::scan(const Scan&, const Context& context) {
-    if (const AxesGroup* seen = look(context)) position = seen->actual_position(context);
+    if (const AxesGroup* seen = look(context))
+        position = seen->frame_of(coordinates).inverse().place(seen->actual_position(context));
 }
 
 }  // namespace lineshaft

@@ -38,6 +38,7 @@ struct GroupReadError : GroupReadBlock {
 
 /// MC_GroupReadActualPosition: of the drives where the axes have some.
 struct GroupReadActualPosition : GroupReadBlock {
+    CoordSystem coordinates = CoordSystem::machine;
     PathVector position{};
 
     static constexpr std::string_view type = "MC_GroupReadActualPosition";

@@ -29,6 +29,7 @@ enum class GroupCommand : std::int64_t {
     interrupt,
     go_on,
     set_override,
+    set_transform,
     move_linear_absolute,
     move_linear_relative,
     move_circular_absolute,

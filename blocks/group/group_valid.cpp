@@ -20,10 +20,20 @@ bool is_valid(const GroupRequest& request, const KeptState& machine) {
            static_cast<std::size_t>(request.command) <= group_state_table().size() &&
            is_one_of(request.mode, BufferMode::blending_high) &&
            is_one_of(request.corner, CornerMode::corner_deviation) &&
+           is_one_of(request.coordinates, CoordSystem::product) &&
            is_one_of(request.circle, CircleMode::radius) &&
            is_one_of(request.choice, PathChoice::counter_clockwise) &&
            is_block_or_none<Axis>(request.axis, machine) &&
            is_block_or_none<PathTable>(request.table, machine);
+}
+
+bool is_valid(const PathFrame& frame) {
+    for (std::size_t i = 0; i < path_space; ++i) {
+        if (!std::isfinite(frame.shift[i])) return false;
+        for (const double part : frame.turn[i])
+            if (!(std::abs(part) <= 1)) return false;
+    }
+    return true;
 }
 
 /// What its command names.
@@ -39,7 +49,7 @@ bool is_sent(const GroupJob& job) {
 /// Its pieces are of the path, and the rows of its table.
 bool is_valid(const GroupJob& job, const KeptState& machine) {
     if (!is_valid(job, JobFor::group, machine) || !is_count(job.first_piece) ||
-        !is_count(job.end_piece) || !is_count(job.rows))
+        !is_count(job.end_piece) || !is_count(job.rows) || !is_valid(job.frame))
         return false;
     if (!is_sent(job)) return job.request == GroupRequest{};
     if (!is_valid(job.request, machine) || !has_all(job.request)) return false;
@@ -121,11 +131,11 @@ bool is_where_it_says(const GroupJob& job, const KeptState& machine) {
 bool is_valid(const AxesGroup& group, const KeptState& machine) {
     for (const std::int64_t axis : group.axes)
         if (!is_block_or_none<Axis>(axis, machine)) return false;
-    return is_valid(group.path, group) && is_valid(group.holder, machine) &&
-           is_valid(group.interrupter, machine) && is_valid(group.overriding, machine) &&
-           is_valid(group.resetter, machine) && machine.is_task(group.task) &&
-           is_count(group.scan_index) && machine.is_moment(group.time) &&
-           (!machine.is_live || lists_are_valid(group, machine));
+    return is_valid(group.frame) && is_valid(group.path, group) &&
+           is_valid(group.holder, machine) && is_valid(group.interrupter, machine) &&
+           is_valid(group.overriding, machine) && is_valid(group.resetter, machine) &&
+           machine.is_task(group.task) && is_count(group.scan_index) &&
+           machine.is_moment(group.time) && (!machine.is_live || lists_are_valid(group, machine));
 }
 
 void mend(AxesGroup& group, const KeptState& machine) {

@@ -55,12 +55,11 @@ SpeedProblem::SpeedProblem(std::span<const SpeedInterval> intervals, const Speed
     }
     nodes[0] = from;
     nodes[n] = to;
-    std::copy(energies.begin(), energies.end(), b.begin());
-    b[0] = from.energy + 0.5 * from.acceleration * in[0].length;
-    b[n - 1] = to.energy - 0.5 * to.acceleration * in[n - 1].length;
+    std::copy(energies.begin(), energies.end(), guess.begin());
+    guess[0] = from.energy + 0.5 * from.acceleration * in[0].length;
+    guess[n - 1] = to.energy - 0.5 * to.acceleration * in[n - 1].length;
     time = 0;
-    for (std::size_t k = 0; k < n; ++k) time += in[k].length / std::sqrt(2 * b[k]);
-    find_nodes();
+    for (std::size_t k = 0; k < n; ++k) time += in[k].length / std::sqrt(2 * guess[k]);
 }
 
 void SpeedProblem::find_nodes() {
@@ -340,19 +339,14 @@ void SpeedProblem::settle() {
     find_nodes();
 }
 
-bool SpeedProblem::solve() {
-    constexpr double near = 2e-4;  ///< to the least time, as a part of the first guess
-    constexpr double nearly_kept = 1e-5;
-    constexpr int most_steps = 32, soon = 9;
+bool SpeedProblem::iterate() {
+    constexpr double near = 2e-4;     ///< to the least time, as a part of the first guess
     constexpr double hopeless = 0.2;  ///< of a gap that is not met any more
-    is_warm ? begin_again() : begin();
-    if (count > rows.size()) return false;
+    constexpr double nearly_kept = 1e-5;
+    constexpr int most_steps = 32, soon = 14;
     for (int tries = 0; tries < most_steps; ++tries) {
         const double now = gap(), off = residual();
-        if (now < near && off < nearly_kept) {
-            settle();
-            return is_warm = true;
-        }
+        if (now < near && off < nearly_kept) return true;
         if (tries >= soon && now > hopeless) return false;
         assemble();
         if (!factor()) return false;
@@ -361,6 +355,23 @@ bool SpeedProblem::solve() {
         go(find_changes(target, true));
     }
     return false;
+}
+
+/// From the last solution, or where there is none, or it does not lead on, from the guess.
+bool SpeedProblem::solve() {
+    bool is_found = false;
+    if (is_warm) {
+        begin_again();
+        is_found = iterate();
+    }
+    if (!is_found) {
+        b = guess;
+        find_nodes();
+        begin();
+        is_found = count <= rows.size() && iterate();
+    }
+    if (is_found) settle();
+    return is_warm = is_found;
 }
 
 }  // namespace lineshaft

@@ -79,8 +79,8 @@ class SpeedProblem {
     double time = 1;  ///< of the first guess [s]
     std::array<SpeedEnd, most_speed_intervals + 1> nodes{};
     std::array<Weights, most_speed_intervals + 1> weights{};
-    std::array<double, most_speed_intervals> b{}, step{}, diagonal{}, next{}, second{}, right{},
-        l1{}, l2{};
+    std::array<double, most_speed_intervals> guess{}, b{}, step{}, diagonal{}, next{}, second{},
+        right{}, l1{}, l2{};
     std::array<Row, most_rows> rows;
     std::array<Dual, most_rows> duals;
     std::size_t count = 0;
@@ -102,6 +102,7 @@ class SpeedProblem {
     double look_ahead(double now);
     void go(const Parts& part);
     void settle();
+    bool iterate();
     double along(const Row& row, const Triple& gradient) const;
 };
 
