@@ -13,14 +13,15 @@ namespace {
 constexpr std::string_view constructor = "fb_init";
 
 bool is_of_call(const Routine& routine, const Variable& variable) {
-    return variable.section == Section::temp || !routine.has_instances();
+    return variable.section == Section::temp ||
+           (variable.section != Section::kept && !routine.has_instances());
 }
 
 bool may_begin(const Checking& c) {
     const Variable* variable = c.beginning.variable;
-    if (!variable || !c.routine || c.beginning.is_repeated) return false;
+    if (!variable || !c.routine) return false;
     const bool is_own = variable->section == Section::local || variable->section == Section::temp ||
-                        variable->section == Section::output;
+                        variable->section == Section::kept || variable->section == Section::output;
     return is_own && !variable->constant && variable->space == Space::frame;
 }
 
@@ -43,7 +44,7 @@ Expression* nothing(Checking& c, const Expression& like, const Type& type) {
     return list;
 }
 
-/// Assigned once, of the block alone and not of its bases.
+/// Assigned once, of the block alone and not of its bases, or of a method what it keeps.
 void add_once(Checking& c, Routine& block, Place place, Block& to) {
     if (block.begins.empty()) return;
     if (!block.begun) {
@@ -51,6 +52,7 @@ void add_once(Checking& c, Routine& block, Place place, Block& to) {
         begun.name = block.pou->name;
         begun.text = c.checked.names.emplace_back(fmt::format("{}.begun", block.pou->name.text));
         begun.type = &bool_type;
+        begun.section = block.has_instances() ? Section::local : Section::kept;
         begun.of = block.pou;
         begun.used = true;
         block.begun = &begun;
@@ -114,6 +116,10 @@ void add_constructor_of_base(Checking& c, const Routine& method, Block& to) {
 
 }  // namespace
 
+bool is_constructed(const Type* type) {
+    return type && type->kind == Kind::block && type->routine->methods.contains(constructor);
+}
+
 bool begin_with(Checking& c, Expression*& value, const Type& type) {
     if (!may_begin(c)) return false;
     Statement* s = make_assignment(c, value->place, place_of(c, *value), value);
@@ -121,7 +127,7 @@ bool begin_with(Checking& c, Expression*& value, const Type& type) {
     const bool of_call = is_of_call(*c.routine, *c.beginning.variable);
     (of_call ? c.routine->call_begins : c.routine->begins).push_back(s);
     c.beginning.is_made = true;
-    value = nothing(c, *value, type);
+    if (!is_constant(*value)) value = nothing(c, *value, type);
     return true;
 }
 
@@ -141,7 +147,8 @@ void begin_instance(Checking& c, Variable& variable) {
                    "a FUNCTION_BLOCK with a METHOD FB_init does: name : Block(argument := value)");
         return;
     }
-    if (!c.routine || !c.routine->has_instances()) return;
+    const bool is_kept = variable.section == Section::kept;
+    if (!c.routine || !(c.routine->has_instances() || is_kept)) return;
     Expression like;
     like.token = variable.name;
     like.place = variable.name.place;
@@ -155,6 +162,7 @@ Block beginnings(Checking& c, Routine& routine) {
     if (routine.is_prototype() || routine.is_test() || routine.pou->is_tests) return made;
     Routine* block = routine.owner ? routine.owner : &routine;
     if (block->has_instances()) add_bases_first(c, *block, routine.pou->place, made);
+    if (routine.owner) add_once(c, routine, routine.pou->place, made);
     if (routine.owner && same_name(routine.pou->name.text, constructor))
         add_constructor_of_base(c, routine, made);
     made.insert(made.end(), routine.call_begins.begin(), routine.call_begins.end());

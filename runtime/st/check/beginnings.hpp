@@ -9,8 +9,11 @@ namespace lineshaft::st {
 /// False: the variable begins with constants only.
 bool begin_with(Checking& c, Expression*& value, const Type& type);
 
+/// An instance of this type has an FB_init.
+bool is_constructed(const Type* type);
+
 /// Calls FB_init of the instance that the variable is, with what stands behind its type, at the
-/// same time.
+/// same time. What is declared behind that, `:= (x := 1)`, is assigned behind it.
 void begin_instance(Checking& c, Variable& variable);
 
 /// These assignments and calls: of a base first, and of its FB_init in one that stands for it.
