@@ -215,7 +215,9 @@ void check_initial(Checking& c, Expression*& value, const Type& type) {
     if (is_dtl(type) && value->token.word == Word::duration)
         if (!(value = list_of_dtl(c, *value, type))) return;
     if (value->kind == E::list) {
-        value = make_copy(c, *value);
+        const Variable* begun = c.beginning.variable;
+        if (begun && begun->space == Space::frame)  // the others of its declaration have it, too
+            value = make_copy(c, *value);
         value->type = &type;
         const bool is_structure = value->is_structure();
         if (type.kind == Kind::array && !is_structure) return check_elements(c, *value, type);
