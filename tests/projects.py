@@ -43,6 +43,76 @@ RUNG = ('<leftPowerRail localId="0"/>\n<contact localId="1"><connectionPointIn><
         '<coil localId="2" negated="true"><connectionPointIn><connection refLocalId="1"/></connectionPointIn><variable>b</variable></coil>')
 
 
+CODESYS = "http://www.3s-software.com/plcopenxml/"
+
+
+def addition(kind, text):
+    return f'<addData><data name="{CODESYS}{kind}" handleUnknown="implementation">{text}</data></addData>'
+
+
+def plain(text):
+    return f'<InterfaceAsPlainText><xhtml xmlns="http://www.w3.org/1999/xhtml">{text}</xhtml></InterfaceAsPlainText>'
+
+
+def st(text):
+    return f'<body><ST><xhtml xmlns="http://www.w3.org/1999/xhtml">{text}</xhtml></ST></body>'
+
+
+# Bases, interfaces and declarations as text where CODESYS and TwinCAT have them: beside a unit's interface, in it, in a member.
+INHERITED = f"""<?xml version="1.0" encoding="utf-8"?>
+<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types>
+<dataTypes>
+<dataType name="Point"><baseType><struct><variable name="x"><type><INT/></type></variable></struct></baseType></dataType>
+<dataType name="Place"><baseType><struct><variable name="z"><type><INT/></type></variable></struct></baseType>
+{addition("datatypeinheritance", "<Inheritance><Extends>Point</Extends></Inheritance>")}</dataType>
+</dataTypes>
+<pous>
+<pou name="Base" pouType="functionBlock"><interface><localVars><variable name="n"><type><INT/></type></variable></localVars></interface>
+{st("")}{addition("method", '<Method name="Twice"><interface><returnType><INT/></returnType></interface>'
+                   + st("Twice := 2 * n;") + plain("METHOD Twice : INT&#10;VAR_INPUT&#10;END_VAR") + "</Method>")}</pou>
+<pou name="Derived" pouType="functionBlock"><interface>
+{addition("pouinheritance", "<Inheritance><Extends>Base</Extends><Implements>Named</Implements><Implements>Sized</Implements></Inheritance>")}
+</interface>{st("n := n + 1;")}
+<addData><data name="{CODESYS}property" handleUnknown="implementation"><Property name="Name"><interface/>
+<GetAccessor><interface/>{st("Name := 'derived';")}{plain("VAR&#10;END_VAR")}</GetAccessor>{plain("PROPERTY Name : STRING")}</Property></data>
+<data name="{CODESYS}method" handleUnknown="implementation"><Method name="Size"><interface/>{st("Size := SUPER^.Twice() + add_;")}
+{plain("METHOD Size : INT&#10;VAR_INPUT add_ : INT; END_VAR")}</Method></data></addData></pou>
+<pou name="Plain" pouType="functionBlock"><interface/>{st("SUPER^();")}
+{addition("interfaceasplaintext", plain("FUNCTION_BLOCK Plain EXTENDS Derived&#10;VAR more : INT := 5; END_VAR"))}</pou>
+<pou name="Main" pouType="program"><interface><localVars>
+<variable name="one"><type><derived name="Plain"/></type></variable><variable name="sized"><type><derived name="Sized"/></type></variable>
+<variable name="place"><type><derived name="Place"/></type></variable>
+</localVars><outputVars><variable name="size"><type><INT/></type></variable></outputVars></interface>
+{st("one(); sized := one; place.x := one.more; place.z := 100; size := sized.Size(add_ := place.z) + place.x;")}</pou>
+</pous></types>
+<instances><configurations><configuration name="c"><resource name="r"><task name="slow" interval="PT0S" priority="3">
+<pouInstance name="Main" typeName=""/>
+{addition("tasksettings", '<TaskSettings KindOfTask="Cyclic" Interval="20000" IntervalUnit="us"/>')}
+</task></resource></configuration></configurations></instances>
+<addData>
+<data name="{CODESYS}interface" handleUnknown="implementation"><Interface name="Named"><Properties><Property name="Name">
+<GetAccessor>{plain("")}</GetAccessor>{plain("PROPERTY Name : STRING")}</Property></Properties>{plain("INTERFACE Named")}</Interface></data>
+<data name="{CODESYS}interface" handleUnknown="implementation"><Interface name="Sized"><Methods><Method name="Size"><interface>
+<returnType><INT/></returnType><inputVars><variable name="add_"><type><INT/></type></variable></inputVars></interface></Method></Methods>
+</Interface></data>
+</addData></project>
+"""
+
+
+def check_inherited():
+    project = write("inherited/plant.xml", INHERITED)
+    assert run("check", project).startswith("ok "), run("check", project)
+    run("new", "inherited/machine", "--from", project)
+    text = (work / "inherited/machine.yaml").read_text()
+    assert "slow: {every: 20 ms, priority: 1}" in text, text
+    (work / "inherited/machine.yaml").write_text(text + "expect: [{at: 30 ms, Main.size: 109}]\n")  # 2 * 2 + 100 + 5
+    run("run", "inherited/machine.yaml")
+    wrong = write("inherited/wrong.xml", INHERITED.replace("<Extends>Base</Extends>", "<Extends>Bse</Extends>"))
+    said = run("check", wrong, code=2)
+    line = 1 + INHERITED[:INHERITED.index("<Extends>Base")].count("\n")
+    assert f"wrong.xml:{line}:" in said and "'Bse'" in said, said
+
+
 def check_new_from():
     """What `new --from` says and writes runs as it is said."""
     for folder, project in (("beside", "beside/plant/P.xml"), ("away/here", "away/there/P.xml"), ("away/here2", "a way/P.xml")):
@@ -301,6 +371,7 @@ def check_hostile():
 with tempfile.TemporaryDirectory() as temporary:
     work = pathlib.Path(temporary)
     check_new_from()
+    check_inherited()
     check_page()
     check_configuration()
     check_older_forms()

@@ -10,6 +10,7 @@ import pathlib
 import pty
 import re
 import select
+import signal
 import subprocess
 import sys
 import tempfile
@@ -194,4 +195,28 @@ while not re.search(r"1 of 2 files, at work: long/b\.yaml \([1-9]\d* s\)", shown
     shown += os.read(terminal, 1000).decode()
 running.kill()
 running.wait()
+
+# So it does of suites of TcUnit, one of which ends when it is told to although its scan does not.
+write("endless/MAIN.st", """FUNCTION_BLOCK Endless EXTENDS TcUnit.FB_TestSuite
+VAR i : LINT; END_VAR
+TEST('endless');
+WHILE i >= 0 DO
+    i := (i + 1) MOD 1000;
+END_WHILE
+TEST_FINISHED();
+END_FUNCTION_BLOCK
+PROGRAM MAIN
+VAR suite : Endless; END_VAR
+TcUnit.RUN();
+END_PROGRAM
+""")
+for sent in signal.SIGINT, signal.SIGTERM:
+    terminal, other = pty.openpty()
+    running = subprocess.Popen([lineshaft, "test", "endless"], cwd=folder, stdout=subprocess.PIPE, stderr=other)
+    shown = ""
+    while "at work: endless/MAIN.st, MAIN.suite (" not in shown:
+        assert select.select([terminal], [], [], 20)[0], shown
+        shown += os.read(terminal, 1000).decode()
+    running.send_signal(sent)
+    assert running.wait(timeout=20) == 130
 print("ok")

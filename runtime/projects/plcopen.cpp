@@ -58,6 +58,8 @@ class PlcopenProject {
         for (const pugi::xml_node type : data.children("dataType"))
             add(type, &PlcopenText::add_type);
         for (const pugi::xml_node pou : data.children("pou")) add(pou, &PlcopenText::add_pou);
+        for (const pugi::xml_node interface : data.children("Interface"))
+            add(interface, &PlcopenText::add_interface_of_blocks);
     }
 
     /// CODESYS has there what it has in an application.
@@ -77,12 +79,27 @@ class PlcopenProject {
             declared_in(data);
     }
 
+    /// `Interval="10000" IntervalUnit="us"` of CODESYS; 0: it is not cyclic.
+    std::int64_t interval_of_settings(pugi::xml_node task) const {
+        for (const pugi::xml_node data : task.child("addData").children("data"))
+            if (const pugi::xml_node settings = data.child("TaskSettings");
+                file_.plain(settings.attribute("KindOfTask")) == "Cyclic") {
+                const std::string interval = file_.plain(settings.attribute("Interval"));
+                const bool has_unit = !interval.empty() && is_letter(interval.back());
+                return interval_of(has_unit ? interval
+                                            : interval +
+                                                  file_.plain(settings.attribute("IntervalUnit")));
+            }
+        return 0;
+    }
+
     void add_task(pugi::xml_node task) {
         const std::string priority = file_.plain(task.attribute("priority"));
         ProjectTask made{.name = {file_.plain(task.attribute("name")),
                                   file_.mark(file_.part(task.attribute("name")))}};
         std::from_chars(priority.data(), priority.data() + priority.size(), made.priority);
         made.every = interval_of(file_.plain(task.attribute("interval")));
+        if (made.every == 0) made.every = interval_of_settings(task);
         for (const pugi::xml_node instance : task.children("pouInstance")) {
             const pugi::xml_attribute type = instance.attribute("typeName");
             const bool is_typed = !file_.plain(type).empty();

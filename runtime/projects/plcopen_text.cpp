@@ -40,6 +40,15 @@ pugi::xml_node first_element(pugi::xml_node node) {
     return {};
 }
 
+/// What CODESYS and TwinCAT have beside the element, beside its interface, or in it.
+pugi::xml_node addition_of(pugi::xml_node element, const char* name) {
+    if (const pugi::xml_node own = element.child(name)) return own;
+    for (const pugi::xml_node owner : {element, element.child("interface")})
+        for (const pugi::xml_node data : owner.child("addData").children("data"))
+            if (const pugi::xml_node found = data.child(name)) return found;
+    return {};
+}
+
 }  // namespace
 
 std::shared_ptr<const SourceFile> PlcopenText::finish(pugi::xml_node named) {
@@ -47,13 +56,25 @@ std::shared_ptr<const SourceFile> PlcopenText::finish(pugi::xml_node named) {
 }
 
 bool PlcopenText::add_plain(pugi::xml_node element) {
-    for (const pugi::xml_node data : element.child("addData").children("data"))
-        if (const pugi::xml_node plain = data.child("InterfaceAsPlainText")) {
-            file_.copy(text_, plain);
-            write("\n", plain);
-            return true;
+    const pugi::xml_node plain = addition_of(element, "InterfaceAsPlainText");
+    if (!plain) return false;
+    file_.copy(text_, plain);
+    write("\n", plain);
+    return true;
+}
+
+/// `EXTENDS a IMPLEMENTS b, c`
+void PlcopenText::add_inheritance(pugi::xml_node element) {
+    const pugi::xml_node inheritance = addition_of(element, "Inheritance");
+    for (const auto& [name, word] :
+         {Term{"Extends", " EXTENDS "}, Term{"Implements", " IMPLEMENTS "}}) {
+        std::string_view before = word;
+        for (const pugi::xml_node base : inheritance.children(name.data())) {
+            write(before, base);
+            file_.copy(text_, base);
+            before = ", ";
         }
-    return false;
+    }
 }
 
 void PlcopenText::add_interface(pugi::xml_node interface) {
@@ -247,7 +268,7 @@ void PlcopenText::add_member(pugi::xml_node member) {
         text_.append(body.statements);
         return write("END_ACTION\n", member);
     }
-    if (!add_plain(interface)) {
+    if (!add_plain(member)) {
         write("METHOD ", member);
         file_.copy(text_, member.attribute("name"));
         if (const pugi::xml_node result = interface.child("returnType")) {
@@ -275,7 +296,7 @@ void PlcopenText::add_own_body(pugi::xml_node owner, pugi::xml_node named) {
 
 void PlcopenText::add_property(pugi::xml_node property) {
     const pugi::xml_node interface = property.child("interface");
-    if (!add_plain(interface)) {
+    if (!add_plain(property)) {
         write("PROPERTY ", property);
         file_.copy(text_, property.attribute("name"));
         write(" : ", property);
@@ -286,7 +307,7 @@ void PlcopenText::add_property(pugi::xml_node property) {
         const pugi::xml_node accessor = property.child(element.data());
         if (!accessor) continue;
         write(fmt::format("{}\n", word), accessor);
-        if (!add_plain(accessor.child("interface"))) add_interface(accessor.child("interface"));
+        if (!add_plain(accessor)) add_interface(accessor.child("interface"));
         add_own_body(accessor, property);
         write(fmt::format("END_{}\n", word), accessor);
     }
@@ -310,9 +331,10 @@ void PlcopenText::add_pou(pugi::xml_node pou) {
                         fmt::format("'{}' is no kind of POU", type),
                         "pouType is function, functionBlock or program");
     const pugi::xml_node interface = pou.child("interface");
-    if (!add_plain(interface)) {
+    if (!add_plain(pou)) {
         write(fmt::format("{} ", kind), pou);
         file_.copy(text_, pou.attribute("name"));
+        add_inheritance(pou);
         if (const pugi::xml_node result = interface.child("returnType")) {
             write(" : ", result);
             add_type_of(result, 0);
@@ -333,10 +355,25 @@ void PlcopenText::add_pou(pugi::xml_node pou) {
     write(fmt::format("END_{}\n", kind), pou);
 }
 
+void PlcopenText::add_interface_of_blocks(pugi::xml_node interface) {
+    if (!add_plain(interface)) {
+        write("INTERFACE ", interface);
+        file_.copy(text_, interface.attribute("name"));
+        add_inheritance(interface);
+        write("\n", interface);
+    }
+    for (const pugi::xml_node method : interface.child("Methods").children("Method"))
+        add_member(method);
+    for (const pugi::xml_node property : interface.child("Properties").children("Property"))
+        add_property(property);
+    write("END_INTERFACE\n", interface);
+}
+
 void PlcopenText::add_type(pugi::xml_node type) {
     if (add_plain(type)) return;
     write("TYPE ", type);
     file_.copy(text_, type.attribute("name"));
+    add_inheritance(type);
     add_declared(type, "baseType");
     write(";\nEND_TYPE\n", type);
 }

@@ -14,6 +14,7 @@ class PlcopenText {
         : file_(file), declared_(declared), out_(out) {}
 
     void add_pou(pugi::xml_node pou);
+    void add_interface_of_blocks(pugi::xml_node interface);  ///< INTERFACE, an addition of CODESYS
     void add_type(pugi::xml_node type);
     void add_globals(pugi::xml_node list);
 
@@ -25,6 +26,7 @@ class PlcopenText {
     }
     /// The declaration as text that CODESYS has beside the elements. False: it has none.
     bool add_plain(pugi::xml_node element);
+    void add_inheritance(pugi::xml_node element);
     void add_interface(pugi::xml_node interface);
     void add_section(pugi::xml_node section, std::string_view word);
     void add_variable(pugi::xml_node variable);

@@ -76,6 +76,7 @@ class Suite {
         for (std::size_t i = 0; (i = next_++) < files_.size() && !stopped_;) {
             TestOptions options = command_.options;
             options.jobs = cores_for(i);
+            options.at_work = [this, i](const std::string& suite) { go_on_with(i, suite); };
             begun(i);
             auto entries = run_tests(files_[i], options);
             if (interrupt_requested) return;
@@ -91,25 +92,40 @@ class Suite {
 
     void begun(std::size_t i) {
         const std::lock_guard lock(mutex_);
-        at_work_[i] = wall_seconds();
+        at_work_[i] = {wall_seconds(), {}};
     }
 
-    /// Rewrites the line of progress until all is done.
+    void go_on_with(std::size_t i, const std::string& suite) {
+        const std::lock_guard lock(mutex_);
+        at_work_[i].suite = suite;
+    }
+
+    /// Rewrites the line of progress until all is done. An interrupt ends what goes on without
+    /// looking at it, a scan of a suite or what is being compiled, after a second.
     void keep_telling(const std::stop_token& stop) {
         constexpr std::chrono::milliseconds pause(100);
         std::unique_lock lock(mutex_);
-        while (!stop.stop_requested()) {
+        for (int last = 10; !stop.stop_requested(); last -= interrupt_requested ? 1 : 0) {
+            if (last == 0) end_now();
             progress_.show([this](double) { return at_work(); });
             tick_.wait_for(lock, stop, pause, [] { return false; });
         }
     }
 
-    /// `12 of 40 files, at work: a.yaml (35 s), b.yaml (2 s)`
+    [[noreturn]] void end_now() {
+        progress_.clear();
+        std::fflush(stdout);
+        std::_Exit(static_cast<int>(Exit::interrupted));
+    }
+
+    /// `12 of 40 files, at work: a.yaml (35 s), b.plcproj, MAIN.x (2 s)`
     std::string at_work() const {
         std::string text = fmt::format("{} of {} files", finished_, files_.size());
         const char* between = ", at work: ";
-        for (const auto& [i, since] : at_work_) {
-            text += fmt::format("{}{} ({:.0f} s)", between, files_[i].path, wall_seconds() - since);
+        for (const auto& [i, work] : at_work_) {
+            text += fmt::format("{}{}{}{} ({:.0f} s)", between, files_[i].path,
+                                work.suite.empty() ? "" : ", ", work.suite,
+                                wall_seconds() - work.since);
             between = ", ";
         }
         return text;
@@ -136,7 +152,11 @@ class Suite {
     std::vector<std::optional<std::vector<SuiteEntry>>> results_;
     std::vector<SuiteEntry> entries_;
     ProgressLine progress_{false};
-    std::map<std::size_t, double> at_work_;  ///< files and when they began [s]
+    struct Work {
+        double since = 0;  ///< when it began [s]
+        std::string suite;
+    };
+    std::map<std::size_t, Work> at_work_;  ///< by the number of the file
     std::size_t finished_ = 0;
     std::mutex mutex_;
     std::condition_variable_any tick_;

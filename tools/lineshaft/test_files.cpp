@@ -293,7 +293,8 @@ std::vector<SuiteEntry> test_suites(const TestFile& tests,
     Diagnostics out;
     const double start = wall_seconds();
     const auto ran =
-        st::run_suites(program, tests.sources->needed_by(program), standard_blocks(), cycle, out);
+        st::run_suites(program, tests.sources->needed_by(program), standard_blocks(), cycle, out,
+                       {.interrupt = &interrupt_requested, .at_work = options.at_work});
     if (!ran) return {wrong(tests.path, out.render())};
     const double each =
         (wall_seconds() - start) / static_cast<double>(std::max<std::size_t>(1, ran->size()));

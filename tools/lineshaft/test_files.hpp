@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <regex>
@@ -27,6 +28,7 @@ struct TestOptions {
     bool slow = false;          ///< files marked `slow: true`, too
     unsigned jobs = 1;          ///< of a study's or fit's runs
     std::string traces_folder;  ///< where failed programs are traced; empty: nowhere
+    std::function<void(const std::string& suite)> at_work = {};  ///< told of suites of TcUnit
 };
 
 /// The file itself, or all that can be tested below a folder, sorted; with what its TESTs see: of a

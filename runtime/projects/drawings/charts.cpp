@@ -162,16 +162,20 @@ void ChartText::add_step(pugi::xml_node step) {
     write("END_STEP\n", step);
 }
 
+/// That of an instance, `motor.Turn`, is called in an action of the chart's own.
 void ChartText::add_action(pugi::xml_node action) {
-    const pugi::xml_node reference = action.child("reference"), body = action.child("inline");
+    const pugi::xml_attribute named = action.child("reference").attribute("name");
+    const bool is_elsewhere = file_.plain(named).find('.') != std::string::npos;
     write("    ", action);
-    if (reference) {
-        file_.copy(made_.statements, reference.attribute("name"));
+    if (named && !is_elsewhere) {
+        file_.copy(made_.statements, named);
     } else {
         const std::string name = context_.variables.name("_action");
         write(name, action);
         made_.members.write(fmt::format("ACTION {}:\n", name), place_of(action));
-        made_.members.append(body_text(context_, body, name).statements);
+        file_.copy(made_.members, named);
+        if (is_elsewhere) made_.members.write("();", place_of(action));
+        made_.members.append(body_text(context_, action.child("inline"), name).statements);
         made_.members.write("\nEND_ACTION\n", place_of(action));
     }
     const std::string qualifier = text(action, "qualifier"), duration = text(action, "duration");

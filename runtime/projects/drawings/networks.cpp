@@ -89,9 +89,12 @@ Value NetworkText::words(std::string_view text, const Mark& place, std::string t
     return made;
 }
 
-/// What stands at an element, as it is written.
+/// What stands at an element, as it is written, without a ';' behind it.
 Value NetworkText::written(const Element& element, pugi::xml_node text) {
-    const std::string plain = file_.plain(text);
+    std::string plain = file_.plain(text);
+    const std::size_t end = plain.find_last_not_of(" \t\r\n;") + 1;
+    const bool is_ended = end < plain.size();
+    plain.resize(end);
     if (plain.empty()) {
         refuse(element, fmt::format("this {} has no variable", word_of(element.kind)),
                "name one, or remove it");
@@ -99,7 +102,11 @@ Value NetworkText::written(const Element& element, pugi::xml_node text) {
     }
     Value made{.text = {}, .form = shape_of(plain), .type = context_.types.of_expression(plain)};
     made.text.draw(std::make_shared<const std::string>(name_of(element)));
-    file_.copy(made.text, text);
+    if (!is_ended) file_.copy(made.text, text);
+    for (Part part : is_ended ? file_.texts(text) : std::vector<Part>()) {
+        part.end = part.begin + file_.text(part).find_last_not_of(" \t\r\n;") + 1;
+        file_.copy(made.text, part);
+    }
     return made;
 }
 

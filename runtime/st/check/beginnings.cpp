@@ -12,15 +12,16 @@ namespace {
 constexpr std::string_view constructor = "fb_init";
 
 bool is_of_call(const Routine& routine, const Variable& variable) {
-    return variable.section == Section::temp || !routine.has_instances();
+    return variable.section == Section::temp ||
+           (variable.section != Section::kept && !routine.has_instances());
 }
 
 bool may_begin(const Checking& c) {
     const Variable* variable = c.beginning.variable;
-    if (!variable || c.beginning.is_repeated) return false;
+    if (!variable) return false;
     if (!c.routine) return variable->space == Space::global && !variable->constant;
     const bool is_own = variable->section == Section::local || variable->section == Section::temp ||
-                        variable->section == Section::output;
+                        variable->section == Section::kept || variable->section == Section::output;
     return is_own && !variable->constant && variable->space == Space::frame;
 }
 
@@ -79,13 +80,14 @@ Statement* make_once(Checking& c, const Expression& like, Variable& flag, const 
     return make_if(c, like.place, make_not(c, make_use(c, like, flag)), std::move(first), {});
 }
 
-/// Assigned once, of the block alone and not of its bases.
+/// Assigned once, of the block alone and not of its bases, or of a method what it keeps.
 void add_once(Checking& c, Routine& block, Place place, Block& to) {
     if (block.begins.empty()) return;
     const Expression like = like_name(block.pou->name, place);
     if (!block.begun) {
         block.begun = &add_hidden(c, block.variables, like, "begun", bool_type);
         block.begun->of = block.pou;
+        block.begun->section = block.has_instances() ? Section::local : Section::kept;
     }
     to.push_back(make_once(c, like, *block.begun, block.begins));
 }
@@ -130,15 +132,6 @@ void add_constructor_of_base(Checking& c, const Routine& method, Block& to) {
 /// FB_init of a block; null: it has none.
 Routine* constructor_of(const Type& block) {
     return find_in(block.routine->methods, constructor);
-}
-
-/// The variable is an instance that has an FB_init, or has such in it.
-bool is_constructed(const Type* type) {
-    if (!type) return false;
-    if (type->kind == Kind::array) return is_constructed(type->element);
-    if (type->kind == Kind::structure)
-        return std::ranges::any_of(type->members, is_constructed, &Variable::type);
-    return type->kind == Kind::block && constructor_of(*type);
 }
 
 /// Where what is constructed stands, and who counts through its elements.
@@ -210,6 +203,10 @@ bool is_first(const Checking& c, const Routine& block) {
 
 }  // namespace
 
+bool is_constructed(const Type* type) {
+    return type && type->kind == Kind::block && type->routine->methods.contains(constructor);
+}
+
 bool begin_with(Checking& c, Expression*& value, const Type& type) {
     if (!may_begin(c)) return false;
     Statement* s = make_assignment(c, value->place, place_of(c, *value), value);
@@ -217,7 +214,7 @@ bool begin_with(Checking& c, Expression*& value, const Type& type) {
     Routine& of = c.routine ? *c.routine : begin_of_globals(c, *value);
     (is_of_call(of, *c.beginning.variable) ? of.call_begins : of.begins).push_back(s);
     c.beginning.is_made = true;
-    value = nothing(c, *value, type);
+    if (!is_constant(*value)) value = nothing(c, *value, type);
     return true;
 }
 
@@ -232,8 +229,9 @@ void begin_instance(Checking& c, Variable& variable) {
         return;
     }
     const bool is_global = variable.space == Space::global && !c.routine;
-    if (!is_constructed(type) || !(is_own ? c.routine && c.routine->has_instances() : is_global))
-        return;
+    const bool stays =
+        c.routine && (c.routine->has_instances() || variable.section == Section::kept);
+    if (!is_constructed(type) || !(is_own ? stays : is_global)) return;
     const Expression like = like_name(variable.name, variable.name.place);
     Routine& of = is_own ? *c.routine : begin_of_globals(c, like);
     construct(
@@ -263,6 +261,7 @@ Block beginnings(Checking& c, Routine& routine) {
     if (routine.is_test()) return routine.call_begins;
     Routine* block = routine.owner ? routine.owner : &routine;
     if (block->has_instances()) add_bases_first(c, *block, routine.pou->place, made);
+    if (routine.owner) add_once(c, routine, routine.pou->place, made);
     if (routine.owner && same_name(routine.pou->name.text, constructor))
         add_constructor_of_base(c, routine, made);
     made.insert(made.end(), routine.call_begins.begin(), routine.call_begins.end());

@@ -117,8 +117,8 @@ struct Checking {
     struct Beginning {
         Variable* variable = nullptr;
         std::vector<std::pair<std::string_view, std::int64_t>> path = {};  ///< members, or indices
-        bool is_repeated = false;                                          ///< of `3(x)`
-        bool is_made = false;  ///< something of it is no constant
+        bool is_constructed = false;  ///< FB_init comes before, so that constants are assigned, too
+        bool is_made = false;         ///< something of it is assigned
     } beginning = {};
     int loops = 0;                     ///< around the statement
     std::vector<NameSet> labels = {};  ///< of each list of statements around it

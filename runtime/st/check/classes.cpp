@@ -290,7 +290,8 @@ bool is_accessible(Checking& c, Access access, const Routine& owner, const Token
     if (access == Access::private_) return refuse("PRIVATE", "only its own block calls it");
     if (access == Access::protected_ && !(own && is_a(*own, owner)))
         return refuse("PROTECTED", "only its own block and those that extend it name it");
-    const bool elsewhere = !own || namespace_of(*own) != namespace_of(owner);
+    const Routine* user = own ? own : c.routine;
+    const bool elsewhere = !user || namespace_of(*user) != namespace_of(owner);
     if (access == Access::internal_ && elsewhere && !namespace_of(owner).empty())
         return refuse("INTERNAL", "only its own namespace names it");
     return true;

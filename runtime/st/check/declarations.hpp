@@ -39,8 +39,11 @@ void check_initial(Checking& c, Expression*& value, const Type& type);
 /// False: the variable begins with constants only.
 bool begin_with(Checking& c, Expression*& value, const Type& type);
 
+/// It is a block that has an FB_init, or has such in it.
+bool is_constructed(const Type* type);
+
 /// Calls FB_init of the instances that the variable is or has in it, with what stands behind its
-/// type, at the same time.
+/// type, at the same time. What is declared behind that, `:= (x := 1)`, is assigned behind it.
 void begin_instance(Checking& c, Variable& variable);
 
 /// What VAR_GLOBAL begins with so comes before the first block that runs, one that no other has an

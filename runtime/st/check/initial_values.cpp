@@ -39,39 +39,80 @@ void check_data_block(Checking& c, const Global& global) {
     c.routine = nullptr;
 }
 
-void check_part(Checking& c, Expression*& value, const Type& type, std::string_view member,
-                std::int64_t index = 0) {
-    c.beginning.path.emplace_back(member, index);
+void check_part(Checking& c, Expression*& value, const Type& type, std::string_view member) {
+    c.beginning.path.emplace_back(member, 0);
     check_initial(c, value, type);
     c.beginning.path.pop_back();
 }
 
+/// The elements of an array one behind the other: of all its dimensions, or of the first.
+struct Elements {
+    const Type& array;
+    bool of_all;
+
+    const Type& type() const { return of_all ? array.innermost() : *array.element; }
+    Wide count() const {
+        Wide made = Wide{array.upper} - array.lower + 1;
+        for (const Type* t = &array; of_all && t->has_inner; t = t->element)
+            made *= Wide{t->element->upper} - t->element->lower + 1;
+        return made;
+    }
+};
+
+void check_element(Checking& c, Expression*& value, const Elements& elements, Wide number) {
+    auto& path = c.beginning.path;
+    const std::size_t outer = path.size();
+    Wide below = elements.count();
+    const bool is_there = number < below;  // told otherwise, when all are counted
+    for (const Type* t = &elements.array; is_there; t = t->element) {
+        below /= Wide{t->upper} - t->lower + 1;
+        path.emplace_back(std::string_view(), static_cast<std::int64_t>(t->lower + number / below));
+        number %= below;
+        if (!elements.of_all || !t->has_inner) break;
+    }
+    check_initial(c, value, elements.type());
+    path.resize(outer);
+}
+
+/// `3(x)`, from the element of this number on. What is no constant is assigned to each.
+void check_repeated(Checking& c, Expression& repeated, Wide times, const Elements& elements,
+                    Wide number) {
+    constexpr std::int64_t most_assigned = 10'000;
+    const std::vector<Argument> written = repeated.arguments;
+    const auto assigned = [&] {
+        return c.routine ? c.routine->begins.size() + c.routine->call_begins.size() : 0;
+    };
+    const std::size_t before = assigned();
+    for (Wide i = 0; i < std::max<Wide>(times, 1); ++i) {
+        if (i == 1 && assigned() == before) return;
+        for (std::size_t j = 0; j < written.size(); ++j) {
+            repeated.arguments[j] = written[j];
+            check_element(c, repeated.arguments[j].value, elements, number++);
+        }
+        if (assigned() - before > most_assigned)
+            return (void)c.fail(code::too_deep_or_large, repeated.place,
+                                "more than 10000 elements are assigned here",
+                                "assign them in a loop, in the body");
+    }
+}
+
 /// Of several dimensions either a list of lists, or all elements in one, the last index first.
 void check_elements(Checking& c, Expression& list, const Type& array) {
-    const bool nested = list.is_nested();
-    const Type& element = nested ? *array.element : array.innermost();
-    Wide room = Wide{array.upper} - array.lower + 1;
-    for (const Type* inner = &array; !nested && inner->has_inner; inner = inner->element)
-        room *= Wide{inner->element->upper} - inner->element->lower + 1;
+    const Elements elements{array, !list.is_nested()};
+    const Wide room = elements.count();
     Wide count = 0;
-    const bool outer = c.beginning.is_repeated;
-    c.beginning.is_repeated |= !nested && array.has_inner;  // one index does not say which
     for (Argument& argument : list.arguments) {
-        Expression* value = argument.value;
-        if (value->kind != E::repeated) {
-            check_part(c, argument.value, element, {},
-                       array.lower + static_cast<std::int64_t>(count));
-            ++count;
+        if (argument.value->kind != E::repeated) {
+            check_element(c, argument.value, elements, count++);
             continue;
         }
-        const bool was_repeated = std::exchange(c.beginning.is_repeated, true);
+        Expression* value = argument.value = make_copy(c, *argument.value);
         const auto times = check_whole(c, value->operands[0], lint_type);
-        for (Argument& repeated : value->arguments) check_initial(c, repeated.value, element);
-        c.beginning.is_repeated = was_repeated;
+        const bool is_number = times && *times >= 0 && *times <= most_elements;
+        check_repeated(c, *value, is_number ? *times : 1, elements, count);
         const Wide one = static_cast<Wide>(std::max<std::size_t>(value->arguments.size(), 1));
-        if (times && *times >= 0 && *times <= most_elements) count += *times * one;
+        if (is_number) count += *times * one;
     }
-    c.beginning.is_repeated = outer;
     if (count > room)
         c.fail(code::value_out_of_range, list.place,
                fmt::format("{} values for {} elements", static_cast<std::int64_t>(count),
@@ -133,8 +174,8 @@ void check_initial_values(Checking& c) {
             if (variable.initial && variable.section == Section::in_out)
                 c.fail(code::wrong_place, variable.name.place, "a VAR_IN_OUT has no initial value",
                        "leave ':= ...' out; the caller gives the variable");
-            check_one(variable);
             begin_instance(c, variable);
+            check_one(variable);
         }
     }
     c.routine = nullptr;
@@ -146,7 +187,8 @@ void check_initial(Checking& c, Variable& variable) {
     if (!written.initial) {
         Expression* value = &written;
         const bool begins = variable.space == Space::global || (c.routine && variable.of);
-        const Checking::Beginning own{.variable = begins ? &variable : nullptr};
+        const Checking::Beginning own{.variable = begins ? &variable : nullptr,
+                                      .is_constructed = begins && is_constructed(variable.type)};
         Checking::Beginning outer = std::exchange(c.beginning, own);
         check_initial(c, value, *variable.type);
         const bool is_made = std::exchange(c.beginning, std::move(outer)).is_made;
@@ -160,6 +202,9 @@ void check_initial(Checking& c, Expression*& value, const Type& type) {
     if (is_dtl(type) && value->token.word == Word::duration)
         if (!(value = list_of_dtl(c, *value, type))) return;
     if (value->kind == E::list) {
+        const Variable* begun = c.beginning.variable;
+        if (begun && begun->space == Space::frame)  // the others of its declaration have it, too
+            value = make_copy(c, *value);
         value->type = &type;
         const bool is_structure = value->is_structure();
         if (type.kind == Kind::array && !is_structure) return check_elements(c, *value, type);
@@ -187,7 +232,9 @@ void check_initial(Checking& c, Expression*& value, const Type& type) {
     if (!check(c, value, &type)) return;
     evaluate(c, value);
     if (!coerce(c, value, type)) return;
-    if (!evaluate(c, value) && value->type && !begin_with(c, value, type))
+    const bool is_constant = evaluate(c, value);
+    if (is_constant && !c.beginning.is_constructed) return;
+    if (value->type && !begin_with(c, value, type) && !is_constant)
         c.fail(code::not_a_constant, value->place, "an initial value is a constant",
                "assign it in the body, behind IF NOT started");
 }

@@ -91,11 +91,47 @@ struct Call : Emission {
     Slot wanted;
 };
 
+/// It may be read whether or not it is wanted.
+bool is_at_hand(const Expression& e) {
+    using E = Expression::Kind;
+    return e.kind == E::constant || e.kind == E::name || e.kind == E::self ||
+           (e.kind == E::member && is_at_hand(*e.operands[0]));
+}
+
+bool chooses(const Expression& e) {
+    return e.standard->typing == Typing::chosen &&
+           !std::ranges::all_of(e.arguments, is_at_hand,
+                                [](const Argument& a) -> const Expression& { return *a.value; });
+}
+
+/// SEL and MUX, of whose arguments one is evaluated.
+Slot choose(Writing& w, Call& call) {
+    const std::size_t count = call.count() - 1;
+    const bool by_truth = call.given(0).type->kind == Kind::boolean;
+    const bool has_else = same_name(call.call.arguments.back().name.text, "inelse");
+    const Slot to = w.new_temporary(), given = value_before(w, call.given(0), call.call);
+    const Slot number = by_truth || has_else ? given : call.index(given, count);
+    Jumps ends;
+    for (std::size_t i = 1; i <= count; ++i) {
+        Jumps next;
+        if (i < count && by_truth) w.jump(Op::jump_if, 0, number, next);
+        if (i < count && !by_truth)
+            w.jump(after(comparison_op(Word::equal, lint_type), 2), number, w.constant_slot(i - 1),
+                   next);
+        const Slot from = value_or_address(w, call.given(i), to);
+        if (from != to) w.put(Op::move, to, from);
+        if (i < count) w.jump(Op::jump, 0, 0, ends);
+        w.land(next);
+    }
+    w.land(ends);
+    return to;
+}
+
 }  // namespace
 
 Slot standard(Writing& w, const Expression& e, Slot wanted) {
     Call call(w, e, wanted);
-    return e.standard->emit(call);
+    return chooses(e) ? choose(w, call) : e.standard->emit(call);
 }
 
 }  // namespace lineshaft::st

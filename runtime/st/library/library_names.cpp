@@ -153,7 +153,7 @@ std::vector<std::string_view> LibraryNames::declared_in(const LibraryFile& file)
         while (is_modifier(name)) name = first_word(line);
         const bool is_part = line.starts_with('.');  // of "AXIS_REF.fSetPosition"
         if (is_part) name = first_word(line);
-        if (is_type || is_part || !is_helper(name)) names.push_back(name);
+        if (kind != "FUNCTION" || is_part || !is_helper(name)) names.push_back(name);
         in_values = is_type && line.ends_with("(");
     }
     return names;

@@ -50,9 +50,11 @@ const Variable* find(std::span<Variable* const> variables, std::string_view name
 /// A run of all suites.
 class Suites {
   public:
-    Suites(const Compiled& made, const Options& options, const Routine& program)
+    Suites(const Compiled& made, const Options& options, const Routine& program,
+           const SuitesWatch& watch)
         : made_(made),
           program_(program),
+          watch_(watch),
           bench_(made, options, *program.type,
                  [this](TestResult result) { return tell(std::move(result)); }) {
         add_suites(program.name, *program.type, -1, 0);
@@ -64,7 +66,7 @@ class Suites {
     }
 
     std::vector<SuiteTest> run(std::int64_t cycle) {
-        for (std::int64_t number = 0; bench_.time() < longest; ++number) {
+        for (std::int64_t number = 0; bench_.time() < longest && !is_interrupted(); ++number) {
             set("cycle", number);
             set("suite", 0);
             const TestResult result = bench_.run(code_of(program_), bench_.unit());
@@ -80,6 +82,8 @@ class Suites {
     }
 
   private:
+    bool is_interrupted() const { return watch_.interrupt && *watch_.interrupt; }
+
     void add_suites(const std::string& name, const Type& type, int global, std::size_t slot) {
         if (type.kind == Type::Kind::array && !type.element->is_scalar())
             for (std::int64_t i = type.lower; i <= type.upper; ++i)
@@ -136,9 +140,10 @@ class Suites {
 
     void call_suites() {
         const bool in_sequence = get("run_mode") == 2;
-        for (std::size_t i = 0; i < suites_.size(); ++i) {
+        for (std::size_t i = 0; i < suites_.size() && !is_interrupted(); ++i) {
             Suite& suite = suites_[i];
             if (suite.is_done) continue;
+            if (watch_.at_work) watch_.at_work(suite.name);
             set("suite", static_cast<std::int64_t>(i) + 1);
             set("test", 0);
             std::byte* instance =
@@ -217,6 +222,7 @@ class Suites {
 
     const Compiled& made_;
     const Routine& program_;
+    const SuitesWatch& watch_;
     Bench bench_;
     std::vector<Suite> suites_;
     std::map<std::int64_t, TestResult> failed_;               ///< the first of each test
@@ -246,7 +252,7 @@ bool calls_suites(const std::shared_ptr<const SourceFile>& file) {
 std::optional<std::vector<SuiteTest>> run_suites(
     const std::shared_ptr<const SourceFile>& file,
     const std::vector<std::shared_ptr<const SourceFile>>& sources, const Catalog& standard,
-    std::int64_t cycle, Diagnostics& out, const Options& options) {
+    std::int64_t cycle, Diagnostics& out, const SuitesWatch& watch, const Options& options) {
     constexpr std::int64_t more_fuel = 1000;  // a test may do in a scan what a machine does in many
     Options own = options;
     own.fuel *= more_fuel;
@@ -268,7 +274,7 @@ std::optional<std::vector<SuiteTest>> run_suites(
                 "declare an instance of a block that extends TcUnit.FB_TestSuite");
         return {};
     }
-    return Suites(made, own, *program).run(cycle);
+    return Suites(made, own, *program, watch).run(cycle);
 }
 
 }  // namespace lineshaft::st

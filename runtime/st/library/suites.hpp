@@ -1,5 +1,8 @@
 #pragma once
 
+#include <atomic>
+#include <functional>
+
 #include "runtime/st/library/test_suite.hpp"
 
 namespace lineshaft::st {
@@ -13,6 +16,12 @@ struct SuiteTest {
     bool skipped = false;  ///< it is disabled
 };
 
+/// Who watches a run of suites.
+struct SuitesWatch {
+    const std::atomic<bool>* interrupt = nullptr;                ///< true: it ends behind a suite
+    std::function<void(const std::string& suite)> at_work = {};  ///< told before each is scanned
+};
+
 /// Scans the PROGRAM of `file` every `cycle` [ns], and behind it the suites of TcUnit that it and
 /// the lists of globals have, in virtual time from 0 on, until each test is finished; axes and
 /// other blocks of the lists are scanned every millisecond. A failed assertion does not end its
@@ -22,6 +31,7 @@ struct SuiteTest {
 std::optional<std::vector<SuiteTest>> run_suites(
     const std::shared_ptr<const SourceFile>& file,
     const std::vector<std::shared_ptr<const SourceFile>>& sources, const Catalog& standard,
-    std::int64_t cycle, Diagnostics& out, const Options& options = {});
+    std::int64_t cycle, Diagnostics& out, const SuitesWatch& watch = {},
+    const Options& options = {});
 
 }  // namespace lineshaft::st

@@ -243,13 +243,14 @@ TEST_CASE("a chart's divergences and convergences, actions and conditions") {
         element("actionBlock", 6, 6,
                 in(from(4)) +
                     "<action qualifier=\"L\" duration=\"T#1s\"><reference name=\"b\"/></action>" +
-                    "<action><inline><ST><p>x := x + 1;</p></ST></inline></action>") +
+                    "<action><inline><ST><p>x := x + 1;</p></ST></inline></action>" +
+                    "<action qualifier=\"S\"><reference name=\"motor.Turn\"/></action>") +
         element("simultaneousConvergence", 7, 7, in(from(4)) + in(from(5))) +
         transition(8, "<reference name=\"Ready\"/>", from(7)) +
         element("selectionConvergence", 9, 9, in(from(8))) +
         element("selectionDivergence", 10, 10, in(from(1))) +
         transition(11, "<connectionPointIn>" + from(12) + "</connectionPointIn>", from(10)) +
-        contact(12, 12, "c", from(13)) + element("leftPowerRail", 13, 13, "") +
+        contact(12, 12, "c ; ", from(13)) + element("leftPowerRail", 13, 13, "") +
         element("jumpStep", 14, 14, in(from(11)), "targetName=\"Begin\"");
     const Read made =
         read(program("SFC", body,
@@ -260,11 +261,15 @@ TEST_CASE("a chart's divergences and convergences, actions and conditions") {
 x := x + 1;
 
 END_ACTION
+ACTION _action2:
+motor.Turn();
+END_ACTION
 INITIAL_STEP Begin:
 END_STEP
 STEP Left:
     b(L, T#1s);
     _action1;
+    _action2(S);
 END_STEP
 STEP Right:
 END_STEP
