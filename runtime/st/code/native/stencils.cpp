@@ -134,7 +134,11 @@ WAY_OF call(const Operand&, STATE) {
     }
 #define LEAVE                                                  \
     {                                                          \
-        if (frames.top == frames.bottom) FAIL(none);           \
+        if (frames.top == frames.bottom) [[likely]] {          \
+            set_word(base, error_slot, 0);                     \
+            set_word(base, error_id_slot, 0);                  \
+            return Fault::none;                                \
+        }                                                      \
         const std::uint64_t behind = frames.leave();           \
         base = frames.place(frames.base);                      \
         return code.native->entry(behind)(base, frames, fuel); \
