@@ -97,3 +97,26 @@ TEST_CASE("path_ahead: the velocity follows an override, also in the middle of a
     while (!contour.path.finished())
         CHECK(contour.path.advance(contour.ring, 1e-3).path.velocity <= 0.25 * 150 * (1 + 1e-9));
 }
+
+TEST_CASE("path_ahead: pieces that come while a course is halted do not set it in motion") {
+    Contour contour;
+    contour.path.advance(contour.ring, 0.3);
+    contour.path.halt();
+    PathVector from{-10, 0};
+    for (int scan = 0; scan < 400; ++scan) {
+        if (scan % 20 == 0 && scan < 200) {
+            const PathVector to{from[0] - 5, scan % 40 == 0 ? 5.0 : 0.0};
+            PathCurve line;
+            REQUIRE(line_to(from, to, line) == PathFault::none);
+            REQUIRE(contour.path.append(contour.ring, line, contour.limits, {0, 1}) ==
+                    PathFault::none);
+            from = to;
+        }
+        const PathMotion m = contour.path.advance(contour.ring, 1e-3);
+        if (scan > 200) CHECK(m.path.velocity == 0);
+    }
+    contour.path.resume();
+    for (int scan = 0; scan < 5000 && !contour.path.finished(); ++scan)
+        contour.path.advance(contour.ring, 1e-3);
+    CHECK(contour.path.now(contour.ring).position == from);
+}
