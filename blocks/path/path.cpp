@@ -114,6 +114,8 @@ void go_on(Path& path, std::span<PathPiece> ring) {
         look_ahead(outlook, path.time, path.leg)) {
         path.time = 0;
         note_leg(path, ring);
+    } else {
+        path.stale = stops_short(path, ring);
     }
 }
 
