@@ -109,10 +109,13 @@ bool plan_anew(Path& path, std::span<PathPiece> ring) {
 void go_on(Path& path, std::span<PathPiece> ring) {
     look_back_where_changed(path, ring);
     path.fresh = false;
-    if (path.time < path.leg.duration() &&
-        look_ahead(outlook_of(path, ring), path.time, path.leg)) {
+    const PathOutlook outlook = outlook_of(path, ring);
+    if (outlook.factor > 0 && path.time < path.leg.duration() &&
+        look_ahead(outlook, path.time, path.leg)) {
         path.time = 0;
         note_leg(path, ring);
+    } else {
+        path.stale = stops_short(path, ring);
     }
 }
 

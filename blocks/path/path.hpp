@@ -22,7 +22,7 @@ struct PathMotion {
     PathVector position{}, velocity{}, acceleration{}, jerk{};
 };
 
-/// A path of pieces that is run along with constant jerk from phase to phase. The pieces lie in a
+/// A path of pieces that is run along in phases, of constant jerk on lines. The pieces lie in a
 /// ring that the caller owns and gives with each call, the same one each time: this and the ring
 /// are plain bytes without an address, and nothing is allocated. Pieces are appended at any time,
 /// also in motion. What is commanded counts from the next `advance`, and so do pieces appended,

@@ -118,7 +118,6 @@ bool try_ramp(const PathOutlook& outlook, const MotionState& from, double base, 
     if (!(end <= outlook.stretches[goal].end)) return false;
     PathLeg leg;
     leg.base = base;
-    leg.ripe = std::numeric_limits<double>::infinity();
     for (int i = 0; i < ramp.count; ++i) {
         const auto& phase = ramp.phases[static_cast<std::size_t>(i)];
         leg.course.add({0, phase.start, 0}, phase.duration);
@@ -142,6 +141,7 @@ bool try_ramp(const PathOutlook& outlook, const MotionState& from, double base, 
         leg.end = chain.end;
         leg.goal = chain.goal;
     }
+    leg.ripe = leg.course.duration;
     out = leg;
     return true;
 }

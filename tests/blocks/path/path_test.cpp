@@ -399,6 +399,11 @@ TEST_CASE("path: braking that was planned for holds when longer braking is found
     CHECK(fault_of(55989, 500).empty());
 }
 
+TEST_CASE("path: a course whose last stretch has grown goes on from its end") {
+    for (const std::uint64_t seed : {5003789, 6000318, 6001551, 6002405})
+        CHECK(fault_of(seed, 500).empty());
+}
+
 TEST_CASE("path: random paths keep all limits and end exactly") {
     const long first = number_of("LINESHAFT_SEED", 0);
     const long count = number_of("LINESHAFT_PATHS", 120);
