@@ -491,8 +491,7 @@ class CWriter {
 
     /// The byte of the process image where the variable begins.
     std::string byte_of(const Variable& v) const {
-        return fmt::format("{}image[{}]", prefix_,
-                           checked_.image.begin(v.address.area) + v.address.byte);
+        return fmt::format("{}image[{}]", prefix_, checked_.image.bit_of(v.address) / 8);
     }
 
     std::string in_image(const Variable& v) {
