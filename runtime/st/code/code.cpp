@@ -23,6 +23,8 @@ std::string operand_error(const Code& code, const CodeRoutine& routine, char kin
         case 'r':
         case 's':
             return beyond(routine.frame) ? "a slot outside of the frame" : "";
+        case 'd':
+            return x + 1 >= routine.frame ? "one slot of two" : "";
         case 't':
             return x + 2 >= routine.frame ? "a reference that is not whole" : "";
         case 'j':
@@ -60,14 +62,6 @@ std::string instruction_error(const Code& code, const CodeRoutine& routine, cons
     const std::uint64_t last_to = std::uint64_t{in.a} + in.c,
                         last_from = std::uint64_t{in.b} + in.c;
     switch (in.op) {
-        case Op::repeat_next:
-        case Op::repeat_next_unsigned:
-        case Op::skip_loop:
-        case Op::skip_loop_unsigned:
-            return in.b + 1 >= routine.frame ? "a limit without a step" : "";
-        case Op::select:
-        case Op::text_append:
-            return in.c + 1 >= routine.frame ? "one value of two" : "";
         case Op::copy:
             return last_to > routine.frame || last_from > routine.frame ? beyond : "";
         case Op::copy_from:

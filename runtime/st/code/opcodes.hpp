@@ -11,10 +11,10 @@
 ///
 /// An operand is a slot of the frame (w written, r read), a number (n), an instruction of the same
 /// routine, by its address (j), a routine (f), an index table (x), the first of several slots (s),
-/// or of the three of a reference (t), or unused (-). In meanings `I(b)` is slot b as std::int64_t,
-/// `U(b)` as std::uint64_t, `R(b)` as double; `put` writes; ELEMENT(b, c) finds the `element` of an
-/// array; GO(to) jumps to c, AGAIN(to) too and takes fuel; CALL and LEAVE begin and end a call;
-/// FAIL ends the scan with a fault.
+/// of two (d) or of the three of a reference (t), or unused (-). In meanings `I(b)` is slot b as
+/// std::int64_t, `U(b)` as std::uint64_t, `R(b)` as double; `put` writes; ELEMENT(b, c) finds the
+/// `element` of an array; GO(to) jumps to c, AGAIN(to) too and takes fuel; CALL and LEAVE begin and
+/// end a call; FAIL ends the scan with a fault.
 ///
 /// Of packed memory the lower half of c is where a value begins [bits], on from what slot d has,
 /// and the upper one, UPPER(to), its PackedFormat; of what a reference is to (`..._through`) the
@@ -85,10 +85,10 @@
     OP(choose, jump, "-rx-", if (within(U(b), c)) CHOOSE(b, c, to))                            \
     OP(repeat, jump, "--j-", AGAIN(to))                                                              \
     OP(repeat_if, jump, "-rj-", if (U(b) != 0) AGAIN(to))                                            \
-    OP(repeat_next, jump, "wsj-", if (next<std::int64_t>(at(a), at(b))) AGAIN(to))                   \
-    OP(skip_loop, jump, "rsj-", if (!is_within<std::int64_t>(at(a), at(b))) GO(to))                  \
-    OP(repeat_next_unsigned, jump, "wsj-", if (next<std::uint64_t>(at(a), at(b))) AGAIN(to))         \
-    OP(skip_loop_unsigned, jump, "rsj-", if (!is_within<std::uint64_t>(at(a), at(b))) GO(to))        \
+    OP(repeat_next, jump, "wdj-", if (next<std::int64_t>(at(a), at(b))) AGAIN(to))                   \
+    OP(skip_loop, jump, "rdj-", if (!is_within<std::int64_t>(at(a), at(b))) GO(to))                  \
+    OP(repeat_next_unsigned, jump, "wdj-", if (next<std::uint64_t>(at(a), at(b))) AGAIN(to))         \
+    OP(skip_loop_unsigned, jump, "rdj-", if (!is_within<std::uint64_t>(at(a), at(b))) GO(to))        \
     OP(call, call, "sf--", CALL(frames.address_of(a), b))                                            \
     OP(call_at, call, "rf--", CALL(U(a), b))                                                         \
     OP(find_routine, call, "wrn-", if (U(b) == 0) FAIL(no_reference); frames.find(at(a), U(b), c)) \
@@ -165,7 +165,7 @@
     OP(real_of_bits, real, "wr--", put(a, double{std::bit_cast<float>(static_cast<std::uint32_t>(U(b)))})) \
     OP(is_finite, real, "wr--", put(a, std::uint64_t{std::isfinite(R(b))}))                          \
     OP(text_copy, text, "rrr-", if (word(target(U(b)), 0) > U(c)) frames.note_cut(BEHIND); copy_text(target(U(a)), target(U(b)), U(c))) \
-    OP(text_append, text, "rrs-", if (!append_text(target(U(a)), target(U(b)), I(c), I(c + 1))) frames.note_cut(BEHIND)) \
+    OP(text_append, text, "rrd-", if (!append_text(target(U(a)), target(U(b)), I(c), I(c + 1))) frames.note_cut(BEHIND)) \
     OP(text_length, text, "wr--", put(a, word(target(U(b)), 0)))                                     \
     OP(text_compare, text, "wrr-", put(a, compare_texts(target(U(b)), target(U(c)))))                \
     OP(text_character, text, "wrrn", if (const auto n = character_of(target(U(b)), I(c), d)) put(a, *n); else FAIL(array_bounds)) \
@@ -186,7 +186,7 @@
     OP(to_bcd, integer, "wrn-", if (const auto n = to_bcd(U(b), c)) put(a, *n); else FAIL(out_of_range)) \
     OP(is_bcd, integer, "wr--", put(a, std::uint64_t{from_bcd(U(b)).has_value()}))                    \
     OP(time_now, move, "w---", put(a, frames.now.time))                                               \
-    OP(select, move, "wrs-", put(a, word(at(c), U(b) & 1)))                                          \
+    OP(select, move, "wrd-", put(a, word(at(c), U(b) & 1)))                                          \
     OP(look_up, move, "wrx-", if (!within(U(b), c)) FAIL(out_of_range); put(a, number_of(U(b), c)))  \
     LINESHAFT_ST_PAIRS(OP, lreal, real, R, exact) LINESHAFT_ST_PAIRS(OP, real, real, R, narrow)      \
     LINESHAFT_ST_PAIRS(OP, int, integer, U, wrap<std::int16_t>)                                      \

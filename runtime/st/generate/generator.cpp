@@ -68,7 +68,7 @@ void finish(Writing& w, Routine& routine) {
         Instruction& in = w.code.instructions[i];
         const std::string_view operands = info(in.op).operands;
         const auto is_slot = [&](std::size_t k) {
-            return std::string_view("wrst").find(operands[k]) != std::string_view::npos;
+            return std::string_view("wrsdt").find(operands[k]) != std::string_view::npos;
         };
         if (is_slot(0)) place(in.a);
         if (is_slot(1)) place(in.b);
