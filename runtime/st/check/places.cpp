@@ -88,7 +88,7 @@ const Type* check_member(Checking& c, Expression*& e) {
     if (Variable* found = find_member(*type, name)) {
         c.note(e->token.place, *found);
         const bool is_value = found->space == Space::constant;
-        if (is_value && c.is_in_test()) {
+        if (is_value && (c.is_in_test() || found->access == Access::public_)) {
             e = make_constant(c, *e, *found->type, found->value);
             return found->type;
         }

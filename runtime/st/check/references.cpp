@@ -200,6 +200,11 @@ const Type* check_is_bound(Checking& c, Expression*& e) {
     Expression*& given = e->arguments[0].value;
     if (!check(c, given)) return nullptr;
     Expression* reference = without_alias(given);
+    const Variable* in_out = given->kind == E::name ? given->variable : nullptr;
+    if (in_out && in_out->space == Space::reference && !reference->type->is_reference()) {
+        if (!refer(c, given, make_reference(c, Referring::ref, given->type))) return nullptr;
+        reference = given;
+    }
     if (!reference->type->is_reference())
         return c.fail(
             code::type_does_not_fit, given->place,

@@ -132,6 +132,7 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
     type.has_numbers = true;
     const bool has_base = text.name.word != Word::end_of_file;
     if (has_base) type.base = resolve_name(c, text.name);
+    if (!type.base) return nullptr;
     if (type.base && type.base->kind != Kind::integer && type.base->kind != Kind::bits)
         return c.fail(code::not_supported, text.place, "arguments behind a type are not supported",
                       "write values behind ':=': (name := value)");

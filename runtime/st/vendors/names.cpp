@@ -86,8 +86,9 @@ constexpr Renamed parts[] = {{"reset", "r"},
                              {"enable_positive", "enablepositive"},
                              {"enable_negative", "enablenegative"}};
 
-constexpr Renamed arguments[] = {{"str", "in"}, {"str1", "in1"}, {"str2", "in2"},
-                                 {"size", "l"}, {"len", "l"},    {"pos", "p"}};
+constexpr Renamed arguments[] = {{"str", "in"},      {"str1", "in1"},   {"str2", "in2"},
+                                 {"size", "l"},      {"len", "l"},      {"pos", "p"},
+                                 {"string1", "in1"}, {"string2", "in2"}};
 
 constexpr std::string_view libraries[] = {"standard",     "standard64",     "tc2_standard",
                                           "tc2_system",   "tc2_mc2",        "sm3_basic",
