@@ -160,6 +160,45 @@ def check_configuration():
     run("run", "--quiet", "configured.yaml")
 
 
+CHART = """PROGRAM PLC_PRG
+VAR_INPUT reset, init : BOOL; END_VAR
+VAR machine : Machine; END_VAR
+VAR_OUTPUT done, runs, begun : INT; END_VAR
+machine.Act(SFCReset := reset, SFCInit := init);
+done := machine.done; runs := machine.runs; begun := machine.begun;
+END_PROGRAM
+FUNCTION_BLOCK Machine
+VAR SFCInit, SFCReset, lamp : BOOL; done, runs, begun : INT; END_VAR
+ACTION Act:
+INITIAL_STEP Begin:
+    Count(N);
+END_STEP
+STEP Work:
+    Run(N);
+    lamp(S);
+END_STEP
+STEP Done: END_STEP
+TRANSITION FROM Begin TO Work := Begin.T >= T#2ms; END_TRANSITION
+TRANSITION FROM Work TO Done := Work.T >= T#2ms; END_TRANSITION
+END_ACTION
+ACTION Count: begun := begun + 1; END_ACTION
+ACTION Run: runs := runs + 1; done := BOOL_TO_INT(lamp); END_ACTION
+END_FUNCTION_BLOCK
+"""
+
+
+def check_chart_flags():
+    """SFCReset and SFCInit of CODESYS begin a chart again; who calls an action gives its block's inputs."""
+    write("chart/ALL.EXP", CHART)
+    write("chart/chart.yaml", "lineshaft: 1\ntasks: {t: {every: 1 ms}}\nsources: ALL.EXP\nblocks: {p: {type: PLC_PRG, task: t, "
+          "reset: inputs.reset, init: inputs.init}}\ninputs: {reset: false, init: false}\nrun: {for: 30 ms}\nstimulus:\n"
+          "  - {at: 10 ms, set: {inputs.reset: true}}\n  - {at: 12 ms, set: {inputs.reset: false}}\n"
+          "  - {at: 20 ms, set: {inputs.init: true}}\nexpect:\n  - {at: 9 ms, p.begun: 3}\n  - {at: 9 ms, p.runs: 3}\n"
+          "  - {at: 11 ms, p.begun: 5}\n  - {at: 11 ms, p.runs: 3}\n  - {at: 19 ms, p.runs: 6}\n  - {at: end, p.runs: 6}\n"
+          "  - {at: 19 ms, p.begun: 8}\n  - {at: end, p.begun: 8}\n")
+    run("run", "chart/chart.yaml")
+
+
 def check_older_forms():
     """CoDeSys 2.3 exports pictures and open addresses beside its units; B&R declares what is elsewhere, by any name."""
     write("old/ALL.EXP", "(* @NESTEDCOMMENTS := 'Yes' *)\nPROGRAM PLC_PRG\nVAR n : ARRAY[1..3] OF INT := 3(7); m : ARRAY[1..2] OF INT := 0; "
@@ -374,6 +413,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_inherited()
     check_page()
     check_configuration()
+    check_chart_flags()
     check_older_forms()
     check_yaml_folder()
     check_nothing()

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -298,6 +300,57 @@ void write_action(ChartWriter& w, const Token& action, const std::vector<Use>& u
     w.out.push_back(w.set(kept("ran"), kept("runs")));
 }
 
+/// As it begins: its initial step is active, and nothing is stored.
+Block restarted(ChartWriter& w, const Chart& chart) {
+    Block made;
+    for (const ChartStep& step : chart.steps) {
+        const Token& at = step.name;
+        made.push_back(w.set(w.active(at), w.truth(at, step.is_initial)));
+        made.push_back(w.run(w.kept(at, at.text, "timer"), w.truth(at, false), nullptr));
+        made.push_back(w.set(make_member(w.c, w.name(at, at.text), "T"),
+                             make_constant(w.c, w.like(at), time_type, {})));
+        made.push_back(w.set(w.kept(at, at.text, "before"), w.truth(at, false)));
+    }
+    for (const auto& [action, uses] : actions_of(w, chart)) {
+        for (const std::string_view part : {"stored", "runs", "ran"})
+            made.push_back(w.set(w.kept(action, action.text, part), w.truth(action, false)));
+        for (const Use& use : uses)
+            if (is_stored_with_time(*use.association))
+                made.push_back(w.set(w.name(action, use.kept), w.truth(action, false)));
+    }
+    return made;
+}
+
+/// A BOOL of CODESYS that the block declares, by whose name its charts are told what to do; null:
+/// it declares none.
+Variable* flag_of_charts(const Routine& block, std::string_view name) {
+    const auto it = block.names.find(name);
+    const bool is_flag = it != block.names.end() && it->second->type == &bool_type &&
+                         block.pou->place.dialect().is_loose;
+    return is_flag ? it->second : nullptr;
+}
+
+/// While SFCReset the chart stands at its initial step, and while SFCInit it runs no action either.
+Block with_flags(ChartWriter& w, const Chart& chart, Block evolution, Block actions) {
+    const bool resets = flag_of_charts(w.routine, "SFCReset");
+    const bool begins = flag_of_charts(w.routine, "SFCInit");
+    const Token& at = chart.steps.front().name;
+    const auto any = [&](bool first, bool second) {
+        Expression* flag = first ? w.name(at, "SFCInit") : nullptr;
+        return second ? w.joined(Word::or_, flag, w.name(at, "SFCReset")) : flag;
+    };
+    Block made;
+    if (begins || resets) {
+        made.push_back(
+            make_if(w.c, at.place, any(begins, resets), restarted(w, chart), std::move(evolution)));
+    } else {
+        made = std::move(evolution);
+    }
+    if (begins) actions = {w.when(w.negated(any(true, false)), std::move(actions))};
+    made.insert(made.end(), actions.begin(), actions.end());
+    return made;
+}
+
 /// `seen` has the chart, and `routine`, if it is another, what this keeps.
 void declare_chart(Checking& c, Routine& routine, Routine& seen) {
     if (!seen.pou->chart) return;
@@ -344,6 +397,10 @@ void declare_charts(Checking& c, Routine& routine) {
     if (routine.owner) return;
     declare_chart(c, routine, routine);
     for (Routine* method : routine.own_methods) declare_chart(c, routine, *method);
+    for (const std::string_view flag : {"SFCInit", "SFCReset"})
+        if (Variable* variable = flag_of_charts(routine, flag);
+            variable && variable->section == Section::local)
+            variable->section = Section::input;  // who calls an action gives it
 }
 
 Block chart_statements(Checking& c, Routine& routine) {
@@ -358,10 +415,11 @@ Block chart_statements(Checking& c, Routine& routine) {
     if (!is_right) return {};
     write_times(w, chart);
     write_evolution(w, chart);
+    Block evolution = std::exchange(w.out, {});
     for (const auto& [action, uses] : actions_of(w, chart)) write_action(w, action, uses);
     for (const ChartStep& step : chart.steps)
         w.out.push_back(w.set(w.kept(step.name, step.name.text, "before"), w.active(step.name)));
-    return std::move(w.out);
+    return with_flags(w, chart, std::move(evolution), std::move(w.out));
 }
 
 }  // namespace lineshaft::st

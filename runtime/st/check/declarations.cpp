@@ -233,7 +233,10 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         if (section == Section::in_out && !(type && type->is_handle()))
             variable->space = Space::reference;
         const auto [it, added] = routine.names.emplace(variable->text, variable);
-        if (!added)
+        const bool is_of_base = !added && it->second->of != routine.pou;
+        if (is_of_base && it->second->access == Access::private_)
+            it->second = variable;  // of a base that keeps its own to itself
+        else if (!added)
             c.fail(code::declared_twice, declared->name.place,
                    fmt::format("'{}' is declared twice", variable->text),
                    it->second->of != routine.pou ? fmt::format("a base has it already, in line {}",

@@ -81,7 +81,8 @@ const Type* check_member(Checking& c, Expression*& e) {
         c.note(e->token.place, *found);
         const bool is_value = found->space == Space::constant;
         const bool is_own = type->kind == Kind::block && e->operands[0]->kind == E::self;
-        if (is_value && (is_own || c.is_in_test())) return become(c, e, *found->type, found->value);
+        if (is_value && (is_own || c.is_in_test() || found->access == Access::public_))
+            return become(c, e, *found->type, found->value);
         if (type->kind == Kind::block && !is_own && (found->section == Section::temp || is_value))
             return c.fail(code::not_declared, e->token.place,
                           fmt::format("'{}' of {} is not seen from outside", name, type->name),

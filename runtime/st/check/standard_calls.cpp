@@ -1,3 +1,4 @@
+#include "runtime/source/letters.hpp"
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
@@ -52,10 +53,12 @@ bool order_arguments(Checking& c, Expression*& e, const StandardFunction& f) {
     if (f.typing == Typing::chosen && f.most > f.least && has_else) names.back() = "INELSE";
     for (int i = 0; i < count; ++i) {
         const Argument& argument = call.arguments[static_cast<std::size_t>(i)];
-        const bool is_codesys = f.typing == Typing::texts && call.place.dialect().is_loose;
+        const bool is_simatic_ax = lower(argument.name.text).starts_with("string");
+        const bool is_vendors =
+            f.typing == Typing::texts && (call.place.dialect().is_loose || is_simatic_ax);
         const auto is_called = [&](const std::string& name) {
             return same_name(name, argument.name.text) ||
-                   (is_codesys && same_name(name, standard_argument_name(argument.name.text)));
+                   (is_vendors && same_name(name, standard_argument_name(argument.name.text)));
         };
         const bool named = argument.is_named();
         const auto it = named ? std::ranges::find_if(names, is_called) : names.begin() + i;

@@ -87,6 +87,38 @@ void check_action(Checking& c, Statement*& s) {
     check(c, s);
 }
 
+/// The name of a variable or of THIS, with parts or without; that of a namespace is none.
+bool is_of_variable(Checking& c, const Expression& e) {
+    if (e.kind != E::name) return e.operands[0] && is_of_variable(c, *e.operands[0]);
+    return find_variable(c, e.token) || is_own_instance(c, e);
+}
+
+/// `motor.Turn(speed := 5);` of an ACTION gives the block's inputs, and then runs it.
+bool gives_inputs(Checking& c, Statement*& s) {
+    const Expression& call = *s->value;
+    const auto is_given = [](const Argument& a) { return a.is_named() && a.value && !a.is_output; };
+    if (call.kind != E::call || call.arguments.empty() || call.type ||
+        !std::ranges::all_of(call.arguments, is_given))
+        return false;
+    Expression* callee = call.operands[0];
+    if (callee->kind == E::member && !is_of_variable(c, *callee->operands[0])) return false;
+    if (!find_action(c, *callee)) return false;
+    Block made;
+    for (const Argument& argument : call.arguments) {
+        Expression like;
+        like.token = argument.name;
+        like.place = argument.name.place;
+        Expression* input = callee->kind == E::member
+                                ? make_member(c, callee->operands[0], argument.name.text)
+                                : make_name(c, like, argument.name.text);
+        made.push_back(make_assignment(c, argument.value->place, input, argument.value));
+    }
+    made.push_back(make_call_statement(c, make_with(c, call, {})));
+    s = make_sequence(c, s->place, std::move(made));
+    check(c, s);
+    return true;
+}
+
 void check_condition(Checking& c, Expression*& condition, std::string_view of) {
     const Type* type = check(c, condition, &bool_type);
     if (!type || type->kind == Kind::boolean) return;
@@ -169,7 +201,8 @@ void check(Checking& c, Statement*& slot) {
         case S::assign:
             return check_assignment(c, slot);
         case S::call:
-            return check_call(c, s);
+            if (!gives_inputs(c, slot)) check_call(c, s);
+            return;
         case S::action:
             return check_action(c, slot);
         case S::if_:

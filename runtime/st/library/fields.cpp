@@ -14,6 +14,13 @@ namespace {
 
 using Kind = Type::Kind;
 
+/// `Base.` of a PRIVATE variable whose name what extends its block has, too; else nothing.
+std::string of_base(const Routine& block, const Variable& variable) {
+    const auto it = block.names.find(variable.text);
+    const bool is_hidden = it != block.names.end() && it->second != &variable && variable.of;
+    return is_hidden ? fmt::format("{}.", variable.of->name.text) : std::string();
+}
+
 /// Writes down the fields of one kind.
 class FieldWriter {
   public:
@@ -105,7 +112,8 @@ class FieldWriter {
             case Kind::block:
                 for (const Variable* member : all_variables(*type.routine))
                     if (member->section != Section::temp)
-                        write(*member, slot, name + ".", inner(direction));
+                        write(*member, slot, name + "." + of_base(*type.routine, *member),
+                              inner(direction));
                 return;
             case Kind::interface:
             case Kind::reference:
@@ -227,7 +235,7 @@ void write_fields(Library::Made& made, KindContext& kind, const Routine& routine
     for (const Variable* declared : all_variables(routine)) {
         const Variable& variable = *declared;
         const std::size_t before = kind.fields.size();
-        fields.write(variable, 0, {}, FieldWriter::direction_of(variable));
+        fields.write(variable, 0, of_base(routine, variable), FieldWriter::direction_of(variable));
         keep(kind, before, variable.retain);
         if (variable.space != Space::reference) continue;
         kind.references.push_back(variable.slot);

@@ -53,8 +53,12 @@ constexpr Renamed parts[] = {{"r", " reset "},
                              {"enablepositive", " enable_positive "},
                              {"enablenegative", " enable_negative "}};
 
-constexpr Renamed arguments[] = {{"in", " str "}, {"in1", " str1 "}, {"in2", " str2 "},
-                                 {"l", " size "}, {"l", " len "},    {"p", " pos "}};
+constexpr Renamed arguments[] = {{"in", " str "},
+                                 {"in1", " str1 string1 "},
+                                 {"in2", " str2 string2 "},
+                                 {"l", " size "},
+                                 {"l", " len "},
+                                 {"p", " pos "}};
 
 constexpr std::string_view libraries[] = {"standard",     "standard64",     "tc2_standard",
                                           "tc2_system",   "tc2_mc2",        "sm3_basic",

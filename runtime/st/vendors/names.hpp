@@ -20,7 +20,8 @@ std::string_view standard_type_name(std::string_view name);
 /// Empty for any other name.
 std::string_view standard_part_name(std::string_view name);
 
-/// What CODESYS' functions of texts call an argument, as the standard does: STR1 is IN1, SIZE is L.
+/// What CODESYS' and SIMATIC AX' functions of texts call an argument, as the standard does: STR1
+/// and string1 are IN1, SIZE is L.
 std::string_view standard_argument_name(std::string_view name);
 
 /// A library of CODESYS, Beckhoff or SIMATIC AX whose names are here without it.
