@@ -100,7 +100,8 @@ struct Checking {
         const DeclarationBlock* block;
         const Declaration* declared;
     };
-    NameMap<GlobalConstant> constants = {};  ///< until all globals are declared
+    NameMap<GlobalConstant> constants = {};  ///< by name; of a block as `Block.constant`
+    std::deque<DeclarationBlock> constants_of_blocks = {};  ///< as lists of globals of their names
     std::unordered_set<const Declaration*> begun_constants = {};  ///< declared, or being so
     std::vector<std::pair<Type*, const TypeText*>> targets =
         {};  ///< of references, until all types are known

@@ -275,6 +275,20 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
     }
 }
 
+/// `Block.constant` may be named from anywhere, in types too.
+void list_constants(Checking& c, const Routine& block) {
+    for (const DeclarationBlock& own : block.pou->blocks) {
+        if (!own.constant || own.section != Section::local) continue;
+        DeclarationBlock& list = c.constants_of_blocks.emplace_back(own);
+        list.section = Section::global;
+        list.list = block.name;
+        list.is_qualified_only = true;
+        for (const Declaration* declared : list.declarations)
+            c.constants.emplace(name_in_list(c, list, *declared),
+                                Checking::GlobalConstant{&list, declared});
+    }
+}
+
 void add_method(Routine& block, Routine& method) {
     block.own_methods.push_back(&method);
     auto& known = method.pou->accessor == Accessor::get   ? block.getters
@@ -349,6 +363,7 @@ void collect_names(Checking& c) {
             routine.type->slots = 1;
         }
         collect_methods(c, routine);
+        if (added) list_constants(c, routine);
     }
     for (const DeclarationBlock& block : c.tree.globals)
         for (const Declaration* declared : block.declarations)
@@ -406,7 +421,6 @@ void declare_globals(Checking& c) {
                 (!block.constant || c.begun_constants.insert(declared).second))
                 declare_global(c, block, *declared);
     declare_externals(c);
-    c.constants.clear();
     for (Pou* pou : c.tree.units) {
         if (pou->kind != PouKind::data_block) continue;
         const int number = static_cast<int>(c.checked.globals.size());

@@ -135,8 +135,8 @@ void parse_reference(Parsing& p, TypeText& type) {
 ///             ( ':' Data_Type | Struct_Decl | Union_Decl ) ( ':=' Init ) ?
 void parse_type_declarations(Parsing& p) {
     const Token opener = p.take();
-    while (accept_access(p) || (p.is(Word::abstract_) && p.is_name(1) && p.accept(Word::abstract_)))
-        continue;
+    const auto is_abstract = [&] { return p.is_name(1) || p.next().word == Word::end_type_; };
+    while (accept_access(p) || (is_abstract() && p.accept(Word::abstract_))) continue;
     while (!is_end(p.here().word) && !p.is(Word::end_of_file) && !p.at_pou()) {
         TypeDeclaration declared;
         declared.name = expect_name(p, "the name of a type");
