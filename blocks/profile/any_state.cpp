@@ -363,8 +363,10 @@ PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal&
     if (const PlanResult result = check(limits, from, to); result != PlanResult::ok) return result;
     if (from.velocity == 0 && from.acceleration == 0 && to.velocity == 0) {
         const double size = std::max(std::abs(from.position), std::abs(to.position));
-        if (std::abs(to.position - from.position) > options.tolerance * ulp * size)
-            return plan_from_standstill(limits, from, to, out);
+        const bool moves = std::abs(to.position - from.position) > options.tolerance * ulp * size;
+        // Where limits are so far apart that it is lost in them, the general way finds one.
+        if (moves && plan_from_standstill(limits, from, to, out) == PlanResult::ok)
+            return PlanResult::ok;
     }
     Start start(limits, from, to, options);
     add_soonest(limits, start);

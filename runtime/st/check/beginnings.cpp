@@ -204,7 +204,11 @@ bool is_first(const Checking& c, const Routine& block) {
 }  // namespace
 
 bool is_constructed(const Type* type) {
-    return type && type->kind == Kind::block && type->routine->methods.contains(constructor);
+    if (!type) return false;
+    if (type->kind == Kind::array) return is_constructed(type->element);
+    if (type->kind == Kind::structure)
+        return std::ranges::any_of(type->members, is_constructed, &Variable::type);
+    return type->kind == Kind::block && constructor_of(*type);
 }
 
 bool begin_with(Checking& c, Expression*& value, const Type& type) {

@@ -180,10 +180,10 @@ const Type* check_is_bound(Checking& c, Expression*& e) {
     Expression*& given = e->arguments[0].value;
     if (!check(c, given)) return nullptr;
     Expression* reference = without_alias(given);
-    const bool is_in_out = given->kind == E::name && given->variable->section == Section::in_out;
-    if (is_in_out && !reference->type->is_reference()) {
-        e = make_boolean(c, *e, true);  // a call has given it
-        return e->type;
+    const Variable* in_out = given->kind == E::name ? given->variable : nullptr;
+    if (in_out && in_out->space == Space::reference && !reference->type->is_reference()) {
+        if (!refer(c, given, make_reference(c, Referring::ref, given->type))) return nullptr;
+        reference = given;
     }
     if (!reference->type->is_reference())
         return c.fail(

@@ -256,7 +256,7 @@ TEST_CASE("a chart's divergences and convergences, actions and conditions") {
         read(program("SFC", body,
                      "<transitions><transition name=\"Ready\"><body><ST><p>:= Left.T > T#2s;</p>"
                      "</ST></body></transition></transitions>"));
-    CHECK(made.messages == "");
+    CHECK(made.messages == "8:285: 'motor' is not declared\n");
     CHECK(made.text == R"(ACTION _action1:
 x := x + 1;
 

@@ -31,7 +31,8 @@ std::vector<std::string> parsed_names(const LibraryFile& library) {
         for (const st::Argument& value : type.type->values) names.emplace_back(value.name.text);
     }
     for (const st::Pou* unit : tree.units)
-        if (!std::islower(static_cast<unsigned char>(unit->name.text.front())))
+        if (unit->kind != st::PouKind::function ||
+            !std::islower(static_cast<unsigned char>(unit->name.text.front())))
             names.emplace_back(unit->name.text.substr(unit->name.text.rfind('.') + 1));
     for (const st::DeclarationBlock& block : tree.globals)
         for (const st::Declaration* variable : block.declarations)
