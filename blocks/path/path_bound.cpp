@@ -4,36 +4,25 @@
 #include <array>
 #include <cmath>
 
+#include "blocks/path/path_polynomial.hpp"
+
 namespace lineshaft {
 
 namespace {
 
-constexpr std::size_t count_of_sizes = 6;
-using Coefficients = std::array<double, count_of_sizes>;
+constexpr std::size_t count_of_sizes = std::tuple_size_v<PathPolynomial>;
 
 /// Over a curve's parameter, of which the length is a polynomial: the sizes of its derivatives, the
 /// k-th in place k.
 using Sizes = std::array<double, count_of_sizes>;
 
-Coefficients slope_of(const Coefficients& p) {
-    Coefficients out{};
-    for (std::size_t k = 1; k < count_of_sizes; ++k) out[k - 1] = static_cast<double>(k) * p[k];
-    return out;
-}
-
-double value_at(const Coefficients& p, double t) {
-    double sum = 0;
-    for (std::size_t k = count_of_sizes; k-- > 0;) sum = sum * t + p[k];
-    return sum;
-}
-
 /// Within `half` of `middle` no derivative is greater than the sum of the sizes of its Taylor
 /// series there.
-Sizes greatest_within(Coefficients p, double middle, double half) {
+Sizes greatest_within(PathPolynomial p, double middle, double half) {
     Sizes at{}, out{};
     for (std::size_t k = 0; k < count_of_sizes; ++k) {
-        at[k] = std::abs(value_at(p, middle));
-        p = slope_of(p);
+        at[k] = std::abs(value_of(p, middle));
+        p = derivative_of(p);
     }
     for (std::size_t k = 0; k < count_of_sizes; ++k) {
         double scale = 1;
@@ -63,8 +52,8 @@ PathBound greater_of(const PathBound& a, const PathBound& b) {
 PathBound bound_of_spline(const PathCurve& c, std::size_t axis) {
     constexpr int parts = 16;
     constexpr double half = 0.5 / parts;
-    const Coefficients x{c.origin[axis], c.u[axis],      c.w[axis],
-                         c.slope[axis],  c.fourth[axis], c.fifth[axis]};
+    const PathPolynomial x{c.origin[axis], c.u[axis],      c.w[axis],
+                           c.slope[axis],  c.fourth[axis], c.fifth[axis]};
     PathBound out;
     for (int k = 0; k < parts; ++k) {
         const double middle = (k + 0.5) / parts;
@@ -75,7 +64,7 @@ PathBound bound_of_spline(const PathCurve& c, std::size_t axis) {
             per /= c.length;
         }
         const double wide = m[1] * half * c.length;
-        out = greater_of(out, composed(greatest_within(x, value_at(c.map, middle), wide), m));
+        out = greater_of(out, composed(greatest_within(x, value_of(c.map, middle), wide), m));
     }
     return out;
 }

@@ -3,36 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blocks/path/path_polynomial.hpp"
+
 namespace lineshaft {
 
 namespace {
 
-constexpr std::size_t terms = 6;
-using Polynomial = std::array<double, terms>;
+using Polynomial = PathPolynomial;
 
 Polynomial polynomial_of(const PathCurve& c, std::size_t axis) {
     return {c.origin[axis], c.u[axis], c.w[axis], c.slope[axis], c.fourth[axis], c.fifth[axis]};
-}
-
-Polynomial derivative(const Polynomial& p) {
-    Polynomial out{};
-    for (std::size_t k = 1; k < terms; ++k) out[k - 1] = static_cast<double>(k) * p[k];
-    return out;
-}
-
-double value(const Polynomial& p, double t) {
-    double sum = 0;
-    for (std::size_t k = terms; k-- > 0;) sum = sum * t + p[k];
-    return sum;
 }
 
 /// p(at + width t).
 Polynomial part_of(Polynomial p, double at, double width) {
     Polynomial out{};
     double scale = 1;
-    for (std::size_t k = 0; k < terms; ++k) {
-        out[k] = value(p, at) * scale;
-        p = derivative(p);
+    for (std::size_t k = 0; k < out.size(); ++k) {
+        out[k] = value_of(p, at) * scale;
+        p = derivative_of(p);
         scale *= width / static_cast<double>(k + 1);
     }
     return out;
@@ -62,10 +51,10 @@ struct Pace {
 Pace pace_at(const PathCurve& c, double t) {
     double square = 0, product = 0;
     for (std::size_t i = 0; i < path_space; ++i) {
-        const Polynomial first = derivative(polynomial_of(c, i));
-        const double x = value(first, t);
+        const Polynomial first = derivative_of(polynomial_of(c, i));
+        const double x = value_of(first, t);
         square += x * x;
-        product += x * value(derivative(first), t);
+        product += x * value_of(derivative_of(first), t);
     }
     return {std::sqrt(square), product};
 }
@@ -98,11 +87,11 @@ void find_map(PathCurve& c) {
 bool is_even(const PathCurve& c) {
     constexpr double most = 1e-4;
     constexpr int places = 33;
-    const Polynomial slope = derivative(c.map);
+    const Polynomial slope = derivative_of(c.map);
     for (int k = 0; k < places; ++k) {
         const double share = static_cast<double>(k) / (places - 1);
         const double tangent =
-            pace_at(c, value(c.map, share)).speed * value(slope, share) / c.length;
+            pace_at(c, value_of(c.map, share)).speed * value_of(slope, share) / c.length;
         if (!(std::abs(tangent - 1) <= most)) return false;
     }
     return true;
@@ -127,7 +116,7 @@ PathCurve part(const PathCurve& whole, std::size_t k, std::size_t count) {
     for (std::size_t i = 0; i < most_path_axes; ++i) {
         const Polynomial p = polynomial_of(whole, i);
         set(c, i, part_of(p, static_cast<double>(k) * width, width));
-        if (k + 1 < count) c.end[i] = value(p, static_cast<double>(k + 1) * width);
+        if (k + 1 < count) c.end[i] = value_of(p, static_cast<double>(k + 1) * width);
     }
     c.length = length_of(c);
     if (c.length > 0) find_map(c);
@@ -161,7 +150,7 @@ double deviation_of(const PathCurve& before, const PathCurve& after, double far)
     for (int k = 0; k < places; ++k) {
         const double t = static_cast<double>(k) / (places - 1);
         PathVector x{};
-        for (std::size_t i = 0; i < path_space; ++i) x[i] = value(polynomial_of(c, i), t);
+        for (std::size_t i = 0; i < path_space; ++i) x[i] = value_of(polynomial_of(c, i), t);
         const double near =
             std::min(distance_to(before, x, before.length - std::max(0.0, far * (1 - 2 * t))),
                      distance_to(after, x, std::max(0.0, far * (2 * t - 1))));
