@@ -324,8 +324,9 @@ class CWriter {
         return fmt::format("{}f{}", prefix_, number_of(&routine));
     }
 
+    /// The body of an ABSTRACT block is one, which SUPER^() calls; an ABSTRACT method has none.
     static bool has_body(const Routine& routine) {
-        return !routine.is_prototype() && !routine.pou->is_abstract;
+        return !routine.is_prototype() && !(routine.owner && routine.pou->is_abstract);
     }
 
     static bool has_instance(const Routine& routine) {
@@ -397,9 +398,10 @@ class CWriter {
         put("{} {{\nswitch (self->kind) {{", head(wanted, true));
         const Routine& root = wanted.owner ? *wanted.owner : wanted;
         for (const Routine* block : checked_.order) {
-            if (!block->has_instances() || block->owner || !is_a(*block, root)) continue;
+            if (!block->has_instances() || block->owner || block->pou->is_abstract) continue;
+            if (!is_a(*block, root)) continue;
             const Routine* found = wanted.owner ? nearest(*block, wanted) : block;
-            if (!found || !has_body(*found) || !has_body(*block)) continue;
+            if (!found || !has_body(*found)) continue;
             const Routine& of = found->owner ? *found->owner : *found;
             const std::string call =
                 fmt::format("{}(({}*)self{})", name_of(*found), c_type(*of.type),
