@@ -1043,6 +1043,7 @@ class CWriter {
 
     std::string text_function(const Expression& e) {
         const StandardFunction& f = *e.standard;
+        if (chooses(f)) return chosen_alone(e);
         std::vector<std::string> a;
         for (const Argument& argument : e.arguments) a.push_back(this->argument(*argument.value));
         std::string made = new_text();
@@ -1070,7 +1071,7 @@ class CWriter {
         } else if (f.name == "REPLACE") {
             put("twin_replace(&{}, {}, {}, {}, {});", made, a[0], a[1], a[3], a[2]);
         } else {
-            return chosen(e, f, a);
+            return one_of(*e.type, f, a);
         }
         return "&" + made;
     }
@@ -1189,6 +1190,7 @@ class CWriter {
         const StandardFunction& f = *e.standard;
         const Type& type = *e.type;
         if (f.result == Generic::text) return text_function(e);
+        if (chooses(f)) return chosen_alone(e);
         std::vector<std::string> a;
         for (const Argument& argument : e.arguments) a.push_back(this->argument(*argument.value));
         const std::string_view name = f.name;
@@ -1235,7 +1237,7 @@ class CWriter {
                 type_of, a[0]);
             return {};
         }
-        return chosen(e, f, a);
+        return one_of(type, f, a);
     }
 
     std::string lesser(const Type& type, const std::string& a, const std::string& b,
@@ -1243,28 +1245,37 @@ class CWriter {
         return made(type, fmt::format("{0} {1} {2} ? {0} : {2}", b, greatest ? ">" : "<", a));
     }
 
-    /// Functions that give one of their arguments.
-    std::string chosen(const Expression& e, const StandardFunction& f,
+    /// Of MOVE, MIN and MAX.
+    std::string one_of(const Type& type, const StandardFunction& f,
                        const std::vector<std::string>& a) {
+        std::string so_far = a[0];
+        for (std::size_t i = 1; i < a.size(); ++i)
+            so_far = lesser(type, so_far, a[i], f.name == "MAX");
+        return so_far;
+    }
+
+    static bool chooses(const StandardFunction& f) { return f.name == "SEL" || f.name == "MUX"; }
+
+    /// SEL and MUX evaluate one of their arguments: of what is jumped over nothing is read.
+    std::string chosen_alone(const Expression& e) {
         const Type& type = *e.type;
-        const std::string c = c_type(type) + (type.is_scalar() ? "" : "*");
-        if (f.name == "MOVE") return a[0];
-        if (f.name == "SEL")
-            return made(c,
-                        fmt::format("{} ? ({c}){} : ({c}){}", a[0], a[2], a[1], fmt::arg("c", c)));
-        if (f.name == "MIN" || f.name == "MAX") {
-            std::string so_far = a[0];
-            for (std::size_t i = 1; i < a.size(); ++i)
-                so_far = lesser(type, so_far, a[i], f.name == "MAX");
-            return so_far;
+        const bool by_truth = e.standard->name == "SEL";
+        const std::size_t last = e.arguments.size() - 1;
+        const std::string c = c_type(type) + (type.is_scalar() || type.is_reference() ? "" : "*");
+        const std::string number = value(*e.arguments[0].value), to = new_name(), end = new_name();
+        put("{} {};", c, to);
+        if (!by_truth && !same_name(e.arguments.back().name.text, "inelse"))
+            put("if ((i128){0} < 0 || (i128){0} >= {1}) {2};", number, last, fault("array_bounds"));
+        for (std::size_t i = 1; i <= last; ++i) {
+            const std::string next = new_name();
+            if (i < last && by_truth) put("if ({}) goto {};", number, next);
+            if (i < last && !by_truth) put("if ({} != {}) goto {};", number, i - 1, next);
+            const std::string one = argument(*e.arguments[i].value);
+            put("{} = {}{};", to, type.is_reference() ? "" : "(" + c + ")", one);
+            if (i < last) put("goto {};\n{}:;", end, next);
         }
-        if (!same_name(e.arguments.back().name.text, "inelse"))
-            put("if ((i128){0} < 0 || (i128){0} > {1}) {2};", a[0], a.size() - 2,
-                fault("array_bounds"));
-        std::string list;
-        for (std::size_t i = 1; i + 1 < a.size(); ++i)
-            list += fmt::format("{} == {} ? ({}){} : ", a[0], i - 1, c, a[i]);
-        return made(c, list + "(" + c + ")" + a.back());
+        put("{}:;", end);
+        return to;
     }
 
     std::string mathematical(std::string_view name, const std::vector<std::string>& a) {
