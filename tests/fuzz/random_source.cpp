@@ -620,10 +620,10 @@ class SourceMaker {
             return std::to_string(
                 lower + static_cast<std::int64_t>(below(static_cast<std::size_t>(count))));
         };
-        const char* const types[] = {"INT", "DINT", "SINT", "LINT"};
+        const char* const types[] = {"INT", "DINT", "LINT", "SINT"};
         const std::size_t how = below(8);
         if (how < 3 || index_depth_ > 1) return fixed();
-        const Type& type = named(types[below(4)]);
+        const Type& type = named(types[below(upper > 127 ? 3 : 4)]);
         ++index_depth_;
         const auto variable = place(type, false);
         --index_depth_;

@@ -70,14 +70,6 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
                            fmt::format("NOT takes a BOOL to a BOOL, not {} to {}", describe(*type),
                                        describe(given)),
                            "take the output as it is"));
-    if (parameter.section == Section::in_out && is_packed(*value))
-        return void(c.fail(
-            code::wrong_arguments, value->place,
-            fmt::format("'{}' takes a variable, not bytes of {}", parameter.text,
-                        root_of(*value).variable && root_of(*value).variable->space == Space::image
-                            ? "the process image"
-                            : "a UNION"),
-            "copy it to a variable, give that, and copy it back"));
     const bool texts = given.kind == Kind::text && type->kind == Kind::text;
     const bool derives = parameter.section == Section::in_out && given.kind == Kind::block &&
                          type->kind == Kind::block && is_a(*given.routine, *type->routine);

@@ -43,10 +43,12 @@ const Type* check_kind(Checking& c, Expression*& e, const Type* expected) {
 }  // namespace
 
 const Type* check(Checking& c, Expression*& e, const Type* expected) {
-    if (e->type) return e->type;
-    const Type* type = check_kind(c, e, expected);
+    const bool is_known = e->type;
+    const Type* type = is_known ? e->type : check_kind(c, e, expected);
     e->type = type;
-    return type && type->is_alias() ? take_target(c, e) : type;
+    if (!type || !type->is_alias()) return type;
+    // What is known is what a reference is made of, or a variable that hangs in two places.
+    return is_known && !is_place(*e) ? type : take_target(c, e);
 }
 
 }  // namespace lineshaft::st

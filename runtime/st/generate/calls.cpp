@@ -16,6 +16,13 @@ struct Later {
     std::uint32_t slots = 0;  ///< of an array, a structure, a text or a reference
 };
 
+/// A VAR_IN_OUT is given a copy of what is no slot of its own, which is written back behind the
+/// call.
+struct Lent {
+    Location at, copy;
+    const Type* type = nullptr;
+};
+
 /// A test sets an output or a local by its name.
 bool is_set(const Argument& argument) {
     return argument.name.word != Word::end_of_file && !argument.is_output;
@@ -35,15 +42,38 @@ Location parameter(Writing& w, const Location& frame, const Expression& e,
     return behind(frame, slot_in_signature(w, *e.routine, variable));
 }
 
-/// Where the value of a VAR_IN_OUT is, and what it holds if any length may be given.
+void write(Writing& w, const Location& to, const Location& from, const Type& type) {
+    if (to.byte || from.byte)
+        store(w, to, load(w, from));
+    else
+        copy_value(w, to, from, type);
+}
+
+/// Bytes that are a part of something: a BOOL of a standard block, what is in a UNION or the image.
+bool is_in_bytes(const Location& at) {
+    return at.byte || (at.packed && at.packed->through == none);
+}
+
+/// Where the value of a VAR_IN_OUT is, and what it holds if any length may be given. A copy is
+/// referred to by nothing: ADR of that VAR_IN_OUT is NULL.
 void refer(Writing& w, const Location& to, const Variable& variable, const Expression& value,
-           std::vector<Later>& later) {
-    const Location at = locate(w, value);
+           std::vector<Later>& later, std::vector<Lent>& lent) {
+    Location at = locate(w, value);
+    const bool is_lent = is_in_bytes(at);
+    if (is_lent) {
+        if (at.mode != Mode::slot) at = as_address(w, at);
+        lent.push_back({at, {Mode::slot, w.new_temporary(slots_of(w, *value.type))}, value.type});
+        write(w, lent.back().copy, at, *value.type);
+        at = lent.back().copy;
+    }
     later.push_back({to, address_of(w, at)});
     if (variable.type->is_open) later.push_back({behind(to, 1), capacity_of(w, at, *value.type)});
-    if (w.checked.refers_to_in_outs)
-        later.push_back(
-            {behind(to, variable.type->is_open ? 2 : 1), reference_to(w, value), reference_slots});
+    if (!w.checked.refers_to_in_outs) return;
+    const Location reference = behind(to, variable.type->is_open ? 2 : 1);
+    if (is_lent)
+        later.push_back({reference, w.constant_slot(0)});
+    else
+        later.push_back({reference, reference_to(w, value), reference_slots});
 }
 
 void give(Writing& w, const std::vector<Later>& later) {
@@ -62,14 +92,16 @@ void give_left_out(Writing& w, const Location& frame, const Expression& e) {
         Jumps given;
         w.jump(Op::jump_if, 0, load(w, reference), given);
         std::vector<Later> later;
-        refer(w, reference, *argument.variable, *argument.value, later);
+        std::vector<Lent> lent;  // what stands for it is a variable of its own
+        refer(w, reference, *argument.variable, *argument.value, later, lent);
         give(w, later);
         w.land(given);
     }
 }
 
-/// Inputs and references, and what is left out.
-void give(Writing& w, const Location& frame, const Expression& e, const Routine& routine) {
+/// Inputs and references, and what is left out. Gives what is to be written back.
+std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
+                       const Routine& routine) {
     const auto is_given = [](const Argument& argument) {
         const Section section = argument.variable->section;
         return !argument.is_left_out &&
@@ -79,13 +111,14 @@ void give(Writing& w, const Location& frame, const Expression& e, const Routine&
     const bool nested = std::ranges::any_of(
         e.arguments, [&](const Argument& a) { return is_given(a) && has_call(*a.value); });
     std::vector<Later> later;
+    std::vector<Lent> lent;
     for (const Argument& argument : e.arguments) {
         if (!is_given(argument)) continue;
         const Variable& variable = *argument.variable;
         const Type& type = *variable.type;
         const Location to = parameter(w, frame, e, variable);
         if (variable.space == Space::reference) {
-            refer(w, to, variable, *argument.value, later);
+            refer(w, to, variable, *argument.value, later, lent);
         } else if (!nested) {
             assign(w, to, type, *argument.value);
         } else if (type.is_scalar()) {
@@ -98,7 +131,7 @@ void give(Writing& w, const Location& frame, const Expression& e, const Routine&
         }
     }
     give(w, later);
-    if (routine.has_instances()) return;
+    if (routine.has_instances()) return lent;
     for (const Variable& variable : routine.variables) {
         const bool missing =
             variable.section == Section::input &&
@@ -114,10 +147,12 @@ void give(Writing& w, const Location& frame, const Expression& e, const Routine&
               e.is_dispatched ? slot_in_signature(w, routine, variable) : variable.slot, slots);
         if (!is_near) copy(w, parameter(w, frame, e, variable), {Mode::slot, made}, slots);
     }
+    return lent;
 }
 
-/// Outputs.
-void take(Writing& w, const Location& frame, const Expression& e) {
+/// What was lent, and outputs.
+void take(Writing& w, const Location& frame, const Expression& e, const std::vector<Lent>& lent) {
+    for (const Lent& one : lent) write(w, one.at, one.copy, *one.type);
     for (const Argument& argument : e.arguments) {
         const Variable& variable = *argument.variable;
         const bool is_taken = argument.is_output || variable.section == Section::output;
@@ -160,10 +195,12 @@ void put_call(Writing& w, Op near, Op far, const Location& frame, std::uint32_t 
         w.put(far, address_of(w, frame), number);
 }
 
-void give_and_call(Writing& w, const Location& frame, const Expression& e, const Routine& routine) {
-    give(w, frame, e, routine);
+std::vector<Lent> give_and_call(Writing& w, const Location& frame, const Expression& e,
+                                const Routine& routine) {
+    std::vector<Lent> lent = give(w, frame, e, routine);
     w.place = e.place;
     put_call(w, Op::call, Op::call_at, frame, w.routine_number(routine));
+    return lent;
 }
 
 /// The instance says which routine that is, and where its parameters are.
@@ -172,10 +209,10 @@ Location find_and_call(Writing& w, const Expression& e, Slot instance) {
     w.place = e.place;
     w.put(Op::find_routine, found, instance, method_number(w, *e.routine));
     const Location frame{Mode::address, 0, e.routine->owner ? found + 1 : instance};
-    give(w, frame, e, *e.routine);
+    const std::vector<Lent> lent = give(w, frame, e, *e.routine);
     w.place = e.place;
     w.put(Op::call_found, instance, found);
-    take(w, frame, e);
+    take(w, frame, e, lent);
     return frame;
 }
 
@@ -217,7 +254,7 @@ Location call_routine(Writing& w, const Expression& e) {
     const bool is_function = routine.is_function();
     Location frame =
         is_function ? Location{Mode::slot, Region::window} : on_frame(w, method_base(w, e));
-    give_and_call(w, frame, e, routine);
+    const std::vector<Lent> lent = give_and_call(w, frame, e, routine);
     if (is_function) w.windows = std::max(w.windows, routine.frame);
     const auto is_called_for = [](const Argument& a) {
         return (a.is_output || a.variable->section == Section::output) && has_call(*a.value);
@@ -226,7 +263,7 @@ Location call_routine(Writing& w, const Expression& e) {
         frame.slot = w.new_temporary(routine.variables_end);
         w.put(Op::copy, frame.slot, Region::window, routine.variables_end);
     }
-    take(w, frame, e);
+    take(w, frame, e, lent);
     return frame;
 }
 
@@ -240,10 +277,8 @@ void call_instance(Writing& w, const Expression& e) {
         find_and_call(w, e, instance);
         return;
     }
-    if (type.kind == Kind::block) {
-        give_and_call(w, frame, e, *type.routine);
-        return take(w, frame, e);
-    }
+    if (type.kind == Kind::block)
+        return take(w, frame, e, give_and_call(w, frame, e, *type.routine));
     for (const Argument& argument : e.arguments)
         if (argument.variable->section != Section::output || is_set(argument))
             assign(w, part(w, frame, *argument.variable), *argument.variable->type,
@@ -258,7 +293,7 @@ void call_instance(Writing& w, const Expression& e) {
     }
     put_call(w, Op::call_block, Op::call_block_at, frame, number);
     w.land(mocked);
-    take(w, frame, e);
+    take(w, frame, e, {});
 }
 
 }  // namespace lineshaft::st

@@ -53,16 +53,6 @@ std::uint64_t bytes_of(const Type& type) {
     }
 }
 
-bool is_packed(const Expression& place) {
-    if (place.variable && place.variable->space == Space::image) return true;
-    const Expression* of = place.operands[0];
-    if (!of) return false;
-    if (place.kind == Expression::Kind::deref && of->kind == Expression::Kind::refer) return true;
-    const bool of_union =
-        place.kind == Expression::Kind::member && of->type && of->type->kind == Kind::union_;
-    return of_union || is_packed(*of);
-}
-
 bool has_call(const Expression& e) {
     if (e.kind == Expression::Kind::call && e.routine) return true;
     for (const Expression* operand : e.operands)

@@ -120,9 +120,6 @@ const Expression& root_of(const Expression& place);
 /// is, and what a POINTER is reckoned in.
 std::uint64_t bytes_of(const Type& type);
 
-/// It is a part of the process image, of a UNION, or of an overlay.
-bool is_packed(const Expression& place);
-
 /// A function or a method is called in it, which may write variables.
 bool has_call(const Expression& expression);
 
