@@ -537,6 +537,8 @@ class CWriter {
             case S::while_:
             case S::repeat:
                 return write_loop(s);
+            case S::try_:
+                return write_try(s);
             case S::exit:
                 return put("goto exit{};", loops_.back());
             case S::continue_:
@@ -658,6 +660,20 @@ class CWriter {
         if (!is_while) put("if ({}) break;", value(*s.value));
         put("}}\nexit{}:;", loop);
         loops_.pop_back();
+    }
+
+    void write_try(const Statement& s) {
+        const std::string kept = new_name(), fault = new_name();
+        put("{{ jmp_buf {0}; memcpy({0}, twin_end, sizeof {0});", kept);
+        put("const int {0} = setjmp(twin_end) / 1000000;\nif (!{0}) {{", fault);
+        write(s.body);
+        put("memcpy(twin_end, {0}, sizeof {0});\n}} else {{", kept);
+        put("memcpy(twin_end, {0}, sizeof {0});", kept);
+        if (s.target) put("{} = twin_exception({});", place(*s.target), fault);
+        write(s.branches[0].body);
+        put("}}");
+        write(s.branches[1].body);
+        put("}}");
     }
 
     // Values. Each is computed where it stands, from left to right, into a C variable of its own.
@@ -1029,7 +1045,7 @@ class CWriter {
         if (from.kind == Kind::enumeration) number = convert(number, from, lint_type);
         const std::string name = new_text();
         if (from.is_character) {
-            put("twin_literal(&{}, 254, (char[]){{{}}}, 1);", name, number);
+            put("twin_literal(&{0}, 254, (char[]){{{1}}}, {1} != 0);", name, number);
             return "&" + name;
         }
         const bool is_unsigned = from.is_unsigned_64();

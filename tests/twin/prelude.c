@@ -13,6 +13,11 @@ void twin_fault(int fault, int line) {
     longjmp(twin_end, fault * 1000000 + line);
 }
 
+i64 twin_exception(int fault) {
+    return fault == array_bounds ? 0x101 : fault == division_by_zero ? 0x102 : fault == out_of_range ? 0x103
+         : fault == runs_already ? 0x54 : 0x51;
+}
+
 u8* twin_reach(pointer p, i64 size, int line) {
     if (!p.lo) twin_fault(no_reference, line);
     if (p.at < p.lo || p.hi - p.at < size) twin_fault(outside_of_variable, line);

@@ -29,6 +29,7 @@ extern i64 twin_now;
 extern i64 twin_scan; /* its number, from 1 on */
 extern u8 twin_eno; /* of the routine that ended last */
 void twin_fault(int fault, int line) __attribute__((noreturn));
+i64 twin_exception(int fault);
 
 /* An instance of a block that others may stand for: which one it is. */
 typedef struct { i64 kind; } block;

@@ -122,6 +122,7 @@ struct Checking {
         bool is_made = false;         ///< something of it is assigned
     } beginning = {};
     int loops = 0;                     ///< around the statement
+    bool is_before_finally = false;    ///< the statement stands in a __TRY that has a __FINALLY
     std::vector<NameSet> labels = {};  ///< of each list of statements around it
     std::unordered_map<const Routine*, NameSet> undeclared = {};  ///< names that were told
     std::span<const LibraryReference> missing_libraries = {};     ///< that a project refers to

@@ -194,6 +194,44 @@ void check_body(Checking& c, Routine& routine) {
     c.routine = nullptr;
 }
 
+/// What leaves a __TRY would leave its __FINALLY out.
+void refuse_leaving(Checking& c, const Statement& s) {
+    if (c.is_before_finally && (s.kind == S::return_ || s.kind == S::goto_ || c.loops == 0))
+        c.fail(
+            code::not_supported, s.place,
+            fmt::format("{} out of a __TRY that has a __FINALLY is not supported", s.place.text()),
+            "note it in a variable, and leave behind __ENDTRY");
+}
+
+/// __CATCH fills in a variable of `__SYSTEM.ExceptionCode`, or a number.
+void check_caught(Checking& c, Expression*& variable) {
+    const Type* type = check(c, variable);
+    if (!type || !check_target(c, *variable)) return;
+    const bool fits =
+        type->kind == Kind::enumeration ||
+        ((type->kind == Kind::integer || type->kind == Kind::bits) && type->bits >= 16);
+    if (!fits)
+        c.fail(code::type_does_not_fit, variable->place,
+               fmt::format("__CATCH gives an exception's number, and not {}", describe(*type)),
+               "declare 'exception : __SYSTEM.ExceptionCode;'");
+}
+
+void check_try(Checking& c, Statement& s) {
+    const bool has_finally = !s.branches[1].body.empty();
+    const int loops = c.loops;
+    const bool was_before = c.is_before_finally;
+    if (has_finally) {
+        c.loops = 0;
+        c.is_before_finally = true;
+    }
+    check(c, s.body);
+    if (s.target) check_caught(c, s.target);
+    check(c, s.branches[0].body);
+    c.loops = loops;
+    c.is_before_finally = was_before;
+    check(c, s.branches[1].body);
+}
+
 void check(Checking& c, Statement*& slot) {
     if (rewrite(c, slot)) return;
     Statement& s = *slot;
@@ -222,16 +260,21 @@ void check(Checking& c, Statement*& slot) {
             check(c, s.body);
             --c.loops;
             return;
+        case S::try_:
+            return check_try(c, s);
         case S::exit:
         case S::continue_:
-            if (c.loops == 0)
+            refuse_leaving(c, s);
+            if (c.loops == 0 && !c.is_before_finally)
                 c.fail(code::wrong_place, s.place,
                        fmt::format("{} stands outside of a loop", s.place.text()),
                        "RETURN leaves the block");
             return;
         case S::goto_:
+            refuse_leaving(c, s);
             return check_goto(c, s);
         case S::return_:
+            return refuse_leaving(c, s);
         case S::label:
             return;
         case S::sequence:

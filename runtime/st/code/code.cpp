@@ -123,6 +123,11 @@ std::string verify(const Code& code) {
             const std::string error = instruction_error(code, routine, code.instructions[i]);
             if (!error.empty()) return fmt::format("instruction {} has {}", i, error);
         }
+        for (const Handler& handler : code.handlers)
+            if (handler.first >= routine.entry && handler.first < routine.end &&
+                (handler.end > routine.end || handler.entry < handler.first ||
+                 handler.entry >= routine.end))
+                return fmt::format("routine {} has no such __CATCH", routine.name);
         const Op last = code.instructions[routine.end - 1].op;
         if (last != Op::leave) return fmt::format("routine {} does not end", routine.name);
     }

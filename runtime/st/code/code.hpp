@@ -57,6 +57,12 @@ struct StatementStart {
     Place place = {};
 };
 
+/// `__TRY`: where a fault of these instructions, or of what they call, goes on.
+struct Handler {
+    std::uint32_t first = 0, end = 0;  ///< instructions
+    std::uint32_t entry = 0;           ///< the instruction that __CATCH begins with
+};
+
 struct Native;
 class Probe;
 
@@ -87,6 +93,7 @@ struct Code {
     std::vector<Piece> pieces;         ///< what references refer to
     std::vector<Shape> shapes;         ///< of those, and of what is wanted of them
     std::vector<ShapeMember> members;  ///< of structures
+    std::vector<Handler> handlers;     ///< the inner ones first
     std::vector<CoverPoint> points;    ///< only with coverage
     std::unique_ptr<std::atomic<std::uint64_t>[]> hits;  ///< of each of them
     mutable Witness* witness = nullptr;    ///< of tests; without one an assertion ends what runs

@@ -85,13 +85,14 @@ const Instruction* look(const Frames& frames, const Instruction* pc, std::byte* 
     }
 }
 
+/// From that instruction on, on the frame at `frames.base`.
 template <bool counts, bool steps>
-Fault run(Frames& frames, const CodeRoutine& routine) {
+Fault run(Frames& frames, std::uint64_t from) {
     const Code& code = frames.code;
     const Instruction* const first = code.instructions.data();
-    const Instruction* pc = first + routine.entry;
-    std::byte* base = frames.root;
-    std::int64_t fuel = frames.fuel;
+    const Instruction* pc = first + from;
+    std::byte* base = frames.place(frames.base);
+    std::int64_t fuel = frames.fuel_left;
     Fault fault = Fault::none;
 
 // Macros, because gcc keeps what a function object refers to in memory.
@@ -164,12 +165,27 @@ Fault run(Frames& frames, const CodeRoutine& routine) {
 #undef OP
 #pragma GCC diagnostic pop
 ended:
+    frames.fuel_left = fuel;
     return frames.end(fault, BEHIND - 1);
+}
+
+/// What ended with that fault goes on where a __CATCH is for it.
+template <bool counts, bool steps>
+[[gnu::noinline]] Fault run_caught(Frames& frames, Fault fault) {
+    while (const auto at = frames.caught(fault)) fault = run<counts, steps>(frames, *at);
+    return fault;
+}
+
+template <bool counts, bool steps>
+Fault run_whole(Frames& frames, const CodeRoutine& routine) {
+    const Fault fault = run<counts, steps>(frames, routine.entry);
+    return fault == Fault::none ? fault : run_caught<counts, steps>(frames, fault);
 }
 
 [[gnu::always_inline]] inline Fault run_native(Frames& frames, const CodeRoutine& routine) {
     const Code& code = frames.code;
-    return code.native->scan_of(code, routine)(frames.root, frames, frames.fuel);
+    const Fault fault = code.native->scan_of(code, routine)(frames.root, frames, frames.fuel);
+    return fault == Fault::none ? fault : run_caught<false, false>(frames, fault);
 }
 
 /// With a probe, or counted, or without native code. Apart, as the way to that is short.
@@ -179,11 +195,11 @@ ended:
     std::byte* const instance = frames.root;
     const bool steps = probe && probe->steps(routine, frames.now);
     if (frames.code.native && !times && !steps) return run_native(frames, routine);
-    if (!times && !steps) return run<false, false>(frames, routine);
+    if (!times && !steps) return run_whole<false, false>(frames, routine);
     std::uint64_t counted[op_classes + 1] = {};
     frames.counted = counted;
     const Fault fault =
-        steps ? run<true, true>(frames, routine) : run<true, false>(frames, routine);
+        steps ? run_whole<true, true>(frames, routine) : run_whole<true, false>(frames, routine);
     if (!times) return fault;
     std::memcpy(instance + 8 * counts_slot, counted, 8 * op_classes);
     const Wide taken = std::inner_product(times, times + op_classes, counted, Wide{0});

@@ -164,11 +164,11 @@ bool Frames::has_room(std::uint64_t routine) const {
     return running + 1 + code.routines[routine].depth <= levels;
 }
 
-void Frames::unmark(std::uint64_t at, std::uint64_t frame) const {
+void Frames::mark(std::uint64_t at, std::uint64_t frame, bool runs) const {
     std::byte* level = top;
     for (;;) {
-        const auto runs = std::ranges::upper_bound(code.routines, at, {}, &CodeRoutine::end);
-        if (runs->mark != 0) set_word(place(frame), runs->mark, 0);
+        const auto routine = std::ranges::upper_bound(code.routines, at, {}, &CodeRoutine::end);
+        if (routine->mark != 0) set_word(place(frame), routine->mark, runs);
         if (level == bottom) return;
         level -= 16;
         at = word(level, 0) - 1;
@@ -182,8 +182,43 @@ Fault Frames::end(Fault fault, std::uint64_t at) const {
     if (fault == Fault::none) return fault;
     set_word(root, place_slot, at);
     set_word(root, depth_slot, static_cast<std::uint64_t>(top - bottom) / 16);
-    if (code.has_kinds) unmark(at, base);
+    if (code.has_kinds) mark(at, base, false);
     return fault;
+}
+
+std::optional<std::uint64_t> Frames::caught(Fault fault) {
+    const bool is_caught =
+        fault != Fault::none && fault != Fault::no_end && fault != Fault::assertion;
+    if (!is_caught || code.handlers.empty()) return {};
+    std::uint64_t at = word(root, place_slot), frame = base;
+    for (std::byte* level = top;; level -= 16) {
+        const auto it = std::ranges::find_if(
+            code.handlers, [&](const Handler& h) { return at >= h.first && at < h.end; });
+        if (it != code.handlers.end()) {
+            top = level;
+            base = frame;
+            if (code.has_kinds) mark(at, base, true);
+            return it->entry;
+        }
+        if (level == bottom) return {};
+        at = word(level - 16, 0) - 1;
+        frame = word(level - 16, 1);
+    }
+}
+
+std::uint64_t Frames::exception() const {
+    switch (static_cast<Fault>(word(root, error_id_slot))) {
+        case Fault::array_bounds:
+            return 0x101;  // RTSEXCPT_ARRAYBOUNDS
+        case Fault::division_by_zero:
+            return 0x102;  // RTSEXCPT_DIVIDEBYZERO
+        case Fault::out_of_range:
+            return 0x103;  // RTSEXCPT_OVERFLOW
+        case Fault::runs_already:
+            return 0x54;  // RTSEXCPT_STACK_OVERFLOW
+        default:
+            return 0x51;  // RTSEXCPT_ACCESS_VIOLATION
+    }
 }
 
 bool Frames::ends_at(std::uint64_t behind) const {

@@ -256,6 +256,7 @@ struct Frames {
     std::uint64_t base = 0;            ///< address of the frame
     std::uint64_t reached = 0;         ///< what the last reference is to
     std::uint64_t* counted = nullptr;  ///< instructions of each class
+    std::int64_t fuel_left = fuel;     ///< when a run ended
 
     /// Of an address: the number of an instance of the program plus 1, or 0 for the block itself,
     /// times 2^32, plus a slot.
@@ -290,8 +291,13 @@ struct Frames {
 
     bool has_room(std::uint64_t routine) const;
 
-    /// Nothing runs any more: where it was left says what did.
-    void unmark(std::uint64_t at, std::uint64_t frame) const;
+    /// Whether what runs on that frame at that instruction, and what called it, runs.
+    void mark(std::uint64_t at, std::uint64_t frame, bool runs) const;
+    /// Of a scan that ended: the instruction that it goes on with, on the frame that has the
+    /// nearest __TRY around it; empty: none has, or nothing catches that fault.
+    std::optional<std::uint64_t> caught(Fault fault);
+    /// The number that CODESYS has of the fault that was caught last.
+    std::uint64_t exception() const;
 
     /// A call, after which the instruction `behind` is next.
     void enter(std::uint64_t address, std::uint64_t behind) {

@@ -94,6 +94,7 @@
     OP(find_routine, call, "wrn-", if (U(b) == 0) FAIL(no_reference); frames.find(at(a), U(b), c)) \
     OP(attempt, move, "wrn-", put(a, U(b) != 0 && frames.has(U(b), c) ? U(b) : 0))        \
     OP(call_found, call, "rr--", const std::uint64_t found = U(b); if (!frames.has_room(found)) FAIL(no_end); CALL(U(a), found)) \
+    OP(exception, move, "w---", put(a, frames.exception()))                                           \
     OP(begin_once, call, "w---", if (U(a) != 0) FAIL(runs_already); put(a, std::uint64_t{1}))        \
     OP(call_block, call, "sn--", code.call_block(at(a), b, frames.now, frames.context))                                        \
     OP(call_block_at, call, "rn--", code.call_block(target(U(a)), b, frames.now, frames.context))                              \

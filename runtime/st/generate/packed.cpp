@@ -207,6 +207,9 @@ void copy_packed(Writing& w, const Location& to, const Location& from, const Typ
         if (to.packed) return store_packed_text(w, to, text);
         return w.put(Op::text_copy, address_of(w, to), text, capacity_of(w, to, type));
     }
+    // What an index leads to is read more than once.
+    if (from.mode == Mode::indexed) return copy_packed(w, to, as_address(w, from), type);
+    if (to.mode == Mode::indexed) return copy_packed(w, as_address(w, to), from, type);
     const auto element = [&](const Location& of, const Type& array, std::int64_t i) {
         const auto place = static_cast<std::uint64_t>(i - array.lower);
         if (of.packed)

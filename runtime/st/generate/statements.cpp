@@ -220,6 +220,25 @@ void write_loop(Writing& w, const Statement& s) {
     w.loops.pop_back();
 }
 
+void write_try(Writing& w, const Statement& s) {
+    Jumps ends;
+    w.land();
+    const std::uint32_t first = w.next();
+    write_block(w, s.body);
+    const std::uint32_t end = w.next();
+    w.jump(Op::jump, 0, 0, ends);
+    w.land();
+    if (first < end) w.code.handlers.push_back({first, end, w.next()});
+    if (s.target) {
+        const Slot number = w.emit(Op::exception, none, 0);
+        store(w, locate(w, *s.target),
+              convert(w, number, integer_type(32, false), *s.target->type, false, none));
+    }
+    write_block(w, s.branches[0].body);
+    w.land(ends);
+    write_block(w, s.branches[1].body);
+}
+
 void write_call(Writing& w, const Expression& e) {
     if (e.kind == Expression::Kind::constant) return;
     if (e.test != TestCall::none) return write_test_statement(w, e);
@@ -263,6 +282,8 @@ void write_statement(Writing& w, const Statement& s) {
         case S::while_:
         case S::repeat:
             return write_loop(w, s);
+        case S::try_:
+            return write_try(w, s);
         case S::exit:
             return w.jump(Op::jump, 0, 0, w.loops.back().exits);
         case S::continue_:

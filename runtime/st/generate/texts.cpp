@@ -17,7 +17,7 @@ Slot text_conversion(Writing& w, const Expression& e) {
         number = convert(w, number, *from.type, lint_type, false, none);
     const auto [text, made] = new_text(w);
     if (from.type->is_character) {
-        w.put(Op::move, text, w.constant_slot(1));
+        w.put(comparison_op(Word::unequal, lint_type), text, number, w.constant_slot(0));
         w.put(Op::move, text + 1, number);
         return made;
     }

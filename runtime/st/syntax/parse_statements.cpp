@@ -194,6 +194,23 @@ void parse_repeat(Parsing& p, Statement& statement) {
     close(p, Word::end_repeat_, opener);
 }
 
+/// Try_Stmt : '__TRY' Stmt_List '__CATCH' ( '(' Variable_Access ')' ) ? Stmt_List
+///            ( '__FINALLY' Stmt_List ) ? '__ENDTRY'
+void parse_try(Parsing& p, Statement& statement) {
+    const Token opener = p.take();
+    statement.branches.resize(2);
+    parse_statements(p, statement.body, Word::endtry_);
+    if (expect(p, Word::catch_) && p.accept(Word::open)) {
+        statement.target = parse_access(p);
+        expect(p, Word::close);
+        if (p.panic) skip_to_statement(p);
+    }
+    if (p.is(Word::endtry_) || p.is(Word::finally_)) p.panic = false;
+    parse_statements(p, statement.branches[0].body, Word::endtry_);
+    if (p.accept(Word::finally_)) parse_statements(p, statement.branches[1].body, Word::endtry_);
+    close(p, Word::endtry_, opener);
+}
+
 /// `n := a > 0`: what is assigned is the value.
 Expression* parse_assigned(Parsing& p, Block& to) {
     const std::size_t before = p.at;
@@ -263,7 +280,8 @@ void parse_structured(Parsing& p, Statement::Kind kind, Block& to,
     p.accept(Word::semicolon);
 }
 
-/// Stmt : ';' | Region | ( IF_Stmt | Case_Stmt | For_Stmt | While_Stmt | Repeat_Stmt ) ';' ?
+/// Stmt : ';' | Region
+///      | ( IF_Stmt | Case_Stmt | For_Stmt | While_Stmt | Repeat_Stmt | Try_Stmt ) ';' ?
 ///      | Jump_Stmt | Goto_Stmt | Label | Simple_Stmt | Test_Stmt
 void parse_statement(Parsing& p, Block& to) {
     const Level level(p);
@@ -297,6 +315,8 @@ void parse_statement(Parsing& p, Block& to) {
             return parse_structured(p, Kind::while_, to, parse_while);
         case Word::repeat_:
             return parse_structured(p, Kind::repeat, to, parse_repeat);
+        case Word::try_:
+            return parse_structured(p, Kind::try_, to, parse_try);
         default:
             if (p.says("jmp") && p.is_name(1) && p.next(2).word == Word::semicolon)
                 return parse_goto(p, Kind::goto_, to);

@@ -24,12 +24,13 @@ bool is_swallowed(const Cursor& p) {
 
 bool closes_statement(Word word) {
     return word == Word::end_if_ || word == Word::end_case_ || word == Word::end_for_ ||
-           word == Word::end_while_ || word == Word::end_repeat_;
+           word == Word::end_while_ || word == Word::end_repeat_ || word == Word::endtry_;
 }
 
 constexpr bool ends_statements(Word word) {
     return word == Word::end_of_file || word == Word::else_ || word == Word::elsif_ ||
-           word == Word::until_;
+           word == Word::until_ || word == Word::catch_ || word == Word::finally_ ||
+           word == Word::endtry_;
 }
 
 bool at_end_of_block(const Cursor& p) {
@@ -83,7 +84,8 @@ void expected(Parsing& p, std::string_view what, std::string_view where) {
     p.is_wrong = true;
     p.panic = p.unclosed_at == p.at || follows_mistake(p);
     const char first = what.front();
-    const bool is_word = (first >= 'A' && first <= 'Z') || (first >= 'a' && first <= 'z');
+    const bool is_word =
+        (first >= 'A' && first <= 'Z') || (first >= 'a' && first <= 'z') || first == '_';
     fail(p, code::something_else_expected, p.here().place,
          fmt::format("expected {0}{1}{0}{2}{3}, found {4}", is_word ? "" : "'", what,
                      where.empty() ? "" : " ", where, found(p)),

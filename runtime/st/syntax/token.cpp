@@ -13,7 +13,9 @@ namespace {
 
 constexpr std::string_view word_names[] = {
 #define WORD(name) #name,
-    LINESHAFT_ST_WORDS(WORD)
+#define CODESYS(name) "__" #name,
+    LINESHAFT_ST_WORDS(WORD, CODESYS)
+#undef CODESYS
 #undef WORD
 };
 

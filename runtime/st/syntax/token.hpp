@@ -60,8 +60,10 @@ inline bool same_name(std::string_view a, std::string_view b) {
     return SameName{}(a, b);
 }
 
-// Every word and sign of the language, as it is shown in messages.
-#define LINESHAFT_ST_WORDS(WORD)                                                                              \
+// Every word and sign of the language, as it is shown in messages; CODESYS writes `__` before its
+// own.
+#define LINESHAFT_ST_WORDS(WORD, CODESYS)                                                                     \
+    CODESYS(catch) CODESYS(endtry) CODESYS(finally) CODESYS(try)                                              \
     WORD(abstract) WORD(action) WORD(and) WORD(and_then) WORD(array) WORD(at) WORD(begin) WORD(by) WORD(case) \
     WORD(class) WORD(configuration) WORD(constant) WORD(continue) WORD(data_block) WORD(do)        \
     WORD(else) WORD(elsif) WORD(end_action) WORD(end_case) WORD(end_class) WORD(end_data_block)    \
@@ -82,7 +84,7 @@ inline bool same_name(std::string_view a, std::string_view b) {
 
 enum class Word : std::uint8_t {
 #define WORD(name) name##_,
-    LINESHAFT_ST_WORDS(WORD)
+    LINESHAFT_ST_WORDS(WORD, WORD)
 #undef WORD
     // What follows is no reserved word.
     end_of_file,

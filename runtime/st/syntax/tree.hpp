@@ -129,6 +129,7 @@ struct Statement {
         exit,
         continue_,
         return_,
+        try_,      ///< `__TRY` of CODESYS
         label,     ///< `name:`, its name in `value`
         goto_,     ///< the label's name in `value`
         action,    ///< `a;`, which only an action can mean: its name in `value`
@@ -138,11 +139,12 @@ struct Statement {
     Kind kind = Kind::assign;
     Word op = Word::assign;  ///< `:=`, `+=`, `REF=`
     Place place = {};
-    Expression* target = nullptr;  ///< of an assignment; of a FOR its variable
-    Expression* value = nullptr;   ///< assigned, called, tested; of a FOR its first one
+    Expression* target =
+        nullptr;  ///< of an assignment; of a FOR its variable; what __CATCH fills in
+    Expression* value = nullptr;  ///< assigned, called, tested; of a FOR its first one
     Expression *limit = nullptr, *step = nullptr;  ///< of a FOR
-    std::vector<Branch> branches = {};             ///< of IF and CASE
-    Block body = {};  ///< of a loop, a sequence; of IF and CASE what ELSE does
+    std::vector<Branch> branches = {};  ///< of IF and CASE; of __TRY its __CATCH and its __FINALLY
+    Block body = {};  ///< of a loop, a sequence, a __TRY; of IF and CASE what ELSE does
 };
 
 // A sequential function chart as it is written: IEC 61131-3:2013, 6.7.

@@ -21,7 +21,7 @@ double Sleef_cinz_atand1_u10purec(double);
 double Sleef_cinz_atan2d1_u10purec(double, double);
 double Sleef_cinz_atanhd1_u10purec(double);
 double Sleef_cinz_powd1_u10purec(double, double);
-Fault native_end(std::byte*, meaning::Frames&, std::uint64_t behind, Fault);
+Fault native_end(std::byte*, meaning::Frames&, std::int64_t fuel, std::uint64_t behind, Fault);
 void native_call_block(const Code&, std::byte*, std::uint32_t, const Scan&, const Context&);
 }
 
@@ -65,9 +65,9 @@ constexpr Fault goes_on{-1};
         if (--fuel < 0) FAIL(no_end); \
         goto label;                   \
     }
-#define FAIL(why)                                          \
-    return {                                               \
-        native_end(base, frames, behind, Fault::why), fuel \
+#define FAIL(why)                                                \
+    return {                                                     \
+        native_end(base, frames, fuel, behind, Fault::why), fuel \
     }
 #define ELEMENT(slot, number)                         \
     if (!within(U(slot), number)) FAIL(array_bounds); \

@@ -30,7 +30,9 @@ Native::~Native() {
     if (first) ::munmap(const_cast<std::byte*>(first), size);
 }
 
-Fault native_end(std::byte*, meaning::Frames& frames, std::uint64_t behind, Fault fault) {
+Fault native_end(std::byte*, meaning::Frames& frames, std::int64_t fuel, std::uint64_t behind,
+                 Fault fault) {
+    frames.fuel_left = fuel;
     return frames.end(fault, behind - 1);
 }
 

@@ -53,7 +53,7 @@ void switch_native_off();
 
 /// The end of a scan at the instruction before `behind`. The stencils end with it.
 extern "C" [[gnu::cold]] Fault native_end(std::byte* base, meaning::Frames& frames,
-                                          std::uint64_t behind, Fault fault);
+                                          std::int64_t fuel, std::uint64_t behind, Fault fault);
 
 /// Code::call_block, for what a compiler made.
 extern "C" void native_call_block(const Code& code, std::byte* block, std::uint32_t number,

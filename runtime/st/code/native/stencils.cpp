@@ -121,7 +121,7 @@ WAY_OF call(const Operand&, STATE) {
         if (--fuel < 0) FAIL(no_end);             \
         return repeat_target(base, frames, fuel); \
     }
-#define FAIL(why) return native_end(base, frames, BEHIND, Fault::why)
+#define FAIL(why) return native_end(base, frames, fuel, BEHIND, Fault::why)
 #define ELEMENT(slot, number)                         \
     if (!within(U(slot), number)) FAIL(array_bounds); \
     const std::uint64_t element = table(number).place(U(slot))
