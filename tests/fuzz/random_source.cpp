@@ -714,8 +714,8 @@ class SourceMaker {
 
     Text into_subrange(const Type& type, int depth) {
         if (below(3) == 0) return leaf(type);
+        if (below(8) == 7) return {fmt::format("MOVE({})", sub(*type.base, depth))};
         const std::string value = varying(*type.base, depth);
-        if (below(8) == 7) return {value, or_};
         return {fmt::format("LIMIT({}, {}, {})", type.lower, value, type.upper)};
     }
 

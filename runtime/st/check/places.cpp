@@ -124,7 +124,7 @@ const Type* check_index(Checking& c, Expression*& node) {
                           fmt::format("an index is a whole number, not {}", describe(*given)));
         const Wide value = argument.value->constant.integer;
         if (is_constant(*argument.value)) {
-            const Wide lower = of_text ? 1 : type->lower,
+            const Wide lower = of_text ? (e.place.dialect().texts_are_bytes ? 0 : 1) : type->lower,
                        upper = of_text ? type->length : type->upper;
             if (value < lower || value > upper)
                 return c.fail(code::value_out_of_range, argument.value->place,
@@ -133,7 +133,10 @@ const Type* check_index(Checking& c, Expression*& node) {
                                           to_string(upper)));
             take_type(c, argument.value, lint_type, {.integer = value});
         }
-        type = of_text ? &char_type : type->element;
+        if (of_text)
+            type = e.place.dialect().texts_are_bytes ? &bits_type(8) : &char_type;
+        else
+            type = type->element;
     }
     return type;
 }

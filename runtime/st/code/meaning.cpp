@@ -68,6 +68,27 @@ bool set_character(std::byte* text, std::int64_t place, std::uint64_t value) {
     return is_there;
 }
 
+std::optional<std::uint64_t> byte_of_text(const std::byte* from, std::int64_t place,
+                                          std::uint64_t room) {
+    const auto at = static_cast<std::uint64_t>(place);
+    if (at > room) return {};
+    return at < word(from, 0) ? byte(from + 8, at) : 0;
+}
+
+bool set_byte_of_text(std::byte* text, std::int64_t place, std::uint64_t value,
+                      std::uint64_t room) {
+    const auto at = static_cast<std::uint64_t>(place);
+    if (at > room || (at == room && value != 0)) return false;
+    std::uint64_t length = word(text, 0);
+    const bool is_behind = at >= length;
+    if (is_behind && length < room) set_byte(text + 8, length, 0);
+    if (at < room) set_byte(text + 8, at, value);
+    if (!is_behind && value == 0) length = at;
+    while (is_behind && length < room && byte(text + 8, length) != 0) ++length;
+    set_word(text, 0, length);
+    return true;
+}
+
 std::uint64_t find_text(const std::byte* in, const std::byte* what) {
     return text_at(what).empty() ? 0 : text_at(in).find(text_at(what)) + 1;
 }

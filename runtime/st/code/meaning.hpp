@@ -208,6 +208,15 @@ std::optional<std::uint64_t> character_of(const std::byte* from, std::int64_t pl
 /// False if the text is shorter.
 bool set_character(std::byte* text, std::int64_t place, std::uint64_t value);
 
+/// The byte at `place` (from 0) of a text that has room for so many and the 0 that ends it; behind
+/// its end it is 0.
+std::optional<std::uint64_t> byte_of_text(const std::byte* from, std::int64_t place,
+                                          std::uint64_t room);
+
+/// As where texts are bytes with a 0 behind them: a 0 ends the text, another one behind its end
+/// goes on with it as far as no 0 stands there. False for a place that it has no room for.
+bool set_byte_of_text(std::byte* text, std::int64_t place, std::uint64_t value, std::uint64_t room);
+
 /// The first place, counted from 1, or 0.
 std::uint64_t find_text(const std::byte* in, const std::byte* what);
 

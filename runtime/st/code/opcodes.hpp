@@ -170,6 +170,8 @@
     OP(text_length, text, "wr--", put(a, word(target(U(b)), 0)))                                     \
     OP(text_compare, text, "wrr-", put(a, compare_texts(target(U(b)), target(U(c)))))                \
     OP(text_character, text, "wrrn", if (const auto n = character_of(target(U(b)), I(c), d)) put(a, *n); else FAIL(array_bounds)) \
+    OP(text_byte, text, "wrrr", if (const auto n = byte_of_text(target(U(b)), I(c), U(d))) put(a, *n); else FAIL(array_bounds)) \
+    OP(set_text_byte, text, "rrrr", if (!set_byte_of_text(target(U(b)), I(c), U(a), U(d))) FAIL(array_bounds)) \
     OP(set_character, text, "rrr-", if (!set_character(target(U(b)), I(c), U(a))) FAIL(array_bounds)) \
     OP(text_find, text, "wrr-", put(a, find_text(target(U(b)), target(U(c)))))                       \
     OP(text_of_signed, text, "rrn-", write_number(target(U(a)), I(b), c != 0))                       \

@@ -193,7 +193,7 @@ static void copy_bytes(Writing& w, Location to, Location from, const Type& type)
 void copy_packed(Writing& w, const Location& to, const Location& from, const Type& type) {
     if (type.is_scalar()) return store(w, to, load(w, from));
     if (is_through(from) && type.kind != Kind::text) {
-        if (to.packed && to.packed->type->kind != Kind::union_)
+        if (is_through(to) || (to.packed && to.packed->type->kind != Kind::union_))
             return copy_packed(w, to, unpacked(w, from, type), type);
         return put_through(w, Op::copy_from_through, address_of(w, to), from);
     }

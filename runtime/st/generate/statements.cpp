@@ -10,14 +10,23 @@ namespace lineshaft::st {
 
 namespace {
 
+void write_character(Writing& w, const Statement& s) {
+    const Expression& text = *s.target->operands[0];
+    const Slot from = value_before(w, *s.value, *s.target);
+    const Location at = locate(w, text);
+    const Slot place = at.packed ? load_packed_text(w, at) : address_of(w, at);
+    const Slot index = value(w, *s.target->arguments[0].value);
+    if (s.target->place.dialect().texts_are_bytes)
+        w.put(Op::set_text_byte, from, place, index, capacity_of(w, at, *text.type));
+    else
+        w.put(Op::set_character, from, place, index);
+    if (at.packed) store_packed_text(w, at, place);
+}
+
 void write_assignment(Writing& w, const Statement& s) {
     if (s.target->kind == Expression::Kind::bit)
         return store_bits(w, *s.target, value_before(w, *s.value, *s.target));
-    if (s.target->is_character()) {
-        const Slot from = value_before(w, *s.value, *s.target);
-        const Slot text = text_address(w, *s.target->operands[0]);
-        return w.put(Op::set_character, from, text, value(w, *s.target->arguments[0].value));
-    }
+    if (s.target->is_character()) return write_character(w, s);
     assign(w, locate(w, *s.target), *s.target->type, *s.value);
 }
 

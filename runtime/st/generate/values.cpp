@@ -110,7 +110,11 @@ Slot character(Writing& w, const Expression& e, Slot wanted) {
     const Expression& text = *e.operands[0];
     const Slot address = text_address(w, text), index = value(w, *e.arguments[0].value);
     const Slot to = w.result(wanted);
-    w.put(Op::text_character, to, address, index, text.type->length);
+    if (e.place.dialect().texts_are_bytes)
+        w.put(Op::text_byte, to, address, index,
+              text.type->is_open ? locate(w, text).capacity : w.constant_slot(text.type->length));
+    else
+        w.put(Op::text_character, to, address, index, text.type->length);
     return to;
 }
 

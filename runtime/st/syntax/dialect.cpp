@@ -17,7 +17,8 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .named_inputs_may_be_left_out = true,
                          .dint_becomes_real = true,
                          .bits_count_in_reals = true,
-                         .is_loose = true};
+                         .is_loose = true,
+                         .texts_are_bytes = true};
 
 const Dialect scl = {.sign_precedes_power = false,
                      .sets_variables_of_instances = true,
