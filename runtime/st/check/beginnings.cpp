@@ -211,6 +211,18 @@ bool is_constructed(const Type* type) {
     return type->kind == Kind::block && constructor_of(*type);
 }
 
+void refuse_constructor_arguments(Checking& c, Place place, const Type& type) {
+    c.fail(code::wrong_arguments, place,
+           fmt::format("{} takes no arguments behind its name", describe(type)),
+           "a FUNCTION_BLOCK with a METHOD FB_init does: name : Block(argument := value)");
+}
+
+void construct_one(Checking& c, const Expression& like, Routine& routine, const Type& type,
+                   const std::vector<Argument>* values, const std::function<Expression*()>& part,
+                   Block& to) {
+    construct(c, {like, routine.variables, routine.pou}, type, values, part, to);
+}
+
 bool begin_with(Checking& c, Expression*& value, const Type& type) {
     if (!may_begin(c)) return false;
     Statement* s = make_assignment(c, value->place, place_of(c, *value), value);
@@ -226,10 +238,7 @@ void begin_instance(Checking& c, Variable& variable) {
     const Type* type = variable.type;
     const bool is_own = type && variable.space == Space::frame;
     if (variable.constructed && !variable.constructed->empty() && !is_constructed(type)) {
-        if (type)
-            c.fail(code::wrong_arguments, variable.name.place,
-                   fmt::format("{} takes no arguments behind its name", describe(*type)),
-                   "a FUNCTION_BLOCK with a METHOD FB_init does: name : Block(argument := value)");
+        if (type) refuse_constructor_arguments(c, variable.name.place, *type);
         return;
     }
     const bool is_global = variable.space == Space::global && !c.routine;

@@ -3,6 +3,7 @@
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/dynamic_memory.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
@@ -373,7 +374,7 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
                 return check_routine_call(c, e, method, as_statement);
             }
         Routine* routine = c.find_routine(callee.token);
-        if (routine && !routine->type) {
+        if (routine && !routine->type && !is_of_dynamic_memory(name)) {
             if (!take_query(c, e, *routine)) return nullptr;
             const auto& overloads = c.names_beside(routine->pou->name).overloads;
             return check_routine_call(c, e, overload_of(c, *e, overloads, *routine), as_statement);

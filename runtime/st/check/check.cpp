@@ -2,6 +2,7 @@
 
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/dynamic_memory.hpp"
 #include "runtime/st/check/image.hpp"
 #include "runtime/st/check/statements.hpp"
 
@@ -45,6 +46,7 @@ Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics
     check_classes(c);
     check_initial_values(c);
     for (Routine& routine : c.checked.routines) check_body(c, routine);
+    write_deletions(c);
     tell_missing_libraries(c);
     finish_image(c);
     order_routines(c);

@@ -110,6 +110,20 @@ struct Checking {
     std::unordered_set<const Pou*> assigned_inputs = {};  ///< blocks that were warned of it
     NameMap<const Type*> catalog_types = {};
     bool has_tests = false;
+    /// What __NEW makes of a type: its elements, one more of which stays as it begins, and how they
+    /// are taken (blocks/libraries/__SYSTEM/memory.st).
+    struct Pool {
+        const Type* type = nullptr;
+        Variable *elements = nullptr, *taken = nullptr;
+    };
+    std::deque<Pool> pools = {};
+    /// `__DELETE(p);`, which is written when all pools are known.
+    struct Deletion {
+        Routine* routine = nullptr;
+        Statement* statement = nullptr;
+        Expression* pointer = nullptr;
+    };
+    std::vector<Deletion> deletions = {};
     Type* statics = nullptr;              ///< of the global that keep_once() fills
     Routine* begin_of_globals = nullptr;  ///< runs before all others; null: nothing is to be done
 

@@ -18,16 +18,6 @@ namespace lineshaft::st {
 
 namespace {
 
-/// `Motor(number := 3)` of a block, or of an array of such, which is written as an enumeration with
-/// a base; null: it is one, or there are none.
-const std::vector<Argument>* constructor_arguments(const TypeText* text, const Type* type) {
-    for (; text && text->kind == TypeText::Kind::array; text = text->element)
-        if (type && type->kind == Kind::array) type = &type->innermost();
-    const bool is_written = text && text->kind == TypeText::Kind::enumeration && type &&
-                            text->name.word != Word::end_of_file;
-    return is_written && type->kind == Kind::block ? &text->values : nullptr;
-}
-
 void check_unit(Checking& c, Variable& variable, const Declaration& declared) {
     if (declared.unit.empty()) return;
     variable.unit = declared.unit;
@@ -389,6 +379,14 @@ Variable* add(Checking& c, std::deque<Variable>& to, const Declaration& declared
     check_unit(c, variable, declared);
     c.note(variable.name.place, variable);
     return &variable;
+}
+
+const std::vector<Argument>* constructor_arguments(const TypeText* text, const Type* type) {
+    for (; text && text->kind == TypeText::Kind::array; text = text->element)
+        if (type && type->kind == Kind::array) type = &type->innermost();
+    const bool is_written = text && text->kind == TypeText::Kind::enumeration && type &&
+                            text->name.word != Word::end_of_file;
+    return is_written && type->kind == Kind::block ? &text->values : nullptr;
 }
 
 void keep_once(Checking& c, Variable& variable) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "runtime/st/check/checking.hpp"
 
 namespace lineshaft::st {
@@ -16,6 +18,10 @@ Variable* declare_early(Checking& c, const Checking::GlobalConstant& constant);
 /// The variable stands beside all blocks, where no source names it: VAR_STAT, and what the checker
 /// adds.
 void keep_once(Checking& c, Variable& variable);
+
+/// `Motor(number := 3)` of a block, or of an array of such, which is written as an enumeration with
+/// a base; null: it is one, or there are none.
+const std::vector<Argument>* constructor_arguments(const TypeText* text, const Type* type);
 
 /// VAR_GLOBAL and data blocks.
 void declare_globals(Checking& c);
@@ -45,6 +51,13 @@ bool is_constructed(const Type* type);
 /// Calls FB_init of the instances that the variable is or has in it, with what stands behind its
 /// type, at the same time. What is declared behind that, `:= (x := 1)`, is assigned behind it.
 void begin_instance(Checking& c, Variable& variable);
+
+void refuse_constructor_arguments(Checking& c, Place place, const Type& type);
+
+/// Calls FB_init of what is made in a run, at `part`, with `values`.
+void construct_one(Checking& c, const Expression& like, Routine& routine, const Type& type,
+                   const std::vector<Argument>* values, const std::function<Expression*()>& part,
+                   Block& to);
 
 /// What VAR_GLOBAL begins with so comes before the first block that runs, one that no other has an
 /// instance of.

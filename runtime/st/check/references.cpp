@@ -2,6 +2,7 @@
 
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/dynamic_memory.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
@@ -361,10 +362,11 @@ void check_reference_assignment(Checking& c, Statement& s) {
 std::optional<const Type*> check_reference_call(Checking& c, Expression*& e, const Type*) {
     const Token& name = e->operands[0]->token;
     const auto is = [&](std::string_view known) { return same_name(name.text, known); };
-    if (is("__new") || is("__delete"))
-        return c.fail(code::not_supported, name.place,
-                      fmt::format("{} is not supported", name.text),
-                      "a program's memory does not grow: declare the variable, and take ADR of it");
+    if (is_of_dynamic_memory(name.text))
+        return c.fail(
+            code::wrong_place, name.place,
+            fmt::format("{} stands in a statement of its own", name.text),
+            is("__new") ? "assign it: pointer := __NEW(Type);" : "write '__DELETE(pointer);'");
     const bool is_known =
         is("adr") || is("ref") || is("sizeof") || is("xsizeof") || is("__isvalidref");
     if (!is_known) return {};
@@ -417,7 +419,7 @@ bool coerce_reference(Checking& c, Expression*& e, const Type& to) {
     const bool fits =
         from.is_reference() && from.element &&
         (is_target(to, *from.element) ||
-         (are_pointers && (begins_with(*from.element, *to.element) ||
+         (are_pointers && (e->place.dialect().is_loose || begins_with(*from.element, *to.element) ||
                            (is_of_bytes(*from.element) && packed_bits(*to.element, iec) > 0))));
     if (fits) return become_converted(c, e, to);
     if (!to.element || (from.is_reference() && !from.element)) return false;

@@ -1,4 +1,5 @@
 #include "runtime/st/check/calls.hpp"
+#include "runtime/st/check/dynamic_memory.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -97,6 +98,7 @@ void check_special(Checking& c, Statement*& s) {
 
 bool rewrite(Checking& c, Statement*& s) {
     if ((s->kind != S::assign && s->kind != S::call) || s->value->kind != E::call) return false;
+    if (rewrite_new(c, s) || rewrite_delete(c, s)) return true;
     Expression& call = *s->value;
     const Expression& callee = *call.operands[0];
     const Routine* routine = nullptr;

@@ -43,6 +43,12 @@ Location packed_path(Writing& w, const Expression& e, const Expression& root, co
     return e.kind == E::member ? packed_member(at, *e.variable) : packed_element(w, at, e);
 }
 
+/// Of an array, at an index that is not known before: the size of an element is asked for in a run.
+bool is_element_in_a_run(const Expression& part, const Expression& root) {
+    return part.kind == E::index && part.operands[0] == &root && part.arguments.size() == 1 &&
+           part.arguments[0].value->kind != E::constant;
+}
+
 /// `base` moved on to a part of what it refers to.
 Slot refer_to_part(Writing& w, Slot base, const Expression& part, const Expression& root) {
     if (has_bytes(*root.type)) {
@@ -50,13 +56,14 @@ Slot refer_to_part(Writing& w, Slot base, const Expression& part, const Expressi
         return reference_to_packed(w, packed_path(w, part, root, whole));
     }
     const Routine* own = w.routine->owner ? w.routine->owner : w.routine;
-    if (is_growing(w, *root.type) && root.type->routine != own) {
+    const bool is_growing_yet = is_growing(w, *root.type) && root.type->routine != own;
+    if (is_growing_yet && !is_element_in_a_run(part, root)) {
         w.out.add(code::contains_itself, part.place.mark(),
                   "this refers to a part of what holds the block that refers to it",
                   "refer to the block, or pass the part on as VAR_IN_OUT");
         return base;
     }
-    slots_of(w, *root.type);
+    if (!is_growing_yet) slots_of(w, *root.type);
     const Location at = path(w, part, root);
     if (at.mode == Mode::slot && at.slot == 0) return base;
     Slot slots = w.constant_slot(at.slot);

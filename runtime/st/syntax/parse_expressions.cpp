@@ -175,6 +175,10 @@ Expression* parse_binary(Parsing& p, int binding) {
     }
 }
 
+bool is_new(const Expression& e) {
+    return e.kind == Expression::Kind::name && same_name(e.token.text, "__new");
+}
+
 }  // namespace
 
 /// Expression : Xor_Expr ( ( 'OR' | 'OR_ELSE' ) Xor_Expr ) *
@@ -182,13 +186,27 @@ Expression* parse_expression(Parsing& p) {
     return parse_binary(p, 1);
 }
 
-/// Variable_Access : Primary_Expr ( '(' Params ')' | '[' Subscripts ']' | '.' Member | '^' ) *
+/// New : '__NEW' '(' Data_Type ( ',' Expression ) ? ')'
+Expression* parse_new(Parsing& p, Expression* name) {
+    Expression* call = p.make(Expression::Kind::call, p.take());
+    call->made = parse_type(p);
+    if (p.accept(Word::comma)) call->arguments.push_back({.value = parse_expression(p)});
+    expect(p, Word::close);
+    p.add_operand(*call, 0, name);
+    call->place = name->place.to(p.last().place);
+    return call;
+}
+
+/// Variable_Access : ( Primary_Expr | New )
+///                   ( '(' Params ')' | '[' Subscripts ']' | '.' Member | '^' ) *
 /// Subscripts : Param_Assign ( ',' Param_Assign ) *
 /// Their values are expressions.
 Expression* parse_access(Parsing& p) {
     Expression* left = parse_primary(p);
     while (!p.panic) {
-        if (p.is(Word::open)) {
+        if (p.is(Word::open) && is_new(*left)) {
+            left = parse_new(p, left);
+        } else if (p.is(Word::open)) {
             Expression* call = p.make(Expression::Kind::call, p.take());
             parse_arguments(p, *call, Word::close, parse_expression);
             p.add_operand(*call, 0, left);

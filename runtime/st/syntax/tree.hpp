@@ -71,6 +71,7 @@ struct Expression {
     Place place = {};
     Expression* operands[2] = {};
     std::vector<Argument> arguments = {};
+    struct TypeText* made = nullptr;  ///< of a call `__NEW(Type, count)`, which has the count alone
 
     // Noted by the checker.
     const Type* type = nullptr;                  ///< null: wrong, already reported

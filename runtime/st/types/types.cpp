@@ -39,10 +39,11 @@ std::uint64_t bytes_of(const Type& type) {
                 if (member->type) bytes = std::max(bytes, bytes_of(*member->type));
             return bytes;
         case Kind::block:
+            if (type.routine->base) bytes = bytes_of(*type.routine->base->type);
             for (const Variable& variable : type.routine->variables)
                 if (variable.type && variable.space == Space::frame)
                     bytes += bytes_of(*variable.type);
-            return bytes;
+            return std::max<std::uint64_t>(bytes, 1);  // elements of an array are apart
         case Kind::standard:
             return type.standard->size;
         case Kind::reference:

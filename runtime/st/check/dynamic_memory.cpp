@@ -1,0 +1,234 @@
+#include "runtime/st/check/dynamic_memory.hpp"
+
+#include "runtime/st/check/classes.hpp"
+#include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/references.hpp"
+#include "runtime/st/check/statements.hpp"
+#include "runtime/st/check/types.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+std::int64_t size_of_pool(const Type& type) {
+    return type.is_scalar() ? pool_of_numbers : pool_of_others;
+}
+
+Variable& add_to_statics(Checking& c, const Expression& like, std::string name, const Type& of,
+                         std::int64_t count) {
+    Type& array = c.make_type(Kind::array, {});
+    array.element = &of;
+    array.upper = count - 1;
+    Variable& made =
+        c.make_variable(like.token, c.checked.names.emplace_back(std::move(name)), &array);
+    made.used = true;
+    keep_once(c, made);
+    return made;
+}
+
+Checking::Pool& pool_of(Checking& c, const Expression& like, const Type& type) {
+    for (Checking::Pool& pool : c.pools)
+        if (same_type(*pool.type, type)) return pool;
+    const std::int64_t size = size_of_pool(type);
+    const std::string name = fmt::format("__NEW({})", describe(type));
+    Checking::Pool& made = c.pools.emplace_back();
+    made.type = &type;
+    made.elements = &add_to_statics(c, like, name, type, size + 1);
+    made.taken = &add_to_statics(c, like, name + " taken", dint_type, size);
+    return made;
+}
+
+Expression* use_of(Checking& c, const Expression& like, Variable& variable) {
+    Expression* use = make_use(c, like, variable);
+    use->type = variable.type;
+    return use;
+}
+
+Expression* element(Checking& c, const Expression& like, Variable& array, Expression* index) {
+    Expression* made = make(c, E::index, like);
+    made->operands[0] = use_of(c, like, array);
+    made->arguments.push_back({.value = index});
+    return made;
+}
+
+Expression* number(Checking& c, const Expression& like, std::int64_t value) {
+    return make_constant(c, like, dint_type, {.integer = value});
+}
+
+Expression* null(Checking& c, const Expression& like) {
+    return make_constant(c, like, null_type, {});
+}
+
+Expression* binary(Checking& c, const Expression& like, Word op, Expression* left,
+                   Expression* right) {
+    return make_binary(c, like.place, like.place, op, left, right);
+}
+
+/// `FOR counter := first TO last DO body END_FOR`
+Statement* make_for(Checking& c, const Expression& like, Variable& counter, Expression* first,
+                    Expression* last, Block body) {
+    Statement* loop = make_assignment(c, like.place, use_of(c, like, counter), first);
+    loop->kind = S::for_;
+    loop->limit = last;
+    loop->body = std::move(body);
+    return loop;
+}
+
+Expression* system_call(Checking& c, const Expression& like, std::string_view function,
+                        std::string_view input, Expression* value, Variable& taken) {
+    const auto named = [&](std::string_view name) {
+        Token token = like.token;
+        token.word = Word::name;
+        token.text = name;
+        return token;
+    };
+    return make_call(c, like, make_name(c, like, function),
+                     {{.name = named(input), .value = value},
+                      {.name = named("taken"), .value = use_of(c, like, taken)}});
+}
+
+/// Of a new one, in statements: it begins as its type says, then FB_init is called.
+Block begin_elements(Checking& c, const Expression& like, Checking::Pool& pool, Variable& first,
+                     Variable& counter, Expression* count, const std::vector<Argument>* values) {
+    const Type& type = *pool.type;
+    Block body;
+    const auto at_counter = [&] {
+        return element(c, like, *pool.elements, use_of(c, like, counter));
+    };
+    body.push_back(
+        make_assignment(c, like.place, at_counter(),
+                        element(c, like, *pool.elements, number(c, like, size_of_pool(type)))));
+    construct_one(c, like, *c.routine, type, values, at_counter, body);
+    Expression* last = binary(c, like, Word::plus, use_of(c, like, first), count);
+    return {make_for(c, like, counter, use_of(c, like, first),
+                     binary(c, like, Word::minus, last, number(c, like, 1)), std::move(body))};
+}
+
+bool is_call_of(const Statement& s, std::string_view name) {
+    return s.value && s.value->kind == E::call && s.value->operands[0]->kind == E::name &&
+           same_name(s.value->operands[0]->token.text, name);
+}
+
+/// What is deleted may be an element of that pool.
+bool may_be_of(const Type& pointer, const Type& pool) {
+    const Type& target = *pointer.element;
+    if (same_type(target, pool)) return true;
+    if (target.is_bits()) return packed_bits(pool, iec) > 0;
+    return target.kind == Kind::block && pool.kind == Kind::block &&
+           is_a(*pool.routine, *target.routine);
+}
+
+/// `IF taken[i] > 0 AND_THEN p = ADR(elements[i]) THEN elements[i].FB_exit(FALSE); gives it back`
+Statement* delete_of(Checking& c, const Checking::Deletion& deletion, Checking::Pool& pool,
+                     Variable& counter) {
+    const Expression& like = *deletion.statement->value;
+    const auto place = [&] { return element(c, like, *pool.elements, use_of(c, like, counter)); };
+    Expression* is_taken =
+        binary(c, like, Word::greater, element(c, like, *pool.taken, use_of(c, like, counter)),
+               number(c, like, 0));
+    Expression* is_it =
+        binary(c, like, Word::equal, make_copy(c, *deletion.pointer), make_call(c, "ADR", place()));
+    Block body;
+    const Type& type = *pool.type;
+    const Routine* exit =
+        type.kind == Kind::block ? find_in(type.routine->methods, "fb_exit") : nullptr;
+    if (exit)
+        body.push_back(
+            make_call_statement(c, make_call(c, like, make_member(c, place(), exit->pou->name.text),
+                                             {{.value = make_boolean(c, like, false)}})));
+    body.push_back(make_call_statement(c, system_call(c, like, "__SYSTEM.__DELETE", "first",
+                                                      use_of(c, like, counter), *pool.taken)));
+    return make_for(c, like, counter, number(c, like, 0), number(c, like, size_of_pool(type) - 1),
+                    {make_if(c, like.place, binary(c, like, Word::and_then_, is_taken, is_it),
+                             std::move(body), {})});
+}
+
+}  // namespace
+
+bool is_of_dynamic_memory(std::string_view function) {
+    return same_name(function, "__new") || same_name(function, "__delete");
+}
+
+bool rewrite_new(Checking& c, Statement*& s) {
+    if (s->kind != S::assign || s->op != Word::assign || !is_call_of(*s, "__new")) return false;
+    Expression& call = *s->value;
+    const Type* type = resolve(c, *call.made);
+    if (!type) return check(c, s->target), true;
+    const std::vector<Argument>* values = constructor_arguments(call.made, type);
+    if (values && !values->empty() && !is_constructed(type)) {
+        refuse_constructor_arguments(c, call.made->place, *type);
+        return true;
+    }
+    const Expression& like = *call.operands[0];
+    Checking::Pool& pool = pool_of(c, like, *type);
+    const auto variable = [&](std::string_view name, const Type& of) -> Variable& {
+        Variable& made = c.make_variable(*c.routine, like.token, name, &of);
+        made.used = true;
+        return made;
+    };
+    Variable &count = variable("__NEW.count", dint_type),
+             &first = variable("__NEW.first", dint_type),
+             &counter = variable("__NEW.counter", dint_type),
+             &pointer = variable("__NEW.pointer", pointer_to(c, *type));
+    Expression* given = call.arguments.empty() ? number(c, like, 1)
+                                               : make_call(c, "TO_DINT", call.arguments[0].value);
+    Block then = begin_elements(c, like, pool, first, counter, use_of(c, like, count), values);
+    then.push_back(make_assignment(
+        c, s->place, use_of(c, like, pointer),
+        make_call(c, "ADR", element(c, like, *pool.elements, use_of(c, like, first)))));
+    Expression* is_made =
+        binary(c, like, Word::greater_or_equal, use_of(c, like, first), number(c, like, 0));
+    s = make_sequence(c, s->place,
+                      {make_assignment(c, s->place, use_of(c, like, count), given),
+                       make_assignment(c, s->place, use_of(c, like, first),
+                                       system_call(c, like, "__SYSTEM.__NEW", "count",
+                                                   use_of(c, like, count), *pool.taken)),
+                       make_assignment(c, s->place, use_of(c, like, pointer), null(c, like)),
+                       make_if(c, s->place, is_made, std::move(then), {}),
+                       make_assignment(c, s->place, s->target, use_of(c, like, pointer))});
+    check(c, s);
+    return true;
+}
+
+bool rewrite_delete(Checking& c, Statement*& s) {
+    if (s->kind != S::call || !is_call_of(*s, "__delete")) return false;
+    Expression& call = *s->value;
+    if (call.arguments.size() != 1 || call.arguments[0].is_output)
+        return c.fail(code::wrong_arguments, call.place, "__DELETE takes 1 argument"), true;
+    Expression* pointer = call.arguments[0].value;
+    const Type* type = check(c, pointer);
+    if (!type) return true;
+    if (!type->is_pointer() || !type->element) {
+        c.fail(code::type_does_not_fit, pointer->place,
+               fmt::format("__DELETE takes a POINTER TO, not {}", describe(*type)),
+               "give it what __NEW was assigned to");
+        return true;
+    }
+    Statement* made = make_sequence(c, s->place, {});
+    made->value = &call;
+    c.deletions.push_back({c.routine, made, pointer});
+    s = made;
+    return true;
+}
+
+void write_deletions(Checking& c) {
+    for (const Checking::Deletion& deletion : c.deletions) {
+        c.routine = deletion.routine;
+        const Expression& like = *deletion.statement->value;
+        Variable& counter =
+            c.make_variable(*c.routine, like.operands[0]->token, "__DELETE.counter", &dint_type);
+        counter.used = true;
+        Block& body = deletion.statement->body;
+        for (Checking::Pool& pool : c.pools)
+            if (may_be_of(*deletion.pointer->type, *pool.type))
+                body.push_back(delete_of(c, deletion, pool, counter));
+        body.push_back(
+            make_assignment(c, deletion.statement->place, deletion.pointer, null(c, like)));
+        for (Statement*& statement : body) check(c, statement);
+    }
+    c.routine = nullptr;
+}
+
+}  // namespace lineshaft::st

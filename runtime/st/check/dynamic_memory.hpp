@@ -1,0 +1,20 @@
+#pragma once
+
+#include "runtime/st/check/checking.hpp"
+
+namespace lineshaft::st {
+
+/// `__NEW` or `__DELETE`, as users write it.
+bool is_of_dynamic_memory(std::string_view function);
+/// `p := __NEW(Type, count);` of CODESYS becomes statements: what it makes are elements of a
+/// global array of the type, of which `pool_size` are had.
+bool rewrite_new(Checking& c, Statement*& s);
+/// `__DELETE(p);`
+bool rewrite_delete(Checking& c, Statement*& s);
+/// When all that is made is known.
+void write_deletions(Checking& c);
+
+/// How many elements of a type there are: of numbers and bytes, of all else.
+inline constexpr std::int64_t pool_of_numbers = 4096, pool_of_others = 64;
+
+}  // namespace lineshaft::st
