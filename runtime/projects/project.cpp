@@ -36,12 +36,13 @@ struct Form {
     std::string_view ending;
     void (*read)(const Reading& to, const std::string& path, const Mark& where);
 };
-constexpr Form forms[] = {{".tcpou", read_twincat_object}, {".tcdut", read_twincat_object},
-                          {".tcgvl", read_twincat_object}, {".tcio", read_twincat_object},
-                          {".tctto", read_twincat_object}, {".plcproj", read_plcproj},
-                          {".sln", read_solution},         {".tsproj", read_solution},
-                          {".tspproj", read_solution},     {".xti", read_solution},
-                          {".xml", read_plcopen},          {".prg", read_iec_program}};
+constexpr Form forms[] = {{".tcpou", read_twincat_object},  {".tcdut", read_twincat_object},
+                          {".tcgvl", read_twincat_object},  {".tcio", read_twincat_object},
+                          {".tctleo", read_twincat_object}, {".tctto", read_twincat_object},
+                          {".plcproj", read_plcproj},       {".sln", read_solution},
+                          {".tsproj", read_solution},       {".tspproj", read_solution},
+                          {".xti", read_solution},          {".xml", read_plcopen},
+                          {".prg", read_iec_program}};
 
 const Form* form_of(const fs::path& file) {
     const std::string ending = lower(file.extension().string());

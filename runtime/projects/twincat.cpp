@@ -206,7 +206,7 @@ void read_twincat_object(const Reading& to, const std::string& path, const Mark&
         const std::string_view kind = object.name();
         if (kind == "Task") to.project.tasks.push_back(task_of(*file, object));
         const bool is_unit = kind == "POU" || kind == "Itf";
-        if (!is_unit && kind != "DUT" && kind != "GVL") continue;
+        if (!is_unit && kind != "DUT" && kind != "GVL" && kind != "EnumerationTextList") continue;
         ObjectText text(*file, to.out);
         if (is_unit)
             text.add_unit(object);

@@ -200,6 +200,8 @@ bool rewrite_delete(Checking& c, Statement*& s) {
     Expression* pointer = call.arguments[0].value;
     const Type* type = check(c, pointer);
     if (!type) return true;
+    if (pointer->kind == E::self && !coerce(c, pointer, pointer_to(c, *type))) return true;
+    type = pointer->type;
     if (!type->is_pointer() || !type->element) {
         c.fail(code::type_does_not_fit, pointer->place,
                fmt::format("__DELETE takes a POINTER TO, not {}", describe(*type)),
@@ -224,8 +226,9 @@ void write_deletions(Checking& c) {
         for (Checking::Pool& pool : c.pools)
             if (may_be_of(*deletion.pointer->type, *pool.type))
                 body.push_back(delete_of(c, deletion, pool, counter));
-        body.push_back(
-            make_assignment(c, deletion.statement->place, deletion.pointer, null(c, like)));
+        if (is_place(*deletion.pointer))
+            body.push_back(
+                make_assignment(c, deletion.statement->place, deletion.pointer, null(c, like)));
         for (Statement*& statement : body) check(c, statement);
     }
     c.routine = nullptr;

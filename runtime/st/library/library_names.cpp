@@ -68,7 +68,7 @@ NameSet names_of(const Catalog& catalog) {
 /// In one of TwinCAT's own forms.
 bool is_twincat(const Source& source) {
     const std::string path = lower(source.file->path);
-    constexpr std::string_view endings[] = {".tcpou", ".tcdut", ".tcgvl", ".tcio"};
+    constexpr std::string_view endings[] = {".tcpou", ".tcdut", ".tcgvl", ".tcio", ".tctleo"};
     return std::ranges::any_of(endings, [&](auto ending) { return path.ends_with(ending); });
 }
 

@@ -34,9 +34,9 @@ const Dialect& dialect_of(std::string_view path) {
         const Dialect& dialect;
     };
     static constexpr Ending endings[] = {
-        {".st", iec},       {".typ", iec},       {".var", iec},       {".fun", iec},
-        {".exp", codesys},  {".tcpou", codesys}, {".tcdut", codesys}, {".tcgvl", codesys},
-        {".tcio", codesys}, {".xml", codesys}};
+        {".st", iec},       {".typ", iec},        {".var", iec},       {".fun", iec},
+        {".exp", codesys},  {".tcpou", codesys},  {".tcdut", codesys}, {".tcgvl", codesys},
+        {".tcio", codesys}, {".tctleo", codesys}, {".xml", codesys}};
     const std::string name = lower(path);
     const auto* it = std::ranges::find_if(
         endings, [&](const Ending& known) { return name.ends_with(known.ending); });
