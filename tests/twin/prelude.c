@@ -126,6 +126,7 @@ u8 twin_character(const void* from, i64 room, i64 place, int line) {
 void twin_set_character(void* to, i64 place, u8 c, int line) {
     if (place < 1 || place > as_text(to)->length) twin_fault(array_bounds, line);
     ((text*)to)->c[place - 1] = (char)c;
+    if (!c) ((text*)to)->length = place - 1;
 }
 
 u64 twin_to_bcd(u64 value, int digits, int line) {

@@ -65,6 +65,7 @@ bool set_character(std::byte* text, std::int64_t place, std::uint64_t value) {
     const auto at = static_cast<std::uint64_t>(place) - 1;
     const bool is_there = at < word(text, 0);
     if (is_there) set_byte(text + 8, at, value);
+    if (is_there && value == 0) set_word(text, 0, at);
     return is_there;
 }
 

@@ -205,7 +205,7 @@ std::int64_t compare_texts(const std::byte* a, const std::byte* b);
 std::optional<std::uint64_t> character_of(const std::byte* from, std::int64_t place,
                                           std::uint32_t room);
 
-/// False if the text is shorter.
+/// A 0 ends the text there. False if the text is shorter.
 bool set_character(std::byte* text, std::int64_t place, std::uint64_t value);
 
 /// The byte at `place` (from 0) of a text that has room for so many and the 0 that ends it; behind
