@@ -906,7 +906,7 @@ class SourceMaker {
             if (number == 0) number = 3;
             by = fmt::format("{}#{}", type.name, digits(number));
         } else {
-            by = "(" + varying(type, depth) + ")";
+            by = fmt::format("MOVE({})", sub(type, depth));
         }
         if (divides && below(6) == 5) return {fmt::format("DIV({}, {})", a.text, by)};
         return {fmt::format("{} {} {}", wrapped(a, multiply), divides ? "/" : "MOD", by), multiply};
