@@ -294,7 +294,8 @@ void check_assignment(Checking& c, Statement*& s) {
     check(c, s->value, type);
     if (s->value->kind == E::list || !type || !check_target(c, *s->target) || !s->value->type)
         return;
-    if (type->kind == Kind::block && s->op == Word::assign && is_place(*s->value) &&
+    const bool is_instance = is_place(*s->value) || s->value->kind == E::call;
+    if (type->kind == Kind::block && s->op == Word::assign && is_instance &&
         same_type(*type, *s->value->type))
         return;
     if (type->is_instance())
