@@ -120,9 +120,26 @@ bool may_be_of(const Type& pointer, const Type& pool) {
            is_a(*pool.routine, *target.routine);
 }
 
-/// `IF taken[i] > 0 AND_THEN p = ADR(elements[i]) THEN elements[i].FB_exit(FALSE); gives it back`
+/// FB_exit of those that begin at `first`, if their block has one.
+Block end_elements(Checking& c, const Expression& like, Checking::Pool& pool, Variable& first,
+                   Variable& counter) {
+    const Type& type = *pool.type;
+    const Routine* exit =
+        type.kind == Kind::block ? find_in(type.routine->methods, "fb_exit") : nullptr;
+    if (!exit) return {};
+    Expression* instance = element(c, like, *pool.elements, use_of(c, like, counter));
+    Statement* call =
+        make_call_statement(c, make_call(c, like, make_member(c, instance, exit->pou->name.text),
+                                         {{.value = make_boolean(c, like, false)}}));
+    Expression* behind = binary(c, like, Word::plus, use_of(c, like, first),
+                                element(c, like, *pool.taken, use_of(c, like, first)));
+    return {make_for(c, like, counter, use_of(c, like, first),
+                     binary(c, like, Word::minus, behind, number(c, like, 1)), {call})};
+}
+
+/// `IF taken[i] > 0 AND_THEN p = ADR(elements[i]) THEN` calls FB_exit and gives them back.
 Statement* delete_of(Checking& c, const Checking::Deletion& deletion, Checking::Pool& pool,
-                     Variable& counter) {
+                     Variable& counter, Variable& inner) {
     const Expression& like = *deletion.statement->value;
     const auto place = [&] { return element(c, like, *pool.elements, use_of(c, like, counter)); };
     Expression* is_taken =
@@ -130,17 +147,11 @@ Statement* delete_of(Checking& c, const Checking::Deletion& deletion, Checking::
                number(c, like, 0));
     Expression* is_it =
         binary(c, like, Word::equal, make_copy(c, *deletion.pointer), make_call(c, "ADR", place()));
-    Block body;
-    const Type& type = *pool.type;
-    const Routine* exit =
-        type.kind == Kind::block ? find_in(type.routine->methods, "fb_exit") : nullptr;
-    if (exit)
-        body.push_back(
-            make_call_statement(c, make_call(c, like, make_member(c, place(), exit->pou->name.text),
-                                             {{.value = make_boolean(c, like, false)}})));
+    Block body = end_elements(c, like, pool, counter, inner);
     body.push_back(make_call_statement(c, system_call(c, like, "__SYSTEM.__DELETE", "first",
                                                       use_of(c, like, counter), *pool.taken)));
-    return make_for(c, like, counter, number(c, like, 0), number(c, like, size_of_pool(type) - 1),
+    return make_for(c, like, counter, number(c, like, 0),
+                    number(c, like, size_of_pool(*pool.type) - 1),
                     {make_if(c, like.place, binary(c, like, Word::and_then_, is_taken, is_it),
                              std::move(body), {})});
 }
@@ -164,9 +175,7 @@ bool rewrite_new(Checking& c, Statement*& s) {
     const Expression& like = *call.operands[0];
     Checking::Pool& pool = pool_of(c, like, *type);
     const auto variable = [&](std::string_view name, const Type& of) -> Variable& {
-        Variable& made = c.make_variable(*c.routine, like.token, name, &of);
-        made.used = true;
-        return made;
+        return c.make_variable(*c.routine, like.token, name, &of);
     };
     Variable &count = variable("__NEW.count", dint_type),
              &first = variable("__NEW.first", dint_type),
@@ -219,13 +228,14 @@ void write_deletions(Checking& c) {
     for (const Checking::Deletion& deletion : c.deletions) {
         c.routine = deletion.routine;
         const Expression& like = *deletion.statement->value;
-        Variable& counter =
-            c.make_variable(*c.routine, like.operands[0]->token, "__DELETE.counter", &dint_type);
-        counter.used = true;
+        const auto variable = [&](std::string_view name) -> Variable& {
+            return c.make_variable(*c.routine, like.operands[0]->token, name, &dint_type);
+        };
+        Variable &counter = variable("__DELETE.counter"), &inner = variable("__DELETE.inner");
         Block& body = deletion.statement->body;
         for (Checking::Pool& pool : c.pools)
             if (may_be_of(*deletion.pointer->type, *pool.type))
-                body.push_back(delete_of(c, deletion, pool, counter));
+                body.push_back(delete_of(c, deletion, pool, counter, inner));
         if (is_place(*deletion.pointer))
             body.push_back(
                 make_assignment(c, deletion.statement->place, deletion.pointer, null(c, like)));
