@@ -4,6 +4,7 @@
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/dynamic_memory.hpp"
 #include "runtime/st/check/image.hpp"
+#include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/statements.hpp"
 
 namespace lineshaft::st {

@@ -1,6 +1,7 @@
 #include "runtime/st/check/dynamic_memory.hpp"
 
 #include "runtime/st/check/classes.hpp"
+#include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"

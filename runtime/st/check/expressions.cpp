@@ -3,6 +3,7 @@
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/references.hpp"
+#include "runtime/st/check/statements.hpp"
 
 namespace lineshaft::st {
 

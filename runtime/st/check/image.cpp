@@ -1,5 +1,6 @@
 #include "runtime/st/check/image.hpp"
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/types/packed.hpp"
 
 namespace lineshaft::st {

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "runtime/st/syntax/grammar.hpp"
 
 namespace lineshaft::st {

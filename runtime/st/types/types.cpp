@@ -6,6 +6,8 @@
 
 namespace lineshaft::st {
 
+using Kind = Type::Kind;
+
 const Expression& root_of(const Expression& place) {
     const bool is_part =
         place.kind == Expression::Kind::index ||
