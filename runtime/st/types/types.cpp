@@ -6,8 +6,6 @@
 
 namespace lineshaft::st {
 
-using Kind = Type::Kind;
-
 const Expression& root_of(const Expression& place) {
     const bool is_part =
         place.kind == Expression::Kind::index ||
@@ -18,38 +16,38 @@ const Expression& root_of(const Expression& place) {
 std::uint64_t bytes_of(const Type& type) {
     std::uint64_t bytes = 0;
     switch (type.kind) {
-        case Kind::boolean:
+        case Type::Kind::boolean:
             return 1;
-        case Kind::time:
+        case Type::Kind::time:
             return type.counts_ns ? 8 : 4;
-        case Kind::date:
-        case Kind::clock:
-        case Kind::moment:
+        case Type::Kind::date:
+        case Type::Kind::clock:
+        case Type::Kind::moment:
             return type.name.starts_with('L') ? 8 : 4;
-        case Kind::text:
+        case Type::Kind::text:
             return type.length + 1;
-        case Kind::enumeration:
+        case Type::Kind::enumeration:
             return type.base ? bytes_of(*type.base) : 0;
-        case Kind::array:
+        case Type::Kind::array:
             return type.count() * bytes_of(*type.element);
-        case Kind::structure:
+        case Type::Kind::structure:
             for (const Variable* member : type.members)
                 bytes += member->type ? bytes_of(*member->type) : 0;  // told, if it has none
             return bytes;
-        case Kind::union_:
+        case Type::Kind::union_:
             for (const Variable* member : type.members)
                 if (member->type) bytes = std::max(bytes, bytes_of(*member->type));
             return bytes;
-        case Kind::block:
+        case Type::Kind::block:
             if (type.routine->base) bytes = bytes_of(*type.routine->base->type);
             for (const Variable& variable : type.routine->variables)
                 if (variable.type && variable.space == Space::frame)
                     bytes += bytes_of(*variable.type);
             return std::max<std::uint64_t>(bytes, 1);  // elements of an array are apart
-        case Kind::standard:
+        case Type::Kind::standard:
             return type.standard->size;
-        case Kind::reference:
-        case Kind::handle:
+        case Type::Kind::reference:
+        case Type::Kind::handle:
             return 8;
         default:
             return static_cast<std::uint64_t>(type.bits) / 8;
