@@ -8,6 +8,7 @@
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/yaml.hpp"
 #include "runtime/st/syntax/token.hpp"
 
 namespace lineshaft::projects {

@@ -146,7 +146,7 @@ void twin_unsigned(result* to, u64 value) {
 /* The fewest digits that read back as the value, with or without an exponent, what is shorter. */
 static void shortest(result* to, f64 value, int is_single) {
     if (value != value || value - value != 0) {
-        to->length = snprintf(to->c, 254, "%s%s", signbit(value) ? "-" : "", value != value ? "nan" : "inf");
+        to->length = snprintf(to->c, 254, "%s%s", value < 0 ? "-" : "", value != value ? "nan" : "inf");
         return;
     }
     int precision = 0;

@@ -80,12 +80,22 @@ void replace(Checking& c, Routine& method, Routine& replaced) {
                "give it another name");
 }
 
+/// A method without OVERRIDE, whose arguments are not those of the base's, stands beside that; in
+/// CODESYS, which has no such word, it is meant to replace it.
+bool is_beside(const Routine& method, const Routine& of_base) {
+    return &method != &of_base && !method.pou->is_override && !of_base.owner->is_interface() &&
+           method.pou->accessor == Accessor::none && !method.pou->name.place.dialect().is_loose &&
+           signature_of(*method.pou) != signature_of(*of_base.pou);
+}
+
 /// What a base has under names that either of them overloads, if it was not replaced.
 void inherit_overloads(Routine& block, const Routine& base) {
     for (const auto& [name, first] : base.methods) {
         const auto own = block.methods.find(name);
         const auto theirs = base.overloads.find(name);
-        const bool is_one = theirs == base.overloads.end() && !block.overloads.contains(name);
+        const bool is_hidden = own != block.methods.end() && is_beside(*own->second, *first);
+        const bool is_one =
+            theirs == base.overloads.end() && !block.overloads.contains(name) && !is_hidden;
         if (is_one) continue;
         auto& all = block.overloads[name];
         if (all.empty() && own != block.methods.end()) all.push_back(own->second);
@@ -113,7 +123,9 @@ void link_methods(Checking& c, Routine& block, std::unordered_set<const Routine*
     for (const Routine* base : bases) block.has_unknown_base |= base->has_unknown_base;
     for (Routine* method : block.own_methods) {
         for (Routine* base : bases)
-            if (Routine* replaced = find_method(*base, *method)) replace(c, *method, *replaced);
+            if (Routine* replaced = find_method(*base, *method);
+                replaced && !is_beside(*method, *replaced))
+                replace(c, *method, *replaced);
         if (method->pou->is_override && !method->overrides && !block.has_unknown_base &&
             block.interfaces.empty())
             c.fail(code::not_declared, method->pou->name.place,

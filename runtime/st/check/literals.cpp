@@ -113,7 +113,7 @@ const Type* check_typed(Checking& c, Expression*& e) {
                       fmt::format("'{}' is not a type of values", name.text),
                       "write a type, as in INT#5");
     if (!type) return nullptr;
-    if (type->kind == Kind::enumeration && value->kind == E::name)
+    if (type->has_values() && value->kind == E::name)
         return check_value(c, e, *type, value->token);
     if (!check(c, value, type) || !coerce(c, value, *type)) return nullptr;
     if (!is_constant(*value))

@@ -111,9 +111,13 @@ const Type* enumeration_of(Checking& c, const Expression& member) {
     if (variable && !(variable->type && variable->type->is_scalar())) return nullptr;
     const NamedType* named = c.look_up(&Names::types, *name);
     const Type* type = named ? named->type : nullptr;
-    if (!type || type->kind != Kind::enumeration) return nullptr;
+    if (!type || !type->has_values()) return nullptr;
     c.note(of.place, *named);
     return type;
+}
+
+const Type* become_value(Checking& c, Expression*& e, const Type& type, std::ptrdiff_t index) {
+    return become(c, e, type, {.integer = type.kept(static_cast<std::size_t>(index))});
 }
 
 const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, const Token& name) {
@@ -123,16 +127,16 @@ const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, co
                       fmt::format("{} has no value '{}'", enumeration.name, name.text),
                       suggest(name.text, enumeration.values));
     c.note(name.place, enumeration);
-    return become(c, e, enumeration, {.integer = found - enumeration.values.data()});
+    return become_value(c, e, enumeration, found - enumeration.values.data());
 }
 
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     const Token& token = e->token;
     if (token.word == Word::direct) return check_direct(c, *e);
-    if (expected && expected->kind == Kind::enumeration && !token.local) {
+    if (expected && expected->has_values() && !token.local) {
         const std::string* value = find_called(expected->values, token.text);
         if (value && !find_variable(c, token))
-            return become(c, e, *expected, {.integer = value - expected->values.data()});
+            return become_value(c, e, *expected, value - expected->values.data());
     }
     Variable* variable = find_variable(c, token);
     if (!variable) variable = declare_program(c, token);
@@ -148,7 +152,7 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
             return c.fail(code::not_declared, e->place,
                           fmt::format("'{}' is a value of several enumerations", token.text),
                           fmt::format("write {}#{}", value->type->name, token.text));
-        return become(c, e, *value->type, {.integer = static_cast<Wide>(value->index)});
+        return become_value(c, e, *value->type, static_cast<std::ptrdiff_t>(value->index));
     }
     if (same_name(token.text, "eno") && c.routine && c.routine->pou->kind != PouKind::data_block)
         return use(c, e, eno_of(c, *c.routine));

@@ -200,10 +200,21 @@ const Type* check_chosen(Checking& c, Expression& call, const Type* expected) {
 
 constexpr const char* write_its_type = "write its type, as in WORD#16#FF";
 
+/// CODESYS: a number without a type is shifted in the smallest type that holds it.
+void take_least_width(Checking& c, Expression*& e) {
+    if (e->type->kind != Kind::any_integer || !e->place.dialect().is_loose) return;
+    for (const int bits : {8, 16, 32, 64}) {
+        const Type& type = integer_type(bits, e->constant.integer < 0);
+        if (e->constant.integer >= smallest(type) && e->constant.integer <= largest(type))
+            return void(coerce(c, e, type));
+    }
+}
+
 const Type* check_places(Checking& c, Expression& call, const Type* expected) {
     Expression*& places = call.arguments[1].value;
     become_number(c, places);
     take_width(c, call.arguments[0].value, expected);
+    take_least_width(c, call.arguments[0].value);
     const Type &given = given_type(call, 0), &count = *places->type;
     if (!count.is_integer() && count.kind != Kind::any_bits)
         return c.fail(code::type_does_not_fit, places->place, "the number of places is an integer");

@@ -114,6 +114,17 @@ Expression* with_values_before(Checking& c, Expression* e, const Type& type) {
     return made;
 }
 
+/// `INT (low := 10, high := 20)`: an INT, some of whose values have names.
+void become_named_values(Type& type, const Type& base) {
+    type.kind = base.kind;
+    type.bits = base.bits;
+    type.is_signed = base.is_signed;
+    type.base = &base;
+    type.has_numbers = false;
+    type.has_named_values = true;
+    type.initial.integer = type.numbers.front();
+}
+
 /// A block's name with values is the block, with arguments of its FB_init.
 const Type* resolve_enumeration(Checking& c, const TypeText& text) {
     const bool has_base = text.name.word != Word::end_of_file;
@@ -145,6 +156,9 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
         type.values.emplace_back(value.name.text);
         type.numbers.push_back(number++);
     }
+    const bool is_named_first = has_base && text.name.place.begin == text.place.begin;
+    if (is_named_first && !text.place.dialect().is_loose && !type.numbers.empty())
+        become_named_values(type, base->plain());
     return &type;
 }
 

@@ -1,6 +1,7 @@
 #include "runtime/st/code/meaning.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <tuple>
 
 #include "runtime/source/letters.hpp"
@@ -96,6 +97,8 @@ std::uint64_t find_text(const std::byte* in, const std::byte* what) {
 
 template <class T>
 void write_number(std::byte* to, T value, bool has_sign) {
+    if constexpr (std::is_floating_point_v<T>)
+        if (std::isnan(value)) value = std::abs(value);  // a NaN's sign is the processor's
     char* first = reinterpret_cast<char*>(to + 8);
     const int sign = has_sign && value >= T{} ? 1 : 0;
     if (sign == 1) *first = '+';

@@ -56,9 +56,10 @@ struct Type {
     std::uint32_t slots = 1;
     std::int64_t lower = 0, upper = -1;  ///< of an array's index; of a subrange's values
     bool is_subrange = false;
+    bool has_named_values = false;         ///< `values` names some of a number (6.4.4.3)
     bool is_unnamed = false;               ///< STRUCT without a TYPE: any of its members is equal
     bool counts_ns = false;                ///< LTIME, of which a real number is in ns, not ms
-    const Type* base = nullptr;            ///< of a subrange; of an enumeration with numbers
+    const Type* base = nullptr;            ///< of a subrange, of named values; of an enumeration with numbers
     const Type* element = nullptr;         ///< of an array; what a reference is to, or null
     Referring referring = Referring::ref;  ///< of a reference
     bool has_inner = false;                ///< of an array: its element is its next dimension
@@ -67,7 +68,7 @@ struct Type {
                                  ///< ARRAY[*], to the first element of what is given
     std::size_t dimensions = 1;  ///< of ARRAY[*]
     std::vector<Variable*> members = {};       ///< of a structure, a union
-    std::vector<std::string> values = {};      ///< of an enumeration
+    std::vector<std::string> values = {};      ///< of an enumeration, of named values
     std::vector<std::int64_t> numbers = {};    ///< of its values
     bool counted = true;                       ///< those are 0, 1, 2, ...
     bool has_numbers = false;                  ///< a source declares it: its numbers are known
@@ -105,7 +106,12 @@ struct Type {
     std::uint64_t count() const { return static_cast<std::uint64_t>(upper - lower) + 1; }
     /// Of an array of all its dimensions.
     const Type& innermost() const { return has_inner ? element->innermost() : *element; }
-    const Type& plain() const { return is_subrange ? *base : *this; }
+    const Type& plain() const { return is_subrange || has_named_values ? *base : *this; }
+    bool has_values() const { return kind == Kind::enumeration || has_named_values; }
+    /// What a variable of it keeps for the value `i` of the list.
+    std::int64_t kept(std::size_t i) const {
+        return has_named_values ? numbers[i] : static_cast<std::int64_t>(i);
+    }
 };
 
 inline bool Expression::is_character() const {

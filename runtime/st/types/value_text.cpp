@@ -1,5 +1,6 @@
 #include "runtime/st/types/value_text.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cmath>
@@ -72,6 +73,10 @@ std::string literal(Kind kind, std::int64_t nanoseconds) {
 
 std::string value_text(const Type& type, std::uint64_t slot) {
     const auto number = static_cast<std::int64_t>(slot);
+    if (const auto named = std::ranges::find(type.numbers, number);
+        type.has_named_values && named != type.numbers.end())
+        return fmt::format("{}#{}", type.name,
+                           type.values[static_cast<std::size_t>(named - type.numbers.begin())]);
     switch (type.kind) {
         case Kind::boolean:
             return slot != 0 ? "TRUE" : "FALSE";

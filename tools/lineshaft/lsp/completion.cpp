@@ -180,7 +180,7 @@ void Completion::add_names(Offer& to) const {
             to.add(r.name, r.is_function() ? Kind::function : Kind::class_, signature_of(r));
     for (const st::Type& type : meaning.compiled.checked.types)
         if (!type.is_unnamed &&
-            (type.kind == st::Type::Kind::structure || type.kind == st::Type::Kind::enumeration)) {
+            (type.kind == st::Type::Kind::structure || type.has_values())) {
             to.add(type.name, Kind::class_);
             for (const std::string& value : type.values) to.add(value, Kind::enum_, type.name);
         }
