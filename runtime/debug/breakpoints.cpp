@@ -170,8 +170,8 @@ void Breakpoints::arrange() {
         const st::Routine& routine = *made_->checked.order[i];
         numbers.emplace(&routine, i);
         if (made_->checked.dispatches) reached_[i] = count_ > 0;
-        for (const st::Routine* called : routine.calls)
-            if (const auto it = numbers.find(called); it != numbers.end() && reached_[it->second])
+        for (const st::Called& called : routine.calls)
+            if (const auto it = numbers.find(called.routine); it != numbers.end() && reached_[it->second])
                 reached_[i] = true;
     }
 }

@@ -195,7 +195,8 @@ Routine& begin_of_globals(Checking& c, const Expression& like) {
 bool is_first(const Checking& c, const Routine& block) {
     if (block.is_test() || block.pou->kind == PouKind::program) return true;
     const auto has_it = [&](const Routine& other) {
-        return other.owner != &block && std::ranges::find(other.calls, &block) != other.calls.end();
+        return other.owner != &block &&
+               std::ranges::find(other.calls, &block, &Called::routine) != other.calls.end();
     };
     return !block.owner && block.has_instances() && !block.pou->is_tests &&
            std::ranges::none_of(c.checked.routines, has_it);

@@ -284,8 +284,7 @@ void note_call(Checking& c, const Expression& call, Routine* called) {
     if (call.is_dispatched) {
         c.routine->dispatches = c.checked.dispatches = true;
     } else if (called) {
-        c.routine->calls.push_back(called);
-        c.routine->call_places.push_back(call.place);
+        c.routine->calls.push_back({called, call.place, is_through_reference(call)});
     }
 }
 
@@ -305,7 +304,7 @@ const Type* check_instance_call(Checking& c, Expression*& e, const Type& type, b
             instance.kind == E::self || (root && root->space == Space::global);
         note_call(c, *e, is_elsewhere ? type.routine : nullptr);
         e->routine = type.routine;
-        if (root_of(*e->operands[0]).kind == E::deref) depend(c, &type, e->place);
+        if (root_of(*e->operands[0]).kind == E::deref) depend(c, &type, e->place, true);
         check_arguments(c, e, *type.routine);
     } else {
         check_standard_arguments(c, e, type);

@@ -316,6 +316,16 @@ bool may_be_derived(const Expression& receiver) {
     return is_place && receiver.variable && receiver.variable->space == Space::reference;
 }
 
+bool is_through_reference(const Expression& call) {
+    const Expression* at = call.operands[0];
+    const bool is_instance = at->type && at->type->kind == Kind::block;
+    if (!is_instance && at->kind != E::member) return false;
+    if (!is_instance) at = at->operands[0];
+    while (at->kind == E::index || (at->kind == E::member && !may_be_derived(*at)))
+        at = at->operands[0];
+    return at->kind != E::self && may_be_derived(*at);
+}
+
 const Type* check_method_call(Checking& c, Expression*& call, Routine& method,
                               const Expression& receiver, bool as_statement) {
     const bool through =

@@ -27,6 +27,8 @@ const Type* check_method_call(Checking& c, Expression*& call, Routine& method,
                               const Expression& receiver, bool as_statement);
 /// Whether what `receiver` refers to may be of a block that derives from that of its type.
 bool may_be_derived(const Expression& receiver);
+/// Whether a call is one of an instance, or of a part of it, that a reference is to.
+bool is_through_reference(const Expression& call);
 
 /// `instance.Property`, with the instance, or of the own block with null; null: there is none of
 /// that name.

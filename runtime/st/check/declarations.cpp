@@ -453,8 +453,6 @@ void declare_routines(Checking& c) {
         if (method.owner) {
             const Routine& owner = *method.owner;
             method.calls.insert(method.calls.end(), owner.calls.begin(), owner.calls.end());
-            method.call_places.insert(method.call_places.end(), owner.call_places.begin(),
-                                      owner.call_places.end());
         }
 }
 

@@ -69,7 +69,7 @@ Block beginnings(Checking& c, Routine& routine);
 // order.cpp
 
 /// The routine runs, or is made of, what is in `type`.
-void depend(Checking& c, const Type* type, Place place);
+void depend(Checking& c, const Type* type, Place place, bool through_reference = false);
 
 /// Each behind all that it runs, in `Checked::order`; tells recursions.
 void order_routines(Checking& c);

@@ -158,7 +158,7 @@ Expression* attempted(Checking& c, Expression* given, const Type& to) {
 void depend_on_target(Checking& c, const Type* target, Place place) {
     const Routine* own = c.routine && c.routine->owner ? c.routine->owner : c.routine;
     if (!target || (target->kind == Kind::block && target->routine == own)) return;
-    depend(c, target, place);
+    depend(c, target, place, true);
 }
 
 const Type* check_size(Checking& c, Expression*& e) {

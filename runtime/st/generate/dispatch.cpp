@@ -26,8 +26,8 @@ void prepare_dispatch(Writing& w) {
     w.code.has_kinds = w.checked.dispatches;
     for (Routine* routine : w.checked.order) {
         routine->may_meet_itself = routine->dispatches;
-        for (const Routine* called : routine->calls)
-            routine->may_meet_itself |= called->may_meet_itself;
+        for (const Called& called : routine->calls)
+            routine->may_meet_itself |= called.routine->may_meet_itself;
         routine->levels = routine->depth + (routine->may_meet_itself ? found_levels : 0);
         Routine* block = routine->owner ? routine->owner : routine;
         block->levels = std::max(block->levels, routine->levels);

@@ -100,8 +100,8 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
     w.code.globals = static_cast<std::uint32_t>(w.checked.globals.size());
     w.code.has_references = w.checked.has_references;
     for (Routine* routine : w.checked.order)
-        for (const Routine* called : routine->calls)
-            routine->depth = std::max(routine->depth, called->depth + 1);
+        for (const Called& called : routine->calls)
+            routine->depth = std::max(routine->depth, called.routine->depth + 1);
     for (const Routine& routine : w.checked.routines) {
         if (!routine.is_test()) continue;
         w.has_tests = true;

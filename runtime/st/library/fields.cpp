@@ -203,7 +203,7 @@ void keep(KindContext& kind, std::size_t first, bool retain) {
 void find_objects(const Routine& routine, std::set<const Routine*>& seen, std::set<int>& objects) {
     if (!seen.insert(&routine).second) return;
     objects.insert(routine.objects.begin(), routine.objects.end());
-    for (const Routine* called : routine.calls) find_objects(*called, seen, objects);
+    for (const Called& called : routine.calls) find_objects(*called.routine, seen, objects);
 }
 
 }  // namespace

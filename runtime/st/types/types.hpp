@@ -181,6 +181,15 @@ struct Variable {
     bool can_be_taken() const { return section == Section::output || section == Section::temp; }
 };
 
+struct Routine;
+
+/// A call that a routine has, or an instance whose body and methods it may call.
+struct Called {
+    Routine* routine = nullptr;
+    Place place = {};
+    bool through_reference = false;  ///< of an instance that a reference is to
+};
+
 /// What runs: the body of a POU, or a method.
 struct Routine {
     const Pou* pou = nullptr;
@@ -205,8 +214,8 @@ struct Routine {
     Block body = {};                      ///< as checked: what its statements stand for
     Block begins = {}, call_begins = {};  ///< what comes before it, once and in each call
     Variable* begun = nullptr;            ///< of a block: that the first was done
-    std::vector<Routine*> calls = {};
-    std::vector<Place> call_places = {};
+    std::vector<Called> calls = {};
+    bool is_looped = false;  ///< calls of it through references are found by the instance
     std::vector<int> objects = {};  ///< globals that are blocks of the program, and that it names
     enum class State : std::uint8_t { fresh, visiting, done } state = State::fresh;
 
