@@ -26,7 +26,8 @@ Type& make_reference(Checking& c, Referring referring, const Type* target) {
 }
 
 bool is_null(const Expression& e) {
-    const bool is_number = is_constant(e) && e.type->kind == Kind::any_integer;
+    const bool is_number =
+        is_constant(e) && (e.type->kind == Kind::any_integer || e.type->kind == Kind::any_bits);
     return e.type == &null_type || (is_number && e.constant.integer == 0);
 }
 
@@ -332,13 +333,16 @@ void check_attempt(Checking& c, Statement& s) {
 
 bool take_query(Checking& c, Expression*& e, const Routine& called) {
     const Token& name = called.pou->name;
-    if (!is_library(name) || !same_name(name.text, "__queryinterface") || e->arguments.size() != 2)
-        return true;
+    const bool wants_pointer = same_name(name.text, "__querypointer");
+    const bool is_query = wants_pointer || same_name(name.text, "__queryinterface");
+    if (!is_library(name) || !is_query || e->arguments.size() != 2) return true;
     Expression *from = e->arguments[0].value, *to = e->arguments[1].value;
     if (!check(c, from) || !check(c, to)) return false;
     Expression* given = without_alias(from);
     const bool fits = is_of_block(*given->type) || refers_to_block(*given->type);
-    if (!fits || to->type->kind != Kind::interface) return true;
+    const bool is_wanted =
+        wants_pointer ? refers_to_block(*to->type) : to->type->kind == Kind::interface;
+    if (!fits || !is_wanted) return true;
     const Type& any = *called.variables.back().type;
     to = make_copy(c, *to);
     given = make_converted(c, attempted(c, given, *to->type), any);
