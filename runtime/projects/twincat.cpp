@@ -174,6 +174,17 @@ bool is_same_form(const fs::path& a, const fs::path& b) {
     return lower(a.extension().string()) == lower(b.extension().string());
 }
 
+/// MSBuild writes `%28` for a bracket in a name.
+std::string unescaped(std::string name) {
+    for (std::size_t at = name.find('%'); at != std::string::npos; at = name.find('%', at + 1)) {
+        int letter = 0;
+        const char *digits = name.data() + at + 1, *end = digits + 2;
+        if (at + 2 < name.size() && std::from_chars(digits, end, letter, 16).ptr == end)
+            name.replace(at, 3, 1, static_cast<char>(letter));
+    }
+    return name;
+}
+
 }  // namespace
 
 std::string path_beside(const fs::path& named_by, std::string text) {
@@ -227,7 +238,7 @@ void read_plcproj(const Reading& to, const std::string& path, const Mark& where)
             if (kind == "PlaceholderReference" || kind == "LibraryReference")
                 to.project.libraries.push_back({before_comma(file->plain(include)), mark});
             if (kind != "Compile") continue;
-            const std::string named = path_beside(path, file->plain(include));
+            const std::string named = path_beside(path, unescaped(file->plain(include)));
             if (!is_source(named) || is_same_form(named, path)) continue;
             if (const auto allowed = to.resolve(named, mark)) read_sources(to, *allowed, mark);
         }

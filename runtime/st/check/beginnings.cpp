@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <functional>
+#include <utility>
 
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -266,6 +268,21 @@ void begin_globals(Checking& c) {
                       make_once(c, like, begun,
                                 {make_call_statement(
                                     c, make_call(c, like, make_name(c, like, begin.name), {}))}));
+    }
+}
+
+void note_update(Checking& c, const Variable& variable) {
+    Routine* update = find_in(c.users.routines, fmt::format("{}.Update", variable.text));
+    if (update && update != c.routine && std::ranges::find(c.updates, update) == c.updates.end())
+        c.updates.push_back(update);
+}
+
+void bring_up_to_date(Checking& c, Routine& routine) {
+    const Expression like = like_name(routine.pou->name, routine.pou->place);
+    for (Routine* update : std::exchange(c.updates, {})) {
+        Expression* call = make_call(c, like, make_name(c, like, update->name), {});
+        check_routine_call(c, call, *update, true);
+        routine.body.insert(routine.body.begin(), make_call_statement(c, call));
     }
 }
 

@@ -106,7 +106,8 @@ struct Checking {
     std::vector<std::pair<Type*, const TypeText*>> targets =
         {};  ///< of references, until all types are known
     bool knows_types = false;
-    int hops = 0;  ///< from constant to constant that is declared later
+    int hops = 0;                        ///< from constant to constant that is declared later
+    std::vector<Routine*> updates = {};  ///< of what the routine at hand names of libraries
     std::unordered_set<const Pou*> assigned_inputs = {};  ///< blocks that were warned of it
     NameMap<const Type*> catalog_types = {};
     bool has_tests = false;

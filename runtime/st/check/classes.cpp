@@ -80,11 +80,12 @@ void replace(Checking& c, Routine& method, Routine& replaced) {
                "give it another name");
 }
 
-/// A method without OVERRIDE, whose arguments are not those of the base's, stands beside that; in
-/// CODESYS, which has no such word, it is meant to replace it.
+/// A method without OVERRIDE, whose arguments are not those of the base's, stands beside that, if
+/// that has a body; in CODESYS, which has no such word, it is meant to replace it.
 bool is_beside(const Routine& method, const Routine& of_base) {
-    return &method != &of_base && !method.pou->is_override && !of_base.owner->is_interface() &&
-           method.pou->accessor == Accessor::none && !method.pou->name.place.dialect().is_loose &&
+    return &method != &of_base && !method.pou->is_override && !of_base.pou->is_abstract &&
+           !of_base.owner->is_interface() && method.pou->accessor == Accessor::none &&
+           !method.pou->name.place.dialect().is_loose &&
            signature_of(*method.pou) != signature_of(*of_base.pou);
 }
 

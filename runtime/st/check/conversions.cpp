@@ -183,8 +183,11 @@ bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
 /// The signed type that holds a constant which `typed` does not, and all of that; null if there is
 /// none, or none is needed.
 const Type* wider_for(const Expression& constant, const Type& typed) {
-    if (constant.type->kind != Kind::any_integer || typed.kind != Kind::integer) return nullptr;
     const Wide value = constant.constant.integer;
+    const bool is_more_bits =
+        constant.type->kind == Kind::any_bits && value >= Wide{1} << typed.plain().bits;
+    const bool is_whole = constant.type->kind == Kind::any_integer || is_more_bits;
+    if (!is_whole || typed.kind != Kind::integer) return nullptr;
     const auto holds = [&](const Type& type) {
         return value >= smallest(type) && value <= largest(type);
     };

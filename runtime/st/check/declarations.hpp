@@ -63,6 +63,11 @@ void construct_one(Checking& c, const Expression& like, Routine& routine, const 
 /// instance of.
 void begin_globals(Checking& c);
 
+/// A library's variable that its FUNCTION "name.Update" writes is written at the beginning of each
+/// call that names it: the first notes it, the other puts the calls in front.
+void note_update(Checking& c, const Variable& variable);
+void bring_up_to_date(Checking& c, Routine& routine);
+
 /// These assignments and calls: of a base first, and of its FB_init in one that stands for it.
 Block beginnings(Checking& c, Routine& routine);
 

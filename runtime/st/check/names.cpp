@@ -90,6 +90,7 @@ const Type* undeclared(Checking& c, const Token& name, Place place,
 
 const Type* use(Checking& c, Expression*& e, Variable& variable) {
     variable.used = true;
+    if (variable.space == Space::global && is_library(variable.name)) note_update(c, variable);
     e->variable = &variable;
     c.note(e->token.place, variable);
     if (!variable.type) return nullptr;

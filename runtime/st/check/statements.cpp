@@ -191,6 +191,7 @@ void check_body(Checking& c, Routine& routine) {
     routine.body.insert(routine.body.end(), chart.begin(), chart.end());
     routine.body.insert(routine.body.end(), routine.pou->body.begin(), routine.pou->body.end());
     check(c, routine.body);
+    bring_up_to_date(c, routine);
     c.routine = nullptr;
 }
 

@@ -189,6 +189,9 @@
     OP(to_bcd, integer, "wrn-", if (const auto n = to_bcd(U(b), c)) put(a, *n); else FAIL(out_of_range)) \
     OP(is_bcd, integer, "wr--", put(a, std::uint64_t{from_bcd(U(b)).has_value()}))                    \
     OP(time_now, move, "w---", put(a, frames.now.time))                                               \
+    OP(interval_now, move, "w---", put(a, frames.now.interval))                                       \
+    OP(scans_now, move, "w---", put(a, frames.now.index))                                             \
+    OP(task_now, move, "w---", put(a, std::int64_t{std::max(frames.context.task, 0)} + 1))            \
     OP(select, move, "wrd-", put(a, word(at(c), U(b) & 1)))                                          \
     OP(look_up, move, "wrx-", if (!within(U(b), c)) FAIL(out_of_range); put(a, number_of(U(b), c)))  \
     LINESHAFT_ST_PAIRS(OP, lreal, real, R, exact) LINESHAFT_ST_PAIRS(OP, real, real, R, narrow)      \

@@ -51,6 +51,7 @@ enum class Typing : std::uint8_t {
     TYPE(pointer, "POINTER", "a POINTER TO, or ADR of a variable")                                 \
     TYPE(timer, "TIMER", "an instance of TON, TOF, TP or TONR")                                    \
     TYPE(boolean, "BOOL", "") TYPE(integer, "INT", "") TYPE(double_integer, "DINT", "")            \
+    TYPE(long_integer, "LINT", "")                                                                 \
     TYPE(text, "STRING", "") TYPE(time, "TIME", "") TYPE(long_time, "LTIME", "")                   \
     TYPE(date, "DATE", "") TYPE(long_date, "LDATE", "") TYPE(clock, "TOD", "")                     \
     TYPE(long_clock, "LTOD", "") TYPE(moment, "DT", "") TYPE(long_moment, "LDT", "")

@@ -6,9 +6,12 @@ namespace {
 
 constexpr std::string_view since_the_start = "the time of the scan since the start of the run";
 
-Slot emit_time(Emission& e) {
-    return e.result(Op::time_now, 0);
+template <Op op>
+Slot emit_scan(Emission& e) {
+    return e.result(op, 0);
 }
+
+constexpr Emit emit_time = emit_scan<Op::time_now>;
 
 // clang-format off
 /// All are kept in ns, so that a TIME and an LTIME hold the same.
@@ -16,6 +19,9 @@ constexpr StandardFunction times[] = {
     {"TIME(): TIME", since_the_start, Typing::scan_time, emit_time},
     {"LTIME(): LTIME", since_the_start, Typing::scan_time, emit_time},
     {"TIME_TCK(): TIME", since_the_start, Typing::scan_time, emit_time},
+    {"TASK_CYCLE(): TIME", "the interval of the task that runs", Typing::scan_time, emit_scan<Op::interval_now>},
+    {"TASK_SCANS(): LINT", "the scans of the task that runs, before this one", Typing::scan_time, emit_scan<Op::scans_now>},
+    {"TASK_INDEX(): DINT", "the number of the task that runs, from 1 on in the order of the program", Typing::scan_time, emit_scan<Op::task_now>},
     {"ADD_TIME(IN1, IN2: TIME): TIME", "IN1 + IN2", Word::plus},
     {"ADD_LTIME(IN1, IN2: LTIME): LTIME", "IN1 + IN2", Word::plus},
     {"SUB_TIME(IN1, IN2: TIME): TIME", "IN1 - IN2", Word::minus},

@@ -37,6 +37,7 @@ void parse_all(Compiled& to, const Catalog& standard, Diagnostics& out, const So
     }
     to.tree.leave_lost_out();
     join_declared_apart(to.tree);
+    expand_generics(to.tree);
     libraries.add_files(to.tree, out);
     if (uses_standard || libraries.use_standard_source())
         parse(read_tokens(standard_source(), out, SourceKind::prelude), to.tree, out);

@@ -35,6 +35,12 @@ void parse_property(Parsing& p, std::vector<Pou*>& to, PouKind of);
 /// A METHOD or PROPERTY behind the END of its block.
 void parse_late_method(Parsing& p);
 
+// parse_generics.cpp
+/// None, or those that a block begins with.
+void parse_generic_constants(Parsing& p, Pou& pou);
+/// None, or those behind the name of a block, which become a part of it.
+void parse_generic_values(Parsing& p, Token& name);
+
 // parse_charts.cpp
 void parse_chart_element(Parsing& p, Pou& pou);
 

@@ -5,10 +5,12 @@ namespace lineshaft::st {
 
 namespace {
 
-/// Name_List : Qualified_Name ( ',' Qualified_Name ) *
+/// Name_List : Qualified_Name Generic_Values ? ( ',' Qualified_Name Generic_Values ? ) *
 void parse_name_list(Parsing& p, std::vector<Token>& to) {
-    do to.push_back(parse_qualified_name(p, "the name of a block or an interface"));
-    while (p.accept(Word::comma));
+    do {
+        to.push_back(parse_qualified_name(p, "the name of a block or an interface"));
+        parse_generic_values(p, to.back());
+    } while (p.accept(Word::comma));
 }
 
 /// What is set is an input of the property's name.

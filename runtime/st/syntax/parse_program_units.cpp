@@ -62,7 +62,8 @@ bool at_attribute(const Cursor& p) {
            std::ranges::any_of(words, [&](std::string_view word) { return p.says(word); });
 }
 
-/// POU_Header : Using_Directive * Pou_Bases Attribute * Retained ? Data_Block_Type ?
+/// POU_Header : Using_Directive * Generic_Decl ? Pou_Bases Generic_Decl ? Attribute * Retained ?
+///              Data_Block_Type ?
 /// Retained : 'NON_RETAIN' | 'RETAIN'
 /// Data_Block_Type : ( Array_Spec | Struct_Decl | Type_Access ) ';' ?
 /// Only a DATA_BLOCK has a type here; a name is always that.
@@ -70,7 +71,9 @@ void parse_header(Parsing& p, Pou& pou) {
     const bool has_using = p.is(Word::using_) && p.is_name(1);
     if (has_using) open_scope(p, pou.place.begin, p.scope ? p.scope->path : std::string_view());
     while (p.is(Word::using_) && p.is_name(1)) parse_using(p);
+    parse_generic_constants(p, pou);
     parse_bases(p, pou);
+    parse_generic_constants(p, pou);
     parse_attributes(p);
     p.accept(Word::non_retain_) || p.accept(Word::retain_);
     if (pou.kind != PouKind::data_block) return;
@@ -195,6 +198,7 @@ void parse_declaration(Parsing& p) {
 Pou* parse_pou(Parsing& p) {
     const PouWords& words = *find_pou(p.here().word);
     const std::string_view doc = comment_before(p, p.at, true);
+    const std::size_t first = p.at;
     const Token opener = p.take();
     Pou& pou = p.tree.pous.emplace_back();
     pou.kind = words.kind;
@@ -223,6 +227,8 @@ Pou* parse_pou(Parsing& p) {
     p.is_in_body = false;
     p.accept(Word::semicolon);
     if (p.panic) skip_past(p, words.end);
+    if (pou.is_generic) p.generics.clear();
+    if (pou.is_generic && !p.is_again) p.tree.generics.push_back({&pou, p, first, p.scope});
     return &pou;
 }
 

@@ -90,9 +90,11 @@ bool has_range(const Parsing& p) {
 /// Type_Access : ( '_' '.' ) ? Qualified_Name
 ///             | 'STRING' Text_Length | 'WSTRING' Text_Length
 ///             | Name Init_Values | Name '(' Subrange ')'
+///             | Qualified_Name Generic_Values Init_Values ?
 void parse_named_type(Parsing& p, TypeText& type) {
     if (p.here().text == "_" && p.next().word == Word::dot) p.at += 2;
     type.name = parse_qualified_name(p, "a type");
+    parse_generic_values(p, type.name);
     if (p.panic) return;
     const bool has_length = p.is(Word::open_bracket) || p.is(Word::open);
     const bool is_text =

@@ -18,4 +18,9 @@ void parse(Tokens tokens, Tree& tree, Diagnostics& out);
 /// anywhere stays as it is.
 void join_declared_apart(Tree& tree);
 
+/// Reads each block with VAR_GENERIC again for each `Stack<10>`, as a block of that name. Values
+/// are literals, constants and constants of a generic block around; one whose constants have no
+/// values of their own is left out.
+void expand_generics(Tree& tree);
+
 }  // namespace lineshaft::st

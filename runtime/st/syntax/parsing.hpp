@@ -9,9 +9,12 @@ namespace lineshaft::st {
 struct Parsing : Cursor {
     Tree& tree;
     Diagnostics& out;
-    Scope* scope = nullptr;            ///< that is open; null: none
-    Pou* fixture = nullptr;            ///< that the tests are methods of
-    std::vector<Token> regions = {};   ///< that are open
+    Scope* scope = nullptr;                   ///< that is open; null: none
+    Pou* fixture = nullptr;                   ///< that the tests are methods of
+    std::vector<Token> regions = {};          ///< that are open
+    std::vector<Declaration*> generics = {};  ///< constants of the generic block that is read
+    std::vector<Expression*> given = {};      ///< their values, where it is read again
+    bool is_again = false;
     int cases = 0;                     ///< that are open, before their ELSE
     int levels = 0;                    ///< that are open
     bool is_in_body = false;           ///< of a POU

@@ -8,6 +8,7 @@
 
 #include "runtime/model/address.hpp"
 #include "runtime/st/syntax/constant.hpp"
+#include "runtime/st/syntax/lexer.hpp"
 #include "runtime/st/syntax/testing.hpp"
 #include "runtime/st/syntax/token.hpp"
 
@@ -262,6 +263,7 @@ struct Pou {
     std::string_view doc = {};   ///< the comments before it, else below its first line
     Access access = Access::unsaid;
     bool is_class = false, is_abstract = false, is_final = false, is_override = false;
+    bool is_generic = false;              ///< VAR_GENERIC is the first of `blocks`
     Accessor accessor = Accessor::none;   ///< of a method
     std::vector<Token> bases = {};        ///< behind EXTENDS
     std::vector<Token> implemented = {};  ///< behind IMPLEMENTS
@@ -290,6 +292,21 @@ struct Scope {
     std::vector<Token> usings = {};    ///< namespaces, `a.b`
 };
 
+/// A block with VAR_GENERIC, to be read again for each list of values.
+struct GenericBlock {
+    const Pou* pou = nullptr;
+    Tokens tokens = {};  ///< of its source
+    std::size_t at = 0;  ///< where it begins in them
+    Scope* scope = nullptr;
+};
+
+/// `Stack<10>` somewhere.
+struct GenericUse {
+    std::string_view block = {};  ///< `Stack`
+    std::string written = {};     ///< `<10>`, without blanks
+    std::vector<Expression*> values = {};
+};
+
 /// Owns all nodes, so that they need no owners among themselves.
 struct Tree {
     std::vector<std::shared_ptr<const Source>> sources;  ///< that all places refer to
@@ -310,6 +327,8 @@ struct Tree {
     std::vector<TypeDeclaration> types;  ///< in the order of the sources, as all lists
     std::vector<Pou*> units;             ///< all but methods
     std::vector<DeclarationBlock> globals;
+    std::deque<GenericBlock> generics;
+    std::vector<GenericUse> generic_uses;
     NameMap<bool> lost;  ///< what stands in those not understood; true: their names
 
     void leave_lost_out() {

@@ -139,7 +139,7 @@ TEST_CASE("properties, actions and interfaces become their words") {
 
 TEST_CASE("a project of TwinCAT has the files that it lists, its tasks and libraries") {
     const test::Folder folder;
-    write(folder, "plc/POUs/Ramp.TcPOU", pou("value := step;"));
+    write(folder, "plc/POUs (100 %)/Ramp.TcPOU", pou("value := step;"));
     write(folder, "plc/POUs/Old.TcPOU", pou("value := nothing;"));
     write(folder, "plc/PlcTask.TcTTO",
           R"(<TcPlcObject><Task Name="PlcTask"><CycleTime>2000</CycleTime><Priority>20</Priority>
@@ -147,7 +147,7 @@ TEST_CASE("a project of TwinCAT has the files that it lists, its tasks and libra
     const std::string list =
         R"(<Project xmlns="http://schemas.microsoft.com/developer/msbuild/2003">
   <ItemGroup>
-    <Compile Include="pous\RAMP.TcPOU"><SubType>Code</SubType></Compile>
+    <Compile Include="pous %28100 %%29\RAMP.TcPOU"><SubType>Code</SubType></Compile>
     <Compile Include="PlcTask.TcTTO" />
     <None Include="Plc.tmc" />
     <PlaceholderReference Include="Tc2_MC2" />
@@ -160,7 +160,7 @@ TEST_CASE("a project of TwinCAT has the files that it lists, its tasks and libra
         const Project project = read_project(named, {}, out);
         CHECK(out.render() == "");
         REQUIRE(project.sources.size() == 1);
-        CHECK(project.sources[0]->path == folder / "plc/POUs/Ramp.TcPOU");
+        CHECK(project.sources[0]->path == folder / "plc/POUs (100 %)/Ramp.TcPOU");
         REQUIRE(project.tasks.size() == 1);
         CHECK(project.tasks[0].name.text == "PlcTask");
         CHECK(project.tasks[0].every == 2'000'000);
