@@ -111,8 +111,12 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     if (type->kind == Kind::handle && given->is_object()) {
         if (coerce(c, value, *type)) return;
     }
-    const bool is_read = parameter.section == Section::in_out && is_own_input(*value);
+    const bool is_constant = parameter.section == Section::in_out && parameter.constant;
+    const bool is_read =
+        is_constant || (parameter.section == Section::in_out && is_own_input(*value));
     const bool is_place = is_variable(*value) || (argument.is_output && value->kind == E::bit);
+    if (is_constant && !is_place)
+        return void(coerce(c, value, type->is_open ? *given : *type));
     if (!is_place || (!is_read && !check_target(c, *value, "given here"))) {
         if (!is_place)
             c.fail(code::wrong_arguments, value->place,

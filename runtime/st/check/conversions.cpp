@@ -239,7 +239,11 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (to.is_character && is_constant(*e) && e->constant.text.size() == 1)
         return become(c, e, to, {.integer = static_cast<unsigned char>(e->constant.text[0])});
     if (from.is_character && to.kind == Kind::text) return convert(c, e, to);
-    if (to.is_subrange && same_type(from.plain(), to.plain())) {
+    const bool are_alike = from.kind == Kind::array && to.kind == Kind::array &&
+                           from.count() == to.count() && same_type(*from.element, *to.element);
+    if (are_alike && e->place.dialect().is_loose) return true;
+    if (to.is_subrange && from.is_scalar() &&
+        (widens(from, to) || is_same_pattern(from, to.plain()))) {
         if (is_constant(*e) && (e->constant.integer < to.lower || e->constant.integer > to.upper))
             return c.fail(code::value_out_of_range, e->place,
                           fmt::format("{} is out of range for {}", to_string(e->constant.integer),

@@ -77,13 +77,21 @@ Token name_of_global(Checking& c, const Declaration& declared) {
     return is_library(declared.name) ? declared.name : name_with_namespace(c, declared.name);
 }
 
+/// `Trace : Trace;`, where CODESYS tells by the place which is meant.
+bool is_beside_a_type(Checking& c, const Token& name) {
+    if (!name.place.dialect().is_loose || c.globals.contains(name.text)) return false;
+    const Routine* block = find_in(c.users.routines, name.text);
+    return (block && block->pou->kind == PouKind::function_block) ||
+           c.users.types.contains(name.text);
+}
+
 Variable* declare_global(Checking& c, const DeclarationBlock& block, const Declaration& declared) {
     if (!is_library(declared.name)) global_variables(c);
     const Type* type = resolve(c, *declared.type);
     const std::string_view in_list = name_in_list(c, block, declared);
     Token name = name_of_global(c, declared);
     if (block.is_qualified_only) name.text = in_list;
-    if (!is_new_name(c, name, c.users.places)) return nullptr;
+    if (!is_beside_a_type(c, name) && !is_new_name(c, name, c.users.places)) return nullptr;
     Variable* variable = add(c, c.checked.variables, declared, type);
     c.globals.emplace(in_list, variable);
     if (type && type->kind == Kind::handle) return declare_object(c, *variable);

@@ -54,13 +54,21 @@ bool is_in_bytes(const Location& at) {
     return at.byte || (at.packed && at.packed->through == none);
 }
 
+/// What VAR_IN_OUT CONSTANT is given.
+Location kept(Writing& w, const Expression& value) {
+    const Location made{Mode::slot, w.new_temporary(slots_of(w, *value.type))};
+    assign(w, made, *value.type, value);
+    return made;
+}
+
 /// Where the value of a VAR_IN_OUT is, and what it holds if any length may be given. A copy is
 /// referred to by nothing: ADR of that VAR_IN_OUT is NULL.
 void refer(Writing& w, const Location& to, const Variable& variable, const Expression& value,
            std::vector<Later>& later, std::vector<Lent>& lent) {
-    Location at = locate(w, value);
-    const bool is_lent = is_in_bytes(at);
-    if (is_lent) {
+    const bool is_value = value.kind == E::call || value.kind == E::converted;
+    Location at = is_value ? kept(w, value) : locate(w, value);
+    const bool is_lent = is_value || is_in_bytes(at);
+    if (is_lent && !is_value) {
         if (at.mode != Mode::slot) at = as_address(w, at);
         lent.push_back({at, {Mode::slot, w.new_temporary(slots_of(w, *value.type))}, value.type});
         write(w, lent.back().copy, at, *value.type);
