@@ -39,7 +39,8 @@ const Type* resolve_array(Checking& c, const TypeText& text) {
         const auto lower = check_whole(c, from, lint_type), upper = check_whole(c, to, lint_type);
         if (!lower || !upper) return nullptr;
         const Wide count = *upper - *lower + 1;
-        if (count < 1)
+        const bool may_be_none = count == 0 && text.place.dialect().is_loose;  // as TwinCAT has it
+        if (count < 1 && !may_be_none)
             return c.fail(code::value_out_of_range, from->place.to(to->place),
                           "the array has no element", "the first bound is the smaller one");
         total *= count;
@@ -165,7 +166,9 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
 const Type* resolve_subrange(Checking& c, const TypeText& text) {
     const Type* base = resolve_name(c, text.name);
     if (!base) return nullptr;
-    if (base->kind != Kind::integer)
+    const bool is_whole = base->kind == Kind::integer ||
+                          (base->kind == Kind::bits && text.place.dialect().is_loose);
+    if (!is_whole)
         return c.fail(code::type_does_not_fit, text.place,
                       fmt::format("{} has no subranges", describe(*base)),
                       "a subrange is one of an integer type");
