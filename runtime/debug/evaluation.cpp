@@ -82,6 +82,10 @@ class Reckoning {
                 return member(e);
             case E::index:
                 return element(e);
+            case E::deref:
+                return followed(e, value(*e.operands[0]));
+            case E::bit:
+                return bit(e);
             case E::typed:
                 return typed(e);
             case E::unary:
@@ -122,17 +126,62 @@ class Reckoning {
             if (variable.space == st::Space::constant && variable.type->is_real())
                 return {.of = Operand::Of::real, .real = variable.value.real};
             if (variable.space == st::Space::constant) return {.whole = variable.value.integer};
-            const Seat seat = seat_of(variable, frame_.base, frame_);
-            if (!seat.at) throw Failed(fmt::format("'{}' is not in the memory now", name));
-            return load(seat, variable.unit);
+            return at(seat_of(variable, frame_.base, frame_), e, variable.unit);
         }
+        const st::Routine* block = frame_.routine->owner ? frame_.routine->owner : frame_.routine;
+        if (st::same_name(name, "this") && block->type)
+            return load({block->type, frame_.base, &frame_}, "");
+        if (const st::Variable* global = global_of(name))
+            return at(seat_of(*global, frame_.base, frame_), e, global->unit);
         if (st::same_name(name, "true") || st::same_name(name, "false"))
             return of_truth(st::same_name(name, "true"));
         return {.of = Operand::Of::name, .text = std::string(name)};
     }
 
+    /// `list.x` is known by its last name, too.
+    const st::Variable* global_of(std::string_view name) const {
+        for (const st::Global& global : checked_.globals)
+            for (const st::Variable* variable : global.type->members) {
+                const std::string_view text = variable->text;
+                if (st::same_name(text, name) ||
+                    st::same_name(text.substr(text.rfind('.') + 1), name))
+                    return variable;
+            }
+        return nullptr;
+    }
+
+    /// What is there; of a REFERENCE TO what it is to.
+    Operand at(const Seat& seat, const st::Expression& e, const std::string& unit) const {
+        if (!seat.at)
+            throw Failed(fmt::format("'{}' is not in the memory now", e.place.text()));
+        const Operand found = load(seat, unit);
+        return seat.type->is_alias() ? followed(e, found) : found;
+    }
+
+    Operand followed(const st::Expression& e, const Operand& reference) const {
+        const st::Type* type = reference.seat.type;
+        if (type && type->kind == st::Type::Kind::block) return reference;  // THIS^
+        if (!type || !type->is_reference())
+            throw Failed(fmt::format("'{}' is no pointer", e.operands[0]->place.text()));
+        const Seat target = target_of(reference.seat);
+        if (!target.at) throw Failed(fmt::format("'{}' is to nothing", e.place.text()));
+        return load(target, "");
+    }
+
+    Operand bit(const st::Expression& e) const {
+        const Operand whole = number(*e.operands[0]);
+        std::string_view written = e.token.text;
+        written.remove_prefix(std::min(written.find_first_of("0123456789"), written.size()));
+        const auto place = st::read_integer(written);
+        if (whole.of != Operand::Of::whole || !place || *place > 63) throw Failed(unknown(e));
+        return of_truth((whole.whole >> static_cast<int>(*place) & 1) != 0);
+    }
+
     Operand member(const st::Expression& e) const {
         const Operand whole = value(*e.operands[0]);
+        if (whole.of == Operand::Of::name)
+            if (const st::Variable* global = global_of(e.token.text))
+                return at(seat_of(*global, frame_.base, frame_), e, global->unit);
         if (whole.of != Operand::Of::place) throw Failed(unknown(e));
         const st::Type& type = *whole.seat.type;
         const bool has_parts =
@@ -144,7 +193,7 @@ class Reckoning {
                 ? seat_of(*part, whole.seat.at, frame_)
                 : Seat{part->type, whole.seat.at + 8 * std::size_t{part->slot}, &frame_};
         if (!seat.at) throw Failed(unknown(e));
-        return load(seat, part->unit);
+        return at(seat, e, part->unit);
     }
 
     Operand element(const st::Expression& e) const {

@@ -36,6 +36,7 @@ Frame innermost(const st::Halt& halt, const st::Library::Made& made) {
     frame.base = st::place_of(halt.base, halt.root, halt.context);
     frame.root = halt.root;
     frame.context = &halt.context;
+    frame.code = &halt.code;
     return frame;
 }
 
@@ -47,6 +48,7 @@ std::vector<Frame> frames_of(const st::Halt& halt, const st::Library::Made& made
         frame.base = st::place_of(base, halt.root, halt.context);
         frame.root = halt.root;
         frame.context = &halt.context;
+        frame.code = &halt.code;
     };
     const st::StatementStart& statement = halt.code.statements[halt.statement];
     add(statement.instruction, halt.base);

@@ -17,6 +17,7 @@ struct Frame {
     std::byte* root = nullptr;         ///< of the instance that is scanned
     std::string block = {};            ///< whose body it is, of the program; or empty
     const Context* context = nullptr;  ///< of that
+    const st::Code* code = nullptr;
 };
 
 /// Those that run, the innermost first.

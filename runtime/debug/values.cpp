@@ -75,13 +75,10 @@ List elements_of(const Seat& seat, std::size_t first, std::size_t count) {
     return elements;
 }
 
-/// What a reference is to, if it is the whole of a variable of its type.
+/// What a reference is to, if there is a value of its type.
 List referred(const Seat& seat) {
-    const auto address = read<std::uint64_t>(seat.at);
-    const auto offset = static_cast<std::int32_t>(read<std::uint64_t>(seat.at + 8) & 0xFFFF'FFFF);
-    if (address == 0 || offset != 0 || !seat.type->element) return {};
-    return {show("^", {seat.type->element,
-                       st::place_of(address, seat.frame->root, *seat.frame->context), seat.frame})};
+    const Seat target = target_of(seat);
+    return target.at ? List{show("^", target)} : List{};
 }
 
 std::string field_text(const Field& field, const std::byte* block) {
@@ -177,6 +174,24 @@ Shown show(std::string name, const Seat& seat, const std::string& unit) {
         .bytes = 8 * std::size_t{is_block ? seat.type->routine->variables_end : seat.type->slots}};
     show_parts(shown, seat);
     return shown;
+}
+
+Seat target_of(const Seat& reference) {
+    const st::Type* to = reference.type->element;
+    const auto address = read<std::uint64_t>(reference.at);
+    const auto second = read<std::uint64_t>(reference.at + 8);
+    const std::uint64_t piece = second >> 32;
+    const st::Code& code = *reference.frame->code;
+    if (!to || address == 0 || piece == 0 || piece > code.pieces.size()) return {};
+    const auto bit = 8 * std::int64_t{static_cast<std::int32_t>(second & 0xFFFF'FFFF)};
+    for (std::uint32_t shape = 0; shape < code.shapes.size(); ++shape) {
+        if (!st::same_type(*code.shapes[shape].type, *to)) continue;
+        if (const auto slot = st::slot_of(code, code.pieces[piece - 1].shape, bit, shape))
+            return {to,
+                    st::place_of(address + *slot, reference.frame->root, *reference.frame->context),
+                    reference.frame};
+    }
+    return {};
 }
 
 Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame) {

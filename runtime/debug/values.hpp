@@ -29,6 +29,9 @@ struct Seat {
 
 Shown show(std::string name, const Seat& seat, const std::string& unit = {});
 
+/// What a reference is to, as the machine reaches it; `at` null: no value of its type, or NULL.
+Seat target_of(const Seat& reference);
+
 /// Where a variable of a routine's frame is; `at` null: nowhere.
 Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame);
 
