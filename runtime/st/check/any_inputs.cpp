@@ -12,11 +12,12 @@ struct TypeClass {
     std::string_view name;
 };
 constexpr TypeClass classes_of_kinds[] = {
-    {Kind::boolean, "BOOL"},       {Kind::date, "DATE"},         {Kind::clock, "TIMEOFDAY"},
-    {Kind::moment, "DATEANDTIME"}, {Kind::text, "STRING"},       {Kind::enumeration, "ENUM"},
-    {Kind::array, "ARRAY"},        {Kind::reference, "POINTER"}, {Kind::interface, "INTERFACE"}};
+    {Kind::date, "DATE"},         {Kind::clock, "TIMEOFDAY"},    {Kind::moment, "DATEANDTIME"},
+    {Kind::text, "STRING"},       {Kind::enumeration, "ENUM"},   {Kind::array, "ARRAY"},
+    {Kind::reference, "POINTER"}, {Kind::interface, "INTERFACE"}};
 
 std::string_view class_of(const Type& type) {
+    if (type.kind == Kind::boolean) return type.name;
     if (type.kind == Kind::time) return type.counts_ns ? "LTIME" : "TIME";
     if (type.kind == Kind::real) return type.bits == 32 ? "REAL" : "LREAL";
     if (type.kind == Kind::integer) return integer_type(type.bits, type.is_signed).name;

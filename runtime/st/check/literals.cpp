@@ -60,12 +60,12 @@ const Type* check_time(Checking& c, Expression*& slot) {
         return type;
     }
     if (same_name(prefix, "dtl")) return check_dtl(c, slot);
-    const auto value = read_duration(e.token.text);
+    const auto value = read_duration(e.token.text, e.place.dialect().is_loose);
     if (!value)
         return c.fail(code::value_out_of_range, e.place,
                       fmt::format("'{}' is not a time", e.place.text()),
                       "write T#1h2m3.5s, with d, h, m, s, ms, us and ns in this order");
-    e.constant.integer = *value;
+    e.constant.integer = wrapped(lint_type, *value);  // CODESYS reckons its LTIME without a sign
     return &time_type;
 }
 

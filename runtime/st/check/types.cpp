@@ -182,6 +182,7 @@ const Type* resolve_subrange(Checking& c, const TypeText& text) {
     type.name = fmt::format("{}({}..{})", base->name, static_cast<std::int64_t>(*lower),
                             static_cast<std::int64_t>(*upper));
     type.is_subrange = true;
+    type.is_unchecked = text.place.dialect().is_loose;
     type.base = base;
     type.lower = static_cast<std::int64_t>(*lower);
     type.upper = static_cast<std::int64_t>(*upper);
@@ -234,6 +235,7 @@ const Type* resolve_parameter(Checking& c, const TypeText& text) {
 const Type* resolve_name(Checking& c, const Token& name) {
     if (c.is_lost(name)) return nullptr;
     if (const Type* type = find_elementary(name.text); type && !name.quoted) return type;
+    if (same_name(name.text, bit_type.name) && name.place.dialect().is_loose) return &bit_type;
     if (NamedType* named = c.look_up(&Names::types, name)) {
         const Type* type = resolve_declared(c, *named);
         c.note(name.place, *named);

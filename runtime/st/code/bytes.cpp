@@ -69,7 +69,7 @@ std::optional<std::uint64_t> value_of(const Type& type, std::uint64_t number) {
         return static_cast<std::uint64_t>(it - type.numbers.begin());
     }
     const auto whole = static_cast<std::int64_t>(number);
-    if (type.is_subrange && (whole < type.lower || whole > type.upper)) return {};
+    if (type.in_a_run().is_subrange && (whole < type.lower || whole > type.upper)) return {};
     return number;
 }
 

@@ -138,9 +138,9 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
 Slot convert(Writing& w, Slot slot, const Type& given_from, const Type& given_to, bool truncates,
              Slot wanted) {
     const Type &from = given_from.plain(), &to = given_to.plain();
-    if (given_to.is_subrange)
+    if (given_to.in_a_run().is_subrange)
         return within(w, given_to, convert(w, slot, from, to, truncates, none));
-    if (&from == &to) return slot;
+    if (&from == &to || (from.kind == Kind::boolean && to.kind == Kind::boolean)) return slot;
     if (from.kind == Kind::enumeration && !from.counted) {
         slot = look_up(w, slot, from.numbers);
         return convert(w, slot, *from.base, to, truncates, wanted);

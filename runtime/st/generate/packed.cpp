@@ -141,7 +141,7 @@ Slot load_packed(Writing& w, const Location& from, Slot wanted) {
     const Type& type = *from.packed->type;
     if (type.kind == Kind::enumeration)
         w.put(Op::within, 0, to, w.table({0, type.values.size(), 1}));
-    return type.is_subrange ? within(w, type, to) : to;
+    return type.in_a_run().is_subrange ? within(w, type, to) : to;
 }
 
 void store_packed(Writing& w, const Location& to, Slot from) {

@@ -152,7 +152,7 @@ void write_case(Writing& w, const Statement& s) {
 void write_for(Writing& w, const Statement& s) {
     const Location target = locate(w, *s.target);
     const Type& type = *s.target->type;
-    const bool direct = target.mode == Location::Mode::slot && !type.is_subrange;
+    const bool direct = target.mode == Location::Mode::slot && !type.in_a_run().is_subrange;
     const Slot counter = direct ? target.slot : w.new_temporary();
     value_to(w, *s.value, counter);
     const Slot limit = w.new_temporary(2);
@@ -161,14 +161,14 @@ void write_for(Writing& w, const Statement& s) {
         value_to(w, *s.step, limit + 1);
     else
         w.put(Op::move, limit + 1, w.constant_slot(1));
-    if (type.is_subrange) store(w, target, counter);
+    if (type.in_a_run().is_subrange) store(w, target, counter);
     Writing::Loop loop;
     const bool is_long = type.is_unsigned_64();
     w.jump(is_long ? Op::skip_loop_unsigned : Op::skip_loop, counter, limit, loop.exits);
     w.loops.push_back(std::move(loop));
     w.land();
     const std::uint32_t start = w.next();
-    if (type.is_subrange) within(w, type, counter);
+    if (type.in_a_run().is_subrange) within(w, type, counter);
     if (!direct) store(w, target, counter);
     w.cover_branch(s, 0);
     write_block(w, s.body);
@@ -179,7 +179,7 @@ void write_for(Writing& w, const Statement& s) {
     w.land(w.loops.back().exits);
     w.cover_branch(s, 1);
     w.loops.pop_back();
-    if (type.is_subrange) return;  // its last value
+    if (type.in_a_run().is_subrange) return;  // its last value
     if (type.bits < 64) w.put(of_type(Op::wrap_sint, type.plain()), counter, counter);
     if (!direct) store(w, target, counter);
 }

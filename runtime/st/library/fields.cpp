@@ -172,15 +172,16 @@ class FieldWriter {
             field.doc = made_.names.emplace_back(text_of_comments(variable.doc));
         if (type.kind == Kind::enumeration)
             field.names = made_.values.emplace_back(type.values.begin(), type.values.end());
+        const Type& range = type.in_a_run();
         const bool limited = (type.kind == Kind::integer || type.kind == Kind::bits) &&
-                             (type.bits < 64 || type.is_subrange);
+                             (type.bits < 64 || range.is_subrange);
         if (limited) {
-            field.minimum = static_cast<double>(smallest(type));
-            field.maximum = static_cast<double>(largest(type));
+            field.minimum = static_cast<double>(smallest(range));
+            field.maximum = static_cast<double>(largest(range));
         } else if (type.is_real() && type.bits == 32) {
             field.maximum = std::numeric_limits<float>::max();
             field.minimum = -field.maximum;
-        } else if ((type.kind == Kind::integer || type.kind == Kind::bits) && smallest(type) == 0) {
+        } else if ((type.kind == Kind::integer || type.kind == Kind::bits) && smallest(range) == 0) {
             field.minimum = 0;
         }
         const bool wired = direction == Direction::input;

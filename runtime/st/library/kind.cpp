@@ -201,8 +201,8 @@ bool is_value(const Type& type, const std::byte* place, const KeptState& machine
             return number >= 0 && number < std::ssize(type.values);
         case Kind::integer:
         case Kind::bits:
-            if (type.bits == 64 && !type.is_subrange) return true;
-            return number >= smallest(type) && number <= largest(type);
+            if (type.bits == 64 && !type.in_a_run().is_subrange) return true;
+            return number >= smallest(type.in_a_run()) && number <= largest(type.in_a_run());
         case Kind::real: {
             const auto value = read<double>(place);
             return type.bits == 64 || !std::isfinite(value) ||

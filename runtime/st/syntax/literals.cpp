@@ -129,7 +129,8 @@ std::optional<double> read_real(std::string_view text) {
     return value;
 }
 
-std::optional<Wide> read_duration(std::string_view given) {
+std::optional<Wide> read_duration(std::string_view given, bool has_no_sign) {
+    const Wide most = has_no_sign ? beyond : beyond / 2;
     const Characters text = without_underscores(given, true);
     std::string_view rest = view(text);
     const bool negative = rest.starts_with('-');
@@ -150,7 +151,7 @@ std::optional<Wide> read_duration(std::string_view given) {
         const auto part = read_part(number, unit->nanoseconds);
         if (!part || (number.find('.') != std::string_view::npos && !rest.empty())) return {};
         total += *part;
-        if (total >= beyond / 2) return {};
+        if (total >= most) return {};
         next = unit + 1;
     }
     return negative ? -total : total;

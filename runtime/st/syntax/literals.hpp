@@ -14,8 +14,9 @@ std::optional<Wide> read_integer(std::string_view text);
 /// `1_000.5`, `1e3`; empty if it is beyond a double.
 std::optional<double> read_real(std::string_view text);
 
-/// What follows `T#`, in ns: `1h2m3.5s`, `-5ms`, `1d_2h`. Empty if it is none, or beyond 64 bits.
-std::optional<Wide> read_duration(std::string_view text);
+/// What follows `T#`, in ns: `1h2m3.5s`, `-5ms`, `1d_2h`. Empty if it is none, or beyond 64 bits,
+/// of which one is the sign, or none.
+std::optional<Wide> read_duration(std::string_view text, bool has_no_sign = false);
 
 /// What follows `D#`, `TOD#`, `DT#`: `2020-02-29` [ns since 1970], `12:30:15.25` [ns],
 /// `2020-02-29-12:30:15` [ns since 1970]. Empty if it is none, or beyond 64 bits.

@@ -101,6 +101,7 @@ const Type any_bits = elementary(Kind::any_bits, "a whole number");
 }  // namespace
 
 const Type null_type = null_reference();
+const Type bit_type = elementary(Type::Kind::boolean, "BIT", 1);
 
 const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &lint_type = table[4], &ulint_type = table[8], &real_type = table[13],

@@ -23,6 +23,9 @@ const Type* find_prefix(std::string_view name);
 /// NULL, before it is known where it goes.
 extern const Type null_type;
 
+/// Of CODESYS: a BOOL. Of several in a structure each takes a byte here.
+extern const Type bit_type;
+
 extern const Type &bool_type, &int_type, &dint_type, &lint_type, &ulint_type, &real_type,
     &lreal_type, &time_type, &date_type, &clock_type, &moment_type, &any_integer_type,
     &any_real_type, &any_bits_type, &string_type, &open_string_type, &char_type;

@@ -139,7 +139,9 @@ std::uint64_t load_packed(const std::byte* bytes, std::uint64_t bit, PackedForma
             return std::bit_cast<std::uint64_t>(
                 double{std::bit_cast<float>(static_cast<std::uint32_t>(raw))});
         case Coding::clock:
-            return static_cast<std::uint64_t>(signed_value(raw, format)) *
+            return (format.scale == in_seconds
+                        ? raw
+                        : static_cast<std::uint64_t>(signed_value(raw, format))) *
                    static_cast<std::uint64_t>(scales[format.scale]);
         case Coding::dated:
             return (raw + day_of_1990) * static_cast<std::uint64_t>(scales[in_days]);

@@ -13,7 +13,7 @@ struct PackedFormat {
         whole,
         with_sign,
         real,
-        clock,  ///< ns of a slot as `scale` ns a unit
+        clock,  ///< ns of a slot as `scale` ns a unit; s from 1970 to 2106, without a sign
         dated,  ///< likewise, from 1990-01-01 on
     };
     Coding coding = Coding::whole;

@@ -56,6 +56,7 @@ struct Type {
     std::uint32_t slots = 1;
     std::int64_t lower = 0, upper = -1;  ///< of an array's index; of a subrange's values
     bool is_subrange = false;
+    bool is_unchecked = false;             ///< a subrange of CODESYS: of constants alone
     bool has_named_values = false;         ///< `values` names some of a number (6.4.4.3)
     bool is_unnamed = false;               ///< STRUCT without a TYPE: any of its members is equal
     bool counts_ns = false;                ///< LTIME, of which a real number is in ns, not ms
@@ -107,6 +108,8 @@ struct Type {
     /// Of an array of all its dimensions.
     const Type& innermost() const { return has_inner ? element->innermost() : *element; }
     const Type& plain() const { return is_subrange || has_named_values ? *base : *this; }
+    /// What a variable of it may have in a run.
+    const Type& in_a_run() const { return is_unchecked ? *base : *this; }
     bool has_values() const { return kind == Kind::enumeration || has_named_values; }
     /// What a variable of it keeps for the value `i` of the list.
     std::int64_t kept(std::size_t i) const {
