@@ -320,6 +320,9 @@ def check_solution():
     assert 'sources: ["sln/app/App/App.plcproj", "sln/lib/Lib/Lib.plcproj"]' in text, text
     write("both.yaml", text + "expect:\n  - {at: end, MAIN.sum: 610}\n")
     run("run", "both.yaml", "--quiet")
+    listed = '["sln/app/App/App.plcproj", "sln/lib/Lib/Lib.plcproj"]'
+    write("turned.yaml", text.replace(listed, '["sln/lib/Lib/Lib.plcproj", "sln/app/App/App.plcproj"]'))
+    run("check", "turned.yaml")
     assert run("test", "sln", "--list").strip() == "sln/app/App/App.plcproj: MAIN.suite: counts"
     for named in (["sln"], ["sln/app/App.sln", "--source", "sln/lib"], ["sln/app/App/App.plcproj", "--source", "sln/lib"]):
         assert "1 of 1" in run("test", *named), named

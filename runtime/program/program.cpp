@@ -87,6 +87,7 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
         (named || tasks) && program_.tasks_known && (!tasks || are_known(*tasks));
     read_form(program_form(), read_, *root, program_);
     for (const std::string& text : options_.forces) force(text);
+    for (const Node& source : program_.sources) note_project(source);
     for (const Node& source : program_.sources) find_source(source);
     for (ReplayPlan& replay : program_.replays) find_file(replay);
     std::erase_if(program_.replays, [](const ReplayPlan& r) { return r.file.is_empty(); });
@@ -235,6 +236,16 @@ void ProgramReader::find_file(ReplayPlan& replay) const {
                    fmt::format("there is no file '{}'", *path));
 }
 
+/// What a project is called, so that one that comes before it may refer to it as its library, too.
+void ProgramReader::note_project(const Node& named) {
+    Diagnostics told;  // by find_source
+    if (named.is_unknown_parameter()) return;
+    const auto path =
+        resolve_path(named.text, program_.file->path, options_.include_dirs, named.mark, told);
+    if (path && fs::path(*path).extension() == ".plcproj")
+        projects_.push_back(projects::names_of_plcproj(*path));
+}
+
 /// A file, or a folder with all that lie below it, other than files of tests.
 void ProgramReader::find_source(const Node& named) {
     const auto path = named.is_unknown_parameter()
@@ -259,7 +270,7 @@ void ProgramReader::find_source(const Node& named) {
     for (const std::string& file : files) read_source_file(file, named.mark);
 }
 
-/// Of a `.plcproj` that one before it refers to as its library; empty: it is none.
+/// Of a `.plcproj` that another one refers to as its library; empty: it is none.
 std::string ProgramReader::namespace_of(const std::string& path) {
     if (fs::path(path).extension() != ".plcproj") return {};
     const projects::ProjectNames& own = projects_.emplace_back(projects::names_of_plcproj(path));

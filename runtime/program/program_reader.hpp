@@ -28,6 +28,7 @@ class ProgramReader {
     std::optional<std::string> named_controller(const Node& node) const;
     void check_attached(const Node& task) const;
     void find_file(ReplayPlan& replay) const;
+    void note_project(const Node& named);
     void find_source(const Node& named);
     std::string namespace_of(const std::string& path);
     void read_source_file(const std::string& path, const Mark& mark);
