@@ -79,11 +79,19 @@ INHERITED = f"""<?xml version="1.0" encoding="utf-8"?>
 {plain("METHOD Size : INT&#10;VAR_INPUT add_ : INT; END_VAR")}</Method></data></addData></pou>
 <pou name="Plain" pouType="functionBlock"><interface/>{st("SUPER^();")}
 {addition("interfaceasplaintext", plain("FUNCTION_BLOCK Plain EXTENDS Derived&#10;VAR more : INT := 5; END_VAR"))}</pou>
+<pou name="Sum" pouType="function"><interface><returnType><INT/></returnType><inputVars>
+<variable name="all"><type><pointer><baseType><INT/></baseType></pointer></type>
+{addition("attributes", '<Attributes><Attribute Name="variable_length_array_original_scope" Value="Inout"/>'
+          '<Attribute Name="variable_length_array" Value="ARRAY[*] OF INT"/></Attributes>')}</variable>
+<variable name="more"><type><INT/></type></variable></inputVars>
+<localVars><variable name="i"><type><DINT/></type></variable></localVars></interface>
+{st("Sum := more; FOR i := LOWER_BOUND(all, 1) TO UPPER_BOUND(all, 1) DO Sum := Sum + all[i]; END_FOR")}</pou>
 <pou name="Main" pouType="program"><interface><localVars>
+<variable name="all"><type><array><dimension lower="2" upper="4"/><baseType><INT/></baseType></array></type></variable>
 <variable name="one"><type><derived name="Plain"/></type></variable><variable name="sized"><type><derived name="Sized"/></type></variable>
 <variable name="place"><type><derived name="Place"/></type></variable>
 </localVars><outputVars><variable name="size"><type><INT/></type></variable></outputVars></interface>
-{st("one(); sized := one; place.x := one.more; place.z := 100; size := sized.Size(add_ := place.z) + place.x;")}</pou>
+{st("one(); sized := one; place.x := one.more; place.z := 100; all[3] := 4; size := sized.Size(add_ := place.z) + Sum(all, place.x - 4);")}</pou>
 </pous></types>
 <instances><configurations><configuration name="c"><resource name="r"><task name="slow" interval="PT0S" priority="3">
 <pouInstance name="Main" typeName=""/>

@@ -49,6 +49,16 @@ pugi::xml_node addition_of(pugi::xml_node element, const char* name) {
     return {};
 }
 
+/// CODESYS writes ARRAY[*] as a pointer, and beside it what it was, and of which section.
+pugi::xml_attribute open_array_of(pugi::xml_node variable, const char* name) {
+    return addition_of(variable, "Attributes")
+        .find_child_by_attribute("Attribute", "Name", name)
+        .attribute("Value");
+}
+
+constexpr const char* open_array = "variable_length_array";
+constexpr const char* open_array_scope = "variable_length_array_original_scope";
+
 }  // namespace
 
 std::shared_ptr<const SourceFile> PlcopenText::finish(pugi::xml_node named) {
@@ -89,7 +99,13 @@ void PlcopenText::add_section(pugi::xml_node section, std::string_view word) {
                                         Term{"nonretain", " NON_RETAIN"}})
         if (file_.plain(section.attribute(name.data())) == "true") write(meaning, section);
     write("\n", section);
-    for (const pugi::xml_node variable : section.children("variable")) add_variable(variable);
+    for (const pugi::xml_node variable : section.children("variable")) {
+        const bool is_lent = file_.plain(open_array_of(variable, open_array_scope)) == "Inout" &&
+                             word != "VAR_IN_OUT";
+        if (is_lent) write("END_VAR\nVAR_IN_OUT\n", variable);
+        add_variable(variable);
+        if (is_lent) write(fmt::format("END_VAR\n{}\n", word), variable);
+    }
     write("END_VAR\n", section);
 }
 
@@ -107,7 +123,10 @@ void PlcopenText::add_variable(pugi::xml_node variable) {
 /// What stands behind the name of a variable or a type.
 void PlcopenText::add_declared(pugi::xml_node declared, const char* type) {
     write(" : ", declared);
-    add_type_of(declared.child(type), 0);
+    if (const pugi::xml_attribute open = open_array_of(declared, open_array))
+        file_.copy(text_, open);
+    else
+        add_type_of(declared.child(type), 0);
     if (const pugi::xml_node value = declared.child("initialValue")) {
         write(" := ", value);
         add_value(value, 0);

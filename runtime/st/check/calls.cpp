@@ -77,7 +77,8 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
     const bool fits = same_type(given, *type) || derives ||
                       (parameter.section == Section::in_out
                            ? texts && type->is_open
-                           : texts || (type->is_scalar() && widens(*type, given)));
+                           : texts || (type->is_scalar() &&
+                                       (widens(*type, given) || are_same_pattern(*type, given))));
     note_lending(c, *value);
     if (!fits)
         c.fail(code::type_does_not_fit, value->place,

@@ -103,6 +103,7 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     bool is_told = false;
     const auto find = [&](std::string_view text) -> const Type* {
         if (const Type* type = find_elementary(text)) return type;
+        if (const Type* type = find_codesys_type(text)) return type;
         Token named = e->token;
         named.text = text;
         is_told |= c.is_lost(named);

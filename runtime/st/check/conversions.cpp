@@ -16,6 +16,16 @@ bool fits_as_constant(const Expression& e, const Type& to) {
            e.constant.integer >= smallest(to) && e.constant.integer <= largest(to);
 }
 
+}  // namespace
+
+bool are_same_pattern(const Type& given, const Type& to) {
+    const Type& from = given.plain();
+    const bool is_one = from.kind == Kind::integer && !from.is_signed && to.kind == Kind::bits;
+    return is_one && from.bits <= to.bits;
+}
+
+namespace {
+
 /// A bit string stands for an integer of its width or a wider one, and the other way.
 bool is_same_pattern(const Type& from, const Type& to) {
     const bool mixes = (from.kind == Kind::bits && to.kind == Kind::integer) ||

@@ -6,6 +6,8 @@ namespace lineshaft::st {
 
 /// REAL.
 bool is_single(const Type& type);
+/// An integer without sign goes to a bit string of its width or a wider one.
+bool are_same_pattern(const Type& given, const Type& to);
 /// Makes `e`, which has a type, a value of `to` where the language does that by itself: a constant
 /// of it, or a conversion. False where it does not, which was told: L0905, L0906, or L0908 for a
 /// constant that is out of range.

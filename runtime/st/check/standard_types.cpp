@@ -200,21 +200,32 @@ const Type* check_chosen(Checking& c, Expression& call, const Type* expected) {
 
 constexpr const char* write_its_type = "write its type, as in WORD#16#FF";
 
-/// CODESYS: a number without a type is shifted in the smallest type that holds it.
-void take_least_width(Checking& c, Expression*& e) {
-    if (e->type->kind != Kind::any_integer || !e->place.dialect().is_loose) return;
-    for (const int bits : {8, 16, 32, 64}) {
-        const Type& type = integer_type(bits, e->constant.integer < 0);
-        if (e->constant.integer >= smallest(type) && e->constant.integer <= largest(type))
-            return void(coerce(c, e, type));
-    }
+/// CODESYS: a number without a type is shifted as what is due, or as 32 bits.
+void take_wide(Checking& c, Expression*& e, const Type* expected) {
+    if (!e->type->is_any() || e->type->is_real() || !e->place.dialect().is_loose) return;
+    const bool is_due = expected && (expected->is_integer() || expected->is_bits());
+    const bool is_long = e->constant.integer > largest(bits_type(32));
+    coerce(c, e,
+           is_due ? expected->plain() : integer_type(is_long ? 64 : 32, e->constant.integer < 0));
+}
+
+/// `SHL(16#D800, 10)` is a number without a type, too.
+bool fold_shift(Checking& c, Expression*& e) {
+    if (!e->place.dialect().is_loose || !same_name(e->standard->name, "shl")) return false;
+    const Expression &given = *e->arguments[0].value, &places = *e->arguments[1].value;
+    const bool are_constant = is_constant(given) && is_constant(places) && given.type->is_any() &&
+                              places.type->is_integer() && places.constant.integer >= 0;
+    if (!are_constant || given.type->is_real() || places.constant.integer > 63) return false;
+    const Wide shifted = given.constant.integer << static_cast<int>(places.constant.integer);
+    if (shifted > largest(lint_type) || shifted < smallest(lint_type)) return false;
+    return become(c, e, any_integer_type, {.integer = shifted});
 }
 
 const Type* check_places(Checking& c, Expression& call, const Type* expected) {
     Expression*& places = call.arguments[1].value;
     become_number(c, places);
     take_width(c, call.arguments[0].value, expected);
-    take_least_width(c, call.arguments[0].value);
+    take_wide(c, call.arguments[0].value, expected);
     const Type &given = given_type(call, 0), &count = *places->type;
     if (!count.is_integer() && count.kind != Kind::any_bits)
         return c.fail(code::type_does_not_fit, places->place, "the number of places is an integer");
@@ -311,7 +322,7 @@ const Type* standard_type_of(Checking& c, Expression*& e, const Type* expected) 
         case Typing::own:
         case Typing::common: return check_common(c, call, expected);
         case Typing::chosen: return check_chosen(c, call, expected);
-        case Typing::places: return check_places(c, call, expected);
+        case Typing::places: return fold_shift(c, e) ? e->type : check_places(c, call, expected);
         case Typing::bits: return check_bits(c, call, expected);
         case Typing::bit_number: return check_bit_number(c, call, expected);
         case Typing::texts: return check_texts(c, call);

@@ -235,7 +235,8 @@ const Type* resolve_parameter(Checking& c, const TypeText& text) {
 const Type* resolve_name(Checking& c, const Token& name) {
     if (c.is_lost(name)) return nullptr;
     if (const Type* type = find_elementary(name.text); type && !name.quoted) return type;
-    if (same_name(name.text, bit_type.name) && name.place.dialect().is_loose) return &bit_type;
+    if (name.place.dialect().is_loose && !name.quoted)
+        if (const Type* type = find_codesys_type(name.text)) return type;
     if (NamedType* named = c.look_up(&Names::types, name)) {
         const Type* type = resolve_declared(c, *named);
         c.note(name.place, *named);

@@ -101,7 +101,6 @@ const Type any_bits = elementary(Kind::any_bits, "a whole number");
 }  // namespace
 
 const Type null_type = null_reference();
-const Type bit_type = elementary(Type::Kind::boolean, "BIT", 1);
 
 const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &lint_type = table[4], &ulint_type = table[8], &real_type = table[13],
@@ -109,6 +108,15 @@ const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &clock_type = table[20], &moment_type = table[24], &any_integer_type = any_integer,
            &any_real_type = any_real, &any_bits_type = any_bits, &string_type = table[17],
            &open_string_type = open_string, &char_type = table[28];
+
+const Type* find_codesys_type(std::string_view name) {
+    static const Type bit = elementary(Type::Kind::boolean, "BIT", 1);
+    if (same_name(name, bit.name)) return &bit;
+    return same_name(name, "__xword")   ? &bits_type(64)
+           : same_name(name, "__uxint") ? &ulint_type
+           : same_name(name, "__xint")  ? &lint_type
+                                        : nullptr;
+}
 
 std::string describe(const Type& type) {
     if (type.is_open_array())
