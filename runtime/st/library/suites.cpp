@@ -253,7 +253,7 @@ std::optional<std::vector<SuiteTest>> run_suites(
     const std::shared_ptr<const SourceFile>& file,
     const std::vector<std::shared_ptr<const SourceFile>>& sources, const Catalog& standard,
     std::int64_t cycle, Diagnostics& out, const SuitesWatch& watch, const Options& options) {
-    constexpr std::int64_t more_fuel = 1000;  // a test may do in a scan what a machine does in many
+    constexpr std::int64_t more_fuel = 100;  // a test may do in a scan what a machine does in many
     Options own = options;
     own.fuel *= more_fuel;
     Compiled made;
