@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/syntax/literals.hpp"
@@ -94,6 +95,34 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
     const auto it = std::ranges::find(to.numbers, e->constant.integer);
     if (it == to.numbers.end()) return false;
     return become(c, e, to, {.integer = it - to.numbers.begin()});
+}
+
+/// `positive` and `ramp_in` of SoftMotion are mcPositiveDirection and mcRampIn of the catalogue.
+bool is_short_for(std::string_view name, std::string_view value) {
+    if (!value.starts_with("mc")) return false;
+    value.remove_prefix(2);
+    for (const char letter : name) {
+        if (letter == '_') continue;
+        if (value.empty() || lower(letter) != lower(value.front())) return false;
+        value.remove_prefix(1);
+    }
+    return true;
+}
+
+/// A value of the names that a vendor has for the catalogue's: a constant by its name, any where
+/// all of them stand in the same order. False where it is none.
+bool coerce_to_catalog(Checking& c, Expression*& e, const Type& to) {
+    const Type& from = *e->type;
+    const bool are_both = from.has_numbers && to.kind == Kind::enumeration && !to.has_numbers;
+    if (!are_both) return false;
+    if (is_constant(*e)) {
+        const std::string& name = from.values[static_cast<std::size_t>(e->constant.integer)];
+        const auto it =
+            std::ranges::find_if(to.values, [&](auto& value) { return is_short_for(name, value); });
+        return it != to.values.end() && become(c, e, to, {.integer = it - to.values.begin()});
+    }
+    return from.values.size() <= to.values.size() &&
+           std::equal(from.values.begin(), from.values.end(), to.values.begin(), is_short_for);
 }
 
 bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
@@ -228,7 +257,7 @@ bool is_single(const Type& type) {
 
 bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (!e->type) return false;
-    if (coerce_enumeration(c, e, to)) return true;
+    if (coerce_enumeration(c, e, to) || coerce_to_catalog(c, e, to)) return true;
     if (to.is_reference() || e->type->is_reference()) return coerce_reference(c, e, to);
     const Type& from = *e->type;
     if (from.kind == Kind::text && to.kind == Kind::text) {

@@ -220,7 +220,11 @@ void LibraryNames::note_pins(const Tree& tree) {
     for (const Declaration& declared : tree.declarations) {
         const auto it =
             declared.type ? index_.by_name.find(declared.type->name.text) : index_.by_name.end();
-        if (it != index_.by_name.end()) instances.emplace(declared.name.text, it->first);
+        if (it == index_.by_name.end()) continue;
+        instances.emplace(declared.name.text, it->first);
+        if (!declared.initial) continue;
+        for (const Argument& argument : declared.initial->arguments)
+            if (argument.is_named()) pins_[it->first].insert(argument.name.text);
     }
     if (instances.empty()) return;
     for (const Expression& e : tree.expressions) {
