@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/st/types/elementary.hpp"
 #include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft::debug {
