@@ -119,7 +119,9 @@ class Reckoning {
     /// In the routine, or in the block that it is a method of.
     Operand named(const st::Expression& e) const {
         const std::string_view name = e.token.text;
+        const st::Routine* block = nullptr;
         for (const st::Routine* routine = frame_.routine; routine; routine = routine->owner) {
+            block = routine;
             const st::Variable* found = st::find_in(routine->names, name);
             if (!found) continue;
             const st::Variable& variable = *found;
@@ -128,8 +130,7 @@ class Reckoning {
             if (variable.space == st::Space::constant) return {.whole = variable.value.integer};
             return at(seat_of(variable, frame_.base, frame_), e, variable.unit);
         }
-        const st::Routine* block = frame_.routine->owner ? frame_.routine->owner : frame_.routine;
-        if (st::same_name(name, "this") && block->type)
+        if (st::same_name(name, "this") && block && block->type)
             return load({block->type, frame_.base, &frame_}, "");
         if (const st::Variable* global = global_of(name))
             return at(seat_of(*global, frame_.base, frame_), e, global->unit);

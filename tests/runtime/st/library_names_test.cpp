@@ -38,7 +38,8 @@ std::vector<std::string> parsed_names(const LibraryFile& library) {
         for (const st::Declaration* variable : block.declarations)
             names.emplace_back(variable->name.text);
     for (const auto& [source, scopes] : tree.scopes)
-        for (const st::Scope& scope : scopes) CHECK(scope.path == library.library);
+        for (const st::Scope& scope : scopes)  // or in it, as SysFile.SysTypes
+            CHECK((std::string(scope.path) + ".").starts_with(std::string(library.library) + "."));
     std::ranges::sort(names);
     return names;
 }
