@@ -83,7 +83,8 @@ void scan(const st::Library& library) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const Catalog catalog = standard_blocks();
     const std::string text(reinterpret_cast<const char*>(data), size);
-    const auto file = std::make_shared<const SourceFile>(SourceFile{"fuzz.st", text});
+    constexpr const char* names[] = {"fuzz.st", "fuzz.EXP", "fuzz.scl"};  // each a dialect
+    const auto file = std::make_shared<const SourceFile>(SourceFile{names[size % 3], text});
     Diagnostics out;
     st::Tree tree;
     st::parse(st::read_tokens(file, out), tree, out);
