@@ -38,6 +38,8 @@ void parse_late_method(Parsing& p);
 // parse_generics.cpp
 /// None, or those that a block begins with.
 void parse_generic_constants(Parsing& p, Pou& pou);
+/// That the block is to be read again, whose first token is `first`.
+void keep_generic(Parsing& p, const Pou& pou, std::size_t first);
 /// None, or those behind the name of a block, which become a part of it.
 void parse_generic_values(Parsing& p, Token& name);
 

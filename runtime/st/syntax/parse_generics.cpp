@@ -63,6 +63,16 @@ void parse_generic_values(Parsing& p, Token& name) {
     p.tree.generic_uses.push_back(std::move(use));
 }
 
+void keep_generic(Parsing& p, const Pou& pou, std::size_t first) {
+    p.generics.clear();
+    if (p.is_again) return;
+    Tokens own{p.source, {}, p.pragmas, p.comments, {}};
+    const auto begin = p.tokens.begin() + static_cast<std::ptrdiff_t>(first);
+    own.tokens.assign(begin, p.tokens.begin() + static_cast<std::ptrdiff_t>(p.at));
+    own.tokens.push_back(p.tokens.back());
+    p.tree.generics.push_back({&pou, std::move(own), p.scope});
+}
+
 void expand_generics(Tree& tree) {
     constexpr std::size_t most_uses = 10'000;
     Diagnostics told;  // of the block itself
@@ -74,7 +84,6 @@ void expand_generics(Tree& tree) {
             const bool is_meant = same_name(pou.name.text, use.block) && !pou.is_lost;
             if (!is_meant || !made.emplace(&pou, lower(use.written)).second) continue;
             Parsing p{Cursor{block.tokens}, tree, told};
-            p.at = block.at;
             p.scope = block.scope;
             p.given = use.values;
             p.is_again = true;

@@ -227,8 +227,7 @@ Pou* parse_pou(Parsing& p) {
     p.is_in_body = false;
     p.accept(Word::semicolon);
     if (p.panic) skip_past(p, words.end);
-    if (pou.is_generic) p.generics.clear();
-    if (pou.is_generic && !p.is_again) p.tree.generics.push_back({&pou, p, first, p.scope});
+    if (pou.is_generic) keep_generic(p, pou, first);
     return &pou;
 }
 

@@ -295,8 +295,7 @@ struct Scope {
 /// A block with VAR_GENERIC, to be read again for each list of values.
 struct GenericBlock {
     const Pou* pou = nullptr;
-    Tokens tokens = {};  ///< of its source
-    std::size_t at = 0;  ///< where it begins in them
+    Tokens tokens = {};  ///< its own, and the end
     Scope* scope = nullptr;
 };
 
