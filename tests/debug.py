@@ -219,7 +219,8 @@ def test_watches():
 def test_watches_through_references():
     """Pointers into arrays, REFERENCE TO, THIS, lists of globals and bits, as the machine finds them."""
     tests = folder / "links_test.st"
-    tests.write_text("TYPE Row : STRUCT a : INT; b : DINT; END_STRUCT END_TYPE\n"
+    tests.write_text("DATA_BLOCK Recipe\nVAR target : INT := 3; END_VAR\nBEGIN\nEND_DATA_BLOCK\n"
+                     "TYPE Row : STRUCT a : INT; b : DINT; END_STRUCT END_TYPE\n"
                      "VAR_GLOBAL limit : INT := 7; END_VAR\n"
                      "FUNCTION_BLOCK Link\nVAR rows : ARRAY[0..3] OF Row; at : REF_TO Row; seen : REF_TO Link; w : WORD := 16#28; sum : INT; END_VAR\n"
                      "METHOD Follow : INT\nVAR_INPUT step : INT; END_VAR\n"
@@ -227,7 +228,7 @@ def test_watches_through_references():
                      "END_METHOD\nEND_FUNCTION_BLOCK\n"
                      "TEST 'follows'\nVAR link : Link; END_VAR\nASSERT_EQ(link.Follow(step := 2), 9);\nEND_TEST\n", encoding="utf-8")
     client = Client(lineshaft)
-    client.launch(tests, {tests: [11]}, test="follows")
+    client.launch(tests, {tests: [15]}, test="follows")
     client.event("stopped")
     frame = client.stack()[0]["id"]
 
@@ -235,9 +236,10 @@ def test_watches_through_references():
         return client.request("evaluate", expression=text, frameId=frame)["result"]
 
     for text, wanted in (("at^.b", "25"), ("seen^.rows[2].b + step", "27"), ("THIS^.at^.b", "25"), ("limit", "7"),
-                         ("w.3", "TRUE"), ("w.%X4", "FALSE"), ("seen^.seen^.w", "16#28"), ("Follow", "9")):
+                         ("links_test.limit", "7"), ("w.3", "TRUE"), ("w.%X4", "FALSE"), ("seen^.seen^.w", "16#28"), ("Follow", "9")):
         assert value(text) == wanted, (text, value(text))
-    for text, wanted in (("step^", "no pointer"), ("w.77", "not known"), ("nowhere.x", "not known")):
+    for text, wanted in (("step^", "no pointer"), ("w.77", "not known"), ("nowhere.x", "not known"),
+                         ("nowhere.limit", "not known"), ("target", "not known")):
         try:
             raise AssertionError((text, value(text)))
         except Refused as why:

@@ -235,6 +235,23 @@ def check_yaml_folder():
     assert "one/c.yaml:4:" in run("check", "one", code=2)
 
 
+def check_exports():
+    """Several exports of PLCopen XML in a folder: what has names in common with another is a project of its own, the rest is one."""
+    def export(name, program, task, text):
+        write(f"exports/{name}.xml", f'<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><pous>'
+              f'<pou name="{program}" pouType="program"><interface><localVars><variable name="n"><type><INT/></type></variable></localVars>'
+              f"</interface>{st(text)}</pou></pous></types><instances><configurations><configuration name=\"c\"><resource name=\"r\">"
+              f'<task name="{task}" interval="PT0.01S" priority="1"><pouInstance name="{program}" typeName="{program}"/></task>'
+              "</resource></configuration></configurations></instances></project>\n")
+    export("first", "Main", "fast", "n := n + 1;")
+    export("second", "Main", "slow", "n := n + 2;")
+    export("third", "Other", "slow", "n := Missing(n);")
+    said = run("check", "exports", code=2)
+    assert "exports: 2 of 3 POUs" in said and "  3 projects\n" in said and "declared twice" not in said, said
+    assert "exports/third.xml" in said and "exports/first.xml" not in said, said
+    assert "name one of them: exports/first.xml, exports/second.xml" in run("new", "one", "--from", "exports", code=2)
+
+
 def check_nothing():
     write("nothing/below/notes.txt", "no source\n")
     assert "there is no source of a controller in 'nothing'" in run("check", "nothing", code=2)
@@ -427,6 +444,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_chart_flags()
     check_older_forms()
     check_yaml_folder()
+    check_exports()
     check_nothing()
     check_automation_studio()
     check_apax()

@@ -52,7 +52,7 @@ def check(compiler, path, update):
 def main():
     update = "--update-expected" in sys.argv
     compiler, root, *names = [a for a in sys.argv[1:] if not a.startswith("--")]
-    files = sorted(f for f in pathlib.Path(root).iterdir() if f.suffix in (".st", ".scl"))
+    files = sorted(f for f in pathlib.Path(root).iterdir() if f.suffix in (".st", ".scl", ".EXP"))
     files = [f for f in files if not names or f.stem in names]
     failed = 0
     for path in files:

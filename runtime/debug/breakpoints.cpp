@@ -171,7 +171,8 @@ void Breakpoints::arrange() {
         numbers.emplace(&routine, i);
         if (made_->checked.dispatches) reached_[i] = count_ > 0;
         for (const st::Called& called : routine.calls)
-            if (const auto it = numbers.find(called.routine); it != numbers.end() && reached_[it->second])
+            if (const auto it = numbers.find(called.routine);
+                it != numbers.end() && reached_[it->second])
                 reached_[i] = true;
     }
 }

@@ -132,29 +132,32 @@ class Reckoning {
         }
         if (st::same_name(name, "this") && block && block->type)
             return load({block->type, frame_.base, &frame_}, "");
-        if (const st::Variable* global = global_of(name))
+        if (const st::Variable* global = global_of("", name))
             return at(seat_of(*global, frame_.base, frame_), e, global->unit);
         if (st::same_name(name, "true") || st::same_name(name, "false"))
             return of_truth(st::same_name(name, "true"));
         return {.of = Operand::Of::name, .text = std::string(name)};
     }
 
-    /// `list.x` is known by its last name, too.
-    const st::Variable* global_of(std::string_view name) const {
+    /// Of VAR_GLOBAL: `x`, and with the name of its list, whether programs have to write that or
+    /// not.
+    const st::Variable* global_of(std::string_view list, std::string_view name) const {
+        const std::string full =
+            list.empty() ? std::string(name) : fmt::format("{}.{}", list, name);
         for (const st::Global& global : checked_.globals)
             for (const st::Variable* variable : global.type->members) {
-                const std::string_view text = variable->text;
-                if (st::same_name(text, name) ||
-                    st::same_name(text.substr(text.rfind('.') + 1), name))
-                    return variable;
+                const st::Source* source = variable->name.place.source;
+                if (variable->space != st::Space::global || !source) continue;
+                const bool is_of_list = st::same_name(variable->text, name) &&
+                                        st::same_name(st::name_of_list(*source), list);
+                if (st::same_name(variable->text, full) || is_of_list) return variable;
             }
         return nullptr;
     }
 
     /// What is there; of a REFERENCE TO what it is to.
     Operand at(const Seat& seat, const st::Expression& e, const std::string& unit) const {
-        if (!seat.at)
-            throw Failed(fmt::format("'{}' is not in the memory now", e.place.text()));
+        if (!seat.at) throw Failed(fmt::format("'{}' is not in the memory now", e.place.text()));
         const Operand found = load(seat, unit);
         return seat.type->is_alias() ? followed(e, found) : found;
     }
@@ -181,7 +184,7 @@ class Reckoning {
     Operand member(const st::Expression& e) const {
         const Operand whole = value(*e.operands[0]);
         if (whole.of == Operand::Of::name)
-            if (const st::Variable* global = global_of(e.token.text))
+            if (const st::Variable* global = global_of(whole.text, e.token.text))
                 return at(seat_of(*global, frame_.base, frame_), e, global->unit);
         if (whole.of != Operand::Of::place) throw Failed(unknown(e));
         const st::Type& type = *whole.seat.type;
@@ -221,7 +224,7 @@ class Reckoning {
         const Operand of_type = value(*e.operands[0]);
         if (of_type.of != Operand::Of::name) return of_type;
         for (const st::Type& type : checked_.types)
-            if (type.kind == st::Type::Kind::enumeration && st::same_name(type.name, e.token.text))
+            if (type.has_values() && st::same_name(type.name, e.token.text))
                 return {.whole = number_of(type, of_type.text)};
         throw Failed(unknown(e));
     }
@@ -229,7 +232,7 @@ class Reckoning {
     static Wide number_of(const st::Type& type, const std::string& name) {
         const std::string* value = st::find_called(type.values, name);
         if (!value) throw Failed(fmt::format("{} has no value '{}'", type.name, name));
-        return value - type.values.data();
+        return type.kept(static_cast<std::size_t>(value - type.values.data()));
     }
 
     Operand unary(const st::Expression& e) const {

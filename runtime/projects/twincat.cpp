@@ -177,7 +177,7 @@ bool is_same_form(const fs::path& a, const fs::path& b) {
 /// MSBuild writes `%28` for a bracket in a name.
 std::string unescaped(std::string name) {
     for (std::size_t at = name.find('%'); at != std::string::npos; at = name.find('%', at + 1)) {
-        int letter = 0;
+        unsigned letter = 0;
         const char *digits = name.data() + at + 1, *end = digits + 2;
         if (at + 2 < name.size() && std::from_chars(digits, end, letter, 16).ptr == end)
             name.replace(at, 3, 1, static_cast<char>(letter));

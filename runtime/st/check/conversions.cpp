@@ -97,16 +97,18 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
     return become(c, e, to, {.integer = it - to.numbers.begin()});
 }
 
-/// `positive` and `ramp_in` of SoftMotion are mcPositiveDirection and mcRampIn of the catalogue.
+/// `positive` and `ramp_in` of SoftMotion are mcPositiveDirection and mcRampIn of the catalogue:
+/// all of its words, or the first of them.
 bool is_short_for(std::string_view name, std::string_view value) {
     if (!value.starts_with("mc")) return false;
     value.remove_prefix(2);
+    const std::size_t length = value.size();
     for (const char letter : name) {
         if (letter == '_') continue;
         if (value.empty() || lower(letter) != lower(value.front())) return false;
         value.remove_prefix(1);
     }
-    return true;
+    return value.size() < length && (value.empty() || lower(value.front()) != value.front());
 }
 
 /// A value of the names that a vendor has for the catalogue's: a constant by its name, any where
@@ -117,9 +119,10 @@ bool coerce_to_catalog(Checking& c, Expression*& e, const Type& to) {
     if (!are_both) return false;
     if (is_constant(*e)) {
         const std::string& name = from.values[static_cast<std::size_t>(e->constant.integer)];
-        const auto it =
-            std::ranges::find_if(to.values, [&](auto& value) { return is_short_for(name, value); });
-        return it != to.values.end() && become(c, e, to, {.integer = it - to.values.begin()});
+        const auto is_meant = [&](auto& value) { return is_short_for(name, value); };
+        const auto it = std::ranges::find_if(to.values, is_meant);
+        return std::ranges::count_if(to.values, is_meant) == 1 &&
+               become(c, e, to, {.integer = it - to.values.begin()});
     }
     return from.values.size() <= to.values.size() &&
            std::equal(from.values.begin(), from.values.end(), to.values.begin(), is_short_for);

@@ -248,6 +248,8 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
             c.fail(code::wrong_place, declared->name.place,
                    "a function keeps nothing from call to call, so it has no instances",
                    "pass the instance as VAR_IN_OUT");
+        const bool is_of_test = routine.pou->is_tests || routine.is_test();
+        if (variable->space == Space::frame && !is_of_test) refuse_object(c, *declared, type);
         if (variable->space != Space::reference) refuse_abstract(c, type, declared->name.place);
         const bool is_own =
             variable->space == Space::reference && routine.owner && type == routine.owner->type;
@@ -263,7 +265,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
             keep_once(c, *variable);
         }
         if (type && type->is_open_array()) declare_bounds(c, routine, *variable);
-        if (routine.pou->is_tests || routine.is_test()) make_object(c, *variable);
+        if (is_of_test) make_object(c, *variable);
         if (!declared->type)
             make_untyped_constant(c, *variable);
         else if (constant && section != Section::input)
@@ -332,6 +334,13 @@ void declare_routine(Checking& c, Routine& routine) {
 }
 
 }  // namespace
+
+void refuse_object(Checking& c, const Declaration& declared, const Type* type) {
+    if (!type || !type->is_object()) return;
+    c.fail(code::wrong_place, declared.name.place,
+           fmt::format("{} is a block of the program, and no part of another", type->name),
+           fmt::format("name it: {} : {};", declared.name.text, type->standard->handle));
+}
 
 void collect_names(Checking& c) {
     collect_namespaces(c);

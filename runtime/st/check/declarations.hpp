@@ -23,6 +23,9 @@ void keep_once(Checking& c, Variable& variable);
 /// a base; null: it is one, or there are none.
 const std::vector<Argument>* constructor_arguments(const TypeText* text, const Type* type);
 
+/// Of a variable or member that would be a block of the program, such as AXIS.
+void refuse_object(Checking& c, const Declaration& declared, const Type* type);
+
 /// VAR_GLOBAL and data blocks.
 void declare_globals(Checking& c);
 /// Variables, results and constants of all routines, and which they are made of.

@@ -60,7 +60,8 @@ const Type* check_time(Checking& c, Expression*& slot) {
         return type;
     }
     if (same_name(prefix, "dtl")) return check_dtl(c, slot);
-    const auto value = read_duration(e.token.text, e.place.dialect().is_loose);
+    const bool has_no_sign = e.place.dialect().is_loose && same_name(prefix.substr(0, 1), "l");
+    const auto value = read_duration(e.token.text, has_no_sign);
     if (!value)
         return c.fail(code::value_out_of_range, e.place,
                       fmt::format("'{}' is not a time", e.place.text()),
@@ -113,8 +114,7 @@ const Type* check_typed(Checking& c, Expression*& e) {
                       fmt::format("'{}' is not a type of values", name.text),
                       "write a type, as in INT#5");
     if (!type) return nullptr;
-    if (type->has_values() && value->kind == E::name)
-        return check_value(c, e, *type, value->token);
+    if (type->has_values() && value->kind == E::name) return check_value(c, e, *type, value->token);
     if (!check(c, value, type) || !coerce(c, value, *type)) return nullptr;
     if (!is_constant(*value))
         return c.fail(code::not_a_constant, value->place,

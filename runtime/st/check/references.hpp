@@ -31,8 +31,8 @@ void note_lending(Checking& c, const Expression& place);
 /// `target ?= value;`: NULL, where what the value is to is not of the target's type.
 void check_attempt(Checking& c, Statement& s);
 
-/// What a call of __QUERYINTERFACE or __QUERYPOINTER is given, so that its variables are of one type; false: an
-/// argument is wrong, which was told.
+/// What a call of __QUERYINTERFACE or __QUERYPOINTER is given, so that its variables are of one
+/// type; false: an argument is wrong, which was told.
 bool take_query(Checking& c, Expression*& e, const Routine& called);
 
 void check_reference_assignment(Checking& c, Statement& s);

@@ -203,7 +203,8 @@ constexpr const char* write_its_type = "write its type, as in WORD#16#FF";
 /// CODESYS: a number without a type is shifted as what is due, or as 32 bits.
 void take_wide(Checking& c, Expression*& e, const Type* expected) {
     if (!e->type->is_any() || e->type->is_real() || !e->place.dialect().is_loose) return;
-    const bool is_due = expected && (expected->is_integer() || expected->is_bits());
+    const bool is_due =
+        expected && (expected->kind == Kind::integer || expected->kind == Kind::bits);
     const bool is_long = e->constant.integer > largest(bits_type(32));
     coerce(c, e,
            is_due ? expected->plain() : integer_type(is_long ? 64 : 32, e->constant.integer < 0));

@@ -98,6 +98,7 @@ const Type* resolve_structure(Checking& c, const TypeText& text) {
     for (const Declaration* declared : text.members) {
         const Type* member = resolve(c, *declared->type);
         refuse_overlay(c, *declared);
+        refuse_object(c, *declared, member);
         if (is_new_name(c, declared->name, names))
             type.members.push_back(add(c, c.checked.variables, *declared, member));
     }
@@ -166,8 +167,8 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
 const Type* resolve_subrange(Checking& c, const TypeText& text) {
     const Type* base = resolve_name(c, text.name);
     if (!base) return nullptr;
-    const bool is_whole = base->kind == Kind::integer ||
-                          (base->kind == Kind::bits && text.place.dialect().is_loose);
+    const bool is_whole =
+        base->kind == Kind::integer || (base->kind == Kind::bits && text.place.dialect().is_loose);
     if (!is_whole)
         return c.fail(code::type_does_not_fit, text.place,
                       fmt::format("{} has no subranges", describe(*base)),

@@ -181,7 +181,8 @@ class FieldWriter {
         } else if (type.is_real() && type.bits == 32) {
             field.maximum = std::numeric_limits<float>::max();
             field.minimum = -field.maximum;
-        } else if ((type.kind == Kind::integer || type.kind == Kind::bits) && smallest(range) == 0) {
+        } else if ((type.kind == Kind::integer || type.kind == Kind::bits) &&
+                   smallest(range) == 0) {
             field.minimum = 0;
         }
         const bool wired = direction == Direction::input;

@@ -65,7 +65,7 @@ void parse_generic_values(Parsing& p, Token& name) {
 
 void keep_generic(Parsing& p, const Pou& pou, std::size_t first) {
     p.generics.clear();
-    if (p.is_again) return;
+    if (!p.given.empty()) return;
     Tokens own{p.source, {}, p.pragmas, p.comments, {}};
     const auto begin = p.tokens.begin() + static_cast<std::ptrdiff_t>(first);
     own.tokens.assign(begin, p.tokens.begin() + static_cast<std::ptrdiff_t>(p.at));
@@ -77,20 +77,20 @@ void expand_generics(Tree& tree) {
     constexpr std::size_t most_uses = 10'000;
     Diagnostics told;  // of the block itself
     std::set<std::pair<const Pou*, std::string>> made;
-    for (std::size_t i = 0; i < std::min(tree.generic_uses.size(), most_uses); ++i)
+    for (std::size_t i = 0; i < std::min(tree.generic_uses.size(), most_uses); ++i) {
+        const GenericUse use = tree.generic_uses[i];  // the list grows
         for (const GenericBlock& block : tree.generics) {
-            const GenericUse use = tree.generic_uses[i];
             const Pou& pou = *block.pou;
             const bool is_meant = same_name(pou.name.text, use.block) && !pou.is_lost;
             if (!is_meant || !made.emplace(&pou, lower(use.written)).second) continue;
             Parsing p{Cursor{block.tokens}, tree, told};
             p.scope = block.scope;
             p.given = use.values;
-            p.is_again = true;
             Pou& own = *parse_pou(p);
             own.name.text = tree.names.emplace_back(std::string(own.name.text) + use.written);
             tree.units.push_back(&own);
         }
+    }
     std::erase_if(tree.units, [](const Pou* pou) { return is_open(*pou); });
 }
 

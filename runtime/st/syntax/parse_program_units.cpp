@@ -143,14 +143,6 @@ void parse_body(Parsing& p, Pou& pou, Word end) {
     }
 }
 
-/// The name that a list of VAR_GLOBAL has, which its file gives it, or what it is in a project.
-std::string_view name_of_list(const Source& source) {
-    if (!source.file->part.empty()) return source.file->part;
-    std::string_view name = source.file->path;
-    name.remove_prefix(name.find_last_of("/\\") + 1);
-    return name.substr(0, name.rfind('.'));
-}
-
 void parse_globals(Parsing& p) {
     const bool is_qualified_only = has_attribute(p, p.at, "qualified_only");
     DeclarationBlock block = parse_section(p, Section::global);
@@ -161,6 +153,13 @@ void parse_globals(Parsing& p) {
 }
 
 }  // namespace
+
+std::string_view name_of_list(const Source& source) {
+    if (!source.file->part.empty()) return source.file->part;
+    std::string_view name = source.file->path;
+    name.remove_prefix(name.find_last_of("/\\") + 1);
+    return name.substr(0, name.rfind('.'));
+}
 
 /// Declaration : POU | Action_Decl | Data_Type_Decl | Var_Section | Config_Decl | Var_Config | Test
 /// A METHOD stands within another unit, or behind it; variables beside units are VAR_GLOBAL or VAR,

@@ -13,6 +13,9 @@ namespace lineshaft::st {
 /// Where a source is no file of tests, TEST, SETUP and TEARDOWN are refused.
 void parse(Tokens tokens, Tree& tree, Diagnostics& out);
 
+/// The name that a list of VAR_GLOBAL has, which its file gives it, or what it is in a project.
+std::string_view name_of_list(const Source& source);
+
 /// B&R declares the functions and blocks of a library in a file of its own, `.fun`, and writes
 /// their bodies elsewhere, without variables: both are one unit. A declaration that has no body
 /// anywhere stays as it is.

@@ -14,15 +14,14 @@ struct Parsing : Cursor {
     std::vector<Token> regions = {};          ///< that are open
     std::vector<Declaration*> generics = {};  ///< constants of the generic block that is read
     std::vector<Expression*> given = {};      ///< their values, where it is read again
-    bool is_again = false;
-    int cases = 0;                     ///< that are open, before their ELSE
-    int levels = 0;                    ///< that are open
-    bool is_in_body = false;           ///< of a POU
-    bool is_in_test = false;           ///< in its body
-    bool is_wrong = false;             ///< what is being declared
-    bool is_spoiled = false;           ///< the POU, by a variable that cannot be
-    bool section_left = false;         ///< a VAR ended without END_VAR
-    std::vector<Place> else_ifs = {};  ///< `ELSE IF` within the IFs that are open
+    int cases = 0;                            ///< that are open, before their ELSE
+    int levels = 0;                           ///< that are open
+    bool is_in_body = false;                  ///< of a POU
+    bool is_in_test = false;                  ///< in its body
+    bool is_wrong = false;                    ///< what is being declared
+    bool is_spoiled = false;                  ///< the POU, by a variable that cannot be
+    bool section_left = false;                ///< a VAR ended without END_VAR
+    std::vector<Place> else_ifs = {};         ///< `ELSE IF` within the IFs that are open
     std::size_t unclosed_at = static_cast<std::size_t>(-1);  ///< where an end was missed last
 
     Expression* make(Expression::Kind kind, const Token& token);

@@ -56,11 +56,11 @@ struct Type {
     std::uint32_t slots = 1;
     std::int64_t lower = 0, upper = -1;  ///< of an array's index; of a subrange's values
     bool is_subrange = false;
-    bool is_unchecked = false;             ///< a subrange of CODESYS: of constants alone
-    bool has_named_values = false;         ///< `values` names some of a number (6.4.4.3)
-    bool is_unnamed = false;               ///< STRUCT without a TYPE: any of its members is equal
-    bool counts_ns = false;                ///< LTIME, of which a real number is in ns, not ms
-    const Type* base = nullptr;            ///< of a subrange, of named values; of an enumeration with numbers
+    bool is_unchecked = false;      ///< a subrange of CODESYS: of constants alone
+    bool has_named_values = false;  ///< `values` names some of a number (6.4.4.3)
+    bool is_unnamed = false;        ///< STRUCT without a TYPE: any of its members is equal
+    bool counts_ns = false;         ///< LTIME, of which a real number is in ns, not ms
+    const Type* base = nullptr;  ///< of a subrange, of named values; of an enumeration with numbers
     const Type* element = nullptr;         ///< of an array; what a reference is to, or null
     Referring referring = Referring::ref;  ///< of a reference
     bool has_inner = false;                ///< of an array: its element is its next dimension
@@ -218,7 +218,7 @@ struct Routine {
     Block begins = {}, call_begins = {};  ///< what comes before it, once and in each call
     Variable* begun = nullptr;            ///< of a block: that the first was done
     std::vector<Called> calls = {};
-    bool is_looped = false;  ///< calls of it through references are found by the instance
+    bool is_looped = false;         ///< calls of it through references are found by the instance
     std::vector<int> objects = {};  ///< globals that are blocks of the program, and that it names
     enum class State : std::uint8_t { fresh, visiting, done } state = State::fresh;
 

@@ -179,8 +179,7 @@ void Completion::add_names(Offer& to) const {
         if (!r.owner && r.pou->place.source && r.pou->place.source->is_users())
             to.add(r.name, r.is_function() ? Kind::function : Kind::class_, signature_of(r));
     for (const st::Type& type : meaning.compiled.checked.types)
-        if (!type.is_unnamed &&
-            (type.kind == st::Type::Kind::structure || type.has_values())) {
+        if (!type.is_unnamed && (type.kind == st::Type::Kind::structure || type.has_values())) {
             to.add(type.name, Kind::class_);
             for (const std::string& value : type.values) to.add(value, Kind::enum_, type.name);
         }
