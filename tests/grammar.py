@@ -74,7 +74,7 @@ def within(rule, inside):
         "Source": {"Var_Sections": "Var_Section *", "Section_Word": "'VAR_GLOBAL'", "Action_Body": "Stmt_List", "Declaration": "POU | Action_Decl | Data_Type_Decl | Var_Section | Config_Decl",
                    "Stmt": "';' | Region | ( IF_Stmt | Case_Stmt | For_Stmt | While_Stmt | Repeat_Stmt ) ';' ? | "
                            "Jump_Stmt | Simple_Stmt",
-                   "Variable_Name": "( 'THIS' '^' ? '.' ) ? Name", "Value": "Expression",
+                   "Variable_Name": "( 'THIS' '^' ? '.' ) ? Name", "Value": "Expression", "Assigned": "Expression",
                    "Typed_Literal": "'T#1h2m' | 'INT#' Signed_Primary", "Region": "'\nREGION w\n' Stmt_List 'END_REGION\n'",
                    "Attribute": "'VERSION' ':' Real | '\nTITLE' '=' Any_Token '\n'",
                    "Data_Block_Type": "( Array_Spec | Struct_Decl | Type_Access ) ';'",

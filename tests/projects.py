@@ -235,27 +235,38 @@ def check_yaml_folder():
     assert "one/c.yaml:4:" in run("check", "one", code=2)
 
 
-def check_exports():
-    """Several exports of PLCopen XML in a folder: what has names in common with another is a project of its own, the rest is one."""
-    def export(name, program, task, text):
+def check_neighbours():
+    """Programs beside each other that share names: each is checked with what is nearest to it."""
+    def export(name, program, text):
         write(f"exports/{name}.xml", f'<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><pous>'
-              f'<pou name="{program}" pouType="program"><interface><localVars><variable name="n"><type><INT/></type></variable></localVars>'
-              f"</interface>{st(text)}</pou></pous></types><instances><configurations><configuration name=\"c\"><resource name=\"r\">"
-              f'<task name="{task}" interval="PT0.01S" priority="1"><pouInstance name="{program}" typeName="{program}"/></task>'
-              "</resource></configuration></configurations></instances></project>\n")
-    export("first", "Main", "fast", "n := n + 1;")
-    export("second", "Main", "slow", "n := n + 2;")
-    export("third", "Other", "slow", "n := Missing(n);")
+              f'<pou name="{program}" pouType="program"><interface><localVars><variable name="n"><type><derived name="Count"/></type></variable>'
+              f"</localVars></interface>{st(text)}</pou></pous><dataTypes><dataType name='Count'><baseType><INT/></baseType></dataType>"
+              "</dataTypes></types></project>\n")
+    export("first", "Main", "n := n + 1;")
+    export("second", "Main", "n := n + 2;")
+    assert run("check", "exports") == "ok  exports\n"
+    export("third", "Main", "n := Missing(n);")
     said = run("check", "exports", code=2)
-    assert "exports: 2 of 3 POUs" in said and "  3 projects\n" in said and "declared twice" not in said, said
-    assert "exports/third.xml" in said and "exports/first.xml" not in said, said
-    assert "name one of them: exports/first.xml, exports/second.xml" in run("new", "one", "--from", "exports", code=2)
+    assert "exports/third.xml" in said and "exports/first.xml" not in said and "declared twice" not in said, said
+
+    for name, kind in (("one", "INT"), ("two", "BOOL")):
+        write(f"examples/{name}/PLC_PRG.st", "PROGRAM PLC_PRG\nVAR t : Thing; x : Shared; END_VAR\nt.value := "
+              + ("1" if kind == "INT" else "TRUE") + ";\nx := 3;\nEND_PROGRAM\n")
+        write(f"examples/{name}/Thing.st", f"TYPE Thing : STRUCT value : {kind}; END_STRUCT END_TYPE\n")
+    write("examples/Shared.st", "TYPE Shared : INT; END_TYPE\n")
+    assert run("check", "examples") == "ok  examples\n"
+    write("examples/two/More.st", "FUNCTION More : BOOL\nMore := 5;\nEND_FUNCTION\nPROGRAM PLC_PRG\nEND_PROGRAM\n")
+    said = run("check", "examples", code=2)
+    assert "examples/two/More.st:2:9: error[L0905]" in said and "examples/two/PLC_PRG.st:1:9: error[L0909]" in said, said
+    assert said.count("is declared twice") == 1 and "examples/one" not in said, said
 
 
 def check_nothing():
     write("nothing/below/notes.txt", "no source\n")
     assert "there is no source of a controller in 'nothing'" in run("check", "nothing", code=2)
     write("nothing/below/history.db", b"SQLite format 3\0\1")
+    write("nothing/below/Thumbs.db", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1\0\0")
+    write("nothing/below/packages.db", "INSTALLED.DB 3\n")
     assert "there is no source of a controller in 'nothing'" in run("check", "nothing", code=2)
     assert "the file is not a text" in run("check", "nothing/below/history.db", code=2)
 
@@ -444,7 +455,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_chart_flags()
     check_older_forms()
     check_yaml_folder()
-    check_exports()
+    check_neighbours()
     check_nothing()
     check_automation_studio()
     check_apax()

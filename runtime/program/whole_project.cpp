@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <iterator>
 #include <map>
-#include <ranges>
-#include <set>
 
 #include "runtime/projects/solution.hpp"
 #include "runtime/source/letters.hpp"
@@ -30,57 +27,6 @@ std::vector<std::string> plcprojs_of(const std::string& path) {
     auto files = projects::sources_below(path, error);
     std::erase_if(files, [](const std::string& file) { return !is_plcproj(file); });
     return files;
-}
-
-/// Each file below a folder that no `.plcproj` is, read by itself.
-std::vector<WholeProject> files_of_folder(const std::string& folder,
-                                          const std::vector<std::string>& include_dirs,
-                                          Diagnostics& out) {
-    std::error_code error;
-    std::vector<std::string> allowed = include_dirs;
-    allowed.push_back(folder);
-    std::vector<WholeProject> read;
-    for (const std::string& file : projects::sources_below(folder, error))
-        if (!is_plcproj(file))
-            read.push_back({.path = file, .project = read_project(file, allowed, out)});
-    return read;
-}
-
-/// By what they call their parts: two exports of PLCopen that have one in common are two projects.
-/// Several without are one.
-void leave_exports_apart(std::vector<WholeProject>& files, std::vector<WholeProject>& apart) {
-    std::map<std::string, std::set<std::string>> exports;
-    const auto is_export = [](const WholeProject& file) {
-        return lower(fs::path(file.path).extension().string()) == ".xml";
-    };
-    for (const WholeProject& file : files)
-        if (is_export(file))
-            for (const auto& source : file.project.sources)
-                exports[lower(source->part)].insert(file.path);
-    const auto is_apart = [&](const WholeProject& file) {
-        const auto is_shared = [&](const auto& source) {
-            return exports[lower(source->part)].size() > 1;
-        };
-        return is_export(file) && std::ranges::any_of(file.project.sources, is_shared);
-    };
-    const auto first = std::ranges::stable_partition(files, std::not_fn(is_apart)).begin();
-    for (WholeProject& file : std::ranges::subrange(first, files.end())) {
-        file.own = file.project.sources.size();
-        apart.push_back(std::move(file));
-    }
-    files.erase(first, files.end());
-}
-
-/// All files that are left, as one project.
-WholeProject together(const std::string& path, std::vector<WholeProject>& files) {
-    WholeProject made{.path = path, .project = {}};
-    for (WholeProject& file : files) {
-        for (auto& source : file.project.sources) made.project.add(std::move(source));
-        std::ranges::move(file.project.tasks, std::back_inserter(made.project.tasks));
-        std::ranges::move(file.project.libraries, std::back_inserter(made.project.libraries));
-    }
-    made.own = made.project.sources.size();
-    return made;
 }
 
 /// All projects in reach, each read once.
@@ -161,23 +107,28 @@ class Projects {
 std::vector<WholeProject> read_projects(const std::string& path,
                                         const std::vector<std::string>& include_dirs,
                                         Diagnostics& out) {
-    const std::vector<std::string> plcprojs = plcprojs_of(path);
+    const std::vector<std::string> files = plcprojs_of(path);
     std::vector<WholeProject> made;
     std::error_code error;
-    if (!plcprojs.empty()) {
-        Projects all(path, include_dirs, out);
-        for (const std::string& file : plcprojs) made.push_back(all.whole(file));
+    const bool is_folder = fs::is_directory(path, error);
+    if (files.empty()) {
+        made.push_back({.path = path, .project = read_project(path, include_dirs, out)});
+        made.back().own = made.back().project.sources.size();
+        return made;
     }
-    if (!fs::is_directory(path, error)) {
-        if (!plcprojs.empty()) return made;
-        std::vector<WholeProject> one(1);
-        one.front().project = read_project(path, include_dirs, out);
-        return {together(path, one)};
+    Projects all(path, include_dirs, out);
+    for (const std::string& file : files) made.push_back(all.whole(file));
+    if (!is_folder) return made;
+    WholeProject rest{.path = path, .project = {}};
+    for (const std::string& file : projects::sources_below(path, error)) {
+        if (is_plcproj(file)) continue;
+        projects::Project read = read_project(file, include_dirs, out);
+        for (auto& source : read.sources) rest.project.add(std::move(source));
+        std::ranges::move(read.tasks, std::back_inserter(rest.project.tasks));
+        std::ranges::move(read.libraries, std::back_inserter(rest.project.libraries));
     }
-    std::vector<WholeProject> files = files_of_folder(path, include_dirs, out);
-    leave_exports_apart(files, made);
-    WholeProject rest = together(path, files);
-    if (rest.own > 0 || made.empty()) made.push_back(std::move(rest));
+    rest.own = rest.project.sources.size();
+    if (rest.own > 0) made.push_back(std::move(rest));
     return made;
 }
 

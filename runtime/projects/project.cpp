@@ -1,7 +1,6 @@
 #include "runtime/projects/project.hpp"
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -78,13 +77,14 @@ bool is_test_file(const std::string& file) {
     return source && (has_fixtures(*source) || st::is_test_file(source));
 }
 
-/// Siemens' data blocks are texts; other programs have databases whose names end alike.
+/// Siemens' data blocks say what they are; other programs have databases whose names end alike.
 bool is_database(const std::string& file) {
     if (!ends_with(file, ".db")) return false;
-    std::array<char, 16> first{};
-    std::ifstream(file, std::ios::binary).read(first.data(), first.size());
-    constexpr std::string_view sqlite = "SQLite format 3";
-    return std::string_view(first.data(), sqlite.size()) == sqlite;
+    std::string first(65'536, '\0');
+    std::ifstream text(file, std::ios::binary);
+    text.read(first.data(), static_cast<std::streamsize>(first.size()));
+    std::erase(first, '\0');  // UTF-16
+    return lower(std::move(first)).find("data_block") == std::string::npos;
 }
 
 /// What projects list themselves: all below a `.plcproj`, all beside a `.prg`; and what lists them.

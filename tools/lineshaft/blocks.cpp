@@ -78,7 +78,8 @@ Exit describe(const Catalog& catalog, const std::vector<std::string>& words, boo
 /// The kinds of block of the files; empty, and reported, when there is a mistake in them.
 std::optional<Catalog> compiled(const std::vector<std::string>& files, bool json) {
     Diagnostics out;
-    const auto library = compile_files(files, {}, out);
+    const auto texts = read_files(files, {}, out);
+    const auto library = out.empty() ? st::compile(texts, standard_blocks(), out) : std::nullopt;
     if (!out.empty() || !out.warnings().empty()) report(out, json && !out.empty());
     if (!library) return {};
     Catalog kinds;

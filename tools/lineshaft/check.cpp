@@ -6,6 +6,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/source/encoding.hpp"
+#include "tools/lineshaft/check_apart.hpp"
 #include "tools/lineshaft/check_file.hpp"
 #include "tools/lineshaft/check_project.hpp"
 #include "tools/lineshaft/command.hpp"
@@ -23,8 +24,7 @@ struct CheckCommand {
 };
 
 /// All below a folder: programs, studies, fits, TESTs, and what is left of Structured Text, a file
-/// with those that declare what it names: two programs may have different ones of a name. How many
-/// files there were.
+/// with those that declare what it names. How many files there were.
 std::size_t check_folder(const std::string& folder, const LoadOptions& options, Diagnostics& out) {
     std::size_t files = 0;
     std::set<std::string> seen;  // sources that a program has
@@ -49,11 +49,7 @@ std::size_t check_folder(const std::string& folder, const LoadOptions& options, 
     for (const auto& text : texts) {
         ++files;
         if (seen.contains(std::filesystem::path(text->path).lexically_normal().string())) continue;
-        std::vector<std::shared_ptr<const SourceFile>> together = pool.needed_by(text);
-        together.push_back(text);
-        Diagnostics found;
-        st::compile(together, standard_blocks(), found);
-        once.add(found);
+        once.add(check_apart(pool, {text}));
     }
     return files;
 }
@@ -79,7 +75,11 @@ void check_sources(const std::vector<std::string>& paths, const LoadOptions& opt
         else
             sources.push_back(path);
     }
-    if (!sources.empty()) compile_files(sources, options.include_dirs, out);
+    const auto texts = read_files(sources, options.include_dirs, out);
+    if (texts.empty() || !out.empty()) return;
+    Diagnostics found;
+    st::compile(texts, standard_blocks(), found);
+    Once(out).add(without_neighbours(texts, found));
 }
 
 Exit execute(const CheckCommand& command) {

@@ -12,6 +12,7 @@
 #include "runtime/projects/solution.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/st/library/library.hpp"
+#include "tools/lineshaft/check_apart.hpp"
 #include "tools/lineshaft/once.hpp"
 
 namespace lineshaft {
@@ -140,12 +141,14 @@ std::string check_project(const std::string& path, const LoadOptions& options, D
     std::size_t whole = 0, wrong = 0, tasks = 0, libraries = 0;
     Diagnostics unread;
     const std::vector<WholeProject> all = read_projects(path, options.include_dirs, unread);
+    once.add(unread);
     for (const WholeProject& each : all) {
-        Diagnostics found = unread;
+        Diagnostics found;
         std::set<const SourceFile*> foreign;
         st::compile(
             each.project.sources, standard_blocks(), found,
             {.references = references_of(each.project), .addresses = {}, .foreign = &foreign});
+        if (each.path == path) found = without_neighbours(each.project.sources, found);
         whole += each.own;
         wrong += with_mistakes(each, found, foreign).size();
         tasks += each.project.tasks.size();

@@ -100,9 +100,9 @@ void add_native(CLI::App& command) {
         ->excludes(off);
 }
 
-std::optional<st::Library> compile_files(const std::vector<std::string>& files,
-                                         const std::vector<std::string>& include_dirs,
-                                         Diagnostics& out) {
+std::vector<std::shared_ptr<const SourceFile>> read_files(
+    const std::vector<std::string>& files, const std::vector<std::string>& include_dirs,
+    Diagnostics& out) {
     projects::Project all;
     for (const std::string& file : files) {
         const projects::Project read = read_project(file, include_dirs, out);
@@ -112,7 +112,7 @@ std::optional<st::Library> compile_files(const std::vector<std::string>& files,
                     fmt::format("there is no source of a controller in '{}'", file),
                     "name Structured Text, or a project of another tool: lineshaft check --help");
     }
-    return out.empty() ? st::compile(all.sources, standard_blocks(), out) : std::nullopt;
+    return all.sources;
 }
 
 Exit report(const Diagnostics& diagnostics, bool json) {

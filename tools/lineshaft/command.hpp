@@ -72,10 +72,10 @@ class ProgressLine {
     std::int64_t start_, shown_ = 0;
 };
 
-/// What files of Structured Text, and all in folders, make together.
-std::optional<st::Library> compile_files(const std::vector<std::string>& files,
-                                         const std::vector<std::string>& include_dirs,
-                                         Diagnostics& out);
+/// The texts of sources in any form, and of all in folders.
+std::vector<std::shared_ptr<const SourceFile>> read_files(
+    const std::vector<std::string>& files, const std::vector<std::string>& include_dirs,
+    Diagnostics& out);
 
 /// What `lineshaft report` does, of these signals.
 Exit write_report(std::vector<std::string> inputs, std::vector<std::string> signals,

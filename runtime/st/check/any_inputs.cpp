@@ -48,6 +48,12 @@ bool is_any_input(const Type& type) {
 }
 
 void become_any(Checking& c, Expression*& value, const Type& type) {
+    const Type* called = value->kind == E::call ? check(c, value) : nullptr;
+    if (called && is_any_input(*called)) {
+        value = make_copy(c, *value);
+        value->type = &type;
+        return;
+    }
     Expression* place = make_call(c, "ADR", value);
     const Type* pointer = check(c, place);
     if (!pointer) return;

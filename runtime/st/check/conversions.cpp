@@ -45,9 +45,7 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
                               from.bits == to.bits && !to.is_subrange;
     if (!(dialect.dint_becomes_real && of_dint) && !(dialect.is_loose && (is_real || changes_sign)))
         return false;
-    c.warn(code::conversion_may_lose, e.place,
-           fmt::format("{} does not hold every {}", describe(to), from.name),
-           fmt::format("write {}_TO_{}(...) where it is meant", from.name, to.name));
+    warn_of_loss(c, e, to);
     return true;
 }
 
@@ -253,6 +251,13 @@ bool coerce_instance(Checking& c, Expression*& e, const Type& to) {
 }
 
 }  // namespace
+
+void warn_of_loss(Checking& c, const Expression& e, const Type& to) {
+    const std::string& from = e.type->plain().name;
+    c.warn(code::conversion_may_lose, e.place,
+           fmt::format("{} does not hold every {}", describe(to), from),
+           fmt::format("write {}_TO_{}(...) where it is meant", from, to.name));
+}
 
 bool is_single(const Type& type) {
     return type.kind == Kind::real && type.bits == 32;

@@ -12,6 +12,8 @@ bool are_same_pattern(const Type& given, const Type& to);
 /// of it, or a conversion. False where it does not, which was told: L0905, L0906, or L0908 for a
 /// constant that is out of range.
 bool coerce(Checking& c, Expression*& e, const Type& to);
+/// That a value of `to` does not hold every one of what `e` is of.
+void warn_of_loss(Checking& c, const Expression& e, const Type& to);
 /// Makes `e` a value of `to` in any case: a conversion is put in, or a constant converted at once.
 /// Gives that type, which is never null.
 const Type* convert(Checking& c, Expression*& e, const Type& to);

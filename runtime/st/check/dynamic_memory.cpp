@@ -107,6 +107,12 @@ Block begin_elements(Checking& c, const Expression& like, Checking::Pool& pool, 
                      binary(c, like, Word::minus, last, number(c, like, 1)), std::move(body))};
 }
 
+bool is_interface(Checking& c, const Expression& target) {
+    Expression* own = make_copy(c, target);
+    const Type* type = check(c, own);
+    return type && type->kind == Kind::interface;
+}
+
 bool is_call_of(const Statement& s, std::string_view name) {
     return s.value && s.value->kind == E::call && s.value->operands[0]->kind == E::name &&
            same_name(s.value->operands[0]->token.text, name);
@@ -166,11 +172,11 @@ bool is_of_dynamic_memory(std::string_view function) {
 bool rewrite_new(Checking& c, Statement*& s) {
     if (s->kind != S::assign || s->op != Word::assign || !is_call_of(*s, "__new")) return false;
     Expression& call = *s->value;
-    const Type* type = resolve(c, *call.made);
+    const Type* type = resolve(c, *call.of);
     if (!type) return check(c, s->target), true;
-    const std::vector<Argument>* values = constructor_arguments(call.made, type);
+    const std::vector<Argument>* values = constructor_arguments(call.of, type);
     if (values && !values->empty() && !is_constructed(type)) {
-        refuse_constructor_arguments(c, call.made->place, *type);
+        refuse_constructor_arguments(c, call.of->place, *type);
         return true;
     }
     const Expression& like = *call.operands[0];
@@ -190,14 +196,24 @@ bool rewrite_new(Checking& c, Statement*& s) {
         make_call(c, "ADR", element(c, like, *pool.elements, use_of(c, like, first)))));
     Expression* is_made =
         binary(c, like, Word::greater_or_equal, use_of(c, like, first), number(c, like, 0));
-    s = make_sequence(c, s->place,
-                      {make_assignment(c, s->place, use_of(c, like, count), given),
-                       make_assignment(c, s->place, use_of(c, like, first),
-                                       system_call(c, like, "__SYSTEM.__NEW", "count",
-                                                   use_of(c, like, count), *pool.taken)),
-                       make_assignment(c, s->place, use_of(c, like, pointer), null(c, like)),
-                       make_if(c, s->place, is_made, std::move(then), {}),
-                       make_assignment(c, s->place, s->target, use_of(c, like, pointer))});
+    Block otherwise, behind;
+    if (is_interface(c, *s->target)) {
+        Expression* instance = make(c, E::deref, like);
+        instance->operands[0] = use_of(c, like, pointer);
+        Expression* none = make_constant(c, like, any_integer_type, {});
+        then.push_back(make_assignment(c, s->place, s->target, instance));
+        otherwise.push_back(make_assignment(c, s->place, s->target, none));
+    } else {
+        behind.push_back(make_assignment(c, s->place, s->target, use_of(c, like, pointer)));
+    }
+    Block all{make_assignment(c, s->place, use_of(c, like, count), given),
+              make_assignment(c, s->place, use_of(c, like, first),
+                              system_call(c, like, "__SYSTEM.__NEW", "count",
+                                          use_of(c, like, count), *pool.taken)),
+              make_assignment(c, s->place, use_of(c, like, pointer), null(c, like)),
+              make_if(c, s->place, is_made, std::move(then), std::move(otherwise))};
+    std::ranges::move(behind, std::back_inserter(all));
+    s = make_sequence(c, s->place, std::move(all));
     check(c, s);
     return true;
 }

@@ -134,13 +134,20 @@ const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, co
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     const Token& token = e->token;
     if (token.word == Word::direct) return check_direct(c, *e);
-    if (expected && expected->has_values() && !token.local) {
+    const bool is_text = token.quoted && e->place.dialect().is_loose;
+    if (expected && expected->has_values() && !token.local && !is_text) {
         const std::string* value = find_called(expected->values, token.text);
         if (value && !find_variable(c, token))
             return become_value(c, e, *expected, value - expected->values.data());
     }
-    Variable* variable = find_variable(c, token);
+    Variable* variable = is_text ? nullptr : find_variable(c, token);
     if (!variable) variable = declare_program(c, token);
+    const bool may_be_text = !variable && expected && expected->kind == Kind::text &&
+                             token.quoted && e->place.dialect().quotes_may_enclose_texts;
+    if (is_text || may_be_text) {
+        e = make_text(c, *e);
+        return check(c, e, expected);
+    }
     if (variable) return variable->edge ? use_edge(c, e, *variable) : use(c, e, *variable);
     if (is_own_instance(c, *e)) return check_own_instance(c, e);
     if (Routine* getter = find_accessor(c, *e, Accessor::get)) return check_getter(c, e, *getter);
@@ -157,12 +164,6 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     }
     if (same_name(token.text, "eno") && c.routine && c.routine->pou->kind != PouKind::data_block)
         return use(c, e, eno_of(c, *c.routine));
-    const bool may_be_text = expected && expected->kind == Kind::text && token.quoted &&
-                             e->place.dialect().quotes_may_enclose_texts;
-    if (may_be_text) {
-        e = make_text(c, *e);
-        return check(c, e, expected);
-    }
     if (expected && expected->kind == Kind::handle && !token.local &&
         (token.quoted || !c.is_in_test()))
         return use_object(c, e, *object_type(c, *expected));

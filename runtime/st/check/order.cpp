@@ -17,22 +17,35 @@ bool is_found(const Called& called) {
     return called.through_reference && called.routine->is_looped;
 }
 
+constexpr std::size_t most_hops = 6;
+
+/// `a -> b -> ... -> a`
+std::string hops_of(const std::vector<const Called*>& round) {
+    std::string hops = round.back()->routine->name;
+    for (std::size_t i = 0; i < round.size(); ++i) {
+        const bool is_left_out = i + 1 < round.size() && i >= most_hops;
+        if (!is_left_out)
+            hops += " -> " + round[i]->routine->name;
+        else if (i == most_hops)
+            hops += fmt::format(" -> {} more", round.size() - 1 - most_hops);
+    }
+    return hops;
+}
+
 /// What goes through a reference on a way back to itself is found by the instance, which says
-/// whether it runs already. Else it is a mistake.
+/// whether it runs already. Else it is a mistake, once for each routine.
 void close_way(Ordering& o, const Called& last) {
     const auto first = std::ranges::find(o.way, last.routine, &Called::routine);
     std::vector<const Called*> round(first + 1, o.way.end());
     round.push_back(&last);
-    std::string hops = last.routine->name;
     bool is_loose = false;
-    for (const Called* called : round) {
-        hops += " -> " + called->routine->name;
+    for (const Called* called : round)
         if (called->through_reference) is_loose = called->routine->is_looped = true;
-    }
     o.was_loosened |= is_loose;
-    if (is_loose) return;
+    const auto is_told = [&](const Called* other) { return other->routine == last.routine; };
+    if (is_loose || std::ranges::any_of(o.mistakes, is_told)) return;
     o.mistakes.push_back(&last);
-    o.hops.push_back(std::move(hops));
+    o.hops.push_back(hops_of(round));
 }
 
 void visit(Ordering& o, const Called& by) {

@@ -163,6 +163,11 @@ void depend_on_target(Checking& c, const Type* target, Place place) {
 }
 
 const Type* check_size(Checking& c, Expression*& e) {
+    if (e->of) {
+        const Type* written = resolve(c, *e->of);
+        if (!written) return nullptr;
+        return become(c, e, any_integer_type, {.integer = Wide{bytes_of(*written)}});
+    }
     Expression*& of = e->arguments[0].value;
     const auto qualified = qualified_name(c, *of);
     const Token name = qualified ? *qualified : of->token;
@@ -180,9 +185,28 @@ const Type* check_refer(Checking& c, Expression*& e, Referring referring) {
     return e->type;
 }
 
+/// VAR_IN_OUT CONSTANT, which values are given to, too.
+bool is_constant_in_out(const Variable& variable) {
+    if (!variable.of) return false;
+    const auto is_this = [&](const Declaration* declared) {
+        return same_name(declared->name.text, variable.text);
+    };
+    return std::ranges::any_of(variable.of->blocks, [&](const DeclarationBlock& block) {
+        return block.section == Section::in_out && block.constant &&
+               std::ranges::any_of(block.declarations, is_this);
+    });
+}
+
 const Type* check_is_bound(Checking& c, Expression*& e) {
     Expression*& given = e->arguments[0].value;
     if (!check(c, given)) return nullptr;
+    if (given->kind == E::name && given->variable && is_constant_in_out(*given->variable))
+        return become(c, e, bool_type, {.integer = 1});
+    if (given->type->kind == Kind::interface) {
+        e = make_binary(c, e->place, e->token.place, Word::unequal, given,
+                        make_constant(c, *given, null_type, {}));
+        return check(c, e);
+    }
     Expression* reference = without_alias(given);
     const Variable* in_out = given->kind == E::name ? given->variable : nullptr;
     if (in_out && in_out->space == Space::reference && !reference->type->is_reference()) {
@@ -376,7 +400,7 @@ std::optional<const Type*> check_reference_call(Checking& c, Expression*& e, con
     const bool is_known =
         is("adr") || is("ref") || is("sizeof") || is("xsizeof") || is("__isvalidref");
     if (!is_known) return {};
-    if (e->arguments.size() != 1 || e->arguments[0].is_output)
+    if (!e->of && (e->arguments.size() != 1 || e->arguments[0].is_output))
         return c.fail(code::wrong_arguments, name.place,
                       fmt::format("{} takes 1 argument", name.text));
     if (is("sizeof") || is("xsizeof")) return check_size(c, e);

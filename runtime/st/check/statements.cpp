@@ -127,8 +127,34 @@ void check_condition(Checking& c, Expression*& condition, std::string_view of) {
            type->is_number() || type->is_bits() ? "compare it, as in 'x <> 0'" : "");
 }
 
-void check_case(Checking& c, Statement& s) {
-    const Type* type = check(c, s.value);
+/// Of texts, which SIMATIC AX has: `IF text = 'a' OR text = 'b' THEN ... ELSIF`.
+void rewrite_case_of_texts(Checking& c, Statement*& s) {
+    Variable& selector = c.make_variable(*c.routine, s->value->token, "CASE", s->value->type);
+    Statement* chosen = make_if(c, s->place, nullptr, {}, std::move(s->body));
+    chosen->branches = std::move(s->branches);
+    for (Branch& branch : chosen->branches) {
+        for (const auto& [value, last] : branch.labels) {
+            if (last)
+                c.fail(code::type_does_not_fit, value->place.to(last->place), "texts have no range",
+                       "name each of them");
+            Expression* is_it = make_binary(c, value->place, value->place, Word::equal,
+                                            make_use(c, *value, selector), value);
+            branch.condition = !branch.condition ? is_it
+                                                 : make_binary(c, value->place, value->place,
+                                                               Word::or_, branch.condition, is_it);
+        }
+        branch.labels.clear();
+    }
+    Statement* read = make_assignment(c, s->place, make_use(c, *s->value, selector), s->value);
+    s = make_sequence(c, s->place, {read, chosen});
+    check(c, s);
+}
+
+void check_case(Checking& c, Statement*& slot) {
+    const Type* type = check(c, slot->value);
+    if (type && type->kind == Kind::text && slot->value->place.dialect().selects_by_texts)
+        return rewrite_case_of_texts(c, slot);
+    Statement& s = *slot;
     const bool fits =
         type && (type->kind == Kind::integer || type->is_bits() || type->kind == Kind::enumeration);
     if (type && !fits)
@@ -160,6 +186,16 @@ void check_case(Checking& c, Statement& s) {
     check(c, s.body);
 }
 
+/// SIMATIC AX lets an INT begin with a DINT.
+bool narrows(Checking& c, Expression*& first, const Type& type) {
+    const Type& from = first->type->plain();
+    const bool is_wider = from.kind == Kind::integer && type.kind == Kind::integer &&
+                          !type.is_subrange && from.bits > type.bits && !is_constant(*first);
+    if (!is_wider || !first->place.dialect().loops_begin_narrowed) return false;
+    warn_of_loss(c, *first, type);
+    return convert(c, first, type);
+}
+
 void check_for(Checking& c, Statement& s) {
     const Type* type = check(c, s.target);
     if (type && type->kind != Kind::integer && type->kind != Kind::bits) {
@@ -170,7 +206,7 @@ void check_for(Checking& c, Statement& s) {
     }
     if (type && check_target(c, *s.target))
         for (Expression** part : {&s.value, &s.limit, &s.step})
-            if (*part && check(c, *part, type))
+            if (*part && check(c, *part, type) && !(part == &s.value && narrows(c, *part, *type)))
                 coerce(c, *part, part == &s.value ? *type : type->plain());
     if (s.step && s.step->type && s.step->kind == E::constant && s.step->constant.integer == 0)
         c.fail(code::value_out_of_range, s.step->place, "a loop with step 0 does not end");
@@ -251,7 +287,7 @@ void check(Checking& c, Statement*& slot) {
             }
             return check(c, s.body);
         case S::case_:
-            return check_case(c, s);
+            return check_case(c, slot);
         case S::for_:
             return check_for(c, s);
         case S::while_:

@@ -195,9 +195,10 @@ const Type* resolve_text(Checking& c, const TypeText& text) {
     Expression* length = text.length;
     const auto whole = check_whole(c, length, lint_type);
     if (!whole) return nullptr;
-    if (*whole < 1 || *whole > longest_text)
+    const int least = text.place.dialect().is_loose ? 0 : 1;
+    if (*whole < least || *whole > longest_text)
         return c.fail(code::value_out_of_range, length->place,
-                      "a STRING has between 1 and 32767 characters");
+                      fmt::format("a STRING has between {} and 32767 characters", least));
     Type& type = c.make_type(Kind::text, fmt::format("STRING[{}]", static_cast<int>(*whole)));
     type.length = static_cast<std::uint32_t>(*whole);
     return &type;

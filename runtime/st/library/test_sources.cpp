@@ -24,8 +24,9 @@ std::string tested_by(const std::string& path) {
     return {};
 }
 
-/// Characters of the folders that both paths begin with.
+/// Characters of the folders that both paths begin with; a file is nearest to itself.
 std::size_t nearness(const std::string& a, const std::string& b) {
+    if (a == b) return a.size();
     const auto [end, other] = std::ranges::mismatch(a, b);
     const auto same = static_cast<std::size_t>(end - a.begin());
     const std::size_t slash = a.substr(0, same).rfind('/');

@@ -10,7 +10,9 @@ namespace lineshaft::st {
 const Dialect iec = {.sign_precedes_power = true,
                      .constants_have_values = true,
                      .quotes_may_enclose_texts = true,
-                     .named_inputs_may_be_left_out = true};
+                     .named_inputs_may_be_left_out = true,
+                     .selects_by_texts = true,
+                     .loops_begin_narrowed = true};
 
 const Dialect codesys = {.sign_precedes_power = true,
                          .quotes_may_enclose_texts = true,

@@ -19,9 +19,11 @@ struct Dialect {
     bool bits_count_in_reals = false;  ///< DWORD_TO_REAL(1) is 1.0, else the REAL of these bits
     bool is_loose =
         false;  ///< `f(a, )`, `RETURN(done);`, `;;`, CONCAT(STR1 := a), PROGRAMs by name
-    bool texts_are_bytes = false;  ///< `text[0]` is the first BYTE, and a 0 ends the text; else
-                                   ///< `text[1]` is the first CHAR
-    bool packs_as_s7 = false;      ///< bytes of packed memory: the highest first, words even
+    bool texts_are_bytes = false;   ///< `text[0]` is the first BYTE, and a 0 ends the text; else
+                                    ///< `text[1]` is the first CHAR
+    bool selects_by_texts = false;  ///< CASE of a STRING, as SIMATIC AX has it
+    bool loops_begin_narrowed = false;  ///< FOR in an INT from a DINT on, as there: a warning
+    bool packs_as_s7 = false;           ///< bytes of packed memory: the highest first, words even
 };
 
 /// IEC 61131-3:2013, CODESYS and Beckhoff's TwinCAT, and the SCL of Siemens' TIA Portal.

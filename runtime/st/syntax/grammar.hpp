@@ -67,6 +67,7 @@ void parse_statements(Parsing& p, Block& to, Word end, bool in_case = false);
 
 // parse_expressions.cpp
 Expression* parse_expression(Parsing& p);
+Expression* parse_assigned(Parsing& p);
 Expression* parse_access(Parsing& p);
 
 // parse_initial_values.cpp

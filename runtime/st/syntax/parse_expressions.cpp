@@ -1,4 +1,5 @@
 #include <array>
+#include <utility>
 
 #include "runtime/st/syntax/grammar.hpp"
 
@@ -89,11 +90,10 @@ Expression* parse_typed_literal(Parsing& p) {
     return typed;
 }
 
-/// In_Parentheses : '(' Expression ')'
+/// In_Parentheses : '(' Assigned ')'
 Expression* parse_in_parentheses(Parsing& p) {
     p.take();
-    Expression* inner = parse_expression(p);
-    if (p.is(Word::assign)) refuse_assignment(p);
+    Expression* inner = parse_assigned(p);
     expect(p, Word::close);
     return inner;
 }
@@ -169,14 +169,22 @@ Expression* parse_binary(Parsing& p, int binding) {
         if (p.panic || binds < binding) return left;
         Expression* made = p.make(Expression::Kind::binary, p.take());
         made->op = op == Word::ampersand ? Word::and_ : op;
+        const bool is_always_done = op != Word::and_then_ && op != Word::or_else_;
+        const KeepBefore kept(p, is_always_done);
         p.add_operand(*made, 0, left);
         p.add_operand(*made, 1, parse_binary(p, binds + 1));
         left = made;
     }
 }
 
-bool is_new(const Expression& e) {
-    return e.kind == Expression::Kind::name && same_name(e.token.text, "__new");
+/// `SIZEOF(ARRAY[0..3] OF INT)`, `__NEW(INT)`: the function takes a type.
+bool takes_type(const Parsing& p, const Expression& function) {
+    const auto is = [&](std::string_view name) { return same_name(function.token.text, name); };
+    const auto follows = [&](std::string_view word) { return same_name(p.next().text, word); };
+    if (function.kind != Expression::Kind::name) return false;
+    const bool is_written = p.next().word == Word::array_ || follows("pointer") ||
+                            follows("reference") || follows("ref_to");
+    return is("__new") || (is_written && (is("sizeof") || is("xsizeof")));
 }
 
 }  // namespace
@@ -186,10 +194,28 @@ Expression* parse_expression(Parsing& p) {
     return parse_binary(p, 1);
 }
 
-/// New : '__NEW' '(' Data_Type ( ',' Expression ) ? ')'
-Expression* parse_new(Parsing& p, Expression* name) {
+/// Assigned : Expression ( ':=' Assigned ) ?
+/// CODESYS: what is assigned is the value. It is assigned before the statement, and read there.
+Expression* parse_assigned(Parsing& p) {
+    const std::size_t start = p.at;
+    Expression* value = parse_expression(p);
+    if (p.panic || !p.is(Word::assign)) return value;
+    if (!p.before || !p.source->dialect.is_loose) return refuse_assignment(p), value;
+    Statement* assignment = p.make(Statement::Kind::assign, p.take());
+    assignment->target = value;
+    assignment->value = parse_assigned(p);
+    assignment->place = value->place.to(p.last().place);
+    p.before->push_back(assignment);
+    const std::size_t behind = std::exchange(p.at, start);
+    value = parse_access(p);
+    p.at = behind;
+    return value;
+}
+
+/// Of_Type : Name '(' Data_Type ( ',' Expression ) ? ')'
+Expression* parse_of_type(Parsing& p, Expression* name) {
     Expression* call = p.make(Expression::Kind::call, p.take());
-    call->made = parse_type(p);
+    call->of = parse_type(p);
     if (p.accept(Word::comma)) call->arguments.push_back({.value = parse_expression(p)});
     expect(p, Word::close);
     p.add_operand(*call, 0, name);
@@ -197,15 +223,15 @@ Expression* parse_new(Parsing& p, Expression* name) {
     return call;
 }
 
-/// Variable_Access : ( Primary_Expr | New )
+/// Variable_Access : ( Primary_Expr | Of_Type )
 ///                   ( '(' Params ')' | '[' Subscripts ']' | '.' Member | '^' ) *
 /// Subscripts : Param_Assign ( ',' Param_Assign ) *
 /// Their values are expressions.
 Expression* parse_access(Parsing& p) {
     Expression* left = parse_primary(p);
     while (!p.panic) {
-        if (p.is(Word::open) && is_new(*left)) {
-            left = parse_new(p, left);
+        if (p.is(Word::open) && takes_type(p, *left)) {
+            left = parse_of_type(p, left);
         } else if (p.is(Word::open)) {
             Expression* call = p.make(Expression::Kind::call, p.take());
             parse_arguments(p, *call, Word::close, parse_expression);

@@ -13,21 +13,22 @@ bool is_assignment(Word op) {
 
 /// Assign_Stmt : Variable_Access ( Assign_Op Init ) + ';'
 /// Assign_Op : ':=' | '+=' | '-=' | '*=' | '/=' | 'REF=' | '?='
-/// `a := b := 0;` is `b := 0; a := b;`, whose two `b` are read each.
+/// `a := b := 0;` is `b := 0; a := b;`, whose two `b` are read each. In CODESYS a value is no list.
 void parse_assignment(Parsing& p, Expression* target, Block& to) {
     const Level level(p);
     Statement* statement = p.make(Statement::Kind::assign, p.here());
     statement->op = p.take().word;
     statement->target = target;
+    const auto parse_value = p.source->dialect.is_loose ? parse_expression : parse_initial;
     const std::size_t before = p.at;
-    statement->value = parse_initial(p);
+    statement->value = parse_value(p);
     statement->place = target->place.to(p.last().place);
     if (p.panic || !is_assignment(p.here().word)) {
         end_statement(p);
     } else {
         Expression* inner = statement->value;
         p.at = before;
-        statement->value = parse_initial(p);
+        statement->value = parse_value(p);
         parse_assignment(p, inner, to);
     }
     to.push_back(statement);
@@ -93,15 +94,14 @@ void parse_simple(Parsing& p, Block& to) {
 
 /// A condition or selector, and the word behind it.
 Expression* parse_condition(Parsing& p, Word end, std::string_view where) {
-    Expression* condition = parse_expression(p);
-    if (!p.panic && p.is(Word::assign)) refuse_assignment(p);
+    Expression* condition = parse_assigned(p);
     if (p.panic || expect(p, end, where)) return condition;
     p.panic = false;
     if (p.is(Word::then_) || p.is(Word::do_) || p.is(Word::of_)) p.take();
     return condition;
 }
 
-/// IF_Stmt : 'IF' Expression 'THEN' Stmt_List ( 'ELSIF' Expression 'THEN' Stmt_List ) *
+/// IF_Stmt : 'IF' Assigned 'THEN' Stmt_List ( 'ELSIF' Expression 'THEN' Stmt_List ) *
 ///           ( 'ELSE' Stmt_List ) ? 'END_IF'
 void parse_if(Parsing& p, Statement& statement) {
     const Token opener = p.take();
@@ -139,7 +139,7 @@ Branch parse_selection(Parsing& p) {
     return branch;
 }
 
-/// Case_Stmt : 'CASE' Expression 'OF' Case_Selection * ( 'ELSE' ':' ? Stmt_List ) ? 'END_CASE'
+/// Case_Stmt : 'CASE' Assigned 'OF' Case_Selection * ( 'ELSE' ':' ? Stmt_List ) ? 'END_CASE'
 void parse_case(Parsing& p, Statement& statement) {
     const Token opener = p.take();
     statement.value = parse_condition(p, Word::of_, "after the selector");
@@ -175,6 +175,7 @@ void parse_for(Parsing& p, Statement& statement) {
 /// While_Stmt : 'WHILE' Expression 'DO' Stmt_List 'END_WHILE'
 void parse_while(Parsing& p, Statement& statement) {
     const Token opener = p.take();
+    p.before = nullptr;
     statement.value = parse_condition(p, Word::do_, "after the condition");
     if (p.panic) skip_to_statement(p);
     parse_statements(p, statement.body, Word::end_while_);
@@ -186,8 +187,7 @@ void parse_repeat(Parsing& p, Statement& statement) {
     const Token opener = p.take();
     parse_statements(p, statement.body, Word::until_);
     if (close(p, Word::until_, opener)) {
-        statement.value = parse_expression(p);
-        if (!p.panic && p.is(Word::assign)) refuse_assignment(p);
+        statement.value = parse_assigned(p);
         p.accept(Word::semicolon);
     }
     if (p.panic) skip_to_statement(p);
@@ -211,21 +211,6 @@ void parse_try(Parsing& p, Statement& statement) {
     close(p, Word::endtry_, opener);
 }
 
-/// `n := a > 0`: what is assigned is the value.
-Expression* parse_assigned(Parsing& p, Block& to) {
-    const std::size_t before = p.at;
-    Expression* value = parse_expression(p);
-    if (p.panic || !p.is(Word::assign)) return value;
-    Statement* assignment = p.make(Statement::Kind::assign, p.take());
-    assignment->target = value;
-    assignment->value = parse_expression(p);
-    to.push_back(assignment);
-    const std::size_t behind = std::exchange(p.at, before);
-    value = parse_access(p);
-    p.at = behind;
-    return value;
-}
-
 /// Jump_Stmt : ( 'EXIT' | 'CONTINUE' | 'RETURN' ) ';'
 /// `RETURN(n > 0);` of CODESYS leaves if that holds.
 void parse_jump(Parsing& p, Statement::Kind kind, Block& to) {
@@ -233,7 +218,7 @@ void parse_jump(Parsing& p, Statement::Kind kind, Block& to) {
     if (kind == Statement::Kind::return_ && p.source->dialect.is_loose && p.is(Word::open)) {
         Statement* test = p.make(Statement::Kind::if_, p.take());
         Branch& branch = test->branches.emplace_back();
-        branch.condition = parse_assigned(p, to);
+        branch.condition = parse_assigned(p);
         branch.body = {jump};
         jump = test;
         expect(p, Word::close);
@@ -286,6 +271,7 @@ void parse_structured(Parsing& p, Statement::Kind kind, Block& to,
 void parse_statement(Parsing& p, Block& to) {
     const Level level(p);
     if (p.panic) return;
+    p.before = &to;
     using Kind = Statement::Kind;
     switch (p.here().word) {
         case Word::semicolon:
@@ -342,6 +328,7 @@ void parse_statements(Parsing& p, Block& to, Word end, bool in_case) {
         }
         if (p.at == before) p.take();
     }
+    p.before = nullptr;
 }
 
 }  // namespace lineshaft::st

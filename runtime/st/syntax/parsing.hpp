@@ -14,14 +14,15 @@ struct Parsing : Cursor {
     std::vector<Token> regions = {};          ///< that are open
     std::vector<Declaration*> generics = {};  ///< constants of the generic block that is read
     std::vector<Expression*> given = {};      ///< their values, where it is read again
-    int cases = 0;                            ///< that are open, before their ELSE
-    int levels = 0;                           ///< that are open
-    bool is_in_body = false;                  ///< of a POU
-    bool is_in_test = false;                  ///< in its body
-    bool is_wrong = false;                    ///< what is being declared
-    bool is_spoiled = false;                  ///< the POU, by a variable that cannot be
-    bool section_left = false;                ///< a VAR ended without END_VAR
-    std::vector<Place> else_ifs = {};         ///< `ELSE IF` within the IFs that are open
+    Block* before = nullptr;  ///< where assignments go that stand in an expression; null: none may
+    int cases = 0;            ///< that are open, before their ELSE
+    int levels = 0;           ///< that are open
+    bool is_in_body = false;  ///< of a POU
+    bool is_in_test = false;  ///< in its body
+    bool is_wrong = false;    ///< what is being declared
+    bool is_spoiled = false;  ///< the POU, by a variable that cannot be
+    bool section_left = false;         ///< a VAR ended without END_VAR
+    std::vector<Place> else_ifs = {};  ///< `ELSE IF` within the IFs that are open
     std::size_t unclosed_at = static_cast<std::size_t>(-1);  ///< where an end was missed last
 
     Expression* make(Expression::Kind kind, const Token& token);
@@ -46,6 +47,19 @@ class Level {
 
   private:
     Parsing& p_;
+};
+
+/// While it lives, assignments may stand in the expression that is read, if they might before.
+class KeepBefore {
+  public:
+    KeepBefore(Parsing& p, bool may_assign) : p_(p), kept_(p.before) {
+        if (!may_assign) p.before = nullptr;
+    }
+    ~KeepBefore() { p_.before = kept_; }
+
+  private:
+    Parsing& p_;
+    Block* kept_;
 };
 
 }  // namespace lineshaft::st

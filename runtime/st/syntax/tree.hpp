@@ -72,7 +72,7 @@ struct Expression {
     Place place = {};
     Expression* operands[2] = {};
     std::vector<Argument> arguments = {};
-    struct TypeText* made = nullptr;  ///< of a call `__NEW(Type, count)`, which has the count alone
+    struct TypeText* of = nullptr;  ///< of a call that takes a type first, as `__NEW(Type, count)`
 
     // Noted by the checker.
     const Type* type = nullptr;                  ///< null: wrong, already reported

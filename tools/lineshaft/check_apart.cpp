@@ -1,0 +1,78 @@
+#include "tools/lineshaft/check_apart.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "blocks/catalog.hpp"
+#include "runtime/source/codes.hpp"
+#include "runtime/st/library/library.hpp"
+#include "tools/lineshaft/once.hpp"
+
+namespace lineshaft {
+
+namespace {
+
+std::string path_of(const Diagnostic& diagnostic) {
+    return diagnostic.mark.file ? diagnostic.mark.file->path : "";
+}
+
+/// Adds what is told of the files that `wanted` is true of.
+template <class Wanted>
+void add_if(Once& to, const Diagnostics& found, Wanted wanted) {
+    Diagnostics kept;
+    for (const Diagnostic& d : found.list())
+        if (wanted(path_of(d))) kept.add(d.code, d.mark, d.message, d.help);
+    for (const Diagnostic& d : found.warnings())
+        if (wanted(path_of(d))) kept.warn(d.code, d.mark, d.message, d.help);
+    to.add(kept);
+}
+
+/// What one program is.
+std::string program_of(const SourceFile& text) {
+    const bool is_plain = text.excerpts.empty();
+    return is_plain ? std::filesystem::path(text.path).parent_path().string() : text.path;
+}
+
+}  // namespace
+
+Diagnostics check_apart(const st::SourcePool& pool, const Texts& texts) {
+    Texts together = texts;
+    for (const auto& text : texts)
+        for (const auto& needed : pool.needed_by(text))
+            if (std::ranges::find(together, needed) == together.end()) together.push_back(needed);
+    Diagnostics found;
+    st::compile(together, standard_blocks(), found);
+    return found;
+}
+
+Diagnostics without_neighbours(const Texts& texts, const Diagnostics& found) {
+    const auto is_twice = [](const Diagnostic& d) { return d.code == code::declared_twice; };
+    if (std::ranges::none_of(found.list(), is_twice)) return found;
+    std::set<std::string> wrong;
+    for (const Diagnostic& d : found.list()) wrong.insert(path_of(d));
+    st::SourcePool pool;
+    std::map<std::string, Texts> programs;
+    std::set<std::string> again;
+    for (const auto& text : texts) {
+        pool.add(text);
+        programs[program_of(*text)].push_back(text);
+        if (wrong.contains(text->path)) again.insert(program_of(*text));
+    }
+    Diagnostics out;
+    Once once(out);
+    std::set<std::string> files;
+    for (const auto& [program, own] : programs) {
+        if (!again.contains(program)) continue;
+        std::set<std::string> paths;
+        for (const auto& text : own) paths.insert(text->path);
+        add_if(once, check_apart(pool, own),
+               [&](const auto& path) { return paths.contains(path); });
+        files.merge(paths);
+    }
+    add_if(once, found, [&](const std::string& path) { return !files.contains(path); });
+    return out;
+}
+
+}  // namespace lineshaft

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "runtime/source/diagnostic.hpp"
+#include "runtime/st/library/test_sources.hpp"
+
+namespace lineshaft {
+
+using Texts = std::vector<std::shared_ptr<const SourceFile>>;
+
+/// What is wrong with texts, together with those of `pool` that declare what they name, the nearest
+/// by path: two programs may have different ones of a name.
+Diagnostics check_apart(const st::SourcePool& pool, const Texts& texts);
+
+/// `found` is what is wrong with texts that were compiled together. Where a name is declared twice,
+/// several programs stand beside each other, as in a folder of examples: then each folder where
+/// there is a mistake is looked at again, apart, and each file of another tool.
+Diagnostics without_neighbours(const Texts& texts, const Diagnostics& found);
+
+}  // namespace lineshaft
