@@ -217,6 +217,8 @@ def check_older_forms():
           "END_FUNCTION\n{REDUND_OK} FUNCTION_BLOCK MpAxis\nVAR_INPUT Continue : BOOL; to : UDINT; END_VAR\nEND_FUNCTION_BLOCK\n")
     write("old/Global.var", "VAR\n  pins : pins_typ := (0);\n  flags : BOOL;\nEND_VAR\n")
     write("old/Global.typ", "TYPE pins_typ : STRUCT\n  x, y : INT;\n END_STRUCT; END_TYPE\n")
+    write("old/motion.typ", "TYPE move_typ : STRUCT\n  TargetPosition : DINT;\n  targetPosition : DINT;\n END_STRUCT; END_TYPE\n")
+    write("old/ident.fun", "FUNCTION ST_ident : UINT\nVAR_INPUT name, st_ident : UDINT; END_VAR\nEND_FUNCTION\n")
     assert run("check", "old").splitlines()[0] == "ok  old"
     wrong = write("wrong.var", "VAR\n  pins : STRING := (0);\nEND_VAR\n")
     assert "expected STRING, found a whole number" in run("check", wrong, code=2)

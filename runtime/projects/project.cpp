@@ -70,11 +70,15 @@ bool is_apax(const fs::path& file) {
     return lower(file.filename().string()) == "apax.yml";
 }
 
+/// TESTs, fixtures of SIMATIC AX, and assertions of a project's own for them.
 bool is_test_file(const std::string& file) {
     if (!is_structured_text(file)) return false;
     Diagnostics unread;
     const auto source = read_source(file, unread);
-    return source && (has_fixtures(*source) || st::is_test_file(source));
+    if (!source) return false;
+    const bool has_assertions =
+        lower(source->text).find("namespace axunit.assert") != std::string::npos;
+    return has_fixtures(*source) || has_assertions || st::is_test_file(source);
 }
 
 /// Siemens' data blocks say what they are; other programs have databases whose names end alike.

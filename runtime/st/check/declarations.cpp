@@ -208,6 +208,29 @@ const Type& longer_string(Checking& c) {
     return type;
 }
 
+/// A variable of a method that is another instance of its block, which cannot be in one: it stands
+/// beside all blocks.
+bool is_instance_of_own(const Routine& routine, Section section, const Type* type) {
+    const bool is_local = section == Section::local || section == Section::temp;
+    return is_local && routine.owner && !routine.is_test() && type && type == routine.owner->type;
+}
+
+/// Each call makes it what an instance is that nothing was done with.
+void begin_anew(Checking& c, Routine& routine, Variable& variable) {
+    Variable& fresh = c.make_variable(
+        variable.name, c.checked.names.emplace_back(fmt::format("{} as it begins", variable.text)),
+        variable.type);
+    fresh.used = true;
+    keep_once(c, fresh);
+    const Expression like{.token = variable.name, .place = variable.name.place};
+    const auto use_of = [&](Variable& used) {
+        Expression* use = make_use(c, like, used);
+        use->type = used.type;
+        return use;
+    };
+    routine.call_begins.push_back(make_assignment(c, like.place, use_of(variable), use_of(fresh)));
+}
+
 void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
     for (const Declaration* declared : block.declarations) {
         const bool is_given = block.section == Section::in_out || block.section == Section::input ||
@@ -220,7 +243,8 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         const bool constant = block.constant && !is_value;
         if (is_value && type == &string_type) type = &longer_string(c);
         if (section == Section::in_out && type == &string_type) type = &open_string_type;
-        const bool is_static = section == Section::static_;
+        const bool is_another = is_instance_of_own(routine, section, type);
+        const bool is_static = section == Section::static_ || is_another;
         Variable* variable =
             add(c, is_static ? c.checked.variables : routine.variables, *declared, type);
         variable->section = is_static ? Section::global : section;
@@ -232,14 +256,17 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
             variable->space = Space::reference;
         const auto [it, added] = routine.names.emplace(variable->text, variable);
         const bool is_of_base = !added && it->second->of != routine.pou;
+        const bool is_result = !added && it->second->section == Section::result;
         if (is_of_base && it->second->access == Access::private_)
             it->second = variable;  // of a base that keeps its own to itself
+        else if (is_result && declared->name.place.dialect().capitals_count)
+            it->second = variable;
         else if (!added)
             c.fail(code::declared_twice, declared->name.place,
                    fmt::format("'{}' is declared twice", variable->text),
                    it->second->of != routine.pou ? fmt::format("a base has it already, in line {}",
                                                                it->second->name.place.mark().line)
-                   : it->second->section == Section::result
+                   : is_result
                        ? "the function's own name is that of its result"
                        : fmt::format("first in line {}", it->second->name.place.mark().line));
         const bool is_kept = routine.has_instances() || routine.is_test() || is_static ||
@@ -254,7 +281,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         const bool is_own =
             variable->space == Space::reference && routine.owner && type == routine.owner->type;
         const bool is_only_named =
-            is_own || (routine.is_prototype() && type && type->kind == Kind::block);
+            is_own || is_another || (routine.is_prototype() && type && type->kind == Kind::block);
         if (!is_only_named) depend(c, type, declared->name.place);
         locate_in_image(c, *variable, *declared);
         const bool has_memory =
@@ -263,6 +290,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
             variable->text =
                 c.checked.names.emplace_back(fmt::format("{}.{}", routine.name, variable->text));
             keep_once(c, *variable);
+            if (is_another) begin_anew(c, routine, *variable);
         }
         if (type && type->is_open_array()) declare_bounds(c, routine, *variable);
         if (is_of_test) make_object(c, *variable);

@@ -14,6 +14,12 @@ const Dialect iec = {.sign_precedes_power = true,
                      .selects_by_texts = true,
                      .loops_begin_narrowed = true};
 
+const Dialect automation_studio = [] {
+    Dialect made = iec;
+    made.capitals_count = true;
+    return made;
+}();
+
 const Dialect codesys = {.sign_precedes_power = true,
                          .quotes_may_enclose_texts = true,
                          .named_inputs_may_be_left_out = true,
@@ -35,10 +41,17 @@ const Dialect& dialect_of(std::string_view path) {
         std::string_view ending;
         const Dialect& dialect;
     };
-    static constexpr Ending endings[] = {
-        {".st", iec},       {".typ", iec},        {".var", iec},       {".fun", iec},
-        {".exp", codesys},  {".tcpou", codesys},  {".tcdut", codesys}, {".tcgvl", codesys},
-        {".tcio", codesys}, {".tctleo", codesys}, {".xml", codesys}};
+    static constexpr Ending endings[] = {{".st", iec},
+                                         {".typ", automation_studio},
+                                         {".var", automation_studio},
+                                         {".fun", automation_studio},
+                                         {".exp", codesys},
+                                         {".tcpou", codesys},
+                                         {".tcdut", codesys},
+                                         {".tcgvl", codesys},
+                                         {".tcio", codesys},
+                                         {".tctleo", codesys},
+                                         {".xml", codesys}};
     const std::string name = lower(path);
     const auto* it = std::ranges::find_if(
         endings, [&](const Ending& known) { return name.ends_with(known.ending); });

@@ -23,13 +23,15 @@ struct Dialect {
                                     ///< `text[1]` is the first CHAR
     bool selects_by_texts = false;  ///< CASE of a STRING, as SIMATIC AX has it
     bool loops_begin_narrowed = false;  ///< FOR in an INT from a DINT on, as there: a warning
+    bool capitals_count = false;        ///< declarations of B&R: `a` and `A` are two names
     bool packs_as_s7 = false;           ///< bytes of packed memory: the highest first, words even
 };
 
-/// IEC 61131-3:2013, CODESYS and Beckhoff's TwinCAT, and the SCL of Siemens' TIA Portal.
-extern const Dialect iec, codesys, scl;
+/// IEC 61131-3:2013, what B&R declares in files of its own, CODESYS and Beckhoff's TwinCAT, and the
+/// SCL of Siemens' TIA Portal.
+extern const Dialect iec, automation_studio, codesys, scl;
 
-/// By the ending of a file's name: `.st` and B&R's `.typ`, `.var` and `.fun` are the standard's,
+/// By the ending of a file's name: `.st` is the standard's, `.typ`, `.var` and `.fun` are B&R's,
 /// `.EXP` and TwinCAT's `.TcPOU` and its like CODESYS, all others SCL.
 const Dialect& dialect_of(std::string_view path);
 

@@ -34,19 +34,22 @@ void parse_assignment(Parsing& p, Expression* target, Block& to) {
     to.push_back(statement);
 }
 
-/// Latch_Stmt : Variable_Access ( 'S=' | 'R=' ) Expression ';'
-/// `lamp S= start;` is `IF start THEN lamp := TRUE; END_IF`.
+/// Latch_Stmt : ( Variable_Access ( 'S=' | 'R=' ) ) + Expression ';'
+/// `lamp S= off R= start;` is `IF start THEN lamp := TRUE; off := FALSE; END_IF`.
 void parse_latch(Parsing& p, Expression* target, Block& to) {
-    const Token op = p.take();
-    Statement* latched = p.make(Statement::Kind::assign, op);
-    latched->target = target;
-    latched->value = p.make(Expression::Kind::name, op);
-    latched->value->token.text = op.word == Word::set_assign ? "true" : "false";
-    Statement* statement = p.make(Statement::Kind::if_, op);
+    Statement* statement = p.make(Statement::Kind::if_, p.here());
     Branch& branch = statement->branches.emplace_back();
-    branch.condition = parse_expression(p);
-    branch.body = {latched};
-    latched->place = statement->place = target->place.to(p.last().place);
+    branch.condition = target;
+    do {
+        const Token op = p.take();
+        Statement* latched = p.make(Statement::Kind::assign, op);
+        latched->target = branch.condition;
+        latched->value = p.make(Expression::Kind::name, op);
+        latched->value->token.text = op.word == Word::set_assign ? "true" : "false";
+        branch.condition = parse_expression(p);
+        latched->place = statement->place = target->place.to(p.last().place);
+        branch.body.push_back(latched);
+    } while (!p.panic && (p.is(Word::set_assign) || p.is(Word::reset_assign)));
     to.push_back(statement);
     end_statement(p);
 }
