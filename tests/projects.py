@@ -292,6 +292,12 @@ def check_automation_studio():
     assert "Belt: {type: Belt," in text and "Other: {type: Other," in text, text
     write("belt.yaml", text + "expect:\n  - {at: end, Belt.n: 101}\n  - {at: end, Belt.started: 1}\n  - {at: end, Other.n: 101}\n")
     run("run", "belt.yaml", "--quiet")
+    write("Plant/Logical/Second/IEC.prg", program)
+    for name, type_ in (("Variables.var", "VAR\n\tstate : State_type;\n\tn, started : INT;\nEND_VAR\n"), ("Init.st", ""),
+                        ("Types.typ", "TYPE\n\tState_type : (STOP, TURN);\nEND_TYPE\n"), ("Exit.st", ""), ("Actions.st", ""),
+                        ("Cyclic.st", "PROGRAM _CYCLIC\n\tstate := TURN;\nEND_PROGRAM\n")):
+        write(f"Plant/Logical/Second/{name}", type_)
+    run("check", "Plant")
     write("Plant/Logical/Belt/Cyclic.st", "PROGRAM _CYCLIC\n\tcount;\n\tmissing := GO;\nEND_PROGRAM\n")
     assert "Plant/Logical/Belt/Cyclic.st:3:2: error[L0904]: 'missing' is not declared" in run("check", "Plant", code=2)
 

@@ -29,10 +29,18 @@ void add_if(Once& to, const Diagnostics& found, Wanted wanted) {
     to.add(kept);
 }
 
-/// What one program is.
+/// What one program is: an export, or a folder.
 std::string program_of(const SourceFile& text) {
-    const bool is_plain = text.excerpts.empty();
-    return is_plain ? std::filesystem::path(text.path).parent_path().string() : text.path;
+    const std::filesystem::path path(text.path);
+    return path.extension() == ".xml" ? text.path : path.parent_path().string();
+}
+
+/// Files that a text was put together of, and its own.
+std::set<std::string> files_of(const SourceFile& text) {
+    std::set<std::string> files{text.path};
+    for (const Excerpt& excerpt : text.excerpts)
+        if (excerpt.place.file) files.insert(excerpt.place.file->path);
+    return files;
 }
 
 }  // namespace
@@ -58,7 +66,8 @@ Diagnostics without_neighbours(const Texts& texts, const Diagnostics& found) {
     for (const auto& text : texts) {
         pool.add(text);
         programs[program_of(*text)].push_back(text);
-        if (wrong.contains(text->path)) again.insert(program_of(*text));
+        const auto is_wrong = [&](const std::string& file) { return wrong.contains(file); };
+        if (std::ranges::any_of(files_of(*text), is_wrong)) again.insert(program_of(*text));
     }
     Diagnostics out;
     Once once(out);
@@ -66,7 +75,7 @@ Diagnostics without_neighbours(const Texts& texts, const Diagnostics& found) {
     for (const auto& [program, own] : programs) {
         if (!again.contains(program)) continue;
         std::set<std::string> paths;
-        for (const auto& text : own) paths.insert(text->path);
+        for (const auto& text : own) paths.merge(files_of(*text));
         add_if(once, check_apart(pool, own),
                [&](const auto& path) { return paths.contains(path); });
         files.merge(paths);

@@ -71,7 +71,7 @@ const Type* check_time(Checking& c, Expression*& slot) {
 }
 
 const Type* check_text(Checking& c, Expression& e) {
-    const auto text = read_text(e.token.text);
+    const auto text = read_text(e.token.text, e.token.quoted);
     if (!text)
         return c.fail(code::value_out_of_range, e.place,
                       "'$' is not followed by one of its characters",

@@ -14,6 +14,12 @@ namespace lineshaft::st {
 
 namespace {
 
+/// Else what stands in `"..."` is a text.
+bool may_be_name(std::string_view text) {
+    const auto in_name = [](char x) { return is_letter(x) || is_digit(x) || !is_ascii(x); };
+    return !text.empty() && std::ranges::all_of(text, in_name);
+}
+
 const Type* unknown_name(Checking& c, const Expression& e) {
     const std::string_view name = e.token.text;
     if (const Routine* routine = c.find_routine(e.token)) {
@@ -79,10 +85,9 @@ const Type* undeclared(Checking& c, const Token& name, Place place,
     if (c.tree.lost.contains(name.text) || !c.undeclared[c.routine].insert(name.text).second)
         return nullptr;
     const auto near = nearest(name.text, names);
-    const auto in_name = [](char x) { return is_letter(x) || is_digit(x) || !is_ascii(x); };
     const bool is_text =
-        name.quoted && (!std::ranges::all_of(name.text, in_name) ||
-                        (near.empty() && place.dialect().quotes_may_enclose_texts));
+        name.quoted &&
+        (!may_be_name(name.text) || (near.empty() && place.dialect().quotes_may_enclose_texts));
     if (near.empty() && !is_text && c.may_be_foreign(name)) return nullptr;
     return c.fail(code::not_declared, place, fmt::format("'{}' is not declared", name.text),
                   is_text ? "a text stands in '...', a name in \"...\"" : suggest(name.text, near));
@@ -142,8 +147,9 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     }
     Variable* variable = is_text ? nullptr : find_variable(c, token);
     if (!variable) variable = declare_program(c, token);
-    const bool may_be_text = !variable && expected && expected->kind == Kind::text &&
-                             token.quoted && e->place.dialect().quotes_may_enclose_texts;
+    const bool is_due = (expected && expected->kind == Kind::text) || !may_be_name(token.text);
+    const bool may_be_text =
+        !variable && is_due && token.quoted && e->place.dialect().quotes_may_enclose_texts;
     if (is_text || may_be_text) {
         e = make_text(c, *e);
         return check(c, e, expected);

@@ -185,12 +185,12 @@ std::optional<Wide> read_moment(std::string_view text) {
     return day && clock ? within_64_bits(*day + *clock) : std::nullopt;
 }
 
-std::optional<std::string> read_text(std::string_view text) {
+std::optional<std::string> read_text(std::string_view text, bool is_wide) {
     std::string out;
     for (std::size_t i = 0; i < text.size(); ++i) {
         if (text[i] != '$') {
             out += text[i];
-            if (text[i] == '\'') ++i;
+            if (text[i] == '\'' && !is_wide) ++i;
             continue;
         }
         if (++i == text.size()) return {};

@@ -24,8 +24,9 @@ std::optional<Wide> read_date(std::string_view text);
 std::optional<Wide> read_clock(std::string_view text);
 std::optional<Wide> read_moment(std::string_view text);
 
-/// The characters of a text between its quotes: `$'`, `$$`, `$L`, `$N`, `$P`, `$R`, `$T`, `$0A`.
-std::optional<std::string> read_text(std::string_view text);
+/// The characters of a text between its quotes: `$'`, `$$`, `$L`, `$N`, `$P`, `$R`, `$T`, `$0A`;
+/// `''` is one, but in a wide one, `"..."`.
+std::optional<std::string> read_text(std::string_view text, bool is_wide = false);
 
 std::string to_string(Wide value);
 
