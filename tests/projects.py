@@ -279,10 +279,11 @@ def check_automation_studio():
                          (("Variables.var", ""), ("Init.st", ""), ("Cyclic.st", ""), ("Actions.st", ""), ("Exit.st", ""), ("Types.typ", "")))
                + " </Files>\n</Program>\n")
     write("Plant/Logical/Belt/IEC.prg", program)
-    write("Plant/Logical/Belt/Variables.var", "VAR\n\tstate : State_type;\n\tn, started : INT;\nEND_VAR\n")
+    write("Plant/Logical/Belt/Variables.var", "VAR\n\tstate : State_type;\n\tn, started, digits : INT;\n\tlist : ARRAY[0..1] OF INT;\nEND_VAR\n")
     write("Plant/Logical/Belt/Types.typ", "TYPE\n\tState_type : (WAIT, GO);\nEND_TYPE\n")
     write("Plant/Logical/Belt/Init.st", "PROGRAM _INIT\n\tstarted := started + 1;\nEND_PROGRAM\n")
-    write("Plant/Logical/Belt/Cyclic.st", "PROGRAM _CYCLIC\n\tcount;\n\tstate := GO;\nEND_PROGRAM\n")
+    write("Plant/Logical/Belt/Cyclic.st", "PROGRAM _CYCLIC\n\tcount;\n\tstate := GO;\n\tlist[0];\n"
+          "\tdigits := LEN(INT_TO_STRING(5));\nEND_PROGRAM\n")
     write("Plant/Logical/Belt/Actions.st", "ACTION count:\n\tn := n + 1;\nEND_ACTION\n")
     write("Plant/Logical/Belt/Exit.st", "PROGRAM _EXIT\n\tn := 0;\nEND_PROGRAM\n")
     write("Plant/Logical/Other/IEC.prg", program.replace("<File>", '<File Reference="true">\\Logical\\Belt\\'))
@@ -290,7 +291,7 @@ def check_automation_studio():
     run("new", "belt", "--from", "Plant")
     text = (work / "belt.yaml").read_text()
     assert "Belt: {type: Belt," in text and "Other: {type: Other," in text, text
-    write("belt.yaml", text + "expect:\n  - {at: end, Belt.n: 101}\n  - {at: end, Belt.started: 1}\n  - {at: end, Other.n: 101}\n")
+    write("belt.yaml", text + "expect:\n  - {at: end, Belt.n: 101}\n  - {at: end, Belt.started: 1}\n  - {at: end, Belt.digits: 1}\n  - {at: end, Other.n: 101}\n")
     run("run", "belt.yaml", "--quiet")
     write("Plant/Logical/Second/IEC.prg", program)
     for name, type_ in (("Variables.var", "VAR\n\tstate : State_type;\n\tn, started : INT;\nEND_VAR\n"), ("Init.st", ""),

@@ -77,7 +77,7 @@ const Routine* find_action(Checking& c, Expression& name) {
 
 void check_action(Checking& c, Statement*& s) {
     Expression* name = s->value;
-    if (!find_action(c, *name)) {
+    if (name->kind == E::index || !find_action(c, *name)) {
         if (check(c, s->value))
             c.warn(code::something_else_expected, s->place, "this does nothing",
                    "write 'name := value;', or a call 'name();'");

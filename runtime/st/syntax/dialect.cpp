@@ -45,6 +45,7 @@ const Dialect& dialect_of(std::string_view path) {
                                          {".typ", automation_studio},
                                          {".var", automation_studio},
                                          {".fun", automation_studio},
+                                         {".prg", automation_studio},
                                          {".exp", codesys},
                                          {".tcpou", codesys},
                                          {".tcdut", codesys},

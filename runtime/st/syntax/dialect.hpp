@@ -31,8 +31,9 @@ struct Dialect {
 /// SCL of Siemens' TIA Portal.
 extern const Dialect iec, automation_studio, codesys, scl;
 
-/// By the ending of a file's name: `.st` is the standard's, `.typ`, `.var` and `.fun` are B&R's,
-/// `.EXP` and TwinCAT's `.TcPOU` and its like CODESYS, all others SCL.
+/// By the ending of a file's name: `.st` is the standard's, `.typ`, `.var`, `.fun` and what a
+/// `.prg` puts together are B&R's, `.EXP` and TwinCAT's `.TcPOU` and its like CODESYS, all others
+/// SCL.
 const Dialect& dialect_of(std::string_view path);
 
 }  // namespace lineshaft::st

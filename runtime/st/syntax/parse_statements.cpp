@@ -68,9 +68,10 @@ void parse_access_statement(Parsing& p, Expression* target, Block& to) {
 
 /// A value alone names an action, `a;`, or is a mistake.
 void parse_value_alone(Parsing& p, Expression* value, Block& to) {
-    const bool is_name =
-        value->kind == Expression::Kind::name || value->kind == Expression::Kind::member;
-    if (!is_name || !p.is(Word::semicolon)) return refuse_value(p, *value);
+    using Kind = Expression::Kind;
+    const bool is_place =
+        value->kind == Kind::name || value->kind == Kind::member || value->kind == Kind::index;
+    if (!is_place || !p.is(Word::semicolon)) return refuse_value(p, *value);
     to.push_back(p.make(Statement::Kind::action, value));
     p.take();
 }

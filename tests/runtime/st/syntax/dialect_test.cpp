@@ -12,7 +12,7 @@ TEST_CASE("Structured Text: the ending of a file's name is its dialect", "[st]")
         CHECK(&st::dialect_of(path) == &st::iec);
     for (const char* path : {"axis.scl", "axis.s7dcl", "axis.udt", "axis.db", "st", "(axis.st)"})
         CHECK(&st::dialect_of(path) == &st::scl);
-    for (const char* path : {"types.typ", "a/Global.var", "lib.fun"})
+    for (const char* path : {"types.typ", "a/Global.var", "lib.fun", "Belt/IEC.prg"})
         CHECK(&st::dialect_of(path) == &st::automation_studio);
     for (const char* path : {"plc.EXP", "MAIN.TcPOU", "GVL.TcGVL", "T.TcDUT", "I.TcIO"})
         CHECK(&st::dialect_of(path) == &st::codesys);
