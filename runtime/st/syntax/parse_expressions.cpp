@@ -182,8 +182,9 @@ bool takes_type(const Parsing& p, const Expression& function) {
     const auto is = [&](std::string_view name) { return same_name(function.token.text, name); };
     const auto follows = [&](std::string_view word) { return same_name(p.next().text, word); };
     if (function.kind != Expression::Kind::name) return false;
-    const bool is_written = p.next().word == Word::array_ || follows("pointer") ||
-                            follows("reference") || follows("ref_to");
+    const bool is_to = p.next(2).word == Word::to_;
+    const bool is_written = p.next().word == Word::array_ || (follows("pointer") && is_to) ||
+                            (follows("reference") && is_to);
     return is("__new") || (is_written && (is("sizeof") || is("xsizeof")));
 }
 
@@ -206,8 +207,9 @@ Expression* parse_assigned(Parsing& p) {
     assignment->value = parse_assigned(p);
     assignment->place = value->place.to(p.last().place);
     p.before->push_back(assignment);
-    const std::size_t behind = std::exchange(p.at, start);
+    const std::size_t behind = std::exchange(p.at, start), done = p.before->size();
     value = parse_access(p);
+    p.before->resize(done);  // what stands in it was assigned
     p.at = behind;
     return value;
 }

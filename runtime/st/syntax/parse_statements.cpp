@@ -28,7 +28,9 @@ void parse_assignment(Parsing& p, Expression* target, Block& to) {
     } else {
         Expression* inner = statement->value;
         p.at = before;
+        const std::size_t done = to.size();
         statement->value = parse_value(p);
+        to.resize(done);  // what stands in it was assigned
         parse_assignment(p, inner, to);
     }
     to.push_back(statement);
