@@ -9,6 +9,7 @@
 #include "runtime/st/check/image.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
+#include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/open_arrays.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/statements.hpp"
