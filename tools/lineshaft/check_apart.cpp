@@ -43,6 +43,14 @@ std::set<std::string> files_of(const SourceFile& text) {
     return files;
 }
 
+bool is_told(const Diagnostics& found, const Diagnostic& wanted) {
+    const auto is_it = [&](const Diagnostic& d) {
+        return d.code == wanted.code && path_of(d) == path_of(wanted) &&
+               d.mark.line == wanted.mark.line && d.mark.column == wanted.mark.column;
+    };
+    return std::ranges::any_of(found.list(), is_it);
+}
+
 }  // namespace
 
 Diagnostics check_apart(const st::SourcePool& pool, const Texts& texts) {
@@ -81,6 +89,9 @@ Diagnostics without_neighbours(const Texts& texts, const Diagnostics& found) {
         files.merge(paths);
     }
     add_if(once, found, [&](const std::string& path) { return !files.contains(path); });
+    for (const Diagnostic& d : found.list())
+        if (is_twice(d) && !is_told(out, d))
+            out.warn(d.code, d.mark, d.message + ", in programs that are checked apart", d.help);
     return out;
 }
 

@@ -221,6 +221,8 @@ void begin_anew(Checking& c, Routine& routine, Variable& variable) {
     Variable& fresh = c.make_variable(
         variable.name, c.checked.names.emplace_back(fmt::format("{} as it begins", variable.text)),
         variable.type);
+    fresh.initial = variable.initial;
+    fresh.constructed = variable.constructed;
     fresh.used = true;
     keep_once(c, fresh);
     const Expression like{.token = variable.name, .place = variable.name.place};

@@ -1,5 +1,8 @@
 #include "runtime/st/check/statements.hpp"
 
+#include <set>
+#include <span>
+
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/conversions.hpp"
@@ -127,26 +130,61 @@ void check_condition(Checking& c, Expression*& condition, std::string_view of) {
            type->is_number() || type->is_bits() ? "compare it, as in 'x <> 0'" : "");
 }
 
+/// The first range or text that stands twice is told.
+bool check_labels_of_texts(Checking& c, const std::vector<Branch>& branches) {
+    std::set<std::string_view> seen;
+    for (const Branch& branch : branches) {
+        for (const auto& [value, last] : branch.labels) {
+            if (last)
+                return c.fail(code::type_does_not_fit, value->place.to(last->place),
+                              "texts have no range", "name each of them"),
+                       false;
+            if (value->kind == E::constant && !seen.insert(value->token.text).second)
+                return c.fail(code::value_out_of_range, value->place,
+                              fmt::format("{} stands twice in this CASE", value->place.text()),
+                              "only the first one would count"),
+                       false;
+        }
+    }
+    return true;
+}
+
+/// `selector = 'a' OR selector = 'b'`, balanced, as there may be many.
+Expression* is_one_of(Checking& c, const Expression& selector,
+                      std::span<const Branch::Label> labels) {
+    Expression* first = labels.front().first;
+    if (labels.size() == 1)
+        return make_binary(c, first->place, first->place, Word::equal, make_copy(c, selector),
+                           first);
+    const std::size_t half = labels.size() / 2;
+    return make_binary(c, first->place, first->place, Word::or_,
+                       is_one_of(c, selector, labels.first(half)),
+                       is_one_of(c, selector, labels.subspan(half)));
+}
+
+/// It may be read again, and is the same.
+bool is_read_freely(const Expression& e) {
+    return e.kind == E::name || (e.kind == E::member && is_read_freely(*e.operands[0]));
+}
+
 /// Of texts, which SIMATIC AX has: `IF text = 'a' OR text = 'b' THEN ... ELSIF`.
 void rewrite_case_of_texts(Checking& c, Statement*& s) {
-    Variable& selector = c.make_variable(*c.routine, s->value->token, "CASE", s->value->type);
+    if (!check_labels_of_texts(c, s->branches)) return;
+    const Expression* selector = s->value;
+    Block made;
+    if (!is_read_freely(*selector)) {
+        Variable& once = c.make_variable(*c.routine, s->value->token, "CASE", s->value->type);
+        made.push_back(make_assignment(c, s->place, make_use(c, *s->value, once), s->value));
+        selector = make_use(c, *s->value, once);
+    }
     Statement* chosen = make_if(c, s->place, nullptr, {}, std::move(s->body));
     chosen->branches = std::move(s->branches);
     for (Branch& branch : chosen->branches) {
-        for (const auto& [value, last] : branch.labels) {
-            if (last)
-                c.fail(code::type_does_not_fit, value->place.to(last->place), "texts have no range",
-                       "name each of them");
-            Expression* is_it = make_binary(c, value->place, value->place, Word::equal,
-                                            make_use(c, *value, selector), value);
-            branch.condition = !branch.condition ? is_it
-                                                 : make_binary(c, value->place, value->place,
-                                                               Word::or_, branch.condition, is_it);
-        }
+        if (!branch.labels.empty()) branch.condition = is_one_of(c, *selector, branch.labels);
         branch.labels.clear();
     }
-    Statement* read = make_assignment(c, s->place, make_use(c, *s->value, selector), s->value);
-    s = make_sequence(c, s->place, {read, chosen});
+    made.push_back(chosen);
+    s = make_sequence(c, s->place, std::move(made));
     check(c, s);
 }
 

@@ -122,7 +122,7 @@ void refuse_comparison(Parsing& p) {
 void refuse_assignment(Parsing& p) {
     if (p.source->dialect.is_loose)
         tell(p, code::not_supported, p.here().place,
-             "an assignment is no value where it is not done once in each case",
+             "an assignment is no value where it is not done in each case, once and first",
              "assign it in a statement of its own");
     else
         tell(p, code::something_else_expected, p.here().place, "':=' assigns and does not compare",

@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <array>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "runtime/st/syntax/grammar.hpp"
 
@@ -18,6 +21,9 @@ constexpr std::initializer_list<Word> operators[] = {
     {Word::times, Word::divided, Word::mod_},
     {Word::power}};
 constexpr int power_binding = std::size(operators);
+
+/// In one statement. Each is looked for in what stands before it.
+constexpr int most_assignments = 100;
 
 /// How strong a word binds as an operator; 0: it is none.
 constexpr auto bindings = [] {
@@ -188,6 +194,35 @@ bool takes_type(const Parsing& p, const Expression& function) {
     return is("__new") || (is_written && (is("sizeof") || is("xsizeof")));
 }
 
+/// The token belongs to an assignment that is done before the statement.
+bool is_done_before(const Parsing& p, const Token& token) {
+    const auto first = p.tokens[p.targets.front()].place.begin;
+    for (auto it = p.before->rbegin(); it != p.before->rend() && (*it)->place.begin >= first; ++it)
+        if ((*it)->place.begin <= token.place.begin && token.place.begin < (*it)->place.end)
+            return true;
+    return false;
+}
+
+/// What stands before the target in the statement is done after the assignment: it must neither
+/// name what is assigned, nor have called something.
+bool comes_too_late(const Parsing& p, std::size_t target) {
+    std::vector<bool> calls;
+    for (std::size_t i = p.targets.front(); i < target; ++i) {
+        const Token& token = p.tokens[i];
+        const Word last = i == 0 ? Word::end_of_file : p.tokens[i - 1].word;
+        const bool is_part = last == Word::dot;
+        const bool is_open = std::ranges::find(p.targets, i) != p.targets.end();
+        if (!is_open && !is_part && same_name(token.text, p.tokens[target].text)) return true;
+        if (token.word == Word::open) {
+            calls.push_back(is_name(last) || last == Word::caret || last == Word::close_bracket);
+        } else if (token.word == Word::close && !calls.empty()) {
+            if (calls.back() && !is_done_before(p, token)) return true;
+            calls.pop_back();
+        }
+    }
+    return false;
+}
+
 }  // namespace
 
 /// Expression : Xor_Expr ( ( 'OR' | 'OR_ELSE' ) Xor_Expr ) *
@@ -201,10 +236,18 @@ Expression* parse_assigned(Parsing& p) {
     const std::size_t start = p.at;
     Expression* value = parse_expression(p);
     if (p.panic || !p.is(Word::assign)) return value;
-    if (!p.before || !p.source->dialect.is_loose) return refuse_assignment(p), value;
+    if (!p.before || !p.source->dialect.is_loose || comes_too_late(p, start))
+        return refuse_assignment(p), value;
+    if (++p.assigned > most_assignments)
+        return fail(p, code::not_supported, p.here().place,
+                    fmt::format("a statement has at most {} assignments", most_assignments),
+                    "assign them in statements of their own"),
+               value;
     Statement* assignment = p.make(Statement::Kind::assign, p.take());
     assignment->target = value;
+    p.targets.push_back(start);
     assignment->value = parse_assigned(p);
+    p.targets.pop_back();
     assignment->place = value->place.to(p.last().place);
     p.before->push_back(assignment);
     const std::size_t behind = std::exchange(p.at, start), done = p.before->size();

@@ -15,12 +15,15 @@ struct Parsing : Cursor {
     std::vector<Declaration*> generics = {};  ///< constants of the generic block that is read
     std::vector<Expression*> given = {};      ///< their values, where it is read again
     Block* before = nullptr;  ///< where assignments go that stand in an expression; null: none may
-    int cases = 0;            ///< that are open, before their ELSE
-    int levels = 0;           ///< that are open
-    bool is_in_body = false;  ///< of a POU
-    bool is_in_test = false;  ///< in its body
-    bool is_wrong = false;    ///< what is being declared
-    bool is_spoiled = false;  ///< the POU, by a variable that cannot be
+    /// First tokens of the statement, and of what is assigned in it and not yet read to its end.
+    std::vector<std::size_t> targets = {};
+    int assigned = 0;                  ///< of such assignments in the statement
+    int cases = 0;                     ///< that are open, before their ELSE
+    int levels = 0;                    ///< that are open
+    bool is_in_body = false;           ///< of a POU
+    bool is_in_test = false;           ///< in its body
+    bool is_wrong = false;             ///< what is being declared
+    bool is_spoiled = false;           ///< the POU, by a variable that cannot be
     bool section_left = false;         ///< a VAR ended without END_VAR
     std::vector<Place> else_ifs = {};  ///< `ELSE IF` within the IFs that are open
     std::size_t unclosed_at = static_cast<std::size_t>(-1);  ///< where an end was missed last
